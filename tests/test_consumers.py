@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import wavesym
-from tests.report.browser import reported
+from tests.pictures.browser import reported
 
 PLACE = Path(wavesym.__file__).parents[1] / "examples" / "consumers"
 PAGE = (PLACE / "README.md").read_text(encoding="utf-8")

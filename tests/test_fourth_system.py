@@ -13,7 +13,7 @@ from flint import fmpq
 import wavesym
 from tests.support.braced import Braced
 from tests.support.generated import files
-from wavesym import compiler
+from wavesym import api
 from wavesym.errors import WavesymError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Bar, Point
@@ -88,24 +88,24 @@ def test_without_its_dashpot_the_integrator_sees_it():
 
 
 def test_it_is_verified(monkeypatch):
-    text, passed = compiler.verify([scene()], "pieces")
+    text, passed = api.verify([scene()], "pieces")
     assert passed, text
     monkeypatch.setitem(READERS, "braced", lambda system: braced(system.model_copy(update={"dashpot": [1]})))
-    text, passed = compiler.verify([scene()], "pieces")
+    text, passed = api.verify([scene()], "pieces")
     assert not passed
 
 
 def test_it_is_derived_with_its_dashpot():
-    text = compiler.derive("braced", None)
+    text = api.derive("braced", None)
     assert "q = b_m + kappa_m" in text
-    assert compiler.derive("braced", 2, "latex").count("b_{2}") > 2
+    assert api.derive("braced", 2, "latex").count("b_{2}") > 2
     assert "Here\n" not in text  # of section 2 nothing is known
-    own = compiler.derive(scene(), None)
+    own = api.derive(scene(), None)
     assert "b_2 = 2/7" in own
 
 
 def test_its_symbolic_table_is_its_table():
-    merged, lines = compiler.symbolic_tables_text(scene(), 2, "csv")
+    merged, lines = api.symbolic_tables(scene(), 2, "csv")
     text = "".join(lines)
     assert "b_2" in text
     assert merged == []
@@ -113,7 +113,7 @@ def test_its_symbolic_table_is_its_table():
 
 def test_walk_polynomials_refuse_a_dashpot_in_one_line():
     with pytest.raises(WavesymError, match=r"x = 2 has a dashpot"):
-        compiler.walks(scene(), None, 2)
+        api.walks(scene(), None, 2)
 
 
 def test_its_mistakes_are_one_line():

@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from tests.support.generated import files
+from wavesym import api
 from wavesym.cli import main
-from wavesym.compiler import tables_text
+from wavesym.documents.tables import table_lines
 from wavesym.scene import Scene, lower
 
 KEPT = Path(__file__).parent.parent / "generated"
@@ -22,7 +23,7 @@ EXAMPLES = ("building_m2", "collision_m4", "drive_m1")
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_kept_files_are_what_is_generated(name):
     scene = Scene.from_toml(name)
-    made = files(lower(scene), "all") | {"tables.csv": "".join(tables_text(scene, None, "csv"))}
+    made = files(lower(scene), "all") | {"tables.csv": "".join(table_lines(api.table(scene), name, "csv"))}
     kept = {path.name: path.read_bytes().decode() for path in (KEPT / name).iterdir()}
     assert kept.keys() == made.keys(), "make generated"
     for file, text in made.items():
@@ -83,7 +84,9 @@ def test_check_names_what_a_killed_process_left(tmp_path, monkeypatch, capsys):
     written = sorted(path.name for path in Path("folder").iterdir())
     killed = f"""
 import os, signal
+from wavesym import api
 from wavesym.cli import main
+from wavesym.documents.tables import table_lines
 os.replace = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
 main({request})
 """

@@ -6,7 +6,7 @@ import doctest
 import inspect
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 import pytest
 
@@ -48,7 +48,7 @@ def test_everything_public_is_typed(name: str) -> None:
     if inspect.isclass(documented):
         documented = documented.__init__
     given = inspect.signature(documented).parameters.keys() - {"self", "cls", "args", "kwargs", "fields"}
-    assert given <= get_type_hints(documented).keys()
+    assert given <= inspect.get_annotations(documented).keys()
 
 
 def test_the_help_of_the_package_names_everything_public() -> None:

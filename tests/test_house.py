@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 import wavesym
-from wavesym import compiler
-from wavesym.compiler import generation, pictures, texts, values, verdicts
+from wavesym import api
 from wavesym.mechanics import chain
 from wavesym.scene import Scene, lower
 
@@ -55,8 +54,7 @@ def built(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
         counted["nodes"] += 1
         return right_node(given)
 
-    for ways in (generation, pictures, texts, values, verdicts):
-        monkeypatch.setattr(ways, "lower", counting)
+    monkeypatch.setattr(api, "lower", counting)
     monkeypatch.setattr(chain, "_exact_node", node)
     return counted
 
@@ -64,24 +62,24 @@ def built(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 @pytest.mark.parametrize("name", ["building_m2", "collision_m4", "drive_m1"])
 def test_generate_lowers_a_scene_once(built: Counter[str], name: str, tmp_path: Path) -> None:
     scene = Scene.from_toml(name)
-    compiler.generate(scene, tmp_path, "all")
+    api.generate(scene, tmp_path, "all")
     assert built == {"models": 1, "nodes": scene.system.m + 1}
 
 
 def test_verify_lowers_a_scene_once(built: Counter[str]) -> None:
     scene = Scene.from_toml("drive_m1")
-    _, passed = compiler.verify([scene], "closed")
+    _, passed = api.verify([scene], "closed")
     assert passed
     assert built == {"models": 1, "nodes": scene.system.m + 1}
 
 
 def test_plot_lowers_a_scene_once(built: Counter[str], tmp_path: Path) -> None:
     scene = Scene.from_toml("collision_m4")
-    compiler.plot(scene, tmp_path / "picture.svg")
+    api.plot(scene, tmp_path / "picture.svg")
     assert built == {"models": 1, "nodes": scene.system.m + 1}
 
 
 def test_values_lower_a_scene_once(built: Counter[str]) -> None:
     scene = Scene.from_toml("building_m2")
-    assert compiler.evaluator(scene)([1.0]).shape == (6, 1)
+    assert api.evaluator(scene)([1.0]).shape == (6, 1)
     assert built == {"models": 1, "nodes": scene.system.m + 1}

@@ -51,7 +51,7 @@ def test_only_the_command_that_is_called_is_imported() -> None:
 
 
 def test_what_runs_a_record_waits_for_nothing_that_it_does_not_need() -> None:
-    loaded = run_python("import wavesym.compiler, wavesym.programs.modes.making\nimport sys; print(*sys.modules)")
+    loaded = run_python("import wavesym.api, wavesym.programs.modes.making\nimport sys; print(*sys.modules)")
     assert not {"sympy", "scipy", "matplotlib", "xarray", "pint"} & set(loaded.split())
 
 
@@ -63,7 +63,7 @@ def test_who_writes_c_of_pieces_waits_for_nothing_else(tmp_path: Path) -> None:
     seen = set(loaded.rpartition("LOADED")[2].split())
     others = {f"wavesym.programs.{kind}.evaluator" for kind in ("march", "modes", "hats")}
     assert {"sympy", "wavesym.programs.pieces"} <= seen  # it did its work
-    assert not seen & {*others, "numpy", "scipy", "pint", "wavesym.exact.contacts.schedule", "wavesym.compiler.values"}
+    assert not seen & {*others, "numpy", "scipy", "pint", "wavesym.exact.contacts.schedule", "wavesym.results.response"}
 
 
 @pytest.mark.parametrize(("told", "threads"), [(None, "1"), ("3", "3")])

@@ -1,21 +1,27 @@
 """Longitudinal and torsional waves in chains of rods and rigid bodies, from a scene to C that can be linked.
 
     Scene       what is modelled, which loads act, which outputs are wanted, for how long and how exactly
-    evaluator   the outputs of a scene as a function of tau, right to the last bit
+    run         the histories of its outputs, as a Result: by name, as a table, as a picture; also `scene.run()`
     summary     the least and the greatest value of each output, and when; `peaks` of several scenes as arrays
-    sweep       many scenes that differ in a few fields or records, into a folder of labelled arrays
-    tables      the exact coefficients of its wave functions
+    spectrum    response spectra of its accelerations
+    plot        its histories, place x time, envelopes, as pictures; `report` as one page
+    evaluator   the outputs of a scene as a function of tau, right to the last bit
     model       its outputs for many sets of parameters: values, gradients, extremes
+    sweep       many scenes that differ in a few fields or records, into a folder of labelled arrays
     generate    its C and NumPy programs, written to files
+    verify      these programs, compared with direct integration
+    tables      the exact coefficients of its wave functions; `derive` has the equations that give them
 
-A request that cannot be carried out raises a WavesymError: SceneError, ToleranceError, CostError, UnservedError or
-RangeError.
+A request that cannot be carried out raises a WavesymError: SceneError, ToleranceError, CostError, UnservedError,
+CompilerError or RangeError.
 
     >>> import wavesym
     >>> scene = wavesym.Scene.from_toml("building_m2")  # built in; or a path, or wavesym.Scene(...)
-    >>> response = wavesym.evaluator(scene)
-    >>> response([0.5, 20.0]).shape  # outputs, then the shape of tau
-    (6, 2)
+    >>> scene
+    Scene('building_m2', building, 2 storeys, load of 3 changes, until tau = 12)
+    >>> result = scene.run()
+    >>> result["velocity@2"].shape
+    (1001,)
 """
 
 from __future__ import annotations
@@ -24,46 +30,80 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from wavesym.compiler import evaluator, generate, model, peaks, summary, sweep, tables
+    from wavesym.api import (
+        derive,
+        evaluator,
+        generate,
+        model,
+        peaks,
+        plot,
+        report,
+        run,
+        spectrum,
+        summary,
+        sweep,
+        tables,
+        verify,
+    )
     from wavesym.errors import CostError, RangeError, SceneError, ToleranceError, UnservedError, WavesymError
+    from wavesym.results.result import Result
+    from wavesym.running.toolchain import CompilerError
     from wavesym.scene import Scene
 
+# Loaded when first asked for, so that `import wavesym` and `wavesym --help` wait for nobody's SymPy.
+_HOMES = {
+    "Scene": "wavesym.scene",
+    "Result": "wavesym.results.result",
+    "CompilerError": "wavesym.running.toolchain",
+    **dict.fromkeys(
+        ("CostError", "RangeError", "SceneError", "ToleranceError", "UnservedError", "WavesymError"), "wavesym.errors"
+    ),
+    **dict.fromkeys(
+        (
+            "derive",
+            "evaluator",
+            "generate",
+            "model",
+            "peaks",
+            "plot",
+            "report",
+            "run",
+            "spectrum",
+            "summary",
+            "sweep",
+            "tables",
+            "verify",
+        ),
+        "wavesym.api",
+    ),
+}
+
 __all__ = [
+    "CompilerError",
     "CostError",
     "RangeError",
+    "Result",
     "Scene",
     "SceneError",
     "ToleranceError",
     "UnservedError",
     "WavesymError",
     "__version__",
+    "derive",
     "evaluator",
     "generate",
     "model",
     "peaks",
+    "plot",
+    "report",
+    "run",
+    "spectrum",
     "summary",
     "sweep",
     "tables",
+    "verify",
 ]
 __version__ = "0.1.0"
-
-# Loaded when first asked for, so that `import wavesym` and `wavesym --help` wait for nobody's SymPy.
-_HOMES = {
-    "Scene": "wavesym.scene",
-    "CostError": "wavesym.errors",
-    "RangeError": "wavesym.errors",
-    "SceneError": "wavesym.errors",
-    "ToleranceError": "wavesym.errors",
-    "UnservedError": "wavesym.errors",
-    "WavesymError": "wavesym.errors",
-    "evaluator": "wavesym.compiler",
-    "generate": "wavesym.compiler",
-    "model": "wavesym.compiler",
-    "peaks": "wavesym.compiler",
-    "summary": "wavesym.compiler",
-    "sweep": "wavesym.compiler",
-    "tables": "wavesym.compiler",
-}
 
 
 def __getattr__(name: str) -> object:

@@ -396,7 +396,7 @@ def test_verify_names_the_file_of_the_scene_it_refuses(tmp_path: Path, monkeypat
             if scene.name == "other":
                 raise CostError("output.until: too far")
 
-    monkeypatch.setattr("wavesym.compiler.verify", checked)
+    monkeypatch.setattr("wavesym.api.verify", checked)
     for order in (["good.toml", "bad.toml"], ["bad.toml", "good.toml"], ["bad.toml"]):
         answer = ask("verify", *order)
         assert (answer.status, answer.err) == (2, "bad.toml: output.until: too far\n")

@@ -119,6 +119,6 @@ def test_scenes_are_verified_as_ever(monkeypatch: pytest.MonkeyPatch, capsys: py
         asked.extend(scene.name for scene in scenes)
         return "errors", True
 
-    monkeypatch.setattr("wavesym.compiler.verify", verify)
+    monkeypatch.setattr("wavesym.api.verify", verify)
     assert answer(capsys, "drive_m1", "building_m2") == "errors\n"
     assert asked == ["drive_m1", "building_m2"]

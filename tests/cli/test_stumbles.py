@@ -10,7 +10,7 @@ import pytest
 
 import wavesym
 from tests.cli.test_cli import SCENE, folder, refused
-from wavesym import compiler
+from wavesym import api
 from wavesym.cli import main
 from wavesym.results import rows
 from wavesym.scene import builtin_names, lower
@@ -43,14 +43,14 @@ def test_many_samples_come_while_they_are_computed(monkeypatch: pytest.MonkeyPat
     asked = []
     made = rows._rows
     monkeypatch.setattr(rows, "_rows", lambda *of: asked.append(1) or made(*of))
-    lines = compiler.run(scene, 10**7)
+    lines = api.run_csv(scene, 10**7)
     assert next(lines).startswith("tau,")
     assert next(lines).startswith("0.0,")
     assert asked == [1]
-    whole = list(compiler.run(scene, 2 * rows._AT_ONCE + 3))
+    whole = list(api.run_csv(scene, 2 * rows._AT_ONCE + 3))
     assert len(whole) == 2 * rows._AT_ONCE + 4
     assert whole[-1].startswith("10.0,")
-    assert list(compiler.run(scene, 101)) == list(compiler.run(scene, 101, list(rows.grid(lower(scene), 101))))
+    assert list(api.run_csv(scene, 101)) == list(api.run_csv(scene, 101, list(rows.grid(lower(scene), 101))))
 
 
 def test_a_byte_order_mark_is_no_part_of_a_scene() -> None:
@@ -90,7 +90,7 @@ def test_files_of_others_are_replaced_by_force_only(capsys: pytest.CaptureFixtur
 def test_what_takes_long_first_asks_where_it_may_write(
     command: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for work in ("lab.chart.measure.measure", "lab.stability.atlas", "report.figures.published"):
+    for work in ("lab.chart.measure.measure", "lab.stability.atlas", "pictures.figures.published"):
         monkeypatch.setattr(f"wavesym.{work}", lambda *_: pytest.fail("worked before it asked"))
     assert refused(capsys, *command, "mine.toml/deeper/out.svg").endswith(": Not a directory")
 
@@ -161,7 +161,7 @@ def test_from_python_what_is_wrong_is_told() -> None:
             wanted("drive_m1")  # type: ignore[operator]
     with pytest.raises(wavesym.SceneError, match="str given, a Scene expected"):
         wavesym.model("drive_m1", ["load"])  # type: ignore[arg-type]
-    with pytest.raises(wavesym.WavesymError, match=r'^runtime: "kappa" given, a list of names expected$'):
+    with pytest.raises(wavesym.WavesymError, match=r'^runtime: "kappa" is not a list of names; write \["kappa"\]$'):
         wavesym.model(scene, "kappa")
     with pytest.raises(wavesym.WavesymError, match=r'^--runtime: kapa given, .* expected. Did you mean "kappa"\?$'):
         wavesym.model(scene, ["kapa"])

@@ -7,7 +7,7 @@ from sympy import Symbol
 
 import wavesym
 from tests.support.generated import files
-from wavesym import compiler
+from wavesym import api
 from wavesym.derivation import node_law as derived
 from wavesym.derivation.delay import _at_node, delay_equations
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, node_law
@@ -74,7 +74,7 @@ def test_a_rod_end_is_a_dashpot_and_a_force():
 
 def of_a_chain():
     made = {kind: files(lower(CHAIN), "c", kind)["stepped.c"] for kind in ("closed", "pieces")}
-    return made | {"table": wavesym.tables(CHAIN), "text": compiler.derive(CHAIN, None)}
+    return made | {"table": wavesym.tables(CHAIN), "text": api.derive(CHAIN, None)}
 
 
 @pytest.mark.parametrize("factor", [2, -1])

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from sympy import Rational, Symbol
 
 from tests.support.chains import chains
+from wavesym.api import derive
 from wavesym.cli import main
-from wavesym.compiler import derive
 from wavesym.derivation import numbers
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.numbers import symbol

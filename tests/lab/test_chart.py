@@ -10,8 +10,8 @@ from time import sleep
 import numpy as np
 import pytest
 
+from wavesym.api import evaluator
 from wavesym.cli import main
-from wavesym.compiler import evaluator
 from wavesym.lab.chart import subjects as listed
 from wavesym.lab.chart.measure import ChartRow, Measured, _Judge, measure, to_csv
 from wavesym.lab.chart.subjects import Subject, opponent, spacing, subjects, taus
@@ -188,7 +188,7 @@ def test_csv_holds_every_number():
 def drawn(tmp_path_factory):
     pytest.importorskip("matplotlib")
     from wavesym.lab.chart.drawing import draw
-    from wavesym.report.saving import save
+    from wavesym.pictures.saving import save
 
     folder = tmp_path_factory.mktemp("drawn")
     figures = [draw(SCENE, MEASURED) for _ in range(2)]
@@ -253,7 +253,7 @@ def test_curves_differ_without_their_colour():
 
 def test_other_formats_and_what_is_none(drawn, tmp_path):
     from wavesym.errors import SceneError
-    from wavesym.report.saving import save
+    from wavesym.pictures.saving import save
 
     save(drawn[0], tmp_path / "a" / "chart.png")
     assert (tmp_path / "a" / "chart.png").read_bytes().startswith(b"\x89PNG")

@@ -23,9 +23,9 @@ from wavesym.lab.atlas.attempts import ROUNDED, truth
 from wavesym.lab.atlas.drawing import draw
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, to_csv
 from wavesym.lab.atlas.scenes import TOLERANCE, aimed, drive, made
+from wavesym.pictures.saving import save
 from wavesym.programs import pieces
 from wavesym.programs.choice import choose
-from wavesym.report.saving import save
 from wavesym.rivals import characteristics, differences, elements, laplace, modes, steps
 from wavesym.rivals.advice import springs
 from wavesym.scene import lower

@@ -17,7 +17,6 @@ from flint import fmpq
 import wavesym
 from wavesym.cli import main
 from wavesym.cli.run import DEFAULT_SAMPLES
-from wavesym.compiler.values import _own_samples
 from wavesym.errors import CostError
 from wavesym.exact.arrival import first_arrivals, light_arrivals
 from wavesym.exact.extremes import extremes
@@ -27,10 +26,11 @@ from wavesym.programs.making import make
 from wavesym.programs.modes.panels import Panels
 from wavesym.programs.request import Request
 from wavesym.results import sampled, summary
-from wavesym.results.rows import SAMPLES
+from wavesym.results.rows import SAMPLES, own_samples
 from wavesym.results.sampled import sampled_extremes
 from wavesym.results.summary import summarised
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import sample_comb
 
 BUILT_IN = ["building_m2", "collision_m4", "drive_m1", "geared_drive"]
 
@@ -242,7 +242,7 @@ def test_published_peaks_of_one_storey(period, sampled, true):
     assert not found.proved
     assert found.outputs[0].unit == "inch"
     assert abs(found.outputs[0].largest.value) == pytest.approx(true * MORE, abs=1e-5)
-    at = summarised(model, _own_samples(scene, model))
+    at = summarised(model, own_samples(model, sample_comb(scene)))
     assert abs(at.outputs[0].largest.value) == pytest.approx(sampled * MORE, abs=1e-5)
     assert at.how == "the values of modes at 1560 samples"
 

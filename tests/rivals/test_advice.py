@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flint import fmpq
 
-from wavesym import compiler
+from wavesym import api
 from wavesym.cli import main
 from wavesym.mechanics.damping import Damping
 from wavesym.rivals import advice, mass
@@ -134,8 +134,8 @@ def test_at_rest_anything_is_enough():
 
 def test_text_and_json_say_the_same():
     scene = tower(0.04)
-    said = json.loads(compiler.advise(scene, 0.01, "json"))
-    text = compiler.advise(scene, 0.01)
+    said = json.loads(api.advise(scene, 0.01).json())
+    text = api.advise(scene, 0.01).text()
     assert said["enough"] == "consistent"
     assert list(said["models"]) == ["massless", "consistent", "waves"]
     assert text.startswith("tower: enough to 0.01 of the largest value of every output: consistent\n")

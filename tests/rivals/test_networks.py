@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from wavesym.compiler import evaluator
+from wavesym.api import evaluator
 from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.lab.chart.subjects import left_out

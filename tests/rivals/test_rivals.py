@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from wavesym.compiler import evaluator
+from wavesym.api import evaluator
 from wavesym.exact.reference import Reference
 from wavesym.rivals import characteristics, delays, differences, elements, laplace, modes, steps
 from wavesym.rivals.every import RIVALS

@@ -8,7 +8,7 @@ from flint import fmpq
 
 import wavesym
 from tests.support.modal import building, chain, samples
-from wavesym import compiler
+from wavesym import api
 from wavesym.errors import SceneError, UnservedError
 from wavesym.mechanics.damping import Damping
 from wavesym.results.response import Response
@@ -141,27 +141,27 @@ def test_what_computes_waves_refuses_it(tmp_path):
     damped = scene("0.05")
     for wanted in (
         lambda: wavesym.tables(damped),
-        lambda: compiler.symbolic_tables_text(damped, 1, "csv"),
-        lambda: compiler.derive(damped, None),
-        lambda: compiler.walks(damped, None, 1),
+        lambda: api.symbolic_tables(damped, 1, "csv"),
+        lambda: api.derive(damped, None),
+        lambda: api.walks(damped, None, 1),
     ):
         with pytest.raises(UnservedError, match=r"^system.damping: given, none expected"):
             wanted()
-    assert "system.damping: given, none expected" in compiler.inspect(damped, "table")
+    assert "system.damping: given, none expected" in api.inspect(damped, "table")
 
 
 def test_inspect_states_the_ratios_of_all_modes():
     """Rayleigh's pair has what was asked for, the others what the two make of them."""
-    said = json.loads(compiler.inspect(scene({"modes": [1, 3], "ratio": "0.05"}), "model", "json"))
+    said = json.loads(api.inspect(scene({"modes": [1, 3], "ratio": "0.05"}), "model", "json"))
     rows = said["modes"]
     w, ratios = ([row[name] for row in rows] for name in ("frequency", "damping"))
     assert ratios[0] == pytest.approx(0.05)
     assert ratios[2] == pytest.approx(0.05)
     a, b = 0.1 * w[0] * w[2] / (w[0] + w[2]), 0.1 / (w[0] + w[2])
     assert ratios == pytest.approx([a / (2 * each) + b * each / 2 for each in w])
-    listed = compiler.inspect(scene(["0.05", "0.02"]), "model")
+    listed = api.inspect(scene(["0.05", "0.02"]), "model")
     assert "all higher ones have 0.02" in listed
-    assert "modes" not in json.loads(compiler.inspect(scene(None), "model", "json"))
+    assert "modes" not in json.loads(api.inspect(scene(None), "model", "json"))
 
 
 def test_a_building_may_have_one_storey():

@@ -21,7 +21,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wavesym
-from wavesym import compiler
+from wavesym import api
 from wavesym.cli import main
 from wavesym.documents.inspection.units import remarks
 from wavesym.errors import SceneError, UnservedError
@@ -344,7 +344,7 @@ def both_ways(given: Mapping[str, Any], folder: Path) -> list[list[list[str]]]:
     scene = Scene(**given)
     (folder / "chain.toml").write_text(explicit_text(scene))
     written = Scene.from_toml(folder / "chain.toml")
-    one, other = ([line.split(",") for line in compiler.run(each, 7)] for each in (scene, written))
+    one, other = ([line.split(",") for line in api.run_csv(each, 7)] for each in (scene, written))
     assert any(float(cell) for line in one[1:] for cell in line[1:])
     return [one[1:], other[1:]]
 
@@ -555,7 +555,7 @@ def test_a_refusal_names_the_file_and_nothing_is_written(tmp_path: Path, capsys:
 
 
 def table(scene: Scene, at: list[float] | None = None) -> list[list[str]]:
-    return [line.rstrip("\n").split(",") for line in compiler.run(scene, 6, at)]
+    return [line.rstrip("\n").split(",") for line in api.run_csv(scene, 6, at)]
 
 
 def test_results_speak_seconds_and_units() -> None:
@@ -622,7 +622,7 @@ def test_programs_without_units_do_not_speak_of_them(tmp_path: Path) -> None:
 
 def test_inspections_speak_of_the_structure() -> None:
     scene = Scene.from_toml(FRAMES / "steel.toml").with_({"output.until": "20 ms"})
-    units = json.loads(compiler.inspect(scene, format="json"))["units"]
+    units = json.loads(api.inspect(scene, format="json"))["units"]
     assert units["physics_up_to"] == pytest.approx(125, abs=0.5)
     assert units["horizon"]["time"] == 0.02
     # ten equal masses on springs that have a third of their own mass at each end: a textbook's shear frame
@@ -679,7 +679,7 @@ def test_places_of_pictures_have_units() -> None:
     pytest.importorskip("matplotlib")
     from matplotlib.figure import Figure
 
-    from wavesym.report.xt import _lengths
+    from wavesym.pictures.xt import _lengths
 
     axes = Figure().add_subplot()
     axes.set_xlim(0, 2.5)
@@ -695,7 +695,7 @@ def test_a_picture_has_a_tick_at_its_end(rods: int, whole: float) -> None:
     pytest.importorskip("matplotlib")
     from matplotlib.figure import Figure
 
-    from wavesym.report.xt import _lengths
+    from wavesym.pictures.xt import _lengths
 
     axes = Figure().add_subplot()
     axes.set_xlim(0, rods)
@@ -707,7 +707,7 @@ def test_a_picture_has_a_tick_at_its_end(rods: int, whole: float) -> None:
 @pytest.mark.slow
 def test_colours_of_pictures_have_units() -> None:
     pytest.importorskip("matplotlib")
-    from wavesym.report import xt
+    from wavesym.pictures import xt
 
     scene = Scene(**CHAIN)
     figure = xt.draw(lower(scene), scene.system.lines, scene.physical)

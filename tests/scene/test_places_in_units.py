@@ -15,9 +15,9 @@ from tests.support.generated import files
 from wavesym.cli import main
 from wavesym.errors import WavesymError
 from wavesym.mechanics.length import LengthUnit, axis_text, place_text
+from wavesym.pictures.page.document import page
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
-from wavesym.report.page.document import page
 from wavesym.scene import Scene, lower
 from wavesym.systems.place import PlaceInUnits, position_of
 

@@ -11,8 +11,7 @@ import numpy as np
 from tests.support.builds import LANGUAGES, STRICT
 from wavesym import compiler as ways
 from wavesym import evaluator
-from wavesym.programs.request import PARTS
-from wavesym.programs.runtime.request import POSITIVE
+from wavesym.programs.request import PARTS, POSITIVE
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
 

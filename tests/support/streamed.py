@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import wavesym
-from wavesym.compiler import stream_program
+from wavesym import api
 from wavesym.numbers.doubles import rational
 from wavesym.programs.request import Request
 from wavesym.running.stream import StreamModel
@@ -89,4 +89,4 @@ def built(
     every = None if step is None else rational(step)
     request = Request(precision=precision, stream=True, step=every, runtime=tuple(runtime))
     defined = () if room is None else (f"-D{scene.name.upper()}_BREAKPOINTS={room}",)
-    return StreamModel(stream_program(scene, request), ("-O1", *defined))
+    return StreamModel(api.program(scene, request), ("-O1", *defined))

@@ -21,10 +21,10 @@ import pytest
 pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
 from tests.sweeps.test_cluster import files
-from wavesym import compiler
+from wavesym import api
 from wavesym.cli import main
 from wavesym.errors import WavesymError
-from wavesym.report.page.sweep import sweep_page
+from wavesym.pictures.page.sweep import sweep_page
 from wavesym.sweeps import running, work
 from wavesym.sweeps.running import run
 from wavesym.sweeps.sealed import DamagedError, _seal
@@ -85,7 +85,7 @@ def folder(tmp_path: Path, made: Path, computed: list[int]) -> Path:
 def numbers(folder: Path) -> tuple[str, ...]:
     """All that people read of a folder."""
     table = folder.parent / "table.csv"
-    compiler.sweep_table(folder, table)
+    api.sweep_table(folder, table)
     return status(folder).json(), table.read_text(), sweep_page(folder)
 
 
@@ -304,7 +304,7 @@ def test_coordinates_that_are_none_are_refused(folder: Path, file: str, change: 
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
     hashed(folder)
     with pytest.raises(DamagedError, match="coordinates that are none"):
-        compiler.sweep_table(folder, folder.parent / "t.csv")
+        api.sweep_table(folder, folder.parent / "t.csv")
 
 
 @pytest.mark.parametrize("name", ["manifest.json", f"{NAME}/max", f"{NAME}/output/0", f"{NAME}/max/2.0", NAME])
@@ -336,7 +336,7 @@ def test_texts_of_others_are_shown_as_they_are(tmp_path: Path, computed: list[in
     names = ["=1+1", "+x", "-2+3", "@f", "\t=1", "-5", "-1/2", "a\rb", "\uff1d1", "a\x1b[2Jb"]
     sweep = {"scene": "drive_m1", "vary": {"system.kappa[0]": names}}
     assert run(sweep, tmp_path / "out") == len(names)
-    compiler.sweep_table(tmp_path / "out", tmp_path / "t.csv")
+    api.sweep_table(tmp_path / "out", tmp_path / "t.csv")
     with (tmp_path / "t.csv").open(newline="") as file:
         _, *rows = csv.reader(file)
     shown = ["'=1+1", "'+x", "'-2+3", "'@f", "'\\t=1", "-5", "'-1/2", "a\\rb", "'\uff1d1", "a\\x1b[2Jb"]

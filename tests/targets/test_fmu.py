@@ -14,8 +14,8 @@ import wavesym
 from tests.support.builds import LANGUAGES, STRICT, needs_zig
 from tests.support.fmus import VERSIONS, made, needs_fmpy
 from tests.test_documents import ROOT
+from wavesym import api
 from wavesym.cli import main
-from wavesym.compiler import stream_program
 from wavesym.errors import WavesymError
 from wavesym.programs.request import Request
 from wavesym.running import fmu, toolchain
@@ -33,7 +33,7 @@ GEARED = Scene(
 
 @cache
 def program():
-    return stream_program(GEARED, Request(stream=True, target="fmu3"))
+    return api.program(GEARED, Request(stream=True, target="fmu3"))
 
 
 @cache

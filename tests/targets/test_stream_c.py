@@ -19,9 +19,10 @@ from tests.support import drawn
 from tests.support.builds import LANGUAGES, STRICT, needs_binutils, needs_zig, sections
 from tests.support.drives import DRIVE, EVERY, small
 from tests.support.streamed import built, knots, missed, run
+from wavesym import api
 from wavesym.cli import main
-from wavesym.compiler import check
 from wavesym.errors import WavesymError
+from wavesym.programs.request import Request
 from wavesym.running.toolchain import at_hand, compiler
 from wavesym.targets.manifest import CODE_AT_MOST
 
@@ -362,8 +363,9 @@ def test_what_loads_act_on_at_once_is_said(case, tmp_path):
 def test_built_in_scenes_test_themselves_in_c_and_cpp(name, precision, tmp_path):
     wavesym.generate(wavesym.Scene.from_toml(name), tmp_path, precision=precision, stream=True)
     scene = wavesym.Scene.from_toml(name)
-    assert check(scene, tmp_path, precision=precision, stream=True) == ""
-    assert "--stream" in check(scene.with_({"output.until": 3}), tmp_path, precision=precision, stream=True)
+    request = Request(precision=precision, stream=True)
+    assert api.check(scene, tmp_path, request) == ""
+    assert "--stream" in api.check(scene.with_({"output.until": 3}), tmp_path, request)
     assert selftest(tmp_path, name) == 0
     assert selftest(tmp_path, name, "-ffp-contract=fast", "-O3") == 0
     for file in (f"{name}.c", f"{name}_selftest.c"):

@@ -8,7 +8,7 @@ import pytest
 
 import wavesym
 from tests.support.streamed import built
-from wavesym.compiler import stream_program
+from wavesym import api
 from wavesym.programs.request import Request
 from wavesym.running.native import address, library
 from wavesym.targets.files import sources
@@ -83,7 +83,7 @@ class Open:
     """A stream whose fields are looked into."""
 
     def __init__(self, change=("", "")):
-        made = sources(stream_program(SCENE, Request(stream=True)), "c")
+        made = sources(api.program(SCENE, Request(stream=True)), "c")
         assert change[0] in made["rig.c"]
         self.c = library(made["rig.c"].replace(*change) + FIELDS, ("-O1",), ("rig.h", made["rig.h"]))
         self.c.rig_size.restype = ctypes.c_size_t

@@ -15,12 +15,11 @@ from tests.support.builds import LANGUAGES, STRICT
 from tests.support.drives import EVERY, small
 from tests.support.streamed import built, missed, run
 from tests.targets.test_stream_c import CASES, GEARS, JUMPS, PANEL, loaded, selftest
-from wavesym.compiler import check, stream_program
+from wavesym import api
 from wavesym.errors import WavesymError
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.request import Request
+from wavesym.programs.request import POSITIVE, Request
 from wavesym.programs.runtime.request import NAMES as FIELDS
-from wavesym.programs.runtime.request import POSITIVE
 from wavesym.programs.stream.free import QUICKER, free_stream
 from wavesym.programs.stream.plan import inputs_of
 from wavesym.programs.stream.tables import StreamTables
@@ -44,7 +43,7 @@ def ran(model, scene, **given):
 
 @pytest.fixture(scope="module")
 def program():
-    return stream_program(DRIVEN, Request(stream=True, runtime=NAMES))
+    return api.program(DRIVEN, Request(stream=True, runtime=NAMES))
 
 
 @pytest.fixture(scope="module")
@@ -89,12 +88,12 @@ def test_parameters_are_named_and_counted(gears):
 )
 def test_what_is_no_parameter_is_refused(names, said):
     with pytest.raises(WavesymError, match=said):
-        stream_program(DRIVEN, Request(stream=True, runtime=tuple(names)))
+        api.program(DRIVEN, Request(stream=True, runtime=tuple(names)))
 
 
 def test_without_parameters_nothing_is_computed():
     """The tables of a stream that takes none stay those that are proved, and its init returns nothing."""
-    made = sources(stream_program(DRIVEN, Request(stream=True)), "c")
+    made = sources(api.program(DRIVEN, Request(stream=True)), "c")
     text = made["gears.c"] + made["gears.h"]
     assert "void gears_init(gears_state *state);" in text
     assert "static const real matrix[]" in text
@@ -237,7 +236,8 @@ def test_built_in_scenes_test_themselves_in_c_and_cpp(name, precision, tmp_path)
     """With every compiler there is, without a warning; the command in the header makes the same files again."""
     scene, options = wavesym.Scene.from_toml(name), {"stream": True, "runtime": BUILT_IN[name], "precision": precision}
     wavesym.generate(scene, tmp_path, **options)
-    assert check(scene, tmp_path, **options) == ""
+    request = Request.checked(**{**options, "runtime": tuple(BUILT_IN[name])})
+    assert api.check(scene, tmp_path, request) == ""
     assert f"--stream --runtime {','.join(BUILT_IN[name])}" in (tmp_path / f"{name}.h").read_text()
     assert selftest(tmp_path, name) == 0
     assert selftest(tmp_path, name, "-ffp-contract=fast", "-O3") == 0

@@ -12,7 +12,7 @@ import wavesym
 from tests.support.drives import DRIVE, EVERY
 from tests.support.sampled import Superposed, driven
 from tests.support.streamed import built
-from wavesym.compiler import stream_program
+from wavesym import api
 from wavesym.programs.request import Request
 from wavesym.targets.c import stream as written
 
@@ -189,7 +189,7 @@ def test_room_is_known_from_the_scene_and_from_the_step():
     """All instants of the record but 0; of steps those inside of panels, none where panels end with all of them."""
 
     def room(scene, step=None):
-        return stream_program(scene, Request(stream=True, step=step)).constants["breakpoints"]
+        return api.program(scene, Request(stream=True, step=step)).constants["breakpoints"]
 
     long = shaken("0.001").with_({"load": [{"spacing": "0.001 s", "samples": RECORD * 9, "unit": "m/s^2"}]})
     kept = room(long.with_({"output.until": "0.5 s"}))

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 
 from tests.support.drawn import scenes
-from wavesym import compiler
+from wavesym import api
 from wavesym.cli import main
 from wavesym.errors import UnservedError
 from wavesym.scene import Scene, builtin_names, lower
@@ -244,4 +244,4 @@ def test_verify_exits_with_1(
 def test_a_system_that_is_not_read_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(READERS, "drive")
     with pytest.raises(UnservedError, match=r"system\.type: drive given, collision, building, chain expected"):
-        compiler.verify([Scene.from_toml("drive_m1")])
+        api.verify([Scene.from_toml("drive_m1")])

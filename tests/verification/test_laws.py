@@ -15,8 +15,8 @@ import pytest
 from flint import fmpq
 
 import wavesym
-from wavesym.compiler.generation import stream_program
-from wavesym.compiler.texts import tables as table_rows
+from wavesym import api
+from wavesym.api import tables as table_rows
 from wavesym.derivation import delay, recurrence
 from wavesym.derivation.exact_rule import JointRule, Linear, Rule, Weights
 from wavesym.derivation.node_law import NodeLaw
@@ -117,7 +117,7 @@ def _programs(scene: Scene) -> dict[str, Callable[[], str]]:
         "`run`": lambda: repr(wavesym.evaluator(scene)([0.3, 1.7, 2.9]).tolist()),
         **{kind: made(kind) for kind in KINDS},
         "runtime": lambda: repr(files(runtime_program(model, Request(runtime=(name,)), ()), "c")),
-        "stream": lambda: tables(stream_program(scene, Request(stream=True))),
+        "stream": lambda: tables(api.program(scene, Request(stream=True))),
     }
 
 

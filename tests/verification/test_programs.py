@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.without_compiler import without_compiler
-from wavesym import compiler
+from wavesym import api
 from wavesym.cli import main
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
@@ -100,7 +100,7 @@ def _inline(value: object) -> str:
 @pytest.mark.slow
 def test_all_programs_of_a_scene_are_there_and_right() -> None:
     for scene in (DRIVE, CHAIN):
-        text, passed = compiler.verify([scene])
+        text, passed = api.verify([scene])
         assert passed, text
         block = next(block for block in text.split("\n\n") if block.startswith("scene  program"))
         kinds = ["run", "closed, NumPy", "closed, C", "pieces, NumPy", "pieces, C", "march, NumPy", "march, C"]
@@ -112,7 +112,7 @@ def test_all_programs_of_a_scene_are_there_and_right() -> None:
 
 
 def test_what_is_asked_for_alone_is_compared() -> None:
-    text, passed = compiler.verify([DRIVE], "closed")
+    text, passed = api.verify([DRIVE], "closed")
     assert passed
     assert (text.count("closed, NumPy"), text.count("closed, C"), text.count("march, C")) == (1, 1, 0)
     assert "Integration along characteristics" in text  # which says how well it agrees with exact values
@@ -121,7 +121,7 @@ def test_what_is_asked_for_alone_is_compared() -> None:
 
 def test_a_program_that_does_not_serve_is_not_verified() -> None:
     stepped = DRIVE.with_({"load": [{"body": 1, "times": [0], "steps": [1]}]})
-    text, passed = compiler.verify([stepped], "modes")
+    text, passed = api.verify([stepped], "modes")
     assert not passed
     assert "small: not modes: load: M1 jumps by 1 at tau = 0" in text
     assert "small: no program is verified" in text
@@ -129,11 +129,11 @@ def test_a_program_that_does_not_serve_is_not_verified() -> None:
 
 def test_without_a_compiler_it_is_said_which_programs_were_not_tried() -> None:
     with without_compiler():
-        text, passed = compiler.verify([DRIVE], "closed")
+        text, passed = api.verify([DRIVE], "closed")
         assert passed
         assert "C was not tried: no C compiler" in text
         assert "small: not closed, C: there is no C compiler" in text
-        text, passed = compiler.verify([DRIVE], runtime="kappa")
+        text, passed = api.verify([DRIVE], runtime=["kappa"])
         assert not passed  # there is no NumPy of it
         assert "no program is verified" in text
 

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tools.bench.harness import EVERY, chosen_compiler, compilers
+from wavesym import api
 from wavesym.lab.stream import stream
 from wavesym.lab.timing import least
 from wavesym.programs.request import Request
-from wavesym.programs.stream.making import stream_program
-from wavesym.programs.stream.plan import inputs_of
-from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import sources
+from wavesym.scene import Scene
 from wavesym.targets.files import sources as written
 
 HEAD = ("scene", "degree", "compiler", "flags", "us a panel", "us a step of 0.01")
@@ -40,8 +37,7 @@ def discs(tolerance: str = "1e-9") -> Scene:
 def rows(steps: int = _STEPS) -> Iterator[Sequence[str]]:
     """Of some scenes the degree, and microseconds of both kinds of steps."""
     for name, scene in {"ten discs": discs(), **{name: Scene.from_toml(name) for name in _BUILT_IN}}.items():
-        model = replace(lower(scene), endless=True)
-        made = stream_program(model, Request(stream=True), inputs_of(model, sources(scene)))
+        made = api.program(scene, Request(stream=True))
         text = written(made, "c")
         samples = np.random.default_rng(1).standard_normal((steps, int(made.constants["loads"])))
         for compiler in compilers():

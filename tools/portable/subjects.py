@@ -7,14 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from wavesym.programs.making import make
+from wavesym import api
 from wavesym.programs.program import Program
 from wavesym.programs.request import PARTS, Request
-from wavesym.programs.runtime.making import runtime_program
-from wavesym.programs.stream.making import stream_program
-from wavesym.programs.stream.plan import inputs_of
-from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import amplitudes, sources
+from wavesym.scene import Scene
 from wavesym.targets.files import files
 
 _TOLERANCES = {"double": "1e-8", "single": "1/50"}
@@ -92,14 +88,10 @@ class PortableProgram:
         if "tolerance" not in changes.get("output", {}):
             changes["output.tolerance"] = _TOLERANCES[request.precision]
         scene = Scene.from_toml(self.scene).with_(changes)
-        model = lower(scene)
-        if request.stream:
-            endless = replace(model, endless=True)
-            return stream_program(endless, request, inputs_of(endless, sources(scene)), tested=True)
-        if request.runtime:
-            program = runtime_program(model, request, amplitudes(scene), tested=True)
-            return replace(program, constants=program.constants | {"degree": self.highest}) if self.highest else program
-        return make(model, request, tested=True)
+        program = api.program(scene, request, tested=True)
+        if request.runtime and not request.stream and self.highest:
+            return replace(program, constants=program.constants | {"degree": self.highest})
+        return program
 
 
 _BUILDING = "building_m2"

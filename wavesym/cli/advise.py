@@ -37,11 +37,11 @@ def advise(scene: Scene, tolerance: float, format: str) -> None:
     Example:
       wavesym advise drive_m1
     """
-    from wavesym import compiler
+    from wavesym import api
 
     with progress(f"advise {scene.name}"):
-        text = compiler.advise(scene, tolerance, format)
+        found = api.advise(scene, tolerance)
     with suppress(WavesymError):  # when contacts open may be dear to know, or not be known
-        for warning in compiler.warnings(scene):
+        for warning in api.unexpected_lines(scene):
             click.echo(f"{scene.name}: {warning}", err=True)
-    put(text)
+    put(found.json() if format == "json" else found.text())

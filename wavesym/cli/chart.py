@@ -31,7 +31,7 @@ SAMPLES = 10001
 def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     """Draw speed against accuracy: every evaluator of a scene, and other methods.
 
-    Takes some tens of seconds, and a C compiler. Methods that do not take the scene are left out, and said to be.
+    Takes some tens of seconds, and a C api. Methods that do not take the scene are left out, and said to be.
 
     \b
     Example:
@@ -47,7 +47,7 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
         from wavesym.lab.chart.drawing import draw
         from wavesym.lab.chart.measure import measure, to_csv
         from wavesym.lab.chart.subjects import left_out
-        from wavesym.report.saving import picture_format, save
+        from wavesym.pictures.saving import picture_format, save
         from wavesym.writing import write_whole
 
         picture_format(out)  # before the work, not after it

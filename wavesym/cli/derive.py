@@ -70,7 +70,7 @@ def derive(source: str | Scene, m: int | None, format: str, walks: bool, interva
     Example:
       wavesym derive building --m 3
     """
-    from wavesym import compiler
+    from wavesym import api
 
     if m is not None and not isinstance(source, str):
         raise click.UsageError("--m given for a scene, which has its own m; it is for the name of a system")
@@ -80,10 +80,7 @@ def derive(source: str | Scene, m: int | None, format: str, walks: bool, interva
         raise click.UsageError("--intervals given without --walks; it is for --walks only")
     try:
         with progress(f"derive {source if isinstance(source, str) else source.name}"):
-            if walks:
-                text = compiler.walks(source, m, intervals or WALKED, format)
-            else:
-                text = compiler.derive(source, m, format)
+            text = api.walks(source, m, intervals or WALKED, format) if walks else api.derive(source, m, format)
     except ValueError as error:
         if not isinstance(source, str):
             raise

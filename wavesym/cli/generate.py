@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,15 +12,11 @@ import click
 
 from wavesym.cli.parameters import PATH, SCENE, put, scene_argument
 from wavesym.cli.progress import progress
-from wavesym.targets import LANGUAGES, SIMULATORS
+from wavesym.programs.request import AIMS, EVALUATORS, LANGUAGES, PRECISIONS, SIMULATORS, Request
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
-EVALUATORS = ["auto", "closed", "pieces", "march", "modes"]
-PRECISIONS = ["double", "single"]
-AIMS = ["speed", "size"]
-MOST_WINDOWS = 2**31 - 2
 FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tolerances at run time
 
 
@@ -120,35 +117,52 @@ def generate(
     Example:
       wavesym generate building_m2 -o building --language all
     """
-    from wavesym import compiler
+    from wavesym import api
 
-    asked = (scene, directory, language, evaluator, precision, optimize)
-    given, named = map(_names, (runtime, parts))
-    more: dict[str, Any] = {"parts": named, "kappa_max": kappa_max, "stream": stream, "step": step, "package": package}
     if only_check and target:
         raise click.UsageError(f"--check given with --target {target}, nothing expected: binaries differ by compiler")
+    request = Request.checked(
+        evaluator=evaluator,
+        precision=precision,
+        optimize=optimize,
+        runtime=_names(runtime),
+        parts=_names(parts),
+        kappa_max=kappa_max,
+        stream=stream or target is not None,
+        step=step,
+        target=target or "",
+        language=language,
+        package=package,
+    )
     if only_check:
         with progress(f"check {scene.name}"):
-            difference = compiler.check(*asked, scene_argument(), given, **more)
+            difference = api.check(scene, directory, request, scene_argument())
         if difference:
             put(difference)
         return 1 if difference else 0
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(*asked, given, **more, target=target or "", force=force)
+        written = api.write(scene, directory, request, force=force)
     for path in written:
         click.echo(path)
-    for line in compiler.fmu_told(written[0]) if target else ():
+    for line in _notes(scene, request, written):
         click.echo(f"{scene.name}: {line}", err=True)
-    if given and scene.output.tolerance < (finest := FINEST[precision]):
-        told = f"tolerance {float(scene.output.tolerance):g} taken as {float(finest):.0e} at run time"
-        click.echo(f"{scene.name}: {told}", err=True)
-    for line in () if stream or target else compiler.notes(scene):
-        click.echo(f"{scene.name}: {line}", err=True)
-    for manifest in (path for path in written if path.suffix == ".json"):
-        click.echo(f"{scene.name}: {json.loads(manifest.read_text(encoding='utf-8'))['reason']}", err=True)
     return 0
 
 
-def _names(told: str | None) -> tuple[str, ...]:
-    """What a list has, with commas between."""
-    return () if told is None else tuple(name.strip() for name in told.split(","))
+def _notes(scene: Scene, request: Request, written: tuple[Path, ...]) -> Iterator[str]:
+    """What to know of what was written."""
+    from wavesym import api
+
+    if request.target:
+        yield from api.fmu_notes(written[0])
+    if request.runtime and scene.output.tolerance < (finest := FINEST[request.precision]):
+        yield f"tolerance {float(scene.output.tolerance):g} taken as {float(finest):.0e} at run time"
+    if not request.stream:
+        yield from api.scene_notes(scene)
+    for manifest in (path for path in written if path.suffix == ".json"):
+        yield str(json.loads(manifest.read_text(encoding="utf-8"))["reason"])
+
+
+def _names(text: str | None) -> tuple[str, ...]:
+    """The names in a list with commas between."""
+    return () if text is None else tuple(name.strip() for name in text.split(","))

@@ -28,8 +28,8 @@ def inspect(scene: Scene, stage: str | None, format: str) -> None:
     Example:
       wavesym inspect building_m2 --stage model
     """
-    from wavesym import compiler
+    from wavesym import api
 
     with progress(f"inspect {scene.name}"):
-        text = compiler.inspect(scene, stage, format)
+        text = api.inspect(scene, stage, format)
     put(text)

@@ -48,14 +48,14 @@ def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
     if scene:
         refuse_scene(out)
         with progress(f"plot {scene.name}"):
-            from wavesym import compiler
+            from wavesym import api
 
-            lines = [*compiler.warnings(scene), *compiler.plot(scene, out, kind)]
+            lines = [*api.unexpected_lines(scene), *api.plot_with_notes(scene, out, kind)[1]]
         for line in lines:
             click.echo(f"{scene.name}: {line}", err=True)
     elif published:
         with progress("plot --published"):
-            from wavesym.report import figures
+            from wavesym.pictures import figures
         for number in figures.FIGURES:
             with progress(f"plot --published: figure {number}"):
                 paths = figures.published(out, number)

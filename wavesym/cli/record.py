@@ -30,9 +30,9 @@ def record(file: Path, unit: str | None, column: str | None, out: Path | None) -
         refuse_unwritable(out)
         if out.exists() and file.exists() and out.samefile(file):
             raise click.UsageError(f"-o: {out} is the record itself, another file expected", context)
-    from wavesym import compiler
+    from wavesym import api
 
     with progress(f"record {file}"):
-        lines = compiler.record(file, unit, column, out)
+        lines = api.record(file, unit, column, out)
     for line in lines:
         click.echo(line)

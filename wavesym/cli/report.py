@@ -44,15 +44,15 @@ def report(scene: Scene | Path, out: Path) -> None:
         raise click.UsageError(f"-o: {out} given, a name that ends in .html expected", click.get_current_context())
     refuse_unwritable(out)
     if isinstance(scene, Path):
-        from wavesym import compiler
+        from wavesym import api
 
-        compiler.sweep_report(scene, out)
+        api.sweep_report(scene, out)
         return
     refuse_scene(out)
     with progress(f"report {scene.name}"):
-        from wavesym import compiler
+        from wavesym import api
 
-        warnings = compiler.warnings(scene)
-        compiler.report(scene, out)
+        warnings = api.unexpected_lines(scene)
+        api.report(scene, out)
     for line in warnings:
         click.echo(f"{scene.name}: {line}", err=True)

@@ -49,14 +49,14 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
         raise click.UsageError("--samples and --at given, one of them expected", click.get_current_context())
     taus = _decimals(at) if at is not None else None
 
-    from wavesym import compiler
+    from wavesym import api
     from wavesym.writing import write_whole
 
     if out is not None:
         refuse_scene(out)
     with progress(f"run {scene.name}"):
         said: list[str] = []
-        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus, said.append)
+        lines = api.run_csv(scene, samples or DEFAULT_SAMPLES, taus, said.append)
         if out is not None:
             write_whole({out: lines})
     for line in said:

@@ -40,9 +40,9 @@ def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
         refuse_unwritable(out)
         refuse_scene(out)
     with progress(f"spectrum {scene.name}"):
-        from wavesym import compiler
+        from wavesym import api
 
-        lines, said = compiler.spectrum(scene, damping, out)
-    for line in said:
+        lines, notes = api.spectrum_csv(scene, damping, out)
+    for line in notes:
         click.echo(f"{scene.name}: {line}", err=True)
     put(lines)

@@ -30,10 +30,15 @@ def summary(scene: Scene, at_samples: bool, format: str) -> None:
     Example:
       wavesym summary building_m2
     """
-    from wavesym import compiler
+    from wavesym import api
 
     with progress(f"summary {scene.name}"):
-        text, lines = compiler.summary_text(scene, at_samples, format)
+        from wavesym.documents.summary import summary_text
+
+        found = api.summary(scene, at_samples=at_samples)
+        lines = api.unexpected_lines(scene)
+    if format == "json" and not found.proved:
+        lines.append(f"{found.how}: {found.certain}")
     for line in lines:
         click.echo(f"{scene.name}: {line}", err=True)
-    put(text)
+    put(summary_text(found, format))

@@ -39,16 +39,16 @@ def sweep(
     Example:
       wavesym sweep stiffness.toml -o stiffness
     """
-    from wavesym import compiler
+    from wavesym import api
 
     if tell or table:
         if out or workers or scheduler or retry_failed:
             raise click.UsageError("--status and --table given with what is for computing, a folder alone expected")
         if table:
             refuse_unwritable(table)
-            compiler.sweep_table(source, table)
+            api.sweep_table(source, table)
         if tell:
-            found = compiler.sweep_status(source)
+            found = api.sweep_status(source)
             put(found.json() if format == "json" else found.text())
         return 0
     if out is None:
@@ -62,8 +62,8 @@ def sweep(
         def watch(cases: int, done: int, before: int) -> None:
             line.tell(_told(cases, done, before, monotonic() - start))
 
-        failed = compiler.run_sweep(source, out, workers, scheduler, retry_failed, watch)
-    click.echo(f"{out}: {compiler.sweep_status(out).line}", err=True)
+        failed = api.run_sweep(source, out, workers, scheduler, retry_failed, watch)
+    click.echo(f"{out}: {api.sweep_status(out).line}", err=True)
     return 1 if failed else 0
 
 

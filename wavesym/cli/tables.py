@@ -37,7 +37,8 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, out
     Example:
       wavesym tables building_m2 --intervals 4 --symbolic
     """
-    from wavesym.compiler import symbolic_tables_text, tables_text
+    from wavesym import api
+    from wavesym.documents.tables import table_lines
     from wavesym.writing import write_whole
 
     if symbolic and format == "latex":
@@ -47,9 +48,9 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, out
     equations: list[str] = []
     with progress(f"tables {scene.name}"):
         if symbolic:
-            equations, lines = symbolic_tables_text(scene, intervals, format)
+            equations, lines = api.symbolic_tables(scene, intervals, format)
         else:
-            lines = tables_text(scene, intervals, format)
+            lines = table_lines(api.table(scene, intervals), scene.name, format)
         if out is not None:
             write_whole({out: lines})
     for equation in equations:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.generate import EVALUATORS, PRECISIONS
 from wavesym.cli.parameters import SceneParameter, each_blamed, put
 from wavesym.cli.progress import progress
+from wavesym.programs.request import EVALUATORS, PRECISIONS
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -68,21 +68,22 @@ def verify(
     for option in (name for name, value in options.items() if value is not None and (published or derived)):
         raise click.UsageError(f"--{option} given with --{'published' if published else 'derived'}; it is for scenes")
     with progress("verify") as line:
-        from wavesym import compiler
+        from wavesym import api
         from wavesym.scene import Scene, builtin_names
 
         if published:
             names = [name for name in asked if isinstance(name, str)]
-            text, passed = compiler.published(
+            text, passed = api.published(
                 format or "text", names, reproduce, lambda entries: line.each(entries, attrgetter("id"))
             )
         elif derived:
-            text, passed = compiler.derived(lambda systems: line.each(systems, attrgetter("name")))
+            text, passed = api.derived(lambda systems: line.each(systems, attrgetter("name")))
         else:
+            wanted = () if runtime is None else tuple(name.strip() for name in runtime.split(","))
             scenes = [scene for scene in asked if isinstance(scene, Scene)]
             told = line.each(scenes or [Scene.from_toml(name) for name in builtin_names()], attrgetter("name"))
             with ExitStack() as blame:
                 seen = each_blamed(told, blame) if scenes else told
-                text, passed = compiler.verify(seen, evaluator, precision, runtime, stream=stream)
+                text, passed = api.verify(seen, evaluator, precision, wanted, stream=stream)
     put(text)
     return 0 if passed else 1

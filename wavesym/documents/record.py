@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from pathlib import Path
 
-from wavesym.errors import printable
+from wavesym.errors import SceneError, WavesymError, printable
 from wavesym.fields.numbers import decimal_text
+from wavesym.fields.table import shown
+from wavesym.records.read import read_record
 from wavesym.records.record_file import RecordFile
 
+_UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
 AFTER = "0: in a straight line within one step, and for good"
 
 
@@ -58,11 +63,30 @@ class RecordFacts:
         return f"{size} at {at}{', negative' * (self.said.samples[self.peak] < 0)}"
 
 
-def facts(said: RecordFile, unit: str) -> list[str]:
-    """The lines of `wavesym record`. SceneError where times are uneven."""
-    rows = list(_rows(RecordFacts(said, unit)))
+def record_lines(path: Path, unit: str | None, column: str | None = None) -> tuple[RecordFile, str, list[str]]:
+    """The lines of `wavesym record`.
+
+    Args:
+        path: an AT2 or CSV file.
+        unit: that of its samples, where it has none.
+        column: that of a CSV with several.
+
+    Returns:
+        The record, the unit of its samples, and the lines.
+
+    Raises:
+        SceneError: for a file that is damaged, has uneven times or another unit.
+        WavesymError: for what is no unit.
+    """
+    if unit is not None and not _UNIT.fullmatch(unit):
+        raise WavesymError(f"--unit: {shown(unit)} given, a unit such as g or m/s^2 expected")
+    found = read_record(path, column)
+    if unit is not None and found.unit not in ("", unit):
+        raise SceneError(f"--unit {unit} given, {found.unit} expected, as in the file, or none", file=found.file)
+    rows = list(_rows(RecordFacts(found, unit or found.unit)))
     width = max(len(name) for name, _ in rows)
-    return [printable(f"{said.file}: {said.kind}"), *(f"  {name.ljust(width)}  {value}" for name, value in rows)]
+    lines = [printable(f"{found.file}: {found.kind}"), *(f"  {name.ljust(width)}  {value}" for name, value in rows)]
+    return found, unit or found.unit, lines
 
 
 def _rows(told: RecordFacts) -> Iterator[tuple[str, str]]:

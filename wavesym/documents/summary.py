@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from wavesym.results.summary import OutputSummary, Peak, Summary, When
+from wavesym.results.summary import OutputSummary, Peak, Summary
 
 FORMATS = ("text", "json")
 
@@ -22,7 +22,7 @@ def _json(summary: Summary) -> str:
             "unit": output.unit,
             "min": _peak(output.min),
             "max": _peak(output.max),
-            "arrival": None if output.arrival is None else instant(output.arrival),
+            "arrival": None if output.arrival is None else output.arrival.shown,
         }
         for output in summary.outputs
     ]
@@ -31,11 +31,6 @@ def _json(summary: Summary) -> str:
 
 def _peak(peak: Peak) -> dict[str, float | None]:
     return {"value": peak.value, "tau": peak.at.tau, "time": peak.at.time}
-
-
-def instant(at: When) -> float:
-    """The time of a scene that has units, else tau."""
-    return at.tau if at.time is None else at.time
 
 
 def _lines(summary: Summary) -> Iterable[str]:
@@ -49,18 +44,18 @@ def _lines(summary: Summary) -> Iterable[str]:
         yield "-  it comes up to this value, and jumps then"
     if (drift := summary.largest_drift) is not None:
         peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
-        yield f"largest drift: {drift.name}, {number(peak.value)}{unit} at {number(instant(peak.at))}"
+        yield f"largest drift: {drift.name}, {number(peak.value)}{unit} at {number(peak.at.shown)}"
     yield f"{summary.how}: {summary.certain}"
 
 
 def _row(output: OutputSummary) -> tuple[str, ...]:
     name = f"{output.name} [{output.unit}]" if output.unit else output.name
-    arrival = "never" if output.arrival is None else number(instant(output.arrival))
+    arrival = "never" if output.arrival is None else number(output.arrival.shown)
     return (name, *_told(output.min), *_told(output.max), arrival)
 
 
 def _told(peak: Peak) -> tuple[str, str]:
-    return number(peak.value), number(instant(peak.at)) + "-" * (not peak.reached)
+    return number(peak.value), number(peak.at.shown) + "-" * (not peak.reached)
 
 
 def number(value: float) -> str:

@@ -25,7 +25,7 @@ from wavesym.lab.atlas import (
 )
 from wavesym.lab.atlas.drawing import draw
 from wavesym.lab.atlas.family import CurveFamily, Progress, to_csv
-from wavesym.report.saving import save
+from wavesym.pictures.saving import save
 from wavesym.writing import write_whole
 
 FAMILIES: Mapping[str, Callable[[Progress], CurveFamily]] = {

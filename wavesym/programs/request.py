@@ -1,31 +1,44 @@
-"""What a program is asked to be: the options of `generate` that decide it."""
+"""What a program is requested to be: the options of `generate`, made once by the door and passed whole."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-
-from flint import fmpq
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
 
 from wavesym.errors import ToleranceError, WavesymError, did_you_mean
-from wavesym.numbers.doubles import nearest
-from wavesym.numbers.reals import REALS
+
+if TYPE_CHECKING:
+    from flint import fmpq
+
+    from wavesym.mechanics.model import Model
 
 KINDS = ("closed", "pieces", "march", "modes")
+EVALUATORS = ("auto", *KINDS)
+PRECISIONS = ("double", "single")
 AIMS = ("speed", "size")
+TARGETS = ("c", "numpy")
+"""The languages. Each is the name of a folder of `wavesym/targets`; a new one is a name more."""
+LANGUAGES = (*TARGETS, "all")
+SIMULATORS = ("fmu2", "fmu3")
+"""Versions of FMI, of which a stream may be the one file."""
 PARTS = ("peaks", "gradients", "batch", "misfit", "bound")
 """What C with parameters at run time may have besides values and the estimate of their errors."""
+POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedance"})
+"""The parameters at run time that have to be positive, and that a largest rate is about."""
 
 
 @dataclass(frozen=True)
 class Request:
-    """`evaluator` is a kind of program or "auto".
+    """The options that decide what is generated.
 
-    `optimize` says of programs that meet the tolerance which is best: the fastest ("speed"), or the one with the least
-    tables ("size"). Unless it is said the fastest kind is taken; in single precision, which is for small machines, with
-    small tables. `runtime` names the parameters that are given at run time, `parts` what their C has besides values;
-    `kappa_max` is the largest kappa that it is made for, None for ten times the scene's own. `target` is what a stream
-    is wrapped for.
+    `evaluator` is a kind of program or "auto". `optimize` says which is best of the programs that meet the tolerance:
+    the fastest ("speed"), or the one with the smallest tables ("size"); None is the fastest kind, in single precision,
+    which is for small machines, with small tables. `runtime` names the parameters that are given at run time, `parts`
+    what their C has besides values; `kappa_max` is the largest kappa that it is made for, None for ten times the
+    scene's own. A `stream` takes loads sample by sample, best at multiples of `step`; `target` is what it is wrapped
+    for. `language` and `package` say which files there are, not what they compute.
     """
 
     evaluator: str = "auto"
@@ -37,10 +50,31 @@ class Request:
     target: str = ""
     parts: tuple[str, ...] = ()
     kappa_max: fmpq | None = None
+    language: str = "c"
+    package: bool = False
+
+    @classmethod
+    def checked(cls, *, step: Fraction | None = None, kappa_max: Fraction | None = None, **options: Any) -> Request:
+        """A request of options that go together.
+
+        Args:
+            step, kappa_max: exact numbers, dimensionless.
+            options: all others, as they are kept.
+
+        Raises:
+            WavesymError: for a word that there is not, and for options that exclude each other.
+        """
+        from wavesym.numbers.doubles import rational
+
+        every, largest = (None if number is None else rational(number) for number in (step, kappa_max))
+        request = cls(step=every, kappa_max=largest, **options)
+        request.refuse_unknown()
+        request._refuse_contradictions()
+        return request
 
     @property
     def options(self) -> str:
-        """Those that differ from what is usual, as they are typed."""
+        """Those that change what is generated and differ from what is usual, as they are typed."""
         options = "" if self.evaluator == "auto" else f" --evaluator {self.evaluator}"
         options += "" if self.precision == "double" else f" --precision {self.precision}"
         options += "" if self.optimize is None else f" --optimize {self.optimize}"
@@ -53,15 +87,23 @@ class Request:
 
     @property
     def every_part(self) -> tuple[str, ...]:
-        """The parts that are asked for and those that they need, in order: misfits are those of a batch."""
+        """The parts that are requested and those that they need, in order: misfits are those of a batch."""
         return tuple(part for part in PARTS if part in self.parts or (part == "batch" and "misfit" in self.parts))
+
+    def is_of_modes(self, model: Model) -> bool:
+        """Whether a stream is stepped by modes, not by waves: where they are requested, or a simulator gets damping."""
+        if self.target:
+            return self.evaluator == "modes" or (self.evaluator == "auto" and model.damping is not None)
+        return self.stream and self.evaluator == "modes"
 
     def refuse_unknown(self) -> None:
         """WavesymError for a word that is none of those there are, and for what is of parameters at run time alone."""
         for option, word, known in (
-            ("evaluator", self.evaluator, ("auto", *KINDS)),
-            ("precision", self.precision, REALS),
+            ("evaluator", self.evaluator, EVALUATORS),
+            ("precision", self.precision, PRECISIONS),
             ("optimize", self.optimize or AIMS[0], AIMS),
+            ("language", self.language, LANGUAGES),
+            ("target", self.target or SIMULATORS[0], SIMULATORS),
         ):
             refuse_unknown(option, word, known)
         refuse_others("--with", self.parts, PARTS)
@@ -70,6 +112,36 @@ class Request:
         for option, given in (("--with", ",".join(self.parts)), ("--kappa-max", self.kappa_max)):
             if given and where:
                 raise WavesymError(f"{option}: {given} given {where}, nothing expected")
+
+    def _refuse_contradictions(self) -> None:
+        """WavesymError for options that exclude each other."""
+        modes = self.evaluator == "modes"
+        if self.step is not None and not self.stream:
+            raise WavesymError(f"--step: {self.step} given without --stream, nothing expected")
+        if self.step is not None and modes:
+            raise WavesymError(
+                f"--step: {self.step} given with --evaluator modes, nothing expected (loads say what it is)"
+            )
+        if self.kappa_max is not None and self.kappa_max <= 0:
+            raise WavesymError(f"--kappa-max: {self.kappa_max} given, a positive number expected")
+        if self.kappa_max is not None and POSITIVE.isdisjoint(self.runtime):
+            chosen = f"--kappa-max: {self.kappa_max} given with --runtime {','.join(self.runtime)}"
+            raise WavesymError(f"{chosen}, nothing expected (bodies stay as heavy as they are)")
+        if self.target:
+            for option, given, usual in (
+                ("language", self.language, "c"),
+                ("precision", self.precision, "double"),
+                ("--package", "True" if self.package else "", ""),
+            ):
+                if given != usual:
+                    raise WavesymError(f"{option}: {given} given with --target, {usual or 'nothing'} expected")
+            return
+        if self.package and self.language not in ("c", "all"):
+            given = f"{self.language} given with --package"
+            raise WavesymError(f"language: {given}, c or all expected, since CMake builds C")
+        only_c = "--stream" if self.stream and not modes else "--runtime" if self.runtime and not self.stream else ""
+        if only_c and self.language != "c":
+            raise WavesymError(f"language: {self.language} given with {only_c}, c expected")
 
 
 def refuse_others(option: str, names: Sequence[str], known: Sequence[str]) -> None:
@@ -95,4 +167,6 @@ def _one_of(names: Sequence[str]) -> str:
 
 def unmet(tolerance: fmpq, why: str) -> ToleranceError:
     """The error that says that a tolerance cannot be met."""
+    from wavesym.numbers.doubles import nearest
+
     return ToleranceError(f"output.tolerance: {nearest(tolerance):g} cannot be met: {why}")

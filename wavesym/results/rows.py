@@ -7,6 +7,7 @@ from functools import partial
 from itertools import islice
 
 import numpy as np
+from flint import fmpq
 
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below
@@ -64,3 +65,12 @@ def grid(model: Model, samples: int) -> Iterator[float]:
     """`samples` equally spaced tau, each rounded once; the last one is the end of the horizon."""
     yield from (nearest(model.until * k / (samples - 1)) for k in range(samples - 1))
     yield model.horizon() if samples > 1 else 0.0
+
+
+def own_samples(model: Model, comb: tuple[fmpq, fmpq] | None) -> list[float]:
+    """Instants of tau on the horizon that are whole steps from the first of `comb`, or, without one, those of `run`."""
+    if comb is None:
+        return list(grid(model, SAMPLES))
+    begin, step = comb
+    count = int(((model.until - begin) / step).floor()) + 1
+    return [nearest(begin + k * step) for k in range(-int((begin / step).floor()), count)]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from html import escape
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError, UnservedError, WavesymError
+from wavesym.errors import CostError, UnservedError, WavesymError, did_you_mean
 from wavesym.exact.arrival import first_arrivals, light_arrivals
 from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes
 from wavesym.mechanics.model import Model
@@ -18,6 +19,7 @@ from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
+from wavesym.results.optional import needed
 from wavesym.results.response import Response
 from wavesym.results.sampled import sampled_extremes
 from wavesym.results.stepping import apart, sampled, spacing
@@ -33,6 +35,11 @@ class When(NamedTuple):
 
     tau: float
     time: float | None
+
+    @property
+    def shown(self) -> float:
+        """The time of a scene that has units, else tau."""
+        return self.tau if self.time is None else self.time
 
 
 @dataclass(frozen=True)
@@ -63,9 +70,9 @@ class OutputSummary:
         return min(self.min, self.max, key=lambda peak: (-abs(peak.value), peak.at.tau))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Summary:
-    """The extremes of a scene's outputs; `wavesym.summary` makes it.
+    """The extremes of a scene's outputs; `wavesym.summary` makes it. `summary[NAME]` is one of `outputs`.
 
     `bound` is that of the error of values, relative to each output's largest. Where it is `proved` that no value lies
     beyond an extreme it holds for the extremes, else only for what outputs are at these instants. `how` says how they
@@ -81,12 +88,55 @@ class Summary:
     time_unit: str | None
     largest_drift: OutputSummary | None = None
 
+    def __getitem__(self, name: str) -> OutputSummary:
+        found = next((output for output in self.outputs if output.name == name), None)
+        if found is None:
+            names = [output.name for output in self.outputs]
+            known = f"{', '.join(names)}. {did_you_mean(str(name), names)}".rstrip(". ")
+            raise KeyError(f"{name} is no output of {self.name}; there are {known}")
+        return found
+
+    def __repr__(self) -> str:
+        count = len(self.outputs)
+        return f"Summary({self.name!r}, {count} output{'s' * (count != 1)}, {self.how}: {self.certain})"
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """A row for each output, by the names of columns."""
+        time = "tau" if self.time_unit is None else f"time [{self.time_unit}]"
+        return [
+            {
+                "output": output.name,
+                "unit": output.unit,
+                "min": output.min.value,
+                f"min at {time}": output.min.at.shown,
+                "max": output.max.value,
+                f"max at {time}": output.max.at.shown,
+                f"arrival, {time}": None if output.arrival is None else output.arrival.shown,
+            }
+            for output in self.outputs
+        ]
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame with a row for each output. WavesymError where pandas is not installed."""
+        return needed("pandas", "sweep").DataFrame(self._rows()).set_index("output")
+
+    def _repr_html_(self) -> str:
+        rows = self._rows()
+        head = "".join(f"<th>{escape(name)}</th>" for name in rows[0])
+        cells = ("".join(f"<td>{_cell(value)}</td>" for value in row.values()) for row in rows)
+        body = "".join(f"<tr>{row}</tr>" for row in cells)
+        return f"<p>{escape(repr(self))}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
     @property
     def certain(self) -> str:
         """What is known of the values, in a few words."""
         if self.proved:
             return f"right to {self.bound:g} of each output's largest, proved"
         return f"an estimate (values are right to {self.bound:g} of each output's largest; higher tops may be missed)"
+
+
+def _cell(value: float | str | None) -> str:
+    return "never" if value is None else escape(value) if isinstance(value, str) else f"{value:.7g}"
 
 
 def summarised(model: Model, samples: Sequence[float] | None = None, drifts: Sequence[Probe] = ()) -> Summary:

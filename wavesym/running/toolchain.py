@@ -22,7 +22,15 @@ _PACKAGE = "ziglang"
 
 
 class CompilerError(WavesymError):
-    """There is no C compiler, or it does not accept what it was given."""
+    """There is no C compiler, or it does not accept what it was given.
+
+    >>> import wavesym
+    >>> scene = wavesym.Scene.from_toml("drive_m1")
+    >>> try:
+    ...     model = wavesym.model(scene, ["kappa"])
+    ... except wavesym.CompilerError:
+    ...     model = None  # the extra `compiler` brings one
+    """
 
     status: ClassVar[int] = 1
 

@@ -11,7 +11,7 @@ from fractions import Fraction
 from flint import fmpq
 
 from wavesym.errors import SceneError
-from wavesym.fields.loads import Load, TimedLoad
+from wavesym.fields.loads import Load, SampledLoad, TimedLoad
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.loads import Applied, AppliedRecord, merged
@@ -72,6 +72,16 @@ def drifts(scene: Scene) -> tuple[Probe, ...]:
     rods = [station.right for station in scene.system.lines[""] if station.right is not None]
     places = (Place(Fraction(k), 0, "", rod + 1, Fraction(1)) for k, rod in enumerate(rods, 1))
     return tuple(_probe(Observable("drift", place.x, 0, f"drift@{place.x}", place), scene.scale) for place in places)
+
+
+def sample_comb(scene: Scene) -> tuple[fmpq, fmpq] | None:
+    """When the samples of the load that has the finest begin, and how far they are apart, in tau; None without any."""
+    combs = [(load.begin, load.step) for load in scene.load if isinstance(load, RecordedLoad)]
+    combs += [(Fraction(0), load.spacing) for load in scene.load if isinstance(load, SampledLoad)]
+    if not combs:
+        return None
+    begin, step = min(combs, key=lambda comb: comb[1])
+    return rational(begin), rational(step)
 
 
 def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:

@@ -1,10 +1,8 @@
-"""Program -> files: a folder for each language, and the manifest. Other rooms ask files.py."""
+"""Program -> files: a folder for each language, whose `TARGET` is what target.py says, and the manifest.
 
-TARGETS = ("c", "numpy")
-"""The languages. Each is the name of a folder here, whose `TARGET` is what target.py says; a new one is a name more."""
+Other rooms ask files.py.
+"""
 
-LANGUAGES = (*TARGETS, "all")
-"""What `generate --language` takes."""
+from wavesym.programs.request import TARGETS
 
-SIMULATORS = ("fmu2", "fmu3")
-"""What `generate --target` takes: versions of FMI."""
+__all__ = ["TARGETS"]

@@ -19,7 +19,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 from numpy.typing import NDArray
 
 from wavesym.lab.atlas.family import AtlasPoint, CurveFamily
-from wavesym.report.labels import Curve, label
+from wavesym.pictures.labels import Curve, label
 
 Places = NDArray[np.float64]
 

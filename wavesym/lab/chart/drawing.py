@@ -17,7 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from wavesym.lab.chart.measure import NEAR, ChartRow, Measured
-from wavesym.report.labels import Curve, label
+from wavesym.pictures.labels import Curve, label
 from wavesym.scene import Scene
 from wavesym.systems import Preset, SystemTable
 

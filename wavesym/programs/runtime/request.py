@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
+from wavesym.programs.request import POSITIVE
 from wavesym.programs.runtime.units import ParameterUnit
 
 NAMES = ("kappa", "inertia", "velocity", "load")
-POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedance"})
 
 
 @dataclass(frozen=True)

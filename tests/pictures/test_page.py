@@ -1,0 +1,370 @@
+"""The page of a scene: it is whole, says what is so, can be used by all, and its cursor reads what curves are."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from html.parser import HTMLParser
+from io import BytesIO, TextIOWrapper
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import wavesym
+from tests.pictures.browser import axe, reported
+from wavesym.cli import main
+from wavesym.documents.summary import summary_text
+from wavesym.numbers.doubles import rational
+from wavesym.pictures.page import small
+from wavesym.pictures.page.curves import HEIGHT, Grid
+from wavesym.pictures.page.document import _bound, page
+from wavesym.pictures.page.said import SaidTable
+from wavesym.pictures.page.small import LARGEST, first_rows, first_text, fitting
+from wavesym.pictures.page.structure import structure
+from wavesym.programs.making import make
+from wavesym.scene import Scene, builtin_text, lower
+
+PAYLOAD = '# </pre><script>alert("in")</script> & "quoted"\n'
+VOID = {"meta", "input", "br", "link", "img"}
+SCRIPTS = 1
+
+
+class Read(HTMLParser):
+    """The tags of a page, with their attributes; `open` are those that are not closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.wrong: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append(tag)
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        """The attributes of each tag of a kind."""
+        return [attributes for name, attributes in self.tags if name == tag]
+
+
+def faults(text: str) -> list[str]:
+    """What is wrong with a page, as far as its tags tell."""
+    read = Read(text)
+    ids = Counter(attributes["id"] for _, attributes in read.tags if "id" in attributes)
+    found = [f"not closed: {tag}" for tag in [*read.wrong, *read.open]]
+    found += [f"twice: {name}" for name, count in ids.items() if count > 1]
+    for tag, attributes in read.tags:
+        for key in ("aria-labelledby", "for"):
+            found += [f"{key}: {name}" for name in (attributes.get(key) or "").split() if name not in ids]
+        address = attributes.get("href") or attributes.get("src") or ""
+        if address.startswith("#"):
+            found += [f"leads nowhere: {address}"] * (address[1:] not in ids)
+        elif address and not address.startswith("data:image/png;base64,"):
+            found.append(f"from outside: {address}")
+        if tag == "svg" and "aria-hidden" not in attributes and attributes.get("role") != "img":
+            found.append("an svg without a role")
+        if tag == "th" and "scope" not in attributes:
+            found.append("th without scope")
+    if len(read.all("script")) != SCRIPTS:
+        found.append("scripts")
+    return found
+
+
+def payloaded(folder: Path, name: str) -> Scene:
+    """A built-in scene in a file, with a payload in front."""
+    (folder / "mine.toml").write_text(PAYLOAD + builtin_text(name), encoding="utf-8")
+    return Scene.from_toml(folder / "mine.toml")
+
+
+@pytest.fixture(scope="module")
+def building(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return page(payloaded(tmp_path_factory.mktemp("page"), "building_m2"))
+
+
+def test_the_page_is_whole_and_needs_nothing_from_outside(building: str) -> None:
+    assert faults(building) == []
+    assert len(building.encode()) < 400_000
+    assert not re.search(r"https?://(?!www\.w3\.org)", building)
+    assert "@import" not in building
+
+
+def test_a_page_is_thinned_until_it_is_small() -> None:
+    drawn = []
+    assert fitting(lambda columns: columns, lambda columns: drawn.append(columns) or "x" * (1000 * columns), 1200)
+    assert drawn == [1200, 600, 300]
+    assert len(fitting(lambda columns: columns, lambda columns: "\u2212" * LARGEST, 100).encode()) > LARGEST
+    assert first_text("a" * 40_000 + "b" * 5).endswith("aa\n... and 5 characters more, left out to keep the page small")
+    assert first_text("ab") == "ab"
+    table = SaidTable(("Output",), tuple((str(k),) for k in range(300)), ("How",))
+    assert first_rows(table).rows == table.rows[:250]
+    assert first_rows(table).notes[1].startswith("The first 250 of 300 outputs")
+
+
+@pytest.mark.slow
+def test_a_page_of_many_outputs_and_fronts_stays_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its curves get fewer columns, its tables fewer rows, its scene is cut; it says so, and is whole."""
+    scene = Scene.from_toml("building_m2").with_(
+        {
+            "load": [{"times": list(range(40)), "a": [(-1) ** k * (k % 7) for k in range(40)]}],
+            "output.until": 40,
+            "output.strain": [f"{k}/20" for k in range(1, 20)],
+        }
+    )
+    monkeypatch.setattr(small, "_ROWS", 7)
+    monkeypatch.setattr(small, "_TEXT", 100)
+    usual = page(scene)
+    assert "Curves have" not in usual
+    monkeypatch.setattr(small, "LARGEST", len(usual.encode()) * 3 // 4)
+    less = page(scene)
+    assert len(less.encode()) <= small.LARGEST < len(usual.encode()) < 400_000
+    (columns,) = re.findall(r"Curves have ([0-9]+) columns of time", less)
+    assert f'max="{columns}"' in less
+    assert re.search("The first 7 of [0-9]+ outputs", less)
+    assert "characters more, left out" in less
+    assert faults(less) == []
+
+
+def facts(text: str, word: str) -> list[str]:
+    """What a page says under a word at its top."""
+    return re.findall(f"<dt>{word}</dt><dd>(.*?)</dd>", text)
+
+
+def test_page_and_summary_say_the_same(tmp_path: Path) -> None:
+    """Of the frame of README.md: curves are of the program whose extremes are found, and meet the tolerance."""
+    readme = (Path(wavesym.__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    (written,) = re.findall(r"```toml frame.toml\n(.*?)```", readme, re.DOTALL)
+    (tmp_path / "frame.toml").write_text(written, encoding="utf-8")
+    scene = Scene.from_toml(tmp_path / "frame.toml")
+    text, found = page(scene), wavesym.summary(scene)
+    assert found.bound <= float(scene.output.tolerance) == 1e-6
+    (bound,) = facts(text, "Bound")
+    assert bound.startswith(f"{found.bound:g}, proved")
+    (program,) = facts(text, "Computed by")
+    assert program.endswith(f"bound {found.bound:g}")
+    assert f"values are right to {found.bound:g} of" in text
+    for each in facts(text, "Bound.*?"):
+        assert float(each.split(",")[0]) <= 1e-6 or "more than the tolerance asked for, 1e-06," in each
+    table = summary_text(wavesym.summary(scene), "text").splitlines()
+    cells = re.findall('<td class="number">(.*?)</td>', text[text.index('id="extremes"') :])[:5]
+    assert cells == table[1].split()[-5:]
+    assert f"{found.largest_drift.largest.value:.7g} mm at t = {found.largest_drift.largest.at.time:.7g} s" in text
+
+
+def test_what_does_not_meet_the_tolerance_says_so() -> None:
+    model = lower(Scene.from_toml("drive_m1"))
+    program = make(model)
+    assert "tolerance" not in _bound("a curve", program, model)
+    tighter = model.tolerating(rational(program.error_bound) * 9 / 10)
+    assert re.search(
+        r"proved: .*more than the tolerance asked for, [0-9.e-]+, but", _bound("a curve", program, tighter)
+    )
+    estimated = _bound("a curve", replace(program, proved=False), tighter)
+    assert "an estimate that is not proved" in estimated
+    assert "more than the tolerance asked for" in estimated
+
+
+def test_what_is_missing_is_seen(building: str) -> None:
+    assert faults(building.replace('id="history-1-told"', ""))
+    assert faults(building.replace("</section>", "", 1))
+    assert faults(building.replace("&lt;script&gt;", "<script>"))
+
+
+def test_text_stays_text(building: str) -> None:
+    assert "&lt;/pre&gt;&lt;script&gt;alert(&#34;in&#34;)&lt;/script&gt; &amp;" in building
+    assert 'alert("in")' not in building
+
+
+def test_same_scene_same_page(building: str, tmp_path: Path) -> None:
+    assert page(payloaded(tmp_path, "building_m2")) == building
+
+
+def test_what_was_made_in_python_is_shown_as_its_fields() -> None:
+    given = Scene.from_toml("drive_m1")
+    made = Scene(**given.model_dump())
+    assert given.text == builtin_text("drive_m1")
+    assert Scene(**json.loads(made.text)).system == given.system
+
+
+def test_every_output_has_a_curve_extremes_and_a_verdict(building: str) -> None:
+    for name in wavesym.evaluator(Scene.from_toml("building_m2")).outputs:
+        assert building.count(f'data-name="{name}"') == 1
+        assert building.count(f'<th scope="row">{name}</th>') == 2
+
+
+def vertices(path: str) -> Iterator[tuple[int, int]]:
+    """The corners of a path of M, l and v, in columns and steps."""
+    x = y = 0
+    for command, rest in re.findall(r"([Mlv])([^Mlv]*)", path):
+        numbers = [int(number) for number in re.findall(r"-?\d+", rest)]
+        if command == "v":
+            moves = [(0, number) for number in numbers]
+        else:
+            moves = list(zip(numbers[::2], numbers[1::2], strict=True))
+        for dx, dy in moves:
+            x, y = (dx, dy) if command == "M" else (x + dx, y + dy)
+            yield x, y
+
+
+def curves(text: str) -> Iterator[tuple[str, Grid, list[tuple[int, int]]]]:
+    """Each curve of an output, with its grid and the corners of all its lines."""
+    for svg in re.findall(r"<svg[^>]*timed.*?</svg>", text, re.DOTALL):
+        columns, low, high = (re.search(rf'data-{key}="([^"]*)"', svg)[1] for key in ("columns", "low", "high"))  # type: ignore[index]
+        for name, inside in re.findall(r'<g class="curve[^"]*" data-name="([^"]*)">(.*?)</g>', svg, re.DOTALL):
+            paths = re.findall(r'class="(?:real|formal)" d="([^"]*)"', inside)
+            grid = Grid(int(columns), 1.0, float(low), float(high))
+            yield name, grid, [corner for path in paths for corner in vertices(path)]
+
+
+def strays(text: str, scene: Scene) -> list[str]:
+    """The outputs whose curves are, at some of their corners, farther than a step from what exact values do there."""
+    response = wavesym.evaluator(scene)
+    found = []
+    for name, grid, corners in curves(text):
+        if name not in response.outputs:
+            continue
+        column, step = np.array(corners[::60]).T
+        size = (grid.high - grid.low) / HEIGHT
+        drawn = grid.high - step * size
+        # what the output does in the column, before and at its start and up to its end
+        taus = np.clip((column[:, None] + [-1e-9, 0, 0.5, 1]) / grid.columns, 0, 1) * response.tau_max
+        values = response(taus)[response.outputs.index(name)]
+        if np.any(drawn < values.min(axis=1) - size) or np.any(drawn > values.max(axis=1) + size):
+            found.append(name)
+    return found
+
+
+def test_curves_are_the_outputs(building: str) -> None:
+    scene = Scene.from_toml("building_m2")
+    assert strays(building, scene) == []
+    moved = re.sub(r'(class="real" d="M\d+ )(\d+)', lambda found: found[1] + str(int(found[2]) + 5), building)
+    assert len(strays(moved, scene)) == len(scene.outputs)
+
+
+def test_the_cursor_reads_values_off(building: str, tmp_path: Path) -> None:
+    """The script, run in a browser: by the keyboard's slider, and by a mouse over a picture."""
+    scene = Scene.from_toml("building_m2")
+    response = wavesym.evaluator(scene)
+    script = """
+      const slider = document.getElementById("cursor");
+      const read = () => [Number(slider.value), slider.getAttribute("aria-valuetext"),
+        Object.fromEntries(Array.from(document.querySelectorAll("svg.timed"), (plot) => Array.from(
+          plot.querySelectorAll(".curve"), (curve, k) =>
+            [curve.dataset.name, plot.closest("figure").querySelectorAll(".value")[k].textContent])).flat())];
+      const said = [];
+      slider.value = 777; slider.dispatchEvent(new Event("input")); said.push(read());
+      const plot = document.querySelectorAll("svg.timed")[1], box = plot.getBoundingClientRect();
+      plot.dispatchEvent(new PointerEvent("pointermove", { clientX: box.left + box.width / 2, clientY: box.top + 5 }));
+      said.push(read());
+      report(said);
+    """
+    by_key, by_mouse = reported(building, script, tmp_path)  # type: ignore[misc]
+    assert by_key[0] == 777
+    assert 500 < by_mouse[0] < 660
+    for column, told, said in (by_key, by_mouse):
+        tau = column / 1200 * response.tau_max
+        assert told == f"tau = {tau:.2f}"
+        for name, value in zip(response.outputs, response([tau])[:, 0], strict=True):
+            (size,) = (grid.high - grid.low for curve, grid, _ in curves(building) if curve == name)
+            assert float(said[name]) == pytest.approx(value, abs=0.006 * size)
+
+
+LOOK = "\n;axe.run(document).then((found) => report(found.violations.map((each) => each.id)));"
+
+
+def test_axe_finds_nothing(building: str, tmp_path: Path) -> None:
+    assert reported(building, axe() + LOOK, tmp_path) == []
+
+
+@pytest.mark.slow
+def test_axe_finds_what_is_wrong(building: str, tmp_path: Path) -> None:
+    broken = building.replace("<label ", "<span ").replace("</label>", "</span>").replace('id="extremes"', "")
+    assert {"label", "aria-valid-attr-value"} & set(reported(broken, axe() + LOOK, tmp_path))  # type: ignore[call-overload]
+
+
+@pytest.mark.parametrize("name", ["collision_m4", "drive_m1"])
+def test_other_systems_have_pages(name: str) -> None:
+    text = page(Scene.from_toml(name))
+    assert faults(text) == []
+    assert strays(text, Scene.from_toml(name)) == []
+
+
+CHAIN = {
+    "type": "chain",
+    "parts": [
+        {"motion": "velocity", "name": "shaker"},
+        {"rod": 1, "name": "first"},
+        {"mass": 2, "name": "hub", "spring": 1, "dashpot": "1/2"},
+        {"spring": 3},
+        {"mass": 1, "name": "ring"},
+        {"rod": "1/2", "impedance": 4},
+        "contact",
+        {"rod": 1},
+        "fixed",
+    ],
+    "branch": [{"from": "hub", "name": "arm", "parts": [{"rod": 1}, {"mass": 1, "name": "tip"}]}],
+}
+
+
+def test_all_that_a_chain_is_made_of_is_drawn() -> None:
+    load = [{"at": "shaker", "times": [0], "steps": [1]}, {"at": "tip", "times": [0], "steps": [1]}]
+    scene = Scene(name="chain", system=CHAIN, load=load, output={"until": 4, "velocity": ["hub", "arm:1/2"]})
+    made = structure(lower(scene), scene.system.lines)
+    assert faults(f"<script></script>{made.drawn}") == []
+    for name in ("shaker", "first", "hub", "ring", "arm", "tip"):
+        assert made.drawn.count(f">{name}<") == 1
+    assert made.drawn.count('class="mass"') == 3
+    assert made.drawn.count('class="rod"') == 4
+    assert made.drawn.count('class="place"') == 2
+    assert "1 contact" in made.told
+
+
+def test_report_is_a_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["report", "drive_m1", "-o", "drive.txt"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+    payloaded(tmp_path, "drive_m1")
+    assert main(["report", "mine.toml", "-o", "drive.html"]) == 0
+    text = Path("drive.html").read_text(encoding="utf-8")
+    assert "&lt;script&gt;" in text
+    assert str(tmp_path) not in text
+
+
+def test_a_scene_from_standard_input_is_on_its_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    given = (PAYLOAD + builtin_text("drive_m1")).encode()
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(given)))
+    assert main(["report", "-", "-o", str(tmp_path / "drive.html")]) == 0
+    assert "&lt;script&gt;" in (tmp_path / "drive.html").read_text(encoding="utf-8")
+
+
+def rooms(module: str, seen: set[str]) -> set[str]:
+    """A module of `wavesym.pictures` and all others that it imports there, with what else they import."""
+    if module not in seen:
+        seen.add(module)
+        place = Path(wavesym.__file__).parent.joinpath(*module.split(".")[1:])
+        path = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+        if module.startswith("wavesym.pictures."):
+            for other in re.findall(r"^ *(?:from|import) ([\w.]+)", path.read_text(encoding="utf-8"), re.MULTILINE):
+                rooms(other, seen)
+    return seen
+
+
+def test_pages_need_no_matplotlib() -> None:
+    assert not any(module.startswith("matplotlib") for module in rooms("wavesym.pictures.page.document", set()))
+    assert any(module.startswith("matplotlib") for module in rooms("wavesym.pictures.panels", set()))

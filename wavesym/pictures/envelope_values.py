@@ -1,0 +1,44 @@
+"""The least and the greatest of what happens along a chain, as numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from wavesym.pictures.along import Along, Band
+from wavesym.pictures.histories import Points
+from wavesym.pictures.timescale import Timescale
+
+
+@dataclass(frozen=True)
+class BandExtreme:
+    """The least or greatest value of a band: where and when; `place` is how one says it."""
+
+    place: str
+    unit: str
+    x: float
+    tau: float
+    value: float
+
+    def told(self, scale: Timescale) -> str:
+        """In a line."""
+        value = f"{self.value:.4g} {self.unit}".rstrip()
+        return f"{value} {self.place}, {scale.told(self.tau)}"
+
+
+def extremes(found: Along, band: Band) -> Iterator[BandExtreme]:
+    """The greatest and the least value."""
+    for place, instant in (
+        np.unravel_index(find(band.values), band.values.shape) for find in (np.nanargmax, np.nanargmin)
+    ):
+        spot = band.spots[place]
+        where = f"in storey {place + 1}" if found.storeys else f"at x = {spot.told}"
+        tau, value = float(found.taus[instant]), float(band.values[place, instant])
+        yield BandExtreme(where, found.unit, spot.x, tau, value)
+
+
+def envelope(band: Band) -> tuple[Points, Points]:
+    """The least and the greatest value at each place, (places,)."""
+    return np.nanmin(band.values, axis=1), np.nanmax(band.values, axis=1)

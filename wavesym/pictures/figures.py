@@ -1,0 +1,165 @@
+"""`wavesym plot --published`: Figs. 6, 7 and 8 of the paper, redrawn, with what section 5 says of them marked.
+
+A number in a panel is that of a statement, text.N in `wavesym verify --published`; it stands at the points that were
+measured for it. Below the panels is what was found. All of it comes from `papers.pielorz1979.figures` and its data.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from textwrap import wrap
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import nearest
+from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads
+from wavesym.papers.pielorz1979.figures import (
+    FigureStatement,
+    finding,
+    findings,
+    meaning,
+    printed_end,
+    statements,
+    true,
+)
+from wavesym.papers.pielorz1979.measures import Finding
+from wavesym.papers.pielorz1979.paper import records
+from wavesym.papers.pielorz1979.transcript import entries
+from wavesym.papers.record import Record, shown
+from wavesym.pictures.groups import Mark, PlotPanel, axis_title
+from wavesym.pictures.histories import Histories, histories
+from wavesym.pictures.loads import load_histories
+from wavesym.pictures.panels import CHARACTERS, Instant, stacked
+from wavesym.pictures.saving import save
+from wavesym.scene import lower
+
+FIGURES: Mapping[int, tuple[str, ...]] = {
+    6: ("strain", "displacement"),
+    7: ("strain", "displacement"),
+    8: ("velocity", "strain", "displacement"),
+}
+"""The quantities of each figure, from top to bottom."""
+
+_INDENT = " " * 4
+
+
+def published(directory: Path, number: int) -> list[Path]:
+    """Write the figure `number` into `directory`, as .svg and .png; the paths written. OSError."""
+    made = redrawn(number, judged(number))
+    paths = [directory / f"figure_{number}.{suffix}" for suffix in ("svg", "png")]
+    for path in paths:
+        save(made, path)
+    return paths
+
+
+def judged(number: int) -> dict[str, Record]:
+    """The verdicts on what the paper says of a figure."""
+    said = [e for e in entries().values() if e.about.get("figure") == number and e.kind != "caption"]
+    return {record.id: record for record in records(said)}
+
+
+def redrawn(number: int, verdicts: Mapping[str, Record]) -> Figure:
+    """A figure of the paper under the load of `drawn`, with the verdicts on its statements."""
+    load = drawn(number)
+    made = histories(lower(figure(number).scene(load)))
+    panels = [_panel(made, number, quantity, load) for quantity in FIGURES[number]]
+    if made.model.labels.loads:
+        panels.insert(0, _load(made.model))
+    ends = [r for r in verdicts.values() if r.entry.kind == "contact" and r.entry.about["figure"] == number]
+    return stacked(
+        panels,
+        nearest(made.model.until),
+        list(_title(number, made.model, load)),
+        [*_list(number, load, verdicts), *(line for record in ends for line in _end(record))],
+        [instant for record in ends for instant in _ends(record)],
+    )
+
+
+def drawn(number: int) -> TriedLoad:
+    """The load that a figure is drawn with: the first of those under which most of its statements are true."""
+    said = statements(number).values()
+    return max(loads(number), key=lambda load: sum(true(figure(number), load, statement) for statement in said))
+
+
+def marks(number: int, found: Finding, text: str, load: TriedLoad) -> Iterator[Mark]:
+    """The spots of a finding, each with the number of its statement."""
+    scene = figure(number)
+    for spot in found.spots:
+        points = ((scene.instants[p.instant], scene.curve(load, p.quantity, p.place)[p.instant]) for p in spot)
+        yield Mark(text, np.array(list(points)))
+
+
+def _panel(made: Histories, number: int, quantity: str, load: TriedLoad) -> PlotPanel:
+    own = tuple(history for history in made.outputs if history.output.quantity == quantity)
+    noted: list[Mark] = []
+    for id, statement in statements(number).items():
+        found = finding(figure(number), load, statement)
+        if found.spots and found.spots[0][0].quantity == quantity:
+            noted += marks(number, found, id.removeprefix("text."), load)
+    return PlotPanel(axis_title(made.model, quantity), own, tuple(noted), height=3.6 if len(own) > 4 else 2.9)
+
+
+def _ends(record: Record) -> list[Instant]:
+    """When the collision of Fig. 6 ends, as printed and as computed."""
+    number, printed = record.id.removeprefix("text."), printed_end(record.entry)
+    return [
+        Instant(printed, f"{number}: {printed} (printed)", "--"),
+        Instant(float(contact_end(figure(6))), f"{number}: contact opens", "-"),
+    ]
+
+
+def _load(model: Model) -> PlotPanel:
+    """The load over tau. The moments of Fig. 7 are equal: one stands for both."""
+    first, *others = load_histories(model)
+    name = " = ".join(load.name for load in (first, *others))
+    moments = model.labels.system["type"] == "drive"
+    unit = "moment\nin G J\u2080\u2081 \u03b8\u2080 / l" if moments else "load (3.2)\n(dimensionless)"
+    return PlotPanel(unit, (replace(first, output=replace(first.output, name=name)),), height=1.2)
+
+
+def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:
+    values = ", ".join(
+        f"{name}_{index} = {value}" for name, numbers in model.letters.items() for index, value in numbers.items()
+    )
+    yield f"Fig. {number} of the paper, redrawn: {model.labels.system['type']}, {model.labels.size}; {values}"
+    if model.labels.loads:
+        yield (
+            f"The paper's load curve is not in its text. Drawn: {load.name}, "
+            "the first of the shapes tried under which most of the statements are true."
+        )
+    yield "Numbers stand where a statement of section 5 was measured; jumps are thin and upright."
+
+
+def _list(number: int, load: TriedLoad, verdicts: Mapping[str, Record]) -> Iterator[str]:
+    """The statements, what each was taken to mean, and for which loads it is true."""
+    for id, statement in statements(number).items():
+        yield f"{id.removeprefix('text.')}  {verdicts[id].entry.statement}: {verdicts[id].verdict}"
+        yield from _indented("; ".join(_measured(number, load, statement)))
+
+
+def _measured(number: int, load: TriedLoad, statement: FigureStatement) -> Iterator[str]:
+    found = findings(number, statement)
+    yield f"{meaning(statement)}; measured: {shown(finding(figure(number), load, statement).value)}"
+    if len(found) > 1:
+        for truth in (True, False):
+            those = [
+                f"{other.name} ({shown(measured.value)})"
+                for other, measured in found
+                if true(figure(number), other, statement) == truth
+            ]
+            yield f"{'true' if truth else 'false'} for {', '.join(those) or 'none of the loads tried'}"
+
+
+def _end(record: Record) -> Iterator[str]:
+    yield (
+        f"{record.id.removeprefix('text.')}  the collision ends at tau = {printed_end(record.entry)}: {record.verdict}"
+    )
+    yield from _indented(" ".join(record.evidence))
+
+
+def _indented(text: str) -> list[str]:
+    return wrap(text, CHARACTERS, initial_indent=_INDENT, subsequent_indent=_INDENT)

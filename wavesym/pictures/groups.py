@@ -1,0 +1,155 @@
+"""What a picture of histories has before it is drawn: panels of curves that share an axis, and what is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from wavesym.mechanics.model import Model
+from wavesym.pictures.histories import Histories, History, Points
+from wavesym.pictures.timescale import Timescale, timescale
+
+CURVES = 8  # that an eye can tell apart in a panel
+MOST_PANELS = 6  # of a quantity
+STRIPS = 4  # that take the room of a panel
+_STRIP = 0.8  # inches
+_TURNS, _LEVELS = 40, 20
+_MARKED = 3  # curves of a panel whose extremes are all marked; of more only the panel's own
+_SYMBOL = {"collision": "u", "drive": "\u03b8", "building": "y"}
+_DEFINITION = {
+    "strain": "(l / {0}\u2080) \u2202{0}/\u2202x",
+    "velocity": "(l / (c {0}\u2080)) \u2202{0}/\u2202t",
+    "displacement": "{0} / {0}\u2080",
+    "acceleration": "(l\u00b2 / (c\u00b2 {0}\u2080)) \u2202\u00b2{0}/\u2202t\u00b2",
+    "force": "impedance \u00d7 strain",
+    "drift": "\u0394{0} / {0}\u2080",
+    "relative": "({0} \u2212 ground) / {0}\u2080",
+}
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Something to be seen on a curve: its number, and one point or two that a line joins, (n, 2)."""
+
+    text: str
+    points: Points
+    weight: str = "bold"
+
+
+@dataclass(frozen=True)
+class PlotPanel:
+    """Curves that share an axis: what is drawn upwards, how high the panel is (inches), what is marked.
+
+    A strip is for one curve, on an axis with the `limits` of its like, and says all that there is to say above it.
+    """
+
+    title: str
+    histories: tuple[History, ...]
+    marks: tuple[Mark, ...] = ()
+    height: float = 2.7
+    limits: tuple[float, float] | None = None
+
+    @property
+    def told(self) -> str:
+        """Of a strip: the curve's name, and its extremes."""
+        return f"{self.histories[0].name}: {', '.join(mark.text for mark in self.marks)}"
+
+    def goes_on(self, before: PlotPanel) -> bool:
+        """Whether it and the one before are strips of the same quantity."""
+        return None is not self.limits == before.limits
+
+
+def panels(histories: Histories, most: int = MOST_PANELS) -> list[PlotPanel]:
+    """A panel for each quantity that moves, or several where one would be crowded; an empty one if nothing moves.
+
+    At `most` so many of a quantity. Of curves that turn too often to be told apart, each has a strip of its own.
+    """
+    result: list[PlotPanel] = []
+    scale = timescale(histories.model)
+    for quantity, shown in quantities(histories).items():
+        if stripped(shown):
+            result += _strips(shown[: most * STRIPS], scale)
+            continue
+        count = min(-(-len(shown) // CURVES), most)
+        title = axis_title(histories.model, quantity, shown[0].output.unit)
+        parts = _even(shown[: count * CURVES], count)
+        result += [PlotPanel(title, tuple(part), tuple(_extremes(part, scale))) for part in parts]
+    return result or [PlotPanel(axis_title(histories.model, histories.outputs[0].output.quantity), ())]
+
+
+def notes(histories: Histories, most: int = MOST_PANELS) -> list[str]:
+    """What is not drawn, a line each."""
+    lines = []
+    for quantity, shown in quantities(histories).items():
+        drawn = most * (STRIPS if stripped(shown) else CURVES)
+        if len(shown) > drawn:
+            lines.append(f"{quantity}: the first {drawn} of {len(shown)} outputs that move are drawn")
+    if still := [history.name for history in histories.outputs if history.zero]:
+        lines.append(f"0 throughout: {', '.join(still)}")
+    if histories.dense:
+        lines.append("fronts lie closer than the picture resolves: they are not drawn one by one")
+    return lines
+
+
+def load_panel(loads: Sequence[History], height: float) -> PlotPanel:
+    """Loads over time; in their unit, where all have the same."""
+    units = {load.output.unit for load in loads}
+    unit = units.pop() if len(units) == 1 else ""
+    return PlotPanel(f"load\nin {unit}" if unit else "load", tuple(loads), height=height)
+
+
+def axis_title(model: Model, quantity: str, unit: str = "") -> str:
+    """A quantity in its unit, or as section 4 of the paper makes it dimensionless."""
+    if unit or model.clock is not None:
+        return f"{quantity}\nin {unit}" if unit else quantity
+    letter = _SYMBOL.get(model.labels.system["type"], "u")
+    return f"{quantity}\n{_DEFINITION[quantity].format(letter)} (dimensionless)"
+
+
+def quantities(histories: Histories) -> dict[str, list[History]]:
+    """What moves, by quantity."""
+    found: dict[str, list[History]] = {}
+    for history in histories.outputs:
+        if not history.zero:
+            found.setdefault(history.output.quantity, []).append(history)
+    return found
+
+
+def restless(history: History) -> bool:
+    """Whether a curve turns too often to bear its name; what it does within a part of its height is no turn."""
+    values = history.points[:, 1]
+    levels = np.rint(values / (np.ptp(values) or 1.0) * _LEVELS)
+    steps = np.diff(levels)
+    return int(np.count_nonzero(np.diff(np.sign(steps[steps != 0])))) > _TURNS
+
+
+def stripped(shown: Sequence[History]) -> bool:
+    """Whether curves of a quantity are drawn one under the other."""
+    return len(shown) > 1 and any(restless(history) for history in shown)
+
+
+def _strips(shown: Sequence[History], scale: Timescale) -> Iterator[PlotPanel]:
+    values = np.concatenate([history.points[:, 1] for history in shown])
+    limits = float(np.min(values)), float(np.max(values))
+    for history in shown:
+        yield PlotPanel("", (history,), tuple(_extremes([history], scale)), _STRIP, limits)
+
+
+def _even(shown: Sequence[History], count: int) -> list[Sequence[History]]:
+    """Parts that differ by one at most."""
+    cuts = [len(shown) * k // count for k in range(count + 1)]
+    return [shown[low:high] for low, high in pairwise(cuts)]
+
+
+def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
+    """The greatest and the least value of each curve, or of all where they are many; what is formal has none."""
+    for group in [[each] for each in shown] if len(shown) <= _MARKED else [shown]:
+        points = np.vstack([history.real for history in group])
+        for k in sorted({int(np.argmax(points[:, 1])), int(np.argmin(points[:, 1]))}):
+            tau, value = points[k]
+            if value:
+                told = f"{value:.4g} {shown[0].output.unit}".rstrip()
+                yield Mark(f"{told} at {scale.of(tau)}", points[k : k + 1], "normal")

@@ -1,0 +1,75 @@
+"""What acts on a chain, over tau: each load as it is, straight between its changes, upright where it steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from flint import fmpq
+
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Point
+from wavesym.mechanics.node import UnitLoad
+from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.pictures.histories import History, Points
+from wavesym.scene.physical.scale import Scale
+
+Acting = Sequence[tuple[Applied, int]]
+"""Loads on one node, each with the power of tau that it grows with: 0 for a step, 1 for a ramp."""
+
+
+def load_histories(model: Model, scale: Scale | None = None) -> tuple[History, ...]:
+    """The loads of a model, one for each node that is loaded; none for a chain that its own start moves.
+
+    Of a physical scene in the units of its `scale`.
+    """
+    found = []
+    for point in model.network.points:
+        powers = {unit.source: _power(unit, point) for unit in point.loads}
+        if acting := [(load, powers[load.source]) for load in model.loads if load.source in powers]:
+            kind, name = _named(model, point, scale)
+            factor = fmpq(1) if scale is None else rational(scale.factor(kind, 1))
+            probe = Probe(name, "load", 1, fmpq(0), factor=factor, unit=scale.unit(kind) if scale else "")
+            told = [(replace(load, weight=factor * load.weight), power) for load, power in acting]
+            found.append(History(probe, tuple(stretches(told, model.until))))
+    return tuple(found)
+
+
+def stretches(acting: Acting, until: fmpq) -> Iterator[Points]:
+    """The sum of loads as polylines (n, 2) of tau and value; between them it jumps."""
+    times = sorted({fmpq(0), until, *(load.time for load, _ in acting if load.time < until)})
+    changes: dict[fmpq, list[fmpq]] = {time: [fmpq(0), fmpq(0)] for time in times}
+    for load, power in acting:
+        if load.time < until:
+            changes[load.time][power] += load.weight
+    value = slope = fmpq(0)
+    vertices: list[tuple[float, float]] = []
+    for time, after in zip(times, [*times[1:], until], strict=True):
+        step, bend = changes[time]
+        if step and vertices:
+            vertices.append((nearest(time), nearest(value)))
+            yield np.array(vertices)
+            vertices = []
+        value, slope = value + step, slope + bend
+        vertices.append((nearest(time), nearest(value)))
+        value += slope * (after - time)
+    yield np.array(vertices)
+
+
+def _power(unit: UnitLoad, point: Point) -> int:
+    """How many powers of tau more than a step a unit load at a point has."""
+    return len(unit.coefficients) - min(len(other.coefficients) for other in point.loads)
+
+
+def _named(model: Model, point: Point, scale: Scale | None) -> tuple[str, str]:
+    """What kind of quantity acts on a point, and what its scene calls that."""
+    if model.labels.system["type"] == "building":
+        return "acceleration", "acceleration of the base"
+    if any(unit.number is not None for unit in point.loads):
+        return "force", " + ".join(sorted({unit.source.partition(":")[0] for unit in point.loads}))
+    kind = point.motion or "force"
+    called = "moment" if scale and (kind, scale.kind) == ("force", "torsional") else kind
+    return kind, f"{called} {'of' if point.motion else 'at'} {point.name or f'x = {point.place}'}"

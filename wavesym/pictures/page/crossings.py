@@ -1,0 +1,123 @@
+"""Place x time of all rods as waves are drawn on paper: cells of colour, and over them what stands between rods."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from wavesym.errors import WavesymError
+from wavesym.exact.contacts.opening import ContactEnd, contact_ends
+from wavesym.exact.field import Field
+from wavesym.mechanics.length import axis_text
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Link
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.pictures.along import limit
+from wavesym.pictures.histories import Points
+from wavesym.pictures.page.frame import Frame, PlotAxis
+from wavesym.pictures.page.places import colour_bar
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture
+from wavesym.pictures.page.png import address, shaded
+from wavesym.pictures.page.svg import Svg, box, element, line, together
+from wavesym.pictures.stations import Opened, open_times, standing
+from wavesym.pictures.timescale import timescale
+from wavesym.scene.physical.scale import Scale
+from wavesym.systems.station import Lines, Station
+
+_MOST = 60  # crossings of the shortest rod that can be told apart
+_ROWS, _COLUMNS = 240, 280  # cells
+_OFF = 0.4142  # of a cell: where in it the value is taken, so that no front lies there
+_TALL = 380.0
+_QUANTITIES = {"velocity": 0, "force": 1}
+
+
+def crossings(model: Model, lines: Lines, units: Scale | None) -> list[Shown]:
+    """Velocity and force of the main line; nothing where waves cross too often, or it would cost too much."""
+    shortest = min(bar.delay for bar in model.network.bars)
+    if model.until > _MOST * shortest:
+        return []
+    try:
+        field = Field(model)
+    except WavesymError:
+        return []
+    return [_drawn(model, lines, field, name, units) for name in _QUANTITIES]
+
+
+def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | None) -> Shown:
+    stations, scale = lines[""], timescale(model)
+    until, long = nearest(model.until), float(stations[-1].x)
+    factor = nearest(rational(units.factor(name, 1))) if units else 1.0
+    values = factor * _cells(field, stations, until, _QUANTITIES[name])
+    largest = limit([values])
+    x, y = PlotAxis(0.0, long, LEFT, WIDTH - RIGHT), PlotAxis(0.0, until * scale.per_tau, TOP + _TALL, TOP)
+    cells = element(
+        "image",
+        href=address(shaded(values[::-1], largest)),
+        x=x.start,
+        y=y.end,
+        width=x.end - x.start,
+        height=_TALL,
+        preserveAspectRatio="none",
+        class_="cells",
+    )
+    formal = together(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
+    nodes = together(*_nodes(model, stations, open_times(model, field.events), x, scale.per_tau, y))
+    ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
+    words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
+    bar = colour_bar(words, ends, TOP + _TALL + BELOW)
+    told = (
+        f"Colours show the {name} of every rod of the main line, place to the right and time upward to "
+        f"{scale.told(until)}; waves are bands that slope by one rod in one crossing."
+    )
+    title = f"{name}: place to the right, time upward".capitalize()
+    height = TOP + _TALL + BELOW + 34
+    size = float(model.length.size) if model.length else 1.0
+    frame = Frame(replace(x, high=size * long), y, axis_text("", model.length), scale.title).drawn()
+    return Shown(title, picture(f"xt-{name}", title, told, height, frame, cells, formal, nodes, bar, class_="plot"))
+
+
+def _formal(end: ContactEnd, x: PlotAxis, y: PlotAxis, until: float, long: float, per_tau: float) -> Svg:
+    """What the opening of a contact reaches, one rod in one tau: the formal continuation, hatched."""
+    reach = until - end.double
+    low, high = max(0.0, end.x - reach), min(long, end.x + reach)
+    corners = [(end.x, end.double), (low, end.double + end.x - low), (low, until), (high, until)]
+    corners.append((high, end.double + high - end.x))
+    points = " ".join(f"{x.at(at):.1f},{y.at(tau * per_tau):.1f}" for at, tau in corners)
+    return element("polygon", points=points, class_="hatched")
+
+
+def _cells(field: Field, stations: tuple[Station, ...], until: float, quantity: int) -> Points:
+    """A value for each row of time and each column of place, whatever rod it lies in."""
+    tau = (np.arange(_ROWS) + _OFF) * until / _ROWS
+    x = (np.arange(_COLUMNS) + _OFF) * float(stations[-1].x) / _COLUMNS
+    result = np.zeros((_ROWS, _COLUMNS))
+    for station, following in pairwise(stations):
+        low, high = float(station.x), float(following.x)
+        here = (x >= low) & (x < high)
+        if station.right is not None and here.any():
+            part, instants = np.meshgrid((x[here] - low) / (high - low), tau)
+            result[:, here] = field.at(station.right, part, instants)[quantity]
+    return result
+
+
+def _nodes(
+    model: Model, stations: tuple[Station, ...], opened: Opened, x: PlotAxis, per_tau: float, y: PlotAxis
+) -> Iterator[Svg]:
+    """Masses and ends as thick lines; a contact is a thin line, and a white gap while it is open."""
+    for station in stations:
+        at = x.at(float(station.x))
+        for what in standing(model.network, station):
+            if isinstance(what, Link) and what.contact:
+                yield line(at, y.start, at, y.end, "thin")
+                for low, high in opened[what.place]:
+                    top, bottom = y.at(high * per_tau), y.at(low * per_tau)
+                    yield box(at - 2, top, 4, bottom - top, "gap")
+            elif isinstance(what, Link):
+                yield line(at, y.start, at, y.end, "held")
+            elif what.mass:
+                yield line(at, y.start, at, y.end, "body")
+            elif what.motion:
+                yield line(at, y.start, at, y.end, "told")

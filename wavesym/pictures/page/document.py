@@ -1,0 +1,219 @@
+"""A scene as one page of HTML: all that a template needs, computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+from wavesym import __version__
+from wavesym.errors import WavesymError
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.pictures.along import Along, along
+from wavesym.pictures.groups import load_panel, notes, panels
+from wavesym.pictures.histories import Histories, History, histories
+from wavesym.pictures.loads import load_histories
+from wavesym.pictures.page.crossings import crossings
+from wavesym.pictures.page.places import along_pictures, maps
+from wavesym.pictures.page.plots import Shown, panel, picture
+from wavesym.pictures.page.said import SaidTable, advice_told, extremes_told
+from wavesym.pictures.page.small import first_rows, first_text, fitting
+from wavesym.pictures.page.structure import structure
+from wavesym.pictures.timescale import Timescale, timescale
+from wavesym.programs.program import Program
+from wavesym.rendering import render
+from wavesym.results.summary import Summary, summary_and_program
+from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import drifts
+
+_OUTPUTS = 48  # that are drawn
+_VERTICES = 60_000  # of all curves together: what keeps the page small
+_COLUMNS = (300, 1200)  # of a picture of histories, at least and at most
+_LOADS = 8
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the template shows."""
+
+    name: str
+    facts: tuple[tuple[str, str], ...]
+    structure: Shown
+    histories: tuple[Shown, ...]
+    notes: tuple[str, ...]
+    until: str
+    time: str
+    columns: int
+    extremes: SaidTable
+    advice: SaidTable
+    maps: tuple[Shown, ...]
+    along: tuple[Shown, ...]
+    refused: str
+    scene: str
+    command: str
+    version: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class _Context:
+    report: Report
+
+
+def page(scene: Scene) -> str:
+    """The page of a scene, with the text it was read from. CostError, ToleranceError as for its histories."""
+    model = lower(scene)
+    drawn = model.watching(_fair(model))
+    columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
+    return fitting(
+        _report(scene, model, drawn, columns),
+        lambda report: render("html/report.html.j2", _Context(report)),
+        columns,
+    )
+
+
+def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[int], Report]:
+    """All of it, computed once, whose curves may be drawn with fewer columns than `most`."""
+    scale, until = timescale(model), nearest(model.until)
+    summary, program = _summary(model, drifts(scene))
+    made = histories(drawn, most, program)
+    loads = load_histories(model, scene.scale)[:_LOADS]
+    stack = [load_panel(loads, 1.0)] if loads else []
+    stack += [each for each in panels(made) if each.histories]
+    lines = scene.system.lines
+    found, refused = _along(scene)
+    structured = structure(model, lines)
+    title = f"The structure of {model.name}"
+    report = Report(
+        name=model.name,
+        facts=tuple(_facts(model, made, found, loads, scale)),
+        structure=Shown(
+            title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")
+        ),
+        histories=(),
+        notes=(*_left_out(model, drawn), *notes(made)),
+        until=repr(until * scale.per_tau),
+        time=scale.unit,
+        columns=most,
+        extremes=first_rows(extremes_told(model, summary, scale)),
+        advice=first_rows(advice_told(model)),
+        maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
+        along=tuple(along_pictures(model, found, scale)),
+        refused=refused,
+        scene=first_text(scene.text),
+        command=f"wavesym report {model.name}.toml -o {model.name}.html",
+        version=__version__,
+        sha256=model.labels.sha256,
+    )
+
+    def with_columns(columns: int) -> Report:
+        curves = (
+            panel(f"history-{k}", each, columns, until, scale, last=k == len(stack) - 1) for k, each in enumerate(stack)
+        )
+        said = f"Curves have {columns} columns of time, not {most}, so that the page stays small"
+        notes = (*report.notes, *[said] * (columns < most))
+        return replace(report, histories=tuple(curves), columns=columns, notes=notes)
+
+    return with_columns
+
+
+def _summary(model: Model, drifts: Sequence[Probe]) -> tuple[Summary | WavesymError, Program | None]:
+    """The extremes, and the program that they are of, whose curves are drawn; or why there are none."""
+    try:
+        return summary_and_program(model, drifts=drifts)
+    except WavesymError as error:
+        return error, None
+
+
+def _along(scene: Scene) -> tuple[tuple[Along, ...], str]:
+    """What happens along the chain, or why that is not known."""
+    try:
+        return along(scene), ""
+    except WavesymError as error:
+        return (), f"Not drawn: {error}"
+
+
+def _fair(model: Model) -> list[Probe]:
+    """The outputs that are drawn: as many of each quantity, or all of them."""
+    groups = [list(group) for _, group in groupby(model.probes, key=lambda probe: probe.quantity)]
+    each = max(1, _OUTPUTS // len(groups))
+    return [probe for group in groups for probe in group[:each]]
+
+
+def _left_out(model: Model, drawn: Model) -> list[str]:
+    missing = len(model.probes) - len(drawn.probes)
+    return (
+        [f"{missing} of {len(model.probes)} outputs are not drawn; their extremes are in the table"] if missing else []
+    )
+
+
+def _facts(
+    model: Model, made: Histories, found: Sequence[Along], loads: Sequence[History], scale: Timescale
+) -> Iterator[tuple[str, str]]:
+    """What there is to know at first sight, each under a word."""
+    network, program = model.network, made.program
+    assert program is not None  # histories have one
+    yield "System", ", ".join([model.labels.system["type"], *_chosen(model)])
+    rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
+    yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
+    if model.damping is not None:
+        yield "Damping", f"of modes: {model.damping.told}"
+    if told := _loads(model, loads):
+        yield "Loads", told
+    yield "Horizon", scale.told(nearest(model.until))
+    if model.clock is not None:
+        yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross a rod of length 1"
+    yield "Computed by", program.provenance.reason.rpartition("; ")[2]
+    yield (
+        "Bound",
+        f"{_bound('a curve over time', program, model)} Whether the model is the structure is another question.",
+    )
+    if found and found[0].program.error_bound != program.error_bound:
+        yield "Bound over place", _bound("what is drawn over place", found[0].program, model)
+    for end in made.contacts:
+        yield (
+            "Contact",
+            f"that at x = {end.x} opens at {scale.told(end.double)}; what that reaches is drawn as if it stayed closed",
+        )
+    for number in network.contacts:
+        place = network.links[number].place
+        if own := [each for each in program.provenance.events or () if each.x == place]:
+            yield (
+                "Contact",
+                f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own),
+            )
+
+
+def _loads(model: Model, loads: Sequence[History]) -> str:
+    """As the scene says them; with units, whose exact numbers nobody can read, by their sizes."""
+    if model.clock is None:
+        return "; ".join(model.labels.loads)
+    values = ((load, load.points[:, 1]) for load in loads)
+    return "; ".join(f"{load.name}, from {min(v):.4g} to {max(v):.4g} {load.output.unit}" for load, v in values)
+
+
+def _chosen(model: Model) -> list[str]:
+    return [f"{key} = {value}" for key, value in model.labels.system.items() if key in ("base", "contacts")]
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def _bound(what: str, program: Program, model: Model) -> str:
+    """How far from the truth is what is drawn, and whether that meets the tolerance that was asked for."""
+    if program.proved:
+        known = (
+            f"proved: at no time is {what} farther from the exact solution of this model than this part of its own "
+            "largest value."
+        )
+    else:
+        known = (
+            "an estimate that is not proved: so far from the exact solution of this model, in parts of its own largest "
+            f"value, {what} may be."
+        )
+    met = rational(program.error_bound) <= model.tolerance
+    coarse = f" That is more than the tolerance asked for, {nearest(model.tolerance):g}, but less than a picture shows."
+    return f"{program.error_bound:.2g}, {known}{'' if met else coarse}"

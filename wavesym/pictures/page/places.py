@@ -1,0 +1,167 @@
+"""Pictures of a page over place: least and greatest along the chain, and place x time as colours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from wavesym.mechanics.length import axis_text
+from wavesym.mechanics.model import Model
+from wavesym.pictures.along import Along, Band, cells, limit
+from wavesym.pictures.envelope_values import BandExtreme, envelope, extremes
+from wavesym.pictures.groups import axis_title
+from wavesym.pictures.histories import Points
+from wavesym.pictures.page.frame import Frame, PlotAxis, spread
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture, spot
+from wavesym.pictures.page.png import address, colours, shaded
+from wavesym.pictures.page.svg import Svg, box, element, line, polyline, text, together
+from wavesym.pictures.timescale import Timescale
+
+_ALONG = 230.0  # pixels high
+_COLUMNS = 600  # of a map
+_NUMBERED = 12  # storeys with a number
+
+
+def along_pictures(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Shown]:
+    """The least and the greatest of each quantity along each line."""
+    upright = model.labels.system["type"] == "building"
+    for k, quantity in enumerate(found):
+        for j, band in enumerate(quantity.bands):
+            name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
+            where = "height" if upright else "chain"
+            title = f"Least and greatest {name} along the {where}"
+            told = " ".join(
+                f"{word}: {each.told(scale)}."
+                for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
+            )
+            make = _over_height if upright else _along_line
+            content, height = make(model, quantity, band, scale)
+            yield Shown(title, picture(f"along-{k}-{j}", title, told, height, content, class_="plot"))
+
+
+def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) -> tuple[Svg, float]:
+    least, greatest = envelope(band)
+    low, high = spread(min(0.0, float(np.min(least))), max(0.0, float(np.max(greatest))), 0.1)
+    tall = max(160.0, min(30.0 * len(band.spots), 420.0))
+    x, y = (
+        PlotAxis(low, high, LEFT, WIDTH - RIGHT),
+        PlotAxis(band.spots[0].low - 0.3, band.spots[-1].high + 0.3, TOP + tall, TOP),
+    )
+    places = band.numbered(_NUMBERED, first=1 if quantity.storeys else 0)
+    title = axis_title(model, quantity.quantity, quantity.unit).replace("\n", " ")
+    frame = Frame(x, y, title, "storey" if quantity.storeys else "floor", places)
+    parts = [frame.drawn(), line(x.at(0), y.start, x.at(0), y.end, "zero")]
+    ends = [(y.at(spot.x), x.at(a), x.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
+    if quantity.storeys:
+        half = 0.38 * (y.start - y.end) / (y.high - y.low)
+        for at, a, b in ends:
+            parts += [box(a, at - half, b - a, 2 * half, "between")]
+            parts += [line(a, at - half, a, at + half, "least"), line(b, at - half, b, at + half, "greatest")]
+    else:
+        parts.append(polyline([*((a, at) for at, a, _ in ends), *((b, at) for at, _, b in ends[::-1])], "between"))
+        parts.append(polyline([(a, at) for at, a, _ in ends], "least"))
+        parts.append(polyline([(b, at) for at, _, b in ends], "greatest"))
+    parts += [
+        _named(x.at(each.value), y.at(each.x), each, scale, below=k > 0)
+        for k, each in enumerate(extremes(quantity, band))
+        if each.value
+    ]
+    return together(*parts), TOP + tall + BELOW
+
+
+def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> tuple[Svg, float]:
+    least, greatest = envelope(band)
+    low, high = spread(min(0.0, float(np.min(least))), max(0.0, float(np.max(greatest))), 0.14)
+    x, y = PlotAxis(band.spots[0].low, band.spots[-1].high, LEFT, WIDTH - RIGHT), PlotAxis(low, high, TOP + _ALONG, TOP)
+    frame = Frame(x, y, axis_text(band.line, quantity.length), axis_title(model, quantity.quantity, quantity.unit))
+    ends = [(x.at(spot.x), y.at(a), y.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
+    parts = [
+        frame.drawn(),
+        polyline([*((at, a) for at, a, _ in ends), *((at, b) for at, _, b in ends[::-1])], "between"),
+        polyline([(at, a) for at, a, _ in ends], "least"),
+        polyline([(at, b) for at, _, b in ends], "greatest"),
+    ]
+    parts += [
+        _named(x.at(each.x), y.at(each.value), each, scale, below=k > 0)
+        for k, each in enumerate(extremes(quantity, band))
+        if each.value
+    ]
+    return together(*parts), TOP + _ALONG + BELOW
+
+
+def _named(x: float, y: float, extreme: BandExtreme, scale: Timescale, *, below: bool) -> Svg:
+    """A spot and what it is, written towards the middle, above or below it."""
+    right, down = x < (LEFT + WIDTH - RIGHT) / 2, 15 if below else -7
+    return together(
+        spot(x, y),
+        text(x + (8 if right else -8), y + down, extreme.told(scale), "start" if right else "end", class_="halo"),
+    )
+
+
+def maps(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Shown]:
+    """Place x time as colours."""
+    for k, quantity in enumerate(found):
+        values = [cells(quantity, band, _COLUMNS) for band in quantity.bands]
+        largest = limit(values)
+        for j, (band, own) in enumerate(zip(quantity.bands, values, strict=True)):
+            name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
+            title = f"{name} over place and time".capitalize()
+            told = " ".join(
+                f"{word}: {each.told(scale)}."
+                for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
+            )
+            content, height = _map(model, quantity, band, own, largest, scale)
+            yield Shown(title, picture(f"map-{k}-{j}", title, told, height, content, class_="plot"))
+
+
+def _map(
+    model: Model, quantity: Along, band: Band, values: Points, largest: float, scale: Timescale
+) -> tuple[Svg, float]:
+    """Rows of equal height are asked for: places are spread evenly along a rod."""
+    tall = max(120.0, min(16.0 * len(band.spots), 260.0))
+    x = PlotAxis(0.0, float(quantity.taus[-1]) * scale.per_tau, LEFT, WIDTH - RIGHT)
+    y = PlotAxis(band.spots[0].low, band.spots[-1].high, TOP + tall, TOP)
+    places = band.numbered(_NUMBERED) if quantity.storeys else None
+    upward = "storey" if quantity.storeys else axis_text(band.line, quantity.length)
+    rows = _evenly(band, values)
+    image = element(
+        "image",
+        href=address(shaded(rows[::-1], largest)),
+        x=x.start,
+        y=y.end,
+        width=x.end - x.start,
+        height=tall,
+        preserveAspectRatio="none",
+        class_="cells",
+    )
+    frame = Frame(x, y, scale.title, upward, places)
+    ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
+    bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), ends, TOP + tall + BELOW)
+    return together(frame.drawn(), image, bar), TOP + tall + BELOW + 34
+
+
+def _evenly(band: Band, values: Points) -> Points:
+    """Rows of equal height, each that of the place whose stretch it lies in."""
+    low, high = band.spots[0].low, band.spots[-1].high
+    smallest = min(spot.high - spot.low for spot in band.spots)
+    rows = min(400, max(1, round((high - low) / smallest)))
+    middles = low + (np.arange(rows) + 0.5) * (high - low) / rows
+    edges = np.array([spot.low for spot in band.spots])
+    return np.asarray(values[np.searchsorted(edges, middles, side="right") - 1])
+
+
+def colour_bar(title: str, ends: tuple[str, str], top: float) -> Svg:
+    """From the least to the greatest colour, what is written at its ends, and what they mean."""
+    shades = colours()[:-1]
+    wide = 20.0
+    left = (WIDTH - wide * len(shades)) / 2
+    cells = (
+        element("rect", fill="#{:02x}{:02x}{:02x}".format(*colour), x=left + k * wide, y=top, width=wide, height=12)
+        for k, colour in enumerate(shades)
+    )
+    numbers = (
+        text(left - 6, top + 10, ends[0], "end"),
+        text(left + wide * len(shades) + 6, top + 10, ends[1], "start"),
+    )
+    return together(*cells, *numbers, text(WIDTH / 2, top + 27, title.replace("\n", " ")))

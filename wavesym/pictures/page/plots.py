@@ -1,0 +1,124 @@
+"""Pictures of a page over time: loads and histories. Each is an SVG with a title and a description."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wavesym.pictures.groups import PlotPanel
+from wavesym.pictures.histories import History
+from wavesym.pictures.page.curves import HEIGHT, Grid, drawn
+from wavesym.pictures.page.frame import Frame, PlotAxis, spread
+from wavesym.pictures.page.svg import Svg, element, line, text
+from wavesym.pictures.timescale import Timescale
+
+WIDTH, LEFT, RIGHT, TOP, BELOW = 900.0, 84.0, 12.0, 10.0, 44.0
+_LOAD, _STRIP, _PANEL = 90.0, 66.0, 190.0  # pixels high
+LETTER = 6.6  # wide
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A picture: what it is called, its markup, and the outputs that it has curves of (their look and name)."""
+
+    title: str
+    drawn: Svg
+    curves: tuple[tuple[int, str], ...] = ()
+    strip: bool = False
+
+
+def picture(number: str, title: str, told: str, height: float, *content: Svg, **attributes: str | float) -> Svg:
+    """An SVG that those who do not see it are told of."""
+    return element(
+        "svg",
+        element("title", title, id=f"{number}-title"),
+        element("desc", told, id=f"{number}-told"),
+        *content,
+        role="img",
+        aria_labelledby=f"{number}-title {number}-told",
+        viewBox=f"0 0 {WIDTH:.0f} {height:.0f}",
+        **attributes,
+    )
+
+
+def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Timescale, *, last: bool) -> Shown:
+    """The curves of a panel over time."""
+    height, (low, high) = _size(given)
+    grid = Grid.of(columns, until, low, high)
+    x = PlotAxis(0.0, until * scale.per_tau, LEFT, WIDTH - RIGHT)
+    y = PlotAxis(grid.low, grid.high, TOP + height, TOP)
+    frame = Frame(x, y, scale.title, given.title)
+    curves = (drawn(history, grid, look) for look, history in enumerate(given.histories))
+    placed = element(
+        "g",
+        *curves,
+        transform=f"translate({LEFT:g} {TOP:g}) scale({(x.end - x.start) / columns:.6g} {height / HEIGHT:.6g})",
+    )
+    spots = sorted((value, x.at(tau * scale.per_tau), mark.text) for mark in given.marks for tau, value in mark.points)
+    marks = [spot(at, y.at(value)) for value, at, _ in spots]
+    if given.limits:
+        marks.append(text(LEFT + 4, TOP + 11, given.told, "start", class_="halo"))
+    else:
+        marks += [_beside(at, y.at(value), words, above) for (value, at, words), above in _ends(spots)]
+    told = " ".join(_told(history, scale) for history in given.histories)
+    quantity = given.histories[0].name if given.limits else given.title.split("\n")[0]
+    title = f"{quantity} over time".capitalize()
+    svg = picture(
+        number,
+        title,
+        told,
+        TOP + height + (BELOW if last else 8),
+        frame.drawn(numbers=last),
+        placed,
+        *marks,
+        line(LEFT, TOP, LEFT, TOP + height, "cursor"),
+        class_="plot timed",
+        data_columns=columns,
+        data_left=LEFT,
+        data_right=WIDTH - RIGHT,
+        data_low=repr(grid.low),
+        data_high=repr(grid.high),
+    )
+    return Shown(
+        title,
+        svg,
+        strip=given.limits is not None,
+        curves=tuple((look, history.name) for look, history in enumerate(given.histories)),
+    )
+
+
+def _size(given: PlotPanel) -> tuple[float, tuple[float, float]]:
+    """How high a panel is, in pixels, and its values from bottom to top."""
+    if given.limits:  # a strip, with room for a line above its curve
+        low, high = spread(*given.limits, 0.06)
+        return _STRIP, (low, high + 0.4 * (high - low))
+    values = np.concatenate([history.points[:, 1] for history in given.histories])
+    if given.marks:
+        return _PANEL, spread(float(np.min(values)), float(np.max(values)), 0.14)
+    return _LOAD, spread(min(0.0, float(np.min(values))), max(0.0, float(np.max(values))), 0.08)
+
+
+def _told(history: History, scale: Timescale) -> str:
+    points = history.real
+    least, greatest = points[int(np.argmin(points[:, 1]))], points[int(np.argmax(points[:, 1]))]
+    unit = f" {history.output.unit}".rstrip()
+    return (
+        f"{history.name}: from {least[1]:.4g}{unit} at {scale.told(least[0])} "
+        f"to {greatest[1]:.4g}{unit} at {scale.told(greatest[0])}."
+    )
+
+
+def _ends(spots: list[tuple[float, float, str]]) -> list[tuple[tuple[float, float, str], bool]]:
+    """The least and the greatest of a panel, and whether what they are is written above."""
+    return [(spots[0], False), (spots[-1], True)] if len(spots) > 1 else [(spot, True) for spot in spots]
+
+
+def _beside(x: float, y: float, words: str, above: bool) -> Svg:
+    """Words above or below a spot, inside of the panel."""
+    half = LETTER * len(words) / 2
+    return text(min(max(x, LEFT + half), WIDTH - RIGHT - half), y - 7 if above else y + 16, words, class_="halo")
+
+
+def spot(x: float, y: float) -> Svg:
+    return element("circle", class_="spot", cx=x, cy=y, r=3)

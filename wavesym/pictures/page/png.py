@@ -1,0 +1,61 @@
+"""Cells of colour as a PNG inside the page: 15 shades, half a byte each, not compressed: the same bytes everywhere."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from struct import pack
+from zlib import adler32, crc32
+
+import numpy as np
+
+from wavesym.pictures.histories import Points
+
+SHADES = 15  # 0 is white, in the middle
+_BLOCK = 65535  # bytes, the most that deflate stores in one block
+_NEGATIVE, _WHITE, _POSITIVE = (33, 92, 168), (247, 247, 247), (178, 34, 43)
+_FORMAL = (190, 190, 190)
+
+
+def colours() -> list[tuple[int, int, int]]:
+    """From the least to the greatest, and that of what is no number."""
+    half = SHADES // 2
+    found = []
+    for k in range(-half, half + 1):
+        end, part = (_POSITIVE if k > 0 else _NEGATIVE), abs(k) / half
+        red, green, blue = (round(white + (most - white) * part) for white, most in zip(_WHITE, end, strict=True))
+        found.append((red, green, blue))
+    return [*found, _FORMAL]
+
+
+def shaded(values: Points, limit: float) -> bytes:
+    """Values (rows, columns), the first row at the top, as a PNG; those beyond `limit` have the strongest colours."""
+    half = SHADES // 2
+    shades = np.rint(np.clip(values / limit, -1, 1) * half) + half
+    numbers = np.where(np.isnan(values), SHADES, np.nan_to_num(shades)).astype(np.uint8)
+    if numbers.shape[1] % 2:
+        numbers = np.pad(numbers, ((0, 0), (0, 1)))
+    packed = numbers[:, ::2] << 4 | numbers[:, 1::2]
+    content = b"".join(b"\0" + row.tobytes() for row in packed)
+    header = pack(">IIBBBBB", values.shape[1], values.shape[0], 4, 3, 0, 0, 0)
+    palette = bytes(part for colour in colours() for part in colour)
+    chunks = ((b"IHDR", header), (b"PLTE", palette), (b"IDAT", _stored(content)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(kind, data) for kind, data in chunks)
+
+
+def address(image: bytes) -> str:
+    """A PNG as a page has it inside."""
+    return "data:image/png;base64," + b64encode(image).decode()
+
+
+def _stored(content: bytes) -> bytes:
+    """A stream of deflate that stores its content as it is."""
+    starts = range(0, len(content), _BLOCK)
+    blocks = []
+    for start in starts:
+        part = content[start : start + _BLOCK]
+        blocks.append(pack("<BHH", start + _BLOCK >= len(content), len(part), len(part) ^ 0xFFFF) + part)
+    return b"\x78\x01" + b"".join(blocks) + pack(">I", adler32(content))
+
+
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return pack(">I", len(data)) + kind + data + pack(">I", crc32(kind + data))

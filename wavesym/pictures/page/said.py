@@ -1,0 +1,102 @@
+"""The tables of a page: extremes of all outputs, and which model would have been enough."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from wavesym.documents.advice import WAVES, Advice, Candidate
+from wavesym.documents.summary import number
+from wavesym.errors import WavesymError
+from wavesym.exact.contacts.opening import contact_ends
+from wavesym.mechanics.model import Model
+from wavesym.pictures.timescale import Timescale
+from wavesym.results.summary import OutputSummary, Peak, Summary
+from wavesym.rivals.advice import advise
+
+_TOLERANCE = 0.01  # of the largest value: what an engineer would not see
+_CALLED = {
+    "massless": "masses on springs that weigh nothing",
+    "consistent": "masses on springs with consistent mass",
+    WAVES: "waves",
+}
+
+
+@dataclass(frozen=True)
+class SaidTable:
+    """A table, and what to know of it; no rows where there is only something to say."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    notes: tuple[str, ...]
+
+
+def extremes_told(model: Model, found: Summary | WavesymError, scale: Timescale) -> SaidTable:
+    """Of each output the least and the greatest value, when, and when it first moves; the largest drift; as `summary`
+    writes them, or why they were not found."""
+    if isinstance(found, WavesymError):
+        return SaidTable((), (), (f"Not found: {found}",))
+    when = f"{scale.symbol} in {scale.unit}" if scale.unit else scale.symbol
+    head = ("Output", "Least", f"at {when}", "Greatest", f"at {when}", f"First moves at {when}")
+    rows = (
+        (
+            f"{each.name}, {each.unit}" if each.unit else each.name,
+            *_peak(each.min),
+            *_peak(each.max),
+            "never" if each.arrival is None else number(each.arrival.shown),
+        )
+        for each in found.outputs
+    )
+    short = any(not peak.reached for each in found.outputs for peak in (each.min, each.max))
+    notes = [
+        "After a contact has opened they are those of the formal continuation, as if it stayed closed"
+        * bool(contact_ends(model)),
+        _drift(found.largest_drift, scale),
+        "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
+        f"How: {found.how}; {found.certain}",
+    ]
+    return SaidTable(head, tuple(rows), tuple(filter(None, notes)))
+
+
+def _drift(found: OutputSummary | None, scale: Timescale) -> str:
+    if found is None:
+        return ""
+    value = f"{number(found.largest.value)} {found.unit}".rstrip()
+    when = f"{scale.symbol} = {number(found.largest.at.shown)} {scale.unit}".rstrip()
+    return f"Largest drift of a rod: {found.name}, {value} at {when}"
+
+
+def _peak(peak: Peak) -> tuple[str, str]:
+    return number(peak.value), number(peak.at.shown) + "\u2212" * (not peak.reached)
+
+
+def advice_told(model: Model) -> SaidTable:
+    """Which of three models is enough for each output, over the horizon of the scene."""
+    try:
+        found = advise(model, _TOLERANCE)
+    except WavesymError as error:
+        return SaidTable((), (), (f"Not compared: {error}",))
+    kept = [each for each in found.candidates if not each.refused]
+    notes = [*_verdict(found), *(f"{_CALLED[each.name]}: {each.refused}" for each in found.candidates if each.refused)]
+    if not found.outputs:
+        return SaidTable((), (), tuple(notes))
+    head = ("Output", *(f"{_CALLED[each.name]}, {what}" for each in kept for what in ("history", "peak")))
+    rows = ((name, *_differences(kept, k)) for k, (name, *_) in enumerate(found.outputs))
+    notes.append(
+        f"Each number is the largest difference from waves at {found.instants} instants, in parts of the output's "
+        "largest value: of the history at any time, and of the peak"
+    )
+    return SaidTable(head, tuple(rows), tuple(notes))
+
+
+def _verdict(found: Advice) -> list[str]:
+    if found.enough == WAVES:
+        return [f"Waves are needed: no simpler model stays within {_TOLERANCE:.0%} of them in every output"]
+    return [f"Enough to {_TOLERANCE:.0%} in every output: {_CALLED[found.enough]}"]
+
+
+def _differences(kept: list[Candidate], output: int) -> list[str]:
+    return [
+        f"{value:.1e}" if value < float("inf") else "\u2013"
+        for each in kept
+        for value in (each.differences[output].history, each.differences[output].peak)
+    ]

@@ -1,0 +1,181 @@
+"""Pictures of a sweep: an output over one field that is varied, or as colours over two."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wavesym.pictures.histories import Points
+from wavesym.pictures.page.frame import Frame, PlotAxis, spread
+from wavesym.pictures.page.places import colour_bar
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture, spot
+from wavesym.pictures.page.png import address, shaded
+from wavesym.pictures.page.svg import Svg, element, polyline, text, upright
+from wavesym.pictures.reduction import reduced
+from wavesym.sweeps.results import StoredAxis, SweepResults
+
+_TALL, _MAP = 230.0, 360.0  # pixels high
+_CELLS = 120  # of a map, in each direction; of more the greatest of some is shown
+_COLUMNS = 300  # of a curve
+_NUMBERED = 10
+_LONGEST = 60  # characters of a text in a picture
+
+
+@dataclass(frozen=True)
+class SweepOutput:
+    """An output of all cases: its least and greatest values over all dimensions, NaN where there is none."""
+
+    name: str
+    unit: str
+    least: Points
+    greatest: Points
+
+    @property
+    def title(self) -> str:
+        return f"{self.name} in {self.unit}" if self.unit else f"{self.name} (dimensionless)"
+
+    @property
+    def size(self) -> Points:
+        """The larger of both, without sign."""
+        return np.fmax(np.abs(self.least), np.abs(self.greatest))
+
+
+def outputs_of(found: SweepResults, most: int) -> list[SweepOutput]:
+    """The first outputs; of statistics that were not kept, the other one stands for both."""
+    low, high = ("min" if "min" in found.kept else "max"), ("max" if "max" in found.kept else "min")
+    if low not in found.kept:
+        return []
+    names = list(found.outputs.items())[:most]
+    return [SweepOutput(*each, found.values(low, k), found.values(high, k)) for k, each in enumerate(names)]
+
+
+def axes_of(found: SweepResults) -> list[int]:
+    """The dimensions that pictures have: the first two with more than one value, records last."""
+    free = [k for k, dimension in enumerate(found.dimensions) if len(dimension) > 1]
+    return sorted(sorted(free, key=lambda k: found.dimensions[k].name == "record")[:2])
+
+
+def output_picture(number: str, output: SweepOutput, found: SweepResults) -> Shown | None:
+    """Over what was varied; None where no case is done, or nothing was varied."""
+    own = axes_of(found)
+    if not own or not np.isfinite(output.size).any():
+        return None
+    rest = tuple(k for k in range(len(found.shape)) if k not in own)
+    axes = [found.dimensions[k] for k in own]
+    beyond = [found.dimensions[k].name for k in rest if len(found.dimensions[k]) > 1]
+    if len(axes) == 1:
+        return _curve(number, output, axes[0])
+    return _map(number, output, np.fmax.reduce(output.size, axis=rest), axes, beyond)
+
+
+def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> Shown:
+    """Least and greatest over numbers; over anything else from the case of the largest size to that of the smallest."""
+    least, greatest = output.least.ravel(), output.greatest.ravel()
+    done = np.flatnonzero(np.isfinite(output.size.ravel()))
+    column = axis.columns[0]
+    if ordered := column.numbers and len(axis.columns) == 1:
+        along = np.array(column.coordinate, dtype=float)
+        done, x_title = done[np.argsort(along[done])], f"{axis.name} {f'in {column.unit}' * bool(column.unit)}".rstrip()
+    else:
+        done, x_title = done[np.argsort(-output.size.ravel()[done])], f"{axis.name}, the largest first"
+        along = np.empty(len(axis))
+        along[done] = np.arange(1, len(done) + 1)
+    low, high = spread(min(0.0, float(np.min(least[done]))), max(0.0, float(np.max(greatest[done]))), 0.1)
+    ends = spread(float(along[done].min()), float(along[done].max()), 0.02)
+    x, y = PlotAxis(*ends, LEFT, WIDTH - RIGHT), PlotAxis(low, high, TOP + _TALL, TOP)
+    numbers = None if ordered else [(float(k), str(k)) for k in range(1, len(done) + 1, -(-len(done) // _NUMBERED))]
+    worst = int(np.nanargmax(output.size.ravel()))
+    value = float(greatest[worst] if greatest[worst] >= -least[worst] else least[worst])
+    title = f"{output.name} over {axis.name}"
+    told = f"Largest: {_told(value, output.unit)} where {_where(axis, worst)}."
+    parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).drawn()]
+    for values, class_, sign in ((least, "least", -1.0), (greatest, "greatest", 1.0)):
+        points = np.column_stack([along[done] - x.low, values[done]])
+        if ordered:
+            points = reduced(points, x.high - x.low, _COLUMNS)
+        elif len(done) > _COLUMNS:  # of some the longest
+            starts = np.arange(_COLUMNS) * len(done) // _COLUMNS
+            points = np.column_stack([points[starts, 0], sign * np.maximum.reduceat(sign * points[:, 1], starts)])
+        places = [(x.at(at + x.low), y.at(value)) for at, value in points.tolist()]
+        parts.append(polyline(places, class_) if ordered else upright(places, y.at(0.0), class_))
+    parts += _named(x.at(float(along[worst])), y.at(value), _where(axis, worst), above=value > 0)
+    return Shown(title, picture(number, title, told, TOP + _TALL + BELOW, *parts, class_="plot"))
+
+
+def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis], beyond: list[str]) -> Shown:
+    """The size as colours, the first dimension to the right, the second upward, each value as wide as the next."""
+    across, upward = axes
+    low, high = float(np.nanmin(size)), float(np.nanmax(size))
+    middle, half = (low + high) / 2, (high - low) / 2 or 1.0
+    x, y = (
+        PlotAxis(0.5, len(across) + 0.5, LEFT, WIDTH - RIGHT),
+        PlotAxis(0.5, len(upward) + 0.5, TOP + _MAP, TOP),
+    )
+    image = element(
+        "image",
+        href=address(shaded(_fewer(size).T[::-1] - middle, half)),
+        x=x.start,
+        y=y.end,
+        width=x.end - x.start,
+        height=y.start - y.end,
+        preserveAspectRatio="none",
+        class_="cells",
+    )
+    worst = np.unravel_index(int(np.nanargmax(size)), size.shape)
+    where = ", ".join(_where(axis, int(k)) for axis, k in zip(axes, worst, strict=True))
+    frame = Frame(x, y, _axis_title(across), _axis_title(upward), _places(upward), _places(across))
+    name = f"size of {output.title}" + f", the greatest over {' and '.join(beyond)}" * bool(beyond)
+    bar = colour_bar(name, (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW)
+    title = f"{output.name} over {across.name} and {upward.name}"
+    ends = f"from {_told(low, output.unit)} to {_told(high, output.unit)}"
+    told = f"Colours show the size, {ends}, the largest where {where}."
+    marks = _named(x.at(float(worst[0] + 1)), y.at(float(worst[1] + 1)), where, above=y.at(worst[1] + 1.0) > TOP + 30)
+    return Shown(
+        title, picture(number, title, told, TOP + _MAP + BELOW + 34, frame.drawn(), image, *marks, bar, class_="plot")
+    )
+
+
+def _fewer(values: Points) -> Points:
+    """As many cells as one sees, each the greatest of those that it stands for."""
+    for axis, n in enumerate(values.shape):
+        starts = np.unique(np.arange(_CELLS) * n // _CELLS)
+        values = np.fmax.reduceat(values, starts, axis=axis)
+    return values
+
+
+def _places(axis: StoredAxis) -> list[tuple[float, str]]:
+    """What is written along a dimension of a map: numbers, or of anything else its number in the list."""
+    column = axis.columns[0]
+    numbers = column.numbers and len(axis.columns) == 1
+    step = -(-len(axis) // _NUMBERED)
+    return [(k + 1.0, f"{column.coordinate[k]:.4g}" if numbers else str(k + 1)) for k in range(0, len(axis), step)]
+
+
+def _axis_title(axis: StoredAxis) -> str:
+    column = axis.columns[0]
+    if column.numbers and len(axis.columns) == 1:
+        return f"{axis.name} in {column.unit}" if column.unit else axis.name
+    return f"{axis.name}, by its number in the list"
+
+
+def _where(axis: StoredAxis, k: int) -> str:
+    return ", ".join(f"{column.path} = {column.told(k)}" for column in axis.columns)
+
+
+def _told(value: float, unit: str) -> str:
+    return f"{value:.5g} {unit}".rstrip()
+
+
+def _named(x: float, y: float, words: str, *, above: bool) -> list[Svg]:
+    """A spot and what it is, written towards the middle."""
+    right = x < (LEFT + WIDTH - RIGHT) / 2
+    short = _short(words)
+    said = text(x + (8 if right else -8), y + (-7 if above else 15), short, "start" if right else "end", class_="halo")
+    return [spot(x, y), said]
+
+
+def _short(words: str) -> str:
+    """A text without its middle, where it is too long for a picture."""
+    half = _LONGEST // 2
+    return words if len(words) <= _LONGEST else f"{words[:half]}\u2026{words[-half:]}"

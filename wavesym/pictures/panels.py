@@ -1,0 +1,222 @@
+"""Histories drawn: a panel for each quantity over a shared tau, every curve named where it runs, jumps as jumps.
+
+Dashes tell curves apart without their colour, and the colours differ in how dark they are. Panels have room for eight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from textwrap import wrap
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
+
+from wavesym.numbers.doubles import nearest
+from wavesym.pictures.groups import PlotPanel, load_panel, notes, panels, restless
+from wavesym.pictures.histories import Histories, History, Points
+from wavesym.pictures.labels import Curve, label
+from wavesym.pictures.reduction import reduced
+from wavesym.pictures.timescale import Timescale, timescale
+
+FONT = 8.5
+CHARACTERS = 180  # in a line of text across the figure
+_WIDTH, _LEFT, _RIGHT, _GAP = 11.0, 0.95, 0.15, 0.2  # inches
+_TITLE = 0.6  # of an axis, to its left
+_LINE = 0.175  # height of a line of text
+_AXIS = 0.5  # below the last panel
+_BEYOND = 1.01  # what happens at the end of the horizon is not hidden by the frame
+_Dashes = str | tuple[int, tuple[int, ...]]
+_STYLES: tuple[tuple[_Dashes, str], ...] = (
+    ("-", "black"),
+    ("--", "#1f4e9c"),
+    ("-", "#d0692b"),
+    ("-.", "#4d4d4d"),
+    (":", "black"),
+    ((0, (6, 2, 1, 2, 1, 2)), "#4a78ad"),
+    ((0, (9, 3)), "#9a6420"),
+    ((0, (3, 1)), "#777777"),
+)
+_ALPHA = {False: 1.0, True: 0.55}  # of what is formal
+_VERTICES, _ANCHORS = 18, 8  # of a curve, as labels see it; of those, places where its name may hang
+_NEAR = 0.03  # curves this near to each other, in heights of a panel, are not told apart by a label
+_COLUMNS = 2000  # of a panel
+_HALO = [withStroke(linewidth=2, foreground="white")]
+_LOAD = 1.2  # inches
+
+
+@dataclass(frozen=True)
+class Instant:
+    """A tau that is marked in all panels, and what happens then."""
+
+    tau: float
+    text: str
+    dashes: str = ":"
+
+
+def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
+    """The outputs of a scene under its loads; the same bytes from the same scene where `saving.save` writes it."""
+    model = histories.model
+    until, scale = nearest(model.until), timescale(model)
+    title = [f"{model.name}: {model.labels.system['type']}, {model.labels.size}, {scale.symbol} to {scale.of(until)}"]
+    title += [line for note in notes(histories) for line in wrap(note, CHARACTERS)]
+    opened = [
+        Instant(end.double, f"contact at x = {end.x} opens, {scale.told(end.double)}") for end in histories.contacts
+    ]
+    if opened:
+        title.append("thin and light: the formal continuation, as if the opened contact stayed closed")
+    acting = [load_panel(loads[: len(_STYLES)], _LOAD)] if loads else []
+    return stacked([*acting, *panels(histories)], until, title, instants=opened, scale=scale)
+
+
+def stacked(
+    panels: Sequence[PlotPanel],
+    until: float,
+    title: Sequence[str],
+    below: Sequence[str] = (),
+    instants: Sequence[Instant] = (),
+    scale: Timescale = Timescale(),  # noqa: B008  (frozen)
+) -> Figure:
+    """Panels one under the other, lines of text above and below them; all in tau, drawn in the time of `scale`."""
+    panels, until = [_clocked(panel, scale) for panel in panels], until * scale.per_tau
+    instants = [replace(instant, tau=instant.tau * scale.per_tau) for instant in instants]
+    gaps = [0.0 if panel.goes_on(before) else _GAP for before, panel in pairwise(panels)]
+    gaps = [_GAP, *gaps]
+    above, under = (len(title) + 0.9) * _LINE - _GAP, _AXIS + (len(below) + 0.6) * _LINE * bool(below)
+    height = above + sum(gaps) + sum(panel.height for panel in panels) + under
+    with mpl.rc_context({"font.size": FONT, "font.family": "DejaVu Sans"}):
+        figure = Figure(figsize=(_WIDTH, height), dpi=100)
+        FigureCanvasAgg(figure)
+        for k, line in enumerate(title):
+            y = 1 - (k + 0.4) * _LINE / height
+            figure.text(0.1 / _WIDTH, y, line, va="top", weight="bold" if k == 0 else "normal")
+        for k, line in enumerate(reversed(below)):
+            figure.text(0.1 / _WIDTH, (k + 0.6) * _LINE / height, line, va="baseline")
+        top = height - above
+        for k, (panel, gap) in enumerate(zip(panels, gaps, strict=True)):
+            top -= gap + panel.height
+            width = 1 - (_LEFT + _RIGHT) / _WIDTH
+            axes = figure.add_axes((_LEFT / _WIDTH, top / height, width, panel.height / height))
+            axes.set_xlim(0, _BEYOND * until)
+            axes.yaxis.set_label_coords(-_TITLE / _WIDTH / width, 0.5)
+            axes.tick_params(labelbottom=k == len(panels) - 1)
+            _fill(axes, panel, instants)
+        axes.set_xlabel(scale.title)
+    return figure
+
+
+def _clocked(panel: PlotPanel, scale: Timescale) -> PlotPanel:
+    """A panel in the time of `scale`."""
+    if not scale.unit:
+        return panel
+    factor = np.array((scale.per_tau, 1.0))
+    return replace(
+        panel,
+        histories=tuple(
+            replace(each, stretches=tuple(part * factor for part in each.stretches), formal=each.formal * factor[0])
+            for each in panel.histories
+        ),
+        marks=tuple(replace(mark, points=mark.points * factor) for mark in panel.marks),
+    )
+
+
+def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
+    axes.set_ylabel(panel.title)
+    axes.set_axisbelow(True)
+    axes.grid(True, color="0.92", linewidth=0.5)
+    axes.ticklabel_format(axis="y", scilimits=(-2, 5))
+    axes.axhline(0, color="0.7", linewidth=0.6, zorder=1)
+    for history, (dashes, color) in zip(panel.histories, _STYLES, strict=False):
+        _curve(axes, history, dashes, color)
+    axes.margins(x=0, y=0.14)
+    axes.autoscale_view(scalex=False)
+    for instant in instants:
+        axes.axvline(instant.tau, color="black", linestyle=instant.dashes, linewidth=0.9, zorder=1)
+    for mark in panel.marks:
+        upright = mark.points[0, 0] == mark.points[-1, 0]
+        axes.plot(*mark.points.T, "-o" if upright else ":o", color="black", markersize=3, linewidth=0.9, zorder=4)
+    if panel.limits:
+        _strip(axes, panel)
+        return
+    names = _named(axes, panel, instants)
+    if names:
+        label(axes, names, FONT)
+    for text in axes.texts:  # legible even where curves leave no room
+        text.set(zorder=5, path_effects=_HALO)
+
+
+def _strip(axes: Axes, panel: PlotPanel) -> None:
+    """A strip with the axis of its like, and what there is to say of it in the room above its curve."""
+    assert panel.limits is not None  # of a strip
+    low, high = panel.limits
+    size = high - low
+    axes.set_ylim(low - 0.1 * size, high + 0.5 * size)
+    inside = (low - 0.1 * size, high + 0.1 * size)  # above are the words, and another strip
+    axes.set_yticks([tick for tick in MaxNLocator(3).tick_values(low, high) if inside[0] <= tick <= inside[1]])
+    axes.yaxis.set_major_formatter("{x:g}")  # no room for a power of ten beside it
+    axes.text(0.004, 0.95, panel.told, transform=axes.transAxes, va="top", path_effects=_HALO)
+
+
+def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Curve]:
+    """What is to be labelled: curves, where they run apart from the others; marks; instants."""
+    low, high = axes.get_ylim()
+    curves = []
+    for history, (_, color) in zip(panel.histories, _STYLES, strict=False):
+        others = [other.points for other in panel.histories if other is not history]
+        shape = thinned(history.points, _VERTICES)
+        places = apart(shape, others, _NEAR * (high - low))
+        if len(places) == len(shape):
+            curves.append(Curve(history.name, shape, color, "bold"))
+        else:  # no name can hang on the rest of the curve, yet none may cover it
+            curves.append(Curve(history.name, thinned(places, _ANCHORS), color, "bold"))
+            curves.append(Curve("", shape, "none", "normal"))
+    curves += [Curve(mark.text, mark.points, "black", mark.weight) for mark in panel.marks]
+    for instant in instants:
+        upright = np.column_stack([np.full(9, instant.tau), np.linspace(low, high, 9)])
+        curves.append(Curve(instant.text, upright, "black", "normal"))
+    return curves
+
+
+def _curve(axes: Axes, history: History, dashes: _Dashes, color: str) -> None:
+    """A curve between its fronts, thin upright lines where it jumps; thin and light where it is formal."""
+    until, thick = float(history.points[-1, 0]), 0.9 if restless(history) else 1.4
+    for stretch in (reduced(each, until, _COLUMNS) for each in history.stretches):
+        tau = stretch[:, 0]
+        for formal, width in ((False, thick), (True, 0.7)):
+            part = stretch[tau >= history.formal if formal else tau <= history.formal]
+            if len(part):
+                axes.plot(*part.T, color=color, linestyle=dashes, linewidth=width, alpha=_ALPHA[formal])
+    for (_, before), (tau, after) in jumps(history):
+        alpha = _ALPHA[tau > history.formal]
+        axes.plot([tau, tau], [before, after], color=color, linewidth=0.7, alpha=alpha, zorder=1.5)
+
+
+def jumps(history: History) -> list[tuple[Points, Points]]:
+    """The two ends (tau, value) of each jump."""
+    return [(before[-1], after[0]) for before, after in pairwise(history.stretches)]
+
+
+def thinned(points: Points, count: int) -> Points:
+    """The vertices of a polyline, `count` at most, that keep its shape: always the one farthest from those so far."""
+    kept = [0, len(points) - 1]
+    places = np.arange(len(points))
+    while len(kept) < min(count, len(points)):
+        missed = np.abs(points[:, 1] - np.interp(places, sorted(kept), points[sorted(kept), 1]))
+        worst = int(np.argmax(missed))
+        if missed[worst] == 0:
+            break
+        kept.append(worst)
+    return points[sorted(set(kept))]
+
+
+def apart(places: Points, others: Sequence[Points], near: float) -> Points:
+    """Those vertices of a curve that are not near another curve; all where there are hardly any."""
+    distances = [np.abs(places[:, 1] - np.interp(places[:, 0], *other.T)) for other in others]
+    alone = places[np.min(distances, axis=0) > near] if distances else places
+    return alone if len(alone) > 2 else places

@@ -1,0 +1,39 @@
+"""The pictures of a scene, by their kind."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from wavesym.mechanics.model import Model
+from wavesym.pictures import envelope, heatmap, panels, xt
+from wavesym.pictures.along import along
+from wavesym.pictures.groups import notes
+from wavesym.pictures.histories import histories
+from wavesym.pictures.loads import load_histories
+from wavesym.scene import Scene
+
+KINDS = ("history", "xt", "envelope", "map")
+
+
+def draw(scene: Scene, model: Model, kind: str) -> tuple[Figure, list[str]]:
+    """A picture of a scene.
+
+    Args:
+        scene: what is drawn.
+        model: the same, lowered.
+        kind: "history", "xt", "envelope" or "map".
+
+    Returns:
+        The picture, and what it leaves out, line by line.
+
+    Raises:
+        ToleranceError, CostError: where nothing could be generated either.
+    """
+    if kind == "xt":
+        return xt.draw(model, scene.system.lines, scene.physical), []
+    if kind == "envelope":
+        return envelope.draw(model, along(scene)), []
+    if kind == "map":
+        return heatmap.draw(model, along(scene), load_histories(model, scene.scale)), []
+    made = histories(model)
+    return panels.draw(made, load_histories(model, scene.scale)), notes(made)

@@ -1,0 +1,129 @@
+"""What stands between the rods of a place x time picture: masses, ends, springs, and contacts while they are open.
+
+All of it has a width in points. At an end of the chain it stands outside of the rod, but for a contact with the rod,
+which lies over it as everything does elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from matplotlib.axes import Axes
+from matplotlib.transforms import ScaledTranslation
+
+from wavesym.mechanics.network import Link, Network, Point
+from wavesym.pictures.stations import Opened, standing
+from wavesym.systems.station import Lines, Station
+
+_MASS, _LINK, _CONTACT, _THIN = 4.0, 2.5, 5.0, 0.6  # points
+_MOVED, _HELD = "0.55", "gold"
+_FONT, _LETTER, _ROW = 8, 0.62, 10  # points; of the font's size; points
+
+
+def legend(network: Network, lines: Lines) -> str:
+    """What the lines between rods are, as far as they occur."""
+    items = [item.what for stations in lines.values() for station in stations for item in _items(network, station)]
+    points = [item for item in items if isinstance(item, Point)]
+    links = [item for item in items if isinstance(item, Link)]
+    said = {
+        "thick black: a mass": any(point.mass for point in points),
+        "thick grey: fixed, or moved as told": any(point.motion for point in points),
+        "yellow: a spring or dashpot": any(not link.contact for link in links),
+        "white between two lines: an open contact": any(link.contact for link in links),
+    }
+    return "; ".join(words for words, occurs in said.items() if occurs)
+
+
+def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], opened: Opened, until: float) -> None:
+    """The stations of a line, and the names of their points above them."""
+    rows: list[float] = []
+    for station in stations:
+        items = list(_items(network, station))
+        width = sum(item.width for item in items)
+        at = -width / 2
+        if station.left is None:
+            at = -_outside(items)
+            axes.spines["left"].set_position(("outward", -at))
+        elif station.right is None:
+            at = _outside(items[::-1]) - width
+        for item in items:
+            _draw_item(_Pen(axes, float(station.x), at + item.width / 2), item, opened, until)
+            at += item.width
+        if names := ", ".join(filter(None, (network.points[point].name for point in station.points))):
+            _write(axes, float(station.x), names, rows)
+    axes.spines[["left", "right"]].set_visible(False)
+
+
+@dataclass(frozen=True)
+class _Item:
+    """A point or link of a station, with its width."""
+
+    what: Point | Link
+    width: float
+
+
+def _items(network: Network, station: Station) -> Iterator[_Item]:
+    """From left to right; what has no mass and stands beside a link has no line of its own."""
+    for what in standing(network, station):
+        if isinstance(what, Link):
+            yield _Item(what, _CONTACT if what.contact else _LINK)
+        else:
+            yield _Item(what, _MASS if what.mass or what.motion else _THIN)
+
+
+def _outside(items: Sequence[_Item]) -> float:
+    """The width of what does not lie over the rod, the last of them beside it."""
+    beside = items[-1]
+    touching = isinstance(beside.what, Link) and beside.what.contact
+    return sum(item.width for item in items[: -1 if touching else None])
+
+
+@dataclass(frozen=True)
+class _Pen:
+    """Draws upright lines at a place, so many points beside it."""
+
+    axes: Axes
+    x: float
+    beside: float
+
+    def line(self, low: float, high: float, width: float, colour: str = "black", farther: float = 0.0) -> None:
+        """`farther` is how many points more."""
+        beside = ScaledTranslation((self.beside + farther) / 72, 0, self.axes.figure.dpi_scale_trans)
+        self.axes.plot(
+            [self.x, self.x],
+            [low, high],
+            color=colour,
+            linewidth=width,
+            solid_capstyle="butt",
+            clip_on=False,
+            transform=self.axes.transData + beside,
+        )
+
+
+def _draw_item(pen: _Pen, item: _Item, opened: Opened, until: float) -> None:
+    if isinstance(item.what, Point):
+        pen.line(0, until, item.width, _MOVED if item.what.motion else "black")
+        return
+    if not item.what.contact:
+        pen.line(0, until, item.width, _HELD)
+        return
+    pen.line(0, until, _THIN)
+    for low, high in opened[item.what.place]:
+        pen.line(low, high, item.width, "white")
+        for side in (-1, 1):
+            pen.line(low, high, _THIN, farther=side * item.width / 2)
+
+
+def _write(axes: Axes, x: float, name: str, rows: list[float]) -> None:
+    """A name above its place, in the lowest row where it does not lie over another; `rows` end so far to the right."""
+    left, right = axes.get_xlim()
+    points = axes.get_window_extent().width / axes.figure.dpi * 72
+    middle, width = points * (x - left) / (right - left), _LETTER * _FONT * len(name)
+    align = {left: "left", right: "right"}.get(x, "center")
+    begin = {"left": middle, "right": middle - width, "center": middle - width / 2}[align]
+    row = next((k for k, end in enumerate(rows) if end < begin), len(rows))
+    rows[row : row + 1] = [begin + width]
+    axes.annotate(
+        name, (x, 1), (0, 3 + _ROW * row), ("data", "axes fraction"), "offset points", ha=align, fontsize=_FONT
+    )
