@@ -20,7 +20,7 @@ CompilerError or RangeError.
     >>> scene
     Scene('building_m2', building, 2 storeys, load of 3 changes, until tau = 12)
     >>> result = scene.run()
-    >>> result["velocity@2"].shape
+    >>> result["velocity@1.5"].shape
     (1001,)
 """
 
