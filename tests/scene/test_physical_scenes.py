@@ -323,7 +323,7 @@ def test_others_of_unequal_rods_are_still_what_they_are(name: str) -> None:
     scene = Scene(**changed(ALL[name], path, "0.9 m"))
     assert (named_chain(scene), lower(scene).labels.system["type"]) == (None, name)
     with pytest.raises(UnservedError, match=f"system.type: {name} of rods that differ, which is a chain, given"):
-        compiler.walks(scene, None, 2)
+        api.walks(scene, None, 2)
     with pytest.raises(SceneError, match=r"output.relative\[0\]: 1 given, a building or a chain expected"):
         scene.with_({"output.relative": [1]})
 

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from tests.support.builds import LANGUAGES, STRICT
-from wavesym import compiler as ways
+from wavesym import api as ways
 from wavesym import evaluator
 from wavesym.programs.request import PARTS, POSITIVE
 from wavesym.running.toolchain import compiler
