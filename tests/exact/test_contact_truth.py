@@ -91,6 +91,37 @@ def test_a_cushion_without_mass_lifts_off_as_it_should(where: str) -> None:
     assert any(event.kind == "opens" for event in events(lower(Scene(**table))))
 
 
+def beside_a_light_mass(until: str, where: str = "2.8", **mass: Any) -> dict[str, Any]:
+    """A rod, a mass that dies away at a rate of 520, a rod and a body that strikes another rod."""
+    parts = [
+        {"rod": 1, "impedance": "1/5", "velocity": 1},
+        {"mass": "1/100", "velocity": 1, **mass},
+        {"rod": 1, "impedance": 5, "velocity": 1},
+        {"mass": 1, "velocity": 1},
+        "contact",
+        {"rod": 1, "impedance": 5},
+        "fixed",
+    ]
+    output = {"until": until, "strain": [where]}
+    return {"name": "light", "system": {"type": "chain", "parts": parts}, "output": output}
+
+
+def test_what_a_light_mass_sends_later_than_it_matters_hides_no_contact() -> None:
+    """Up to the horizon its last series would have to bear exp(520); a shorter horizon asks for less."""
+    (soon,) = events(lower(Scene(**beside_a_light_mass("4.9"))))
+    (found,) = events(lower(Scene(**beside_a_light_mass("10.9"))))
+    assert (found.kind, found.digits) == (soon.kind, soon.digits) == ("opens", "4.1324723797398596237")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("where", ["0.3", "2.2", "2.8"])
+@pytest.mark.parametrize("mass", [{}, {"spring": 4}, {"mass": "1/300"}, {"mass": "1/30", "dashpot": "1/10"}])
+@pytest.mark.parametrize("until", ["10.9", "4.9325", "4.1325", "7.3"])
+def test_any_light_mass_near_a_contact_is_served(until: str, where: str, mass: dict[str, Any]) -> None:
+    """Also just after the contact opened, at 4.1324..., and when that is seen."""
+    assert wrong(beside_a_light_mass(until, where, **mass)) == []
+
+
 def judged(table: Mapping[str, Any]) -> list[str]:
     """The same, where it can be decided and costs little."""
     try:

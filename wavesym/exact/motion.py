@@ -127,16 +127,17 @@ class Motion:
 
     @cached_property
     def size(self) -> arb:
-        """The largest wave, at most, as a velocity."""
+        """A lower bound of the largest wave, as a velocity: from the starts and ends of the stretches of joints."""
+        joints, joint_of = self._knots.joints, self._network.joint_of
         with ctx.workprec(self.first_bits):
             return max(
                 (
-                    abs(known.polynomial(arb(0).union(arb(end - start)))).upper()
-                    for wave in self.waves(self.first_bits).sent.values()
-                    for start, end, known in zip(
-                        wave.starts, [*wave.starts[1:], self.until], wave.stretches, strict=True
-                    )
-                    if start < end
+                    abs(known.at(w)).lower()
+                    for end, wave in self.waves(self.first_bits).sent.items()
+                    if (times := joints.get(joint_of[self._network.point_at(end)]))
+                    for known, (start, stop) in zip(wave.stretches, pairwise([*wave.starts, times[-1]]), strict=True)
+                    if start < stop
+                    for w in (fmpq(0), stop - start)
                 ),
                 default=arb(0),
             )

@@ -227,9 +227,9 @@ class _Search:
         # the first stretch on which it is left open what a contact does
         self._least = min(bar.delay for bar in network.bars) / fmpq(2) ** (ctx.prec - _SPARE)
         self._resolution = self._least / 4
-        # what nothing is asked of is not moved on, so that what comes from there goes on as no spring swings
-        springs = [joint.law.longest for joint in self._waves.joints.values() if joint.law.longest is not None]
-        self._beyond = min([bar.delay for bar in network.bars] + springs)
+        # a joint is not moved after its last instant: its last series has to bear what neighbours read of it later
+        rates = [joint.law.fastest for joint in self._waves.joints.values()]
+        self._beyond = min([bar.delay for bar in network.bars] + [_SWING / rate for rate in rates if rate != 0])
         self._courses = {number: self._course(number, until, loads) for number, until in last.items()}
         self._refuse_many_moves()
 
