@@ -1,4 +1,4 @@
-"""What all tests share: `--run-slow`, `--processor`, and where Hypothesis keeps quiet about slow machines."""
+"""What all tests share: `--run-slow`, `--processor`, and how much Hypothesis draws."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Generator
 
 import pytest
-from hypothesis import Phase, settings
+from hypothesis import Phase, is_hypothesis_test, settings
 
 settings.register_profile("wavesym", deadline=None, derandomize=True)
 # where only the first failure is of interest, not the simplest
@@ -31,6 +31,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if "slow" in item.keywords:
             item.add_marker(pytest.mark.skip(reason="slow: run with --run-slow"))
+    for test in {item.obj for item in items if isinstance(item, pytest.Function) and is_hypothesis_test(item.obj)}:
+        # Hypothesis has no other way to change the settings of a test that has its own
+        every = test._hypothesis_internal_use_settings
+        test._hypothesis_internal_use_settings = settings(every, max_examples=quick_examples(every.max_examples))
+
+
+def quick_examples(every: int) -> int:
+    """How many examples are drawn without --run-slow: a third, but as many as 4 where there are so many."""
+    return max(min(every, 4), every // 3)
 
 
 class ProcessorSeconds:

@@ -157,8 +157,8 @@ FEW = {
 }
 
 
-@pytest.mark.parametrize("states", [*FEW, *SCENES])
-@pytest.mark.parametrize("level", ["-O0", "-O1", "-O2", "-O3", "-Os"])
+@pytest.mark.parametrize("states", [*FEW, *(pytest.param(name, marks=pytest.mark.slow) for name in SCENES)])
+@pytest.mark.parametrize("level", first_always(["-O3", "-O2", "-O1", "-O0", "-Os"]))
 def test_few_states_are_no_warning(level: str, states: str, tmp_path: Path) -> None:
     if states in FEW:
         load = [{"at": "body", "times": [0, "1/3"], "steps": [1, 2]}] if states != "none" else []
