@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -44,15 +45,17 @@ def imported(source: str) -> Iterator[str]:
                 yield module
 
 
-def uses() -> Iterator[tuple[str, str, str]]:
+@cache
+def uses() -> list[tuple[str, str, str]]:
     """Each import in the package: its file, its room, and the module."""
-    for path in sorted(PACKAGE.rglob("*.py")):
-        file = path.relative_to(PACKAGE)
-        for module in imported(path.read_text(encoding="utf-8")):
-            yield file.as_posix(), file.parts[0].removesuffix(".py"), module
+    return [
+        (path.relative_to(PACKAGE).as_posix(), path.relative_to(PACKAGE).parts[0].removesuffix(".py"), module)
+        for path in sorted(PACKAGE.rglob("*.py"))
+        for module in imported(path.read_text(encoding="utf-8"))
+    ]
 
 
-def against(order: Mapping[str, int], found: Iterator[tuple[str, str, str]]) -> set[tuple[str, str]]:
+def against(order: Mapping[str, int], found: Iterable[tuple[str, str, str]]) -> set[tuple[str, str]]:
     """The rooms that import from one that is not above them in the order, each with that one."""
     arrows = {(room, module.split(".")[1]) for _, room, module in found if module.startswith("wavesym.")}
     return {
@@ -62,7 +65,7 @@ def against(order: Mapping[str, int], found: Iterator[tuple[str, str, str]]) -> 
     }
 
 
-def within_exact(found: Iterator[tuple[str, str, str]]) -> Iterator[tuple[str, str, str]]:
+def within_exact(found: Iterable[tuple[str, str, str]]) -> Iterator[tuple[str, str, str]]:
     """The imports inside of `exact`, told as if its rooms were those of the house."""
     for file, _, module in found:
         if file.startswith("exact/") and module.startswith("wavesym.exact."):
@@ -70,7 +73,7 @@ def within_exact(found: Iterator[tuple[str, str, str]]) -> Iterator[tuple[str, s
             yield file, room, f"wavesym.{other}"
 
 
-def beyond(walls: Mapping[str, set[str]], found: Iterator[tuple[str, str, str]]) -> set[tuple[str, str]]:
+def beyond(walls: Mapping[str, set[str]], found: Iterable[tuple[str, str, str]]) -> set[tuple[str, str]]:
     """The files that import a library in a room where it does not belong, each with the library."""
     return {
         (file, library)

@@ -36,9 +36,12 @@ def _generated(scene, runtime, precision, parts, kappa_max):
 
 
 class BuiltModel:
-    """One model; parameters are given one after the other, in the order of the struct."""
+    """One model; parameters are given one after the other, in the order of the struct.
 
-    def __init__(self, scene, runtime, folder, changes=(), flags=("-O1",), kappa_max=100):
+    It is not optimised: that would take three times as long as all that tests ask of it.
+    """
+
+    def __init__(self, scene, runtime, folder, changes=(), flags=("-O0",), kappa_max=100):
         # batches are compiled where they are tested: half a second each time
         written(scene, runtime, folder, changes, parts=["gradients", "bound"], kappa_max=kappa_max)
         name = scene.name

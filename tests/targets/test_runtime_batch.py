@@ -58,7 +58,7 @@ int many(const NAME_parameters *p, size_t sets, int *status, double *estimate, d
 class Batch:
     """Sets of parameters, each as a batch and as its own model has it: status, estimate and values of both."""
 
-    def __init__(self, scene, runtime, folder, flags=("-O1",), precision="double", changes=(), of_caller=None):
+    def __init__(self, scene, runtime, folder, flags=("-O0",), precision="double", changes=(), of_caller=None):
         """Who calls is compiled with `flags`, too, or with its own."""
         name = scene.name
         flags = [flag.replace("NAME", name.upper()) for flag in flags]

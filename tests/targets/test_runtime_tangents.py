@@ -102,7 +102,7 @@ COARSE = ("real share = ", "real share = 1e-3; static const real fine_share = ")
 def test_errors_of_derivatives_are_in_their_estimates(changes, tmp_path):
     given = {"kappa": ["7/4", "1/2"]}
     scene = DRIVE.with_({"output.until": 4})
-    made = BuiltModel(scene, ["kappa"], tmp_path, changes, flags=("-O1", "-Wno-unused-const-variable"))
+    made = BuiltModel(scene, ["kappa"], tmp_path, changes, flags=("-O0", "-Wno-unused-const-variable"))
     assert max(beyond_estimates(made, scene, given, [1, 2] if changes else [1])) < 1
     assert made.tangent_estimate(1) > 1e-6 if changes else made.tangent_estimate(1) < 1e-9
     assert np.isnan([made.tangent_estimate(lane) for lane in (-1, 3)]).all()
@@ -114,7 +114,7 @@ def test_errors_of_derivatives_are_in_their_estimates(changes, tmp_path):
 def test_an_estimate_without_what_is_missed_is_seen(tmp_path):
     given, scene = {"kappa": ["7/4", "1/2"]}, DRIVE.with_({"output.until": 4})
     changes = [COARSE, ("return 6 * missed + ", "return 0 * missed + ")]
-    made = BuiltModel(scene, ["kappa"], tmp_path, changes, flags=("-O1", "-Wno-unused-const-variable"))
+    made = BuiltModel(scene, ["kappa"], tmp_path, changes, flags=("-O0", "-Wno-unused-const-variable"))
     assert max(beyond_estimates(made, scene, given, [1, 2])) > 1000
 
 
