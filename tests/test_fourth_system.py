@@ -21,9 +21,9 @@ from wavesym.numbers.doubles import rational
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene, lower
 from wavesym.systems import SYSTEMS
-from wavesym.verification.characteristics import integrate
-from wavesym.verification.graph import graph
+from wavesym.verification.collocation import integrate
 from wavesym.verification.independent import READERS, Sketch
+from wavesym.verification.problem import problem_of
 
 FIELDS = {
     "name": "tower",
@@ -70,7 +70,7 @@ def test_its_programs_are_those_of_an_integrator_that_is_not_derived(kind):
     made = files(model, "all", kind)
     taus = [0.0, 0.3, 1.1, 2.0, 2.6, 3.7, 5.2, 6.9, 7.0]
     found = imported(made["tower.py"], "tower").evaluate(np.array(taus))
-    motion = integrate(graph(model), 7.0, 128)
+    motion = integrate(problem_of(model), 7.0, 16)
     for probe, values in zip(model.probes, found, strict=True):
         truth = motion.at(probe, taus)
         assert np.max(np.abs(values - truth)) < 1e-6 * np.max(np.abs(truth))
@@ -82,7 +82,7 @@ def test_without_its_dashpot_the_integrator_sees_it():
     model = lower(scene())
     free = lower(scene().with_({"system.dashpot[0]": "1e-9"}))
     values = [wavesym.evaluator(each)(6.9)[2] for each in (scene(), scene().with_({"system.dashpot[0]": "1e-9"}))]
-    truth = [integrate(graph(each), 7.0, 64).at(each.probes[2], [6.9])[0] for each in (model, free)]
+    truth = [integrate(problem_of(each), 7.0, 16).at(each.probes[2], [6.9])[0] for each in (model, free)]
     assert abs(values[0] - values[1]) > 0.05
     assert np.allclose(values, truth, rtol=1e-5)
 

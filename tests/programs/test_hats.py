@@ -33,9 +33,9 @@ from wavesym.programs.march.plan import readable
 from wavesym.programs.schemes.hats import ShiftedHats
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.verification.characteristics import integrate
-from wavesym.verification.graph import graph
+from wavesym.verification.collocation import integrate
 from wavesym.verification.observed import observed
+from wavesym.verification.problem import problem_of
 
 HALF_ULP = 2.0**-53
 PARTS = [{"mass": 2, "name": "a"}, {"rod": 1}, {"mass": 1, "name": "b"}, {"rod": "3/2", "impedance": 2}, "absorbing"]
@@ -390,7 +390,7 @@ DAMPERS = [
 
 
 @pytest.mark.slow
-def test_dampers_between_floors_under_el_centro_are_what_integration_along_characteristics_says() -> None:
+def test_dampers_between_floors_under_el_centro_are_what_collocation_says() -> None:
     """It starts from the wave equation and cuts its windows at every sample."""
     samples = [fraction(value) for value in el_centro()[:60]]
     load = {"at": "ground", "spacing": "0.37", "samples": samples}
@@ -401,7 +401,7 @@ def test_dampers_between_floors_under_el_centro_are_what_integration_along_chara
     taus = np.random.default_rng(2).uniform(0, 22, 60)
     values = found.scheme.evaluate(taus)
     views = observed(model)
-    motions = [integrate(graph(model), 22.0, steps) for steps in (60, 120)]
+    motions = [integrate(problem_of(model), 22.0, points) for points in (8, 16)]
     coarse, fine = (
         np.array([view.values(lambda probe, motion=motion: motion.at(probe, taus), taus) for view in views])
         for motion in motions

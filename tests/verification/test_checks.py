@@ -28,12 +28,11 @@ from wavesym.rendering import text_of
 from wavesym.scene import Scene, lower
 from wavesym.targets import files as written
 from wavesym.targets.c import kernel
-from wavesym.verification import checks, peaks, programs
+from wavesym.verification import checks, integrations, programs
 from wavesym.verification.independent import independent_model
 from wavesym.verification.node_law import differences
 from wavesym.verification.programs import compare_programs
 from wavesym.verification.reference import known
-from wavesym.verification.substitution import jumps, residuals
 
 DRIVE = Scene(
     name="small",
@@ -96,7 +95,7 @@ def test_beyond_that_an_integration_looks(monkeypatch):
     monkeypatch.setattr(reference, "_SHORTEST", fmpq(1))
     scene = DRIVE.with_({"output.until": 40, "output.tolerance": "1e-6"})
     truth = known(lower(scene), independent_model(scene, lower(scene)))
-    integrals = [outcome.integral for outcome in checks.beyond(truth)]
+    integrals = [outcome.integral for outcome in integrations.beyond(truth)]
     assert all(outcome.passed for outcome in compare_programs(scene, truth, integrals, [Request("march")]))
     right_module = programs.imported
 
@@ -195,7 +194,6 @@ def test_a_wrong_rule_is_seen_in_tables(scene, monkeypatch):
         system = scene.system.chain
         table = full_table(system, 4, fmpq(0))
         assert list(differences(system, table))
-        assert list(jumps(system, table))
 
 
 @pytest.mark.parametrize("scene", [DRIVE, COLLISION], ids=["drive", "collision"])
@@ -209,8 +207,8 @@ def test_a_wrong_law_of_joints_is_seen_by_all_that_is_not_derived(scene, monkeyp
 
     monkeypatch.setattr(RuledNetwork, "_velocities", wrong)
     truth = known(lower(scene))
-    assert not all(verdicts(checks.integration, truth))
-    assert not all(verdicts(checks.spacetime, truth))
+    assert not all(verdicts(integrations.collocation, truth))
+    assert not all(verdicts(integrations.differences, truth))
     assert not all(verdicts(checks.invariants, truth))
 
 
@@ -218,11 +216,10 @@ def test_a_wrong_law_of_joints_is_seen_by_all_that_is_not_derived(scene, monkeyp
 def test_a_coefficient_of_a_table_is_seen(power):
     system = BUILDING.system.chain
     table = full_table(system, 6, fmpq(0))
-    assert not [*differences(system, table), *residuals(system, table), *jumps(system, table)]
+    assert not list(differences(system, table))
     row = [row for row in table.rows() if row.power == power][-1]
     table.responses[row.source][Function(row.function, row.rod)][row.interval - 1][row.rate][power] += fmpq(1, 10**12)
     assert list(differences(system, table))
-    assert [*residuals(system, table), *jumps(system, table)]
 
 
 @pytest.mark.parametrize("first", [0, "1/1000"])
@@ -257,8 +254,8 @@ def test_an_extreme_that_is_none_is_seen(side, monkeypatch):
         return pairs
 
     for by in (1 + 1e-12, 1 - 1e-12):
-        monkeypatch.setattr(peaks, "extremes", partial(wrong, by=by))
-        assert verdicts(peaks.peaks, truth) == [False] + [True] * (len(right) - 1)
+        monkeypatch.setattr(checks, "extremes", partial(wrong, by=by))
+        assert verdicts(checks.peaks, truth) == [False] + [True] * (len(right) - 1)
 
 
 def test_a_refusal_is_no_failure(monkeypatch):

@@ -15,12 +15,18 @@ from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link, Network
 from wavesym.scene import Scene, lower
-from wavesym.verification.checks import integration, invariants, spacetime
-from wavesym.verification.contacts import _compared, _Method, fronts, happening
-from wavesym.verification.graph import Change, alike, graph
-from wavesym.verification.graph_fronts import Undecided, integrate_fronts
+from wavesym.verification.checks import invariants
+from wavesym.verification.collocation import Undecided, integrate
+from wavesym.verification.integrations import (
+    Happened,
+    _grid,
+    collocation,
+    compare_events,
+    differences,
+    happening,
+)
+from wavesym.verification.problem import Change, alike, problem_of
 from wavesym.verification.reference import known
-from wavesym.verification.spacetime import grid
 
 MANY = 2e8
 
@@ -47,7 +53,7 @@ BOUNCES = [1, 5 / 3, 11 / 3, 13 / 3]
 
 
 def test_collocation_finds_when_a_bar_bounces() -> None:
-    found = integrate_fronts(graph(bouncing()), 5.0, 8, 200)
+    found = integrate(problem_of(bouncing()), 5.0, 8, 200)
     assert [change.kind for change in found.changes] == ["closes", "opens"] * 2
     assert [change.tau for change in found.changes] == pytest.approx(BOUNCES, abs=1e-12)
     fallen = 5 - 5 * np.array([0.5, 2, 3]) ** 2
@@ -56,7 +62,7 @@ def test_collocation_finds_when_a_bar_bounces() -> None:
 
 
 def test_central_differences_find_when_a_bar_bounces() -> None:
-    made = grid(bouncing()).struck(5.0, MANY)
+    made = _grid(bouncing()).struck(5.0, MANY)
     assert made is not None
     stepped, found = made
     assert [change.kind for change, _ in found] == ["closes", "opens"] * 2
@@ -68,9 +74,9 @@ def test_central_differences_find_when_a_bar_bounces() -> None:
 def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None:
     body = {"mass": f"{length}e{impedance[2:]}", "velocity": velocity}
     small = model([body, "contact", {"rod": length, "impedance": impedance}, "fixed"], 4 * length, velocity=["0-"])
-    (change,) = integrate_fronts(graph(small), 4.0 * length, 12, 200).changes
+    (change,) = integrate(problem_of(small), 4.0 * length, 12, 200).changes
     assert change.tau / length == pytest.approx(3.06766764161830635, rel=1e-12)
-    stepped = grid(small).struck(4.0 * length, MANY)
+    stepped = _grid(small).struck(4.0 * length, MANY)
     assert stepped is not None
     ((late, slack),) = stepped[1]
     assert abs(late.tau - change.tau) <= slack
@@ -79,14 +85,14 @@ def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None
 @pytest.mark.parametrize("points", [8, 16])
 def test_collocation_is_exact_where_all_is_polynomial(points: int) -> None:
     parts = [{"rod": 1, "velocity": 1}, {"contact": "1/4"}, {"rod": 2}, {"contact": "1/8"}, {"rod": 1, "impedance": 2}]
-    found = integrate_fronts(graph(model(parts, 6, velocity=["1/2"])), 6.0, points, 200)
+    found = integrate(problem_of(model(parts, 6, velocity=["1/2"])), 6.0, points, 200)
     first = [(0, "closes", 0.25), (0, "opens", 4.25)]
     assert [(c.contact, c.kind, pytest.approx(c.tau, abs=1e-12)) for c in found.changes if not c.contact][:2] == first
 
 
 def test_all_checks_hold_where_contacts_open_and_close() -> None:
     seen = known(on_a_bar("3.3"))
-    outcomes = [*fronts(seen), *happening(seen), *spacetime(seen), *invariants(seen)]
+    outcomes = [*collocation(seen), *happening(seen), *differences(seen), *invariants(seen)]
     assert [outcome for outcome in outcomes if not outcome.passed] == []
     assert {"0 opens", "momentum", "energy", "contacts"} <= {outcome.subject for outcome in outcomes}
 
@@ -113,30 +119,24 @@ def test_a_contact_without_force_may_part_by_nothing_on_a_grid() -> None:
     parted = [outcome for outcome in outcomes if outcome.cells["tau"] == "-"]
     assert parted
     struck = [(Change(0, "opens", 8.0), 0.1)]
-    methods = {"fronts": _Method([], 0.0), "grid": _Method(struck, 0.0)}
+    methods = {"fronts": Happened([], 0.0), "grid": Happened(struck, 0.0)}
     verdicts = {
-        "both see it": {"fronts": _Method(struck, 0.0), "grid": _Method(struck, 0.0)},
+        "both see it": {"fronts": Happened(struck, 0.0), "grid": Happened(struck, 0.0)},
         "only the grid": methods,
         "the grid alone": methods | {"fronts": None},
     }
-    found = {name: [each.passed for each in _compared("2", [], seen, 12.0)] for name, seen in verdicts.items()}
+    found = {name: [each.passed for each in compare_events("2", [], seen, 12.0)] for name, seen in verdicts.items()}
     assert found == {"both see it": [False, True], "only the grid": [True], "the grid alone": [False]}
 
 
-def test_characteristics_leave_contacts_to_others() -> None:
-    outcomes = integration(known(on_a_bar("1")))
-    assert {outcome.cells["N"] for outcome in outcomes} == {"refused"}
-    assert all(outcome.passed and "between fronts" in outcome.note for outcome in outcomes)
-
-
 def test_too_many_fronts_are_refused_in_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wavesym.verification.contacts._PANELS", 3)
+    monkeypatch.setattr("wavesym.verification.integrations._MOST_PANELS", 3)
     seen = known(on_a_bar())
-    outcomes = [*fronts(seen), *happening(seen)]
+    outcomes = [*collocation(seen), *happening(seen)]
     assert all(outcome.passed for outcome in outcomes)
     assert any("3 panels end at tau" in outcome.note for outcome in outcomes)
     with pytest.raises(Undecided):
-        integrate_fronts(graph(on_a_bar()), 4.7, 8, 3)
+        integrate(problem_of(on_a_bar()), 4.7, 8, 3)
 
 
 def test_solutions_are_alike_where_the_same_happens_at_each_contact() -> None:
@@ -214,11 +214,13 @@ def test_faults_of_a_network_with_contacts_are_found(
     wrong = replace(right, network=fault(right.network))
     seen = replace(known(wrong), model=right)
     claimed = events(wrong)
-    monkeypatch.setattr("wavesym.verification.contacts.events", lambda _: claimed)
-    monkeypatch.setattr("wavesym.verification.checks.Reference", lambda _: Reference(wrong))
-    found = [check for check in (fronts, happening, spacetime) if not all(outcome.passed for outcome in check(seen))]
-    assert {fronts, happening} <= {*found}
-    assert spacetime in found or fault is wider  # that comes too late for the outputs
+    monkeypatch.setattr("wavesym.verification.integrations.events", lambda _: claimed)
+    monkeypatch.setattr("wavesym.verification.integrations.Reference", lambda _: Reference(wrong))
+    found = [
+        check for check in (collocation, happening, differences) if not all(outcome.passed for outcome in check(seen))
+    ]
+    assert {collocation, happening} <= {*found}
+    assert differences in found or fault is wider  # that comes too late for the outputs
 
 
 class OneSideLate(Reference):
@@ -238,10 +240,11 @@ def test_an_event_that_is_late_on_one_side_is_found(monkeypatch: pytest.MonkeyPa
     right = model(parts, 2, displacement=["1-", "1+"])
     monkeypatch.setattr("wavesym.verification.reference.Reference", OneSideLate)
     monkeypatch.setattr("wavesym.verification.checks.Reference", OneSideLate)
+    monkeypatch.setattr("wavesym.verification.integrations.Reference", OneSideLate)
     seen = known(right)
     assert all(outcome.passed for outcome in happening(seen))
-    assert [outcome.passed for outcome in fronts(seen)] == [True, False]
-    for check in (spacetime, invariants):
+    assert [outcome.passed for outcome in collocation(seen)] == [True, False]
+    for check in (differences, invariants):
         assert not all(outcome.passed for outcome in check(seen)), check.__name__
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -18,11 +17,11 @@ from wavesym.cli import main
 from wavesym.errors import UnservedError
 from wavesym.scene import Scene, builtin_names, lower
 from wavesym.systems import SYSTEMS, building, chain_places, collision, drawing, drive, explicit
-from wavesym.verification.characteristics import integrate
-from wavesym.verification.checks import integration
-from wavesym.verification.graph import Graph, graph
+from wavesym.verification.collocation import integrate
 from wavesym.verification.independent import READERS, independent_model
+from wavesym.verification.integrations import collocation
 from wavesym.verification.observed import observed
+from wavesym.verification.problem import Problem, problem_of
 from wavesym.verification.reference import known
 
 EVERY_PART: dict[str, Any] = {
@@ -96,13 +95,12 @@ OPEN: dict[str, Any] = {
 }
 
 
-def numbers(made: Graph) -> list[Any]:
-    """All that a graph is made of, in units of its first impedance; of points without mass only what is felt."""
+def numbers(made: Problem) -> list[Any]:
+    """All that a problem is made of, in units of its first impedance; of points without mass only what is felt."""
     unit, heavy = made.impedance[0], made.mass > 0
     taus = np.linspace(0, 3, 37)
-    given = list(made.given)
-    loads = made.load_integral(taus, 1) / unit
-    loads[:, given] = made.prescribed(taus)[:, given]
+    loads = made.load_integral(taus, 1)
+    loads[made.is_free] /= unit
     parts = [
         made.mass / unit,
         made.damping / unit,
@@ -118,16 +116,13 @@ def assert_same(scene: Scene) -> None:
     """The same network under the same loads, and the same outputs of it."""
     model = lower(scene)
     own = independent_model(scene, model)
-    theirs, ours = graph(model), graph(own)
+    theirs, ours = problem_of(model), problem_of(own)
     for one, other in zip(numbers(theirs), numbers(ours), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-14, atol=1e-14)
-    if ours.contacts:  # these are for other integrators
-        return
     until = min(float(model.until), 3.0)
     taus = np.linspace(0, until, 23).tolist()
     motion = integrate(ours, until, 16)
-    placed = replace(model, chain=None)  # outputs where programs have them
-    for one, other in zip(observed(own), observed(placed), strict=True):
+    for one, other in zip(observed(own), observed(model), strict=True):  # where programs have them
         values = [view.values(lambda probe: motion.at(probe, taus), taus) for view in (one, other)]
         np.testing.assert_allclose(*values, rtol=1e-9, atol=1e-9)
 
@@ -219,8 +214,8 @@ def test_what_programs_start_from_is_not_what_integrators_do(fault: str, monkeyp
     fields = put_in(fault, monkeypatch)
     scene = Scene(**fields)
     model = lower(scene)
-    assert not all(outcome.passed for outcome in integration(known(model, independent_model(scene, model))))
-    assert all(outcome.passed for outcome in integration(known(model)))  # from the same wrong nodes
+    assert not all(outcome.passed for outcome in collocation(known(model, independent_model(scene, model))))
+    assert all(outcome.passed for outcome in collocation(known(model)))  # from the same wrong nodes
 
 
 def test_verify_exits_with_1(

@@ -6,9 +6,10 @@ import pytest
 
 import wavesym
 from wavesym.scene import lower
-from wavesym.verification import checks
+from wavesym.verification import integrations
 from wavesym.verification import invariants as balances
-from wavesym.verification.checks import invariants, spacetime
+from wavesym.verification.checks import invariants
+from wavesym.verification.integrations import collocation, differences
 from wavesym.verification.reference import Known, known
 
 
@@ -32,8 +33,12 @@ def test_panels_on_which_springs_swing_far_tell_nothing(monkeypatch: pytest.Monk
     assert any(float(outcome.cells["allowed"]) > 1e-7 for outcome in invariants(made(10**5)))
 
 
+def test_collocation_follows_a_stiff_spring() -> None:
+    assert all(outcome.passed and float(outcome.cells["at 4N"]) < 1e-9 for outcome in collocation(made(10**4)))
+
+
 def test_central_differences_refuse_springs_that_they_cannot_follow(monkeypatch: pytest.MonkeyPatch) -> None:
     stiff = made(10**4)
-    monkeypatch.setattr(checks, "MOST_MOVED", checks.MOST_MOVED // 1000)
-    assert all("radians" in outcome.note and outcome.cells == {"to": "refused"} for outcome in spacetime(stiff))
-    assert all("radians" not in outcome.note for outcome in spacetime(made(100)))
+    monkeypatch.setattr(integrations, "MOST_MOVED", integrations.MOST_MOVED // 1000)
+    assert all("radians" in outcome.note and outcome.cells == {"to": "refused"} for outcome in differences(stiff))
+    assert all("radians" not in outcome.note for outcome in differences(made(100)))

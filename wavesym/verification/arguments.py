@@ -87,19 +87,6 @@ POWERS = Theorem(
     "them.",
     "inequalities",
 )
-SUBSTITUTION = Theorem(
-    "Tables, put back into the delay equations, leave nothing.",
-    "For small chains, in exact numbers. Each increment, for every rate g exp(-g w) times a polynomial P, is put "
-    "into its delay equation, D of it being exp(-g w) (P' - g P). Left less right side is the polynomial 0 at every "
-    "rate. What solves the equation without its right side would not be seen; the velocities show it.",
-    "increments",
-)
-VELOCITIES = Theorem(
-    "Tables have bodies' velocities without jumps.",
-    "For small chains, in exact numbers. At the start of every interval the gains of f' and g' at a body are added, "
-    "as either of its rods has them. The sum is 0: the velocity of what has mass does not jump.",
-    "increments",
-)
 PHYSICAL_TIME = Theorem(
     "Tables are what the node law gives in physical time.",
     "For small chains, in exact numbers. The law of every node is solved anew for its velocity q, step by step in "

@@ -24,8 +24,6 @@ from wavesym.verification.arguments import (
     PHYSICAL_TIME,
     POWERS,
     RECURRENCES,
-    SUBSTITUTION,
-    VELOCITIES,
     WALKS,
     Theorem,
     arrangements,
@@ -36,7 +34,6 @@ from wavesym.verification.expansion import expanded
 from wavesym.verification.node_law import differences
 from wavesym.verification.powers import steps
 from wavesym.verification.proofs import node_law
-from wavesym.verification.substitution import jumps, residuals
 from wavesym.verification.theorem import residuals as left_over
 
 INTERVALS = 5
@@ -132,8 +129,6 @@ def _routes(system: System) -> Iterator[Proof]:
     tables = [full_table(chain, INTERVALS, fmpq(0)) for chain in chains]
     gains = sum(len(gained) for made in tables for response in made.responses.values() for gained in response.values())
     routes: Sequence[tuple[Theorem, Callable[[Chain, Table], Iterable[object]]]] = (
-        (SUBSTITUTION, residuals),
-        (VELOCITIES, jumps),
         (PHYSICAL_TIME, differences),
         (WALKS, _unlike_walks),
     )

@@ -12,16 +12,15 @@ springs. The weights w are 1 at the first point; a bar counts `ratio` times as m
 between bars and points cancel through gears, too. Nothing asks how long the delays are.
 
 A contact pushes what is on its two sides alike, and takes no energy: what it pushes with follows from the balance of
-the sides without mass. Where one moves as it is told, that is an impulse, and work.
+the sides without mass. Where one has a prescribed motion, that is an impulse, and work.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from heapq import heapify, heappop, heappush
 from itertools import pairwise, product
 from math import ceil
 
@@ -32,7 +31,8 @@ from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
-from wavesym.verification.graph import Array, Graph, graph
+from wavesym.verification.collocation import gauss
+from wavesym.verification.problem import Array, Problem, problem_of
 
 Evaluate = Callable[[Array], Array]
 """tau, shape (n,), to the outputs, shape (outputs, n)."""
@@ -69,28 +69,23 @@ class Within:
     value: Array
     error: Array
 
-    def __add__(self, other: Within) -> Within:
+    def __add__(self, other: Within | Array | float) -> Within:
+        other = other if isinstance(other, Within) else Within(np.asarray(other), np.zeros(1))
         return Within(self.value + other.value, self.error + other.error)
 
-    def __mul__(self, other: Within) -> Within:
-        error = np.abs(self.value) * other.error + np.abs(other.value) * self.error + self.error * other.error
-        return Within(self.value * other.value, error)
+    def sums(self, rows: Array) -> Within:
+        """Weighted sums: rows @ values."""
+        return Within(rows @ self.value, np.abs(rows) @ self.error)
 
-    def times(self, factor: float) -> Within:
-        """A multiple."""
-        return Within(factor * self.value, abs(factor) * self.error)
-
-    def through(self, matrix: Array) -> Within:
-        """Sums of rows."""
-        return Within(matrix @ self.value, np.abs(matrix) @ self.error)
-
-    def part(self, rows: Sequence[int] | slice) -> Within:
-        """Some rows."""
-        return Within(self.value[rows], self.error[rows])
-
-    def total(self, weights: Array) -> Within:
-        """The integral over all times that have weights; these are not negative."""
+    def integrals(self, weights: Array) -> Within:
+        """Weighted sums over instants: values @ weights, which are not negative."""
         return Within(self.value @ weights, self.error @ weights)
+
+    def form(self, matrix: Array) -> Within:
+        """The quadratic form: sum over i and j of matrix[i, j] value[i] value[j]."""
+        size, wrong, weight = np.abs(self.value), self.error, np.abs(matrix)
+        error = size * (weight @ wrong) + wrong * (weight @ (size + wrong))
+        return Within(np.sum(self.value * (matrix @ self.value), axis=0), np.sum(error, axis=0))
 
 
 class Balancing:
@@ -101,23 +96,21 @@ class Balancing:
 
         CostError, GrazingError where it is not known when contacts open and close.
         """
-        self._graph = graph(model)
-        network = model.network
-        seen: list[Probe] = []
-        for quantity in ("velocity", "displacement"):
-            seen += [self._at_point(quantity, point) for point in range(len(network.points))]
-        ends = [(bar, side) for bar in range(len(network.bars)) for side in (0, 1)]
-        seen += [Probe(f"strain@end{k}", "strain", bar + 1, fmpq(side)) for k, (bar, side) in enumerate(ends)]
-        until = fraction(model.until)
-        limit = most // ((_POINTS + _FEWER) * len(seen))
-        fronts, last = self._fronts(until, limit, self._struck(model.watching(seen)))
+        problem = self.problem = problem_of(model)
+        at = [_end_at(problem, point) for point in range(problem.points)]
+        seen = [Probe(f"{q}@{k}", q, *here) for q in ("velocity", "displacement") for k, here in enumerate(at)]
+        seen += [Probe(f"strain@{k}", "strain", *_end(k)) for k in range(len(problem.ends))]
+        # what is watched is so many times the velocity of its point, and c U_x
+        self.scales = np.array([1 / problem.ratios[2 * rod - 2 + int(place)] if rod else 1.0 for rod, place, _ in at])
+        limit, until = most // ((_POINTS + _FEWER) * len(seen)), fraction(model.until)
+        fronts, last = self._fronts(model.watching(seen), until, limit)
         self.struck: list[Fraction] = []
         for end, count in product([until / 2**k for k in range(_HALVED)], _STRUCK):
             struck = [end * k / count for k in range(1, count + 1)]
             if end <= last and len(self._cuts(fronts, struck)) <= limit:
                 self.struck = struck
                 break
-        self._cut = np.array([float(cut) for cut in self._cuts(fronts, self.struck)])
+        self.cuts = np.array([float(cut) for cut in self._cuts(fronts, self.struck)])
         self.model = model.watching(seen)
         if self.struck:
             self.model = self.model.shortened(rational(self.struck[-1]))
@@ -129,273 +122,191 @@ class Balancing:
         to is allowed, and what quadrature misses.
         """
         fine, coarse = (_Books(self, evaluate, errors, points) for points in (_POINTS, _FEWER))
-        largest = fine.largest
-        unit = _ROUNDINGS * len(self._cut) * float(UNIT_ROUNDOFF)
+        largest = max(float(np.max(fine.stored.value)), fine.started) or 1.0
+        unit = _ROUNDINGS * len(self.cuts) * float(UNIT_ROUNDOFF)
 
-        def balance(name: str, scale: float) -> Balance:
-            ours, theirs = getattr(fine, name), getattr(coarse, name)
+        def balance(name: str, ours: Within, theirs: Within, scale: float) -> Balance:
             missed = float(np.max(np.abs(ours.value - theirs.value)))
             error, slack = float(np.max(np.abs(ours.value))), float(np.max(ours.error))
             return Balance(name, error / scale, (slack + missed) / scale + unit)
 
-        found = balance("momentum", (2 * largest * fine.mass) ** 0.5), balance("energy", largest)
-        return (*found, balance("contacts", largest)) if self._graph.contacts else found
-
-    @property
-    def graph(self) -> Graph:
-        """What is balanced."""
-        return self._graph
-
-    def panels(self, points: int) -> tuple[Array, Array]:
-        """Gauss's points and weights, one panel after the other; a panel ends where balances or delays ask for it."""
-        nodes, weights = np.polynomial.legendre.leggauss(points)
-        low, width = self._cut[:-1, np.newaxis], np.diff(self._cut)[:, np.newaxis]
-        return (low + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
-
-    def _at_point(self, quantity: str, point: int) -> Probe:
-        """An output at a point, or at the end of a bar there."""
-        for bar, ends in enumerate(self._graph.ends.reshape(-1, 2)):
-            for side in (0, 1):
-                if ends[side] == point:
-                    return Probe(f"{quantity}@point{point}", quantity, bar + 1, fmpq(side))
-        return Probe(f"{quantity}@point{point}", quantity, 0, fmpq(0), point)
+        found = (
+            balance("momentum", fine.momentum, coarse.momentum, (2 * largest * fine.mass) ** 0.5),
+            balance("energy", fine.energy, coarse.energy, largest),
+        )
+        if not len(self.problem.gaps):
+            return found
+        return (*found, balance("contacts", fine.contacts(largest), coarse.contacts(largest), largest))
 
     def _cuts(self, fronts: Iterable[Fraction], struck: Sequence[Fraction]) -> list[Fraction]:
         """Where panels end: at fronts, and where what is in a bar when a balance is struck has come in."""
-        came_in = {time - delay for time in struck for delay in (Fraction(0), *self._graph.delays)}
+        came_in = {time - delay for time in struck for delay in (Fraction(0), *self.problem.delays)}
         ends = sorted({Fraction(0), *(time for time in (*fronts, *came_in) if struck and 0 < time <= struck[-1])})
         cuts = ends[:1]
         for low, high in pairwise(ends):
-            parts = max(1, ceil(float(high - low) * self._graph.swings / _SWING))
+            parts = max(1, ceil(float(high - low) * self.problem.swings / _SWING))
             cuts += [low + (high - low) * k / parts for k in range(1, parts + 1)]
         return cuts
 
-    def _struck(self, seen: Model) -> list[tuple[Fraction, int]]:
-        """When contacts open and close, and a point of each: where panels end, and nothing else."""
-        sides = {link.place: link.left for link in seen.network.links if link.contact}
-        return [(Fraction(event.double), sides[event.x]) for event in events(seen)] if sides else []
-
-    def _fronts(
-        self, until: Fraction, most: int, struck: Sequence[tuple[Fraction, int]]
-    ) -> tuple[set[Fraction], Fraction]:
+    def _fronts(self, watched: Model, until: Fraction, most: int) -> tuple[list[Fraction], Fraction]:
         """When something not smooth can come to a point, so often at most, and until when that is all of them."""
-        made = self._graph
-        coming = [*struck]
-        coming += [(event.time, event.point) for event in made.events]
-        coming += [(Fraction(0), point) for point in range(len(made.mass))]
-        heapify(coming)
-        met: set[tuple[Fraction, int]] = set()
-        times: set[Fraction] = set()
-        while coming:
-            time, here = front = heappop(coming)
-            if front in met or time > until:
-                continue
-            met.add(front)
-            times.add(time)
+        sides = {link.place: link.left for link in watched.network.links if link.contact}
+        more = [(Fraction(event.double), sides[event.x]) for event in events(watched)] if sides else []
+        times: list[Fraction] = []
+        for time, _ in self.problem.fronts(more):
+            if time > until:
+                break
+            times.append(time)
             if len(times) > most:
                 return times, time
-            for point in self._linked(here):
-                heappush(coming, (time, point))
-            for bar, ends in enumerate(made.ends.reshape(-1, 2).tolist()):
-                for side in (0, 1):
-                    if ends[side] == here:
-                        heappush(coming, (time + made.delays[bar], ends[1 - side]))
         return times, until
 
-    def _linked(self, point: int) -> Iterator[int]:
-        yield from (other for group in self._graph.groups if point in group for other in group if other != point)
+
+def _end(end: int) -> tuple[int, fmpq, None]:
+    return end // 2 + 1, fmpq(end % 2), None
+
+
+def _end_at(problem: Problem, point: int) -> tuple[int, fmpq, int | None]:
+    """Where a point is watched: at the end of a bar there, or by itself."""
+    ends = np.flatnonzero(problem.ends == point)
+    return _end(int(ends[0])) if len(ends) else (0, fmpq(0), point)
 
 
 class _Books:
-    """What is stored and what comes in, with so many points a panel."""
+    """What is stored and what comes in, with so many points a panel.
+
+    The rows of values are the velocities and the displacements of points, c U_x at the ends of bars, and the loads.
+    """
 
     def __init__(self, balancing: Balancing, evaluate: Evaluate, errors: Sequence[float] | None, points: int) -> None:
-        made = self._graph = balancing.graph
+        problem = self._problem = balancing.problem
+        self._delays = np.array([float(delay) for delay in problem.delays])
         self._struck = np.array([float(time) for time in balancing.struck])
-        self._delays = [float(delay) for delay in made.delays]
-        self._times, self._weights = balancing.panels(points)
-        size = len(made.mass)
+        low, width, rule = balancing.cuts[:-1, np.newaxis], np.diff(balancing.cuts)[:, np.newaxis], gauss(points)
+        self._times, self._weights = (low + width * rule.nodes).ravel(), (width * rule.weights).ravel()
+        size, ends = problem.points, len(problem.ends)
+        scales = np.concatenate([balancing.scales, balancing.scales, np.repeat(problem.speed, 2)])[:, np.newaxis]
 
-        def at(times: Array) -> tuple[Within, Within, Within]:
+        def at(times: Array) -> Within:
             values = evaluate(times)
             rounded = float(UNIT_ROUNDOFF) * np.max(np.abs(values), axis=1)
-            allowed = rounded if errors is None else np.array(errors)
-            known = Within(values, np.zeros_like(values) + allowed[:, np.newaxis])
-            speeds = np.repeat(made.speed, 2)
-            scale = np.array([made.ratios[list(made.ends).index(p)] if p in made.ends else 1.0 for p in range(size)])
-            both = [known.part(slice(k * size, (k + 1) * size)).through(np.diag(1 / scale)) for k in (0, 1)]
-            return both[0], both[1], known.part(slice(2 * size, None)).through(np.diag(speeds))
+            wrong = np.abs(scales) * (rounded if errors is None else np.array(errors))[:, np.newaxis]
+            return Within(
+                np.concatenate([scales * values, problem.load_integral(times, 0)]),
+                np.concatenate([wrong, np.zeros((size, 1))]) + np.zeros(len(times)),
+            )
 
-        self._q, _, self._strain = at(self._times)
-        self._end_q, self._end_u, _ = at(self._struck)
-        self._end_u_all = at(self._times)[1]
-        self._v = self._q.part(made.ends.tolist()).through(np.diag(made.ratios))
-        self._load = Within(made.load_integral(self._times, 0).T, np.zeros((size, len(self._times))))
-        impedance = np.repeat(made.impedance, 2)
-        sign = np.tile([1.0, -1.0], len(made.impedance))
-        self._force = self._strain.through(np.diag(sign * impedance))  # of the ends on their points
-
-    @cached_property
-    def _free(self) -> Array:
-        """1 for points that are free to move, 0 for others."""
-        free = np.zeros(len(self._graph.mass))
-        free[self._graph.free] = 1.0
-        return free
-
-    @cached_property
-    def _coming(self) -> Within:
-        """What came in at all ends, each into its bar."""
-        sign = np.tile([-0.5, 0.5], len(self._graph.impedance))
-        return self._v.times(0.5) + self._strain.through(np.diag(sign))
+        self._all, self._ends = at(self._times), at(self._struck)
+        unit = np.eye(3 * size + ends)
+        self._q, self._u, self._strain, self._load = np.split(unit, [size, 2 * size, 2 * size + ends])
+        sign = np.tile([1.0, -1.0], len(problem.delays))
+        self._v = problem.onto.T @ self._q
+        self._force = (sign * np.repeat(problem.impedance, 2))[:, np.newaxis] * self._strain  # of ends on their points
+        self._coming = (self._v - sign[:, np.newaxis] * self._strain) / 2  # into the bar at each end
+        self._resisted = problem.damping @ self._q + problem.stiffness @ self._u
+        self._free = problem.is_free.astype(float)
 
     def _content(self, power: int, weights: Array) -> Within:
         """The sum over bars of weights times the integral of their waves, to a power, when balances are struck."""
-        coming = self._coming if power == 1 else self._coming * self._coming
-        value, error = np.zeros(len(self._struck)), np.zeros(len(self._struck))
-        for k, tau in enumerate(self._struck):
-            for bar, delay in enumerate(self._delays):
-                inside = self._weights * ((self._times > tau - delay) & (self._times < tau))
-                part = coming.part([2 * bar, 2 * bar + 1]).total(inside)
-                left = max(delay - tau, 0.0)  # of this length there is still what was there at the start
-                first = np.array([-1.0, 1.0]) * self._graph.speed[bar] * self._graph.start_strain[bar]
-                held = (self._graph.start_velocity[bar] + first) / 2
-                value[k] += weights[bar] * (np.sum(part.value) + left * np.sum(held**power))
-                error[k] += abs(weights[bar]) * np.sum(part.error)
-        return Within(value, error)
+        problem, total = self._problem, Within(np.zeros(len(self._struck)), np.zeros(len(self._struck)))
+        since = self._struck - self._times[:, np.newaxis]
+        for bar, delay in enumerate(self._delays):
+            inside = self._weights[:, np.newaxis] * ((since < delay) & (since > 0))
+            rows = self._coming[2 * bar : 2 * bar + 2]
+            came = self._all.form(rows.T @ rows) if power == 2 else self._all.sums(np.sum(rows, axis=0))
+            left = np.maximum(delay - self._struck, 0.0)  # of this length there is still what was there at the start
+            held = np.sum(problem.start_waves[:, bar] ** power)
+            part = came.integrals(inside) + left * held
+            total += Within(weights[bar] * part.value, abs(weights[bar]) * part.error)
+        return total
 
-    def _since(self, rate: Within) -> Within:
-        """The integral of what comes in, until balances are struck."""
+    def _balance(self, stored: Within, rate: Within, before: float) -> Within:
+        """What is stored when balances are struck, less what was there and what came."""
         until = (self._times[:, np.newaxis] < self._struck) * self._weights[:, np.newaxis]
-        return Within(rate.value @ until, rate.error @ until)
+        came = rate.integrals(until)
+        return stored + Within(-came.value, came.error) + -before
 
     # energy
 
     @cached_property
     def stored(self) -> Within:
         """The energy when balances are struck."""
-        made, q, u = self._graph, self._end_q, self._end_u
-        total = self._content(2, made.impedance) + (q * q).through(made.mass / 2)
-        return total + (u * u.through(made.stiffness)).through(np.full(len(made.mass), 0.5))
-
-    @property
-    def largest(self) -> float:
-        """The largest energy, at tau = 0 or when balances are struck; 1 where all are 0."""
-        return max(float(np.max(self.stored.value)), self.started) or 1.0
+        problem = self._problem
+        kept = self._q.T @ (problem.mass[:, np.newaxis] * self._q) + self._u.T @ problem.stiffness @ self._u
+        return self._content(2, problem.impedance) + self._ends.form(kept / 2)
 
     @cached_property
     def started(self) -> float:
         """The energy at tau = 0."""
-        made = self._graph
-        bars = made.impedance * np.array(self._delays)
-        strain = made.speed * made.start_strain
-        moving = made.mass @ made.velocity**2 / 2
-        return float(moving + bars @ (made.start_velocity**2 + strain**2) / 2)
+        problem = self._problem
+        waves = np.sum(problem.start_waves**2, axis=0)
+        return float(problem.mass @ problem.velocity**2 / 2 + (problem.impedance * self._delays) @ waves)
 
-    @cached_property
+    @property
     def energy(self) -> Within:
         """By how much energy is not what was there and what came."""
-        made, q = self._graph, self._q
-        power = (self._load * q).through(self._free) + (q * q.through(made.damping)).through(
-            np.full(len(q.value), -1.0)
-        )
-        told = (self._force * self._v).through(-(1 - self._free)[made.ends])
-        told += (self._pushed * q).through(self._free - 1)
-        lost = q.through(made.damping) + self._end_u_all.through(made.stiffness)
-        power = power + told + (q * lost).through(1 - self._free)
-        came = self._since(power)
-        return self.stored + came.times(-1.0) + Within(np.full(len(self._struck), -self.started), np.zeros(1))
+        problem, free = self._problem, self._free
+        work = self._q.T @ (free[:, np.newaxis] * self._load) - self._q.T @ problem.damping @ self._q
+        reaction = self._resisted - problem.onto @ self._force - problem.parting.T @ self._push
+        work += self._q.T @ ((1 - free)[:, np.newaxis] * reaction)
+        return self._balance(self.stored, self._all.form(work), self.started)
 
     # momentum
 
     @cached_property
     def _counted(self) -> tuple[Array, Array]:
         """The weights of points and of bars in the momentum."""
-        made = self._graph
-        points, bars = np.zeros(len(made.mass)), np.zeros(len(made.impedance))
-        ends, ratios = made.ends.reshape(-1, 2), made.ratios.reshape(-1, 2)
-        known = np.zeros(len(points), dtype=bool)
-        for first in range(len(points)):
-            if known[first]:
-                continue
-            points[first], known[first] = 1.0, True
-            waiting = [first]
-            while waiting:
-                here = waiting.pop()
-                joined = [(b, s) for b in range(len(bars)) for s in (0, 1) if ends[b, s] == here]
-                for bar, side in joined:
-                    bars[bar] = ratios[bar, side] * points[here]
-                    there = ends[bar, 1 - side]
-                    if not known[there]:
-                        points[there], known[there] = bars[bar] / ratios[bar, 1 - side], True
-                        waiting.append(int(there))
-                for row in made.parting[made.parting[:, here] != 0]:
-                    for other in np.flatnonzero(row):
-                        if not known[other]:
-                            points[other], known[other] = -row[here] / row[other] * points[here], True
-                            waiting.append(int(other))
-                for other in np.flatnonzero((made.damping[here] != 0) | (made.stiffness[here] != 0)):
-                    if not known[other]:
-                        points[other], known[other] = points[here], True
-                        waiting.append(int(other))
+        problem = self._problem
+        points, bars = np.zeros(problem.points), np.zeros(len(problem.delays))
+        for first in range(problem.points):
+            if points[first] == 0:
+                more = problem.carried(first, bars=True, springs=True)
+                points, bars = points + more[0], bars + more[1]
         return points, bars
 
     @property
     def mass(self) -> float:
         """All of it, as it counts in the momentum."""
         points, bars = self._counted
-        return float(points**2 @ self._graph.mass + bars**2 @ (self._graph.impedance * np.array(self._delays)))
+        return float(points**2 @ self._problem.mass + bars**2 @ (self._problem.impedance * self._delays))
 
-    @cached_property
+    @property
     def momentum(self) -> Within:
         """By how much momentum is not what was there and what came."""
-        made = self._graph
-        points, bars = self._counted
-        counted = points * self._free * self._unheld
-        value = self._content(1, bars * made.impedance) + self._end_q.through(counted * made.mass)
-        rate = (self._load + self._q.through(-made.damping) + self._end_u_all.through(-made.stiffness)).through(counted)
-        across = made.ratios * counted[made.ends] - np.repeat(bars, 2)  # 0 but where prescribed motion holds
-        came = self._since(rate + self._force.through(across))
-        moving = bars * made.impedance * np.array(self._delays)
-        before = float(counted * made.mass @ made.velocity + moving @ made.start_velocity)
-        return value + came.times(-1.0) + Within(np.full(len(self._struck), -before), np.zeros(1))
+        problem, (points, bars) = self._problem, self._counted
+        counted, moving = points * self._free * self._unheld, bars * problem.impedance
+        stored = self._content(1, moving) + self._ends.sums(counted * problem.mass @ self._q)
+        across = counted @ problem.onto - np.repeat(bars, 2)  # 0 but where prescribed motion holds
+        rate = self._all.sums(counted @ (self._load - self._resisted) + across @ self._force)
+        before = counted * problem.mass @ problem.velocity + moving * self._delays @ problem.start_velocity
+        return self._balance(stored, rate, float(before))
 
     # contacts
 
     @cached_property
     def _unheld(self) -> Array:
         """0 for points without mass that contacts may hold to a prescribed motion, 1 for others."""
-        made, held = self._graph, 1 - self._free
-        touching = made.parting != 0
-        for _ in made.parting:
+        problem, held = self._problem, 1 - self._free
+        touching = problem.parting != 0
+        for _ in problem.parting:
             held = np.maximum(held, np.any(touching[np.any(touching & (held > 0), axis=1)], axis=0))
-        return np.where(made.mass == 0, 1 - held, 1.0)
+        return np.where(problem.mass == 0, 1 - held, 1.0)
 
     @cached_property
-    def _push(self) -> Within:
-        """What contacts push with: what points without mass need to be in balance."""
-        made = self._graph
-        onto = np.zeros((len(made.mass), len(made.ends)))
-        onto[made.ends, np.arange(len(made.ends))] = made.ratios
-        acting = self._load + self._force.through(onto) + self._q.through(-made.damping)
-        acting += self._end_u_all.through(-made.stiffness)
-        light = (made.mass == 0) & (self._free > 0)
-        return acting.part(np.flatnonzero(light).tolist()).through(
-            np.asarray(-np.linalg.pinv(made.parting[:, light].T))
-        )
+    def _push(self) -> Array:
+        """What contacts push with, (contacts, rows): what points without mass need to be in balance."""
+        problem = self._problem
+        light = (problem.mass == 0) & problem.is_free
+        acting = self._load + problem.onto @ self._force - self._resisted
+        return np.asarray(-np.linalg.pinv(problem.parting[:, light].T) @ acting[light])
 
-    @cached_property
-    def _pushed(self) -> Within:
-        """What contacts do to points."""
-        return self._push.through(self._graph.parting.T)
-
-    @cached_property
-    def contacts(self) -> Within:
+    def contacts(self, largest: float) -> Within:
         """How far a push or a gap is negative, or neither is 0, at any time; as an energy."""
-        made, push = self._graph, self._push
-        gap = self._end_u_all.through(made.parting) + Within(made.gaps[:, np.newaxis], np.zeros(1))
-        length = (2 * self.largest / self.mass) ** 0.5 * max(self._delays)
-        parts = [push.times(length), gap.times(self.largest / length)]
-        wrong = [np.maximum(-part.value, 0.0) for part in parts]
-        both = np.minimum(*(np.abs(part.value) for part in parts))
-        errors = np.maximum(*(part.error for part in parts))
-        return Within(np.max(np.maximum(np.maximum(*wrong), both), axis=1), np.max(errors, axis=1))
+        problem = self._problem
+        length = (2 * largest / self.mass) ** 0.5 * float(np.max(self._delays))
+        push = self._all.sums(length * self._push)
+        gap = self._all.sums(largest / length * problem.parting @ self._u)
+        gap += largest / length * problem.gaps[:, np.newaxis]
+        wrong = np.maximum(np.maximum(-push.value, -gap.value), np.minimum(np.abs(push.value), np.abs(gap.value)))
+        worst = np.maximum(push.error, gap.error)
+        return Within(np.max(np.maximum(wrong, 0.0), axis=1), np.max(worst, axis=1))

@@ -18,119 +18,90 @@ from flint import fmpq
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest
-from wavesym.verification.graph import Array, Graph, graph
+from wavesym.verification.problem import Array, Problem, problem_of
 
-Share = tuple[float, Probe]
-"""So many times a strain, a velocity or a displacement."""
+Term = tuple[float, Probe]
+"""So many times a strain, a velocity, a displacement, or the load on a point."""
 
 
 @dataclass(frozen=True)
 class Observed:
-    """An output: `shares` of what integrators have, and times the loads on points."""
+    """An output: `terms` of what integrators have, and times the loads on points."""
 
-    graph: Graph
-    shares: tuple[Share, ...]
-    loads: tuple[tuple[float, int], ...] = ()
+    problem: Problem
+    terms: tuple[Term, ...]
+    loads: tuple[Term, ...]
 
-    def values(self, at: Callable[[Probe], Array], taus: Sequence[float]) -> Array:
-        """The values at doubles tau, right-hand limits; `at` has those of strains, velocities and displacements."""
+    def values(self, read: Callable[[Probe], Array], taus: Sequence[float]) -> Array:
+        """The values at doubles tau, right-hand limits; `read` has those of strains, velocities and displacements."""
         total = np.zeros(len(taus))
-        for weight, probe in self.shares:
-            total += weight * at(probe)
-        return total + self.loaded(taus)
-
-    def loaded(self, taus: Sequence[float]) -> Array:
-        """What loads add."""
-        total = np.zeros(len(taus))
-        for weight, point in self.loads:
-            for event in self.graph.events:
-                if event.point == point:
-                    since = [Fraction(tau) - event.time for tau in taus]
-                    total += weight * np.array([_value(event.coefficients, time) for time in since])
+        for weight, reading in self.terms:
+            total += weight * read(reading)
+        for weight, load in self.loads:
+            for event in (event for event in self.problem.events if event.point == load.point):
+                since = [Fraction(tau) - event.time for tau in taus]
+                total += weight * np.array([_polynomial(event.coefficients, time) for time in since])
         return total
 
     def roundoff(self, of: Callable[[Probe], float]) -> float:
         """What rounding may have added, where it is known of strains, velocities and displacements."""
-        return sum(abs(weight) * of(probe) for weight, probe in self.shares)
+        return sum(abs(weight) * of(reading) for weight, reading in self.terms)
 
 
-def _value(coefficients: Sequence[float], since: Fraction) -> float:
+def _polynomial(coefficients: Sequence[float], since: Fraction) -> float:
     return sum(c * float(since) ** k for k, c in enumerate(coefficients)) if since >= 0 else 0.0
 
 
 def observed(model: Model) -> list[Observed]:
     """The outputs of a model."""
-    made = graph(model)
-    return [_scaled(_observed(made, probe), nearest(probe.factor)) for probe in model.probes]
+    problem = problem_of(model)
+    found = []
+    for probe in model.probes:
+        terms = [(nearest(probe.factor) * weight, reading) for weight, reading in _terms(model, problem, probe)]
+        loads = [term for term in terms if term[1].quantity == "load"]
+        found.append(Observed(problem, tuple(term for term in terms if term not in loads), tuple(loads)))
+    return found
 
 
-def parted(model: Model) -> Model:
-    """The same, watched for what its outputs are sums of."""
-    return model.watching(dict.fromkeys(probe for each in observed(model) for _, probe in each.shares))
+def read_by(model: Model) -> tuple[Probe, ...]:
+    """All strains, velocities and displacements that the outputs of a model are sums of."""
+    return tuple(dict.fromkeys(reading for each in observed(model) for _, reading in each.terms))
 
 
-def _scaled(one: Observed, factor: float) -> Observed:
-    shares = tuple((factor * weight, probe) for weight, probe in one.shares)
-    return Observed(one.graph, shares, tuple((factor * weight, point) for weight, point in one.loads))
-
-
-def _observed(made: Graph, probe: Probe) -> Observed:
-    bar = probe.rod - 1
+def _terms(model: Model, problem: Problem, probe: Probe) -> Iterator[Term]:
+    bar, here = probe.rod - 1, Probe("", probe.quantity, probe.rod, probe.place, probe.point)
     match probe.quantity:
         case "acceleration":
-            return _accelerated(made, probe)
+            yield from _acceleration(problem, probe)
         case "force":
-            stiffness = float(made.impedance[bar] * made.speed[bar])
-            return Observed(made, ((stiffness, _on("strain", probe.rod, probe.place)),))
+            yield float(problem.impedance[bar] * problem.speed[bar]), _on("strain", probe.rod, probe.place)
         case "drift":
-            far, near = (_on("displacement", probe.rod, fmpq(side)) for side in (1, 0))
-            return Observed(made, ((1.0, far), (-1.0, near)))
+            yield 1.0, _on("displacement", probe.rod, fmpq(1))
+            yield -1.0, _on("displacement", probe.rod, fmpq(0))
         case "relative":
-            told = [n for n, point in enumerate(made.network.points) if point.motion not in (None, "fixed")]
-            base = _at_point("displacement", told[0] if told else 0)
-            here = Probe("", "displacement", probe.rod, probe.place, probe.point)
-            return Observed(made, ((1.0, here), (-1.0, base)))
+            moved = [n for n, point in enumerate(model.network.points) if point.motion not in (None, "fixed")]
+            yield 1.0, Probe("", "displacement", probe.rod, probe.place, probe.point)
+            yield -1.0, _at_point("displacement", moved[0] if moved else 0)
         case _:
-            return Observed(made, ((1.0, Probe("", probe.quantity, probe.rod, probe.place, probe.point)),))
+            yield 1.0, here
 
 
-def _accelerated(made: Graph, probe: Probe) -> Observed:
-    point, times = probe.point, 1.0
+def _acceleration(problem: Problem, probe: Probe) -> Iterator[Term]:
+    """All that acts on a mass, and on what touches it, but loads and pushes as they work where points are so fast."""
+    point, ratio = probe.point, 1.0
     if point is None:
         end = 2 * (probe.rod - 1) + int(probe.place)
-        point, times = int(made.ends[end]), float(made.ratios[end])
-    together = _together(made, point) * (times / float(made.mass[point]))
-    shares = list(_forces(made, together))
-    return Observed(made, tuple(shares), tuple((float(together[n]), n) for n in np.flatnonzero(together).tolist()))
-
-
-def _together(made: Graph, point: int) -> Array:
-    """How fast all points would move with one, if all contacts were closed: no push does work then."""
-    speeds = np.zeros(len(made.mass))
-    speeds[point] = 1.0
-    coming = [point]
-    while coming:
-        here = coming.pop()
-        for row in made.parting:
-            if row[here]:
-                (other,) = (n for n in np.flatnonzero(row).tolist() if n != here)
-                if speeds[other] == 0:
-                    speeds[other] = -row[here] * speeds[here] / row[other]
-                    coming.append(other)
-    return speeds
-
-
-def _forces(made: Graph, speeds: Array) -> Iterator[Share]:
-    """What acts on points but loads and pushes, as they work where points are so fast."""
-    for end, (point, ratio) in enumerate(zip(made.ends.tolist(), made.ratios.tolist(), strict=True)):
-        if speeds[point]:
-            bar, side = divmod(end, 2)
-            tension = (1 - 2 * side) * float(made.impedance[bar] * made.speed[bar])
-            yield float(speeds[point]) * ratio * tension, _on("strain", bar + 1, fmpq(side))
-    for matrix, quantity in ((made.damping, "velocity"), (made.stiffness, "displacement")):
-        held = -(speeds @ matrix)
-        for point in np.flatnonzero(held).tolist():
-            yield float(held[point]), _at_point(quantity, point)
+        point, ratio = int(problem.ends[end]), float(problem.ratios[end])
+    speeds = problem.carried(point)[0] * (ratio / float(problem.mass[point]))
+    unit = np.eye(problem.points)
+    stiffness = np.repeat(problem.impedance * problem.speed, 2) * np.tile([1.0, -1.0], len(problem.speed))
+    for end, force in enumerate((speeds @ problem.onto * stiffness).tolist()):
+        if speeds[problem.ends[end]]:
+            yield force, _on("strain", end // 2 + 1, fmpq(end % 2))
+    for matrix, quantity in ((-problem.damping, "velocity"), (-problem.stiffness, "displacement"), (unit, "load")):
+        held = speeds @ matrix
+        for number in np.flatnonzero(held).tolist():
+            yield float(held[number]), _at_point(quantity, number)
 
 
 def _on(quantity: str, rod: int, place: fmpq) -> Probe:

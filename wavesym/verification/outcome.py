@@ -1,27 +1,25 @@
-"""What a check finds: cells of a table, and whether all is as it may be."""
+"""What a check finds: solutions refined until they tell their own error, rows of a table, and whether all is right."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from wavesym.verification.problem import Array
 from wavesym.verification.reference import Known
 
 FINE = 1e-6
 """Integrations are refined until their own bound is as small as this, as long as that does not take too long."""
 
-MOST_MOVED = 2e8
-"""As long as they move no more points than that."""
-
-NO_GRID = "on no grid that is not too fine the same happens at contacts"
-"""Why central differences are refused."""
-
-
 LOOSE = 1e-2
 """An integration that may be more wrong than this part of an output's largest value does not judge it."""
+
+REFUSED = "refused"
+"""The cell of what was not tried."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,7 @@ class IntegratedOutput:
     """
 
     taus: Sequence[float]
-    values: NDArray[np.float64]
+    values: Array
     allowed: float
     clear: bool = False
 
@@ -72,3 +70,155 @@ class Check:
 
     title: str
     run: Callable[[Known], Sequence[Outcome]]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """An output as one integration has it: values at instants, and what rounding may have added, absolute."""
+
+    values: Array
+    rounding: float = 0.0
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The true values of an output at some instants, and what errors are relative to."""
+
+    values: Array
+    scale: float
+
+
+Rule = Literal["plain", "extrapolated", "wandering"]
+"""How errors fall: at least as the step does; as a series in its square; in two halvings by a half."""
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """Errors at N, 2N and 4N, that of what is best, and what it may be: what lies `between` solutions, and rounding.
+
+    `values` are the best ones. Errors are relative to `scale`; without a truth they are differences from the best.
+    """
+
+    errors: tuple[float, ...]
+    best: float
+    between: float
+    rounding: float
+    values: Array
+    scale: float
+
+    @classmethod
+    def of(cls, solutions: Sequence[Solution], truth: Truth | None, rule: Rule) -> Refinement:
+        """Compare an output with N, 2N and 4N steps.
+
+        Args:
+            solutions: the three.
+            truth: what is known of it at the same instants; else errors are relative to the largest value.
+            rule: how errors of the method fall.
+        """
+        coarse, half, quarter = (each.values for each in solutions)
+        size = truth.scale if truth else float(np.max(np.abs(quarter), initial=0.0)) or 1.0
+
+        def largest(difference: Array) -> float:
+            return float(np.max(np.abs(difference), initial=0.0)) / size
+
+        best, between = quarter, largest(quarter - half)
+        if rule == "extrapolated":
+            best = quarter + (quarter - half) / 3
+            between = largest(best - half - (half - coarse) / 3)
+        elif rule == "wandering":
+            between += largest(half - coarse)
+        right = truth.values if truth else best
+        errors = tuple(largest(values - right) for values in (coarse, half, quarter))
+        return cls(errors, largest(best - right), between, solutions[-1].rounding / size, best, size)
+
+    @property
+    def allowed(self) -> float:
+        """What the best error may be."""
+        return self.between + self.rounding
+
+    @property
+    def is_right(self) -> bool:
+        """Whether it is; never where something is NaN."""
+        return self.best <= self.allowed
+
+    def cells(self, steps: int) -> Mapping[str, str]:
+        """The columns of a table, N = `steps`; the order is observed where errors are more than rounding."""
+        seen = [error for error in self.errors if error > self.rounding]
+        order = f"{math.log2(seen[-2] / seen[-1]):.1f}" if len(seen) > 1 else "-"
+        cells = dict(zip(("at N", "at 2N", "at 4N"), map(shown, self.errors), strict=True))
+        best = {} if self.best == self.errors[-1] else {"extrapolated": shown(self.best)}
+        return {"N": str(steps), **cells, "order": order, **best, "allowed": shown(self.allowed)}
+
+
+@dataclass(frozen=True)
+class Method:
+    """An integration: `solve` gives every output with so many times the coarsest number of steps, `coarsest`.
+
+    It is refined as long as `is_affordable` says so of that. `instants` are those of each output's values.
+    """
+
+    name: str
+    coarsest: int
+    solve: Callable[[int], Sequence[Solution]]
+    is_affordable: Callable[[int], bool]
+    rule: Rule
+    instants: Sequence[Sequence[float]]
+    clear: bool = False
+
+    def refined(self, truths: Sequence[Truth | None]) -> tuple[int, list[Refinement]]:
+        """N, and all outputs with N, 2N and 4N steps, compared with their values and scales where these are known."""
+        finer = 1
+        solved = [self.solve(finer * k) for k in (1, 2, 4)]
+        while True:
+            outputs = zip(truths, zip(*solved, strict=True), strict=True)
+            found = [Refinement.of(each, truth, self.rule) for truth, each in outputs]
+            if all(each.between <= FINE for each in found) or not self.is_affordable(8 * finer):
+                return self.coarsest * finer, found
+            finer *= 2
+            solved = [*solved[1:], self.solve(4 * finer)]
+
+    def outcomes(
+        self, scene: str, names: Sequence[str], truths: Sequence[Truth | None], cells: Mapping[str, str]
+    ) -> list[Outcome]:
+        """A row for each output; where there is no truth, one is right that is exact enough to judge others."""
+        steps, refined = self.refined(truths)
+        outcomes = []
+        for name, truth, taus, each in zip(names, truths, self.instants, refined, strict=True):
+            integral = IntegratedOutput(taus, each.values, each.allowed * each.scale, self.clear)
+            note = "" if each.between <= FINE else too_coarse(scene, self.name)
+            passed = integral.judges if truth is None else each.is_right
+            outcomes.append(Outcome(name, {**cells, **each.cells(steps)}, passed, note, integral))
+        return outcomes
+
+
+def refused(known: Known, column: str, why: str) -> list[Outcome]:
+    """A row for each output that says that it was not tried, and why."""
+    return [Outcome(probe.name, {column: REFUSED}, True, f"{known.whole.name}: {why}") for probe in known.whole.probes]
+
+
+def too_coarse(scene: str, what: str) -> str:
+    """What is said of something that is less exact than all should be."""
+    return f"{scene}: the {what} is too coarse to tell errors below {FINE:.0e}"
+
+
+def shown(error: float) -> str:
+    """An error as a cell of a table."""
+    return f"{error:.1e}" if error else "0"
+
+
+Row = dict[str, str]
+
+
+def table(rows: Sequence[Row], names: Sequence[str]) -> list[str]:
+    """Lines of aligned columns: `names` to the left, numbers to the right, and "verdict" last."""
+    columns = [column for column in dict.fromkeys(column for row in rows for column in row) if column != "verdict"]
+    columns.append("verdict")  # last, where a row has fewer columns too
+    grid = [columns, *([row.get(column, "-") for column in columns] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*grid, strict=True)]
+    return [
+        "  ".join(
+            cell.ljust(width) if column in names else cell.rjust(width)
+            for cell, width, column in zip(line, widths, columns, strict=True)
+        ).rstrip()
+        for line in grid
+    ]

@@ -32,12 +32,11 @@ from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes, sources
 from wavesym.targets.files import files
-from wavesym.verification.checks import characteristics
-from wavesym.verification.graph import Array
+from wavesym.verification.integrations import collocated
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
-from wavesym.verification.outcome import IntegratedOutput, Outcome
+from wavesym.verification.outcome import IntegratedOutput, Outcome, shown
+from wavesym.verification.problem import Array
 from wavesym.verification.reference import Known
-from wavesym.verification.refinement import shown
 from wavesym.verification.streams import step_modes, step_stream
 
 FLAGS = ("-std=c99", "-O1")
@@ -213,16 +212,13 @@ def _with_parameters(
     yield ProgramValues(f"{name}, C", taus, values, _sizes(known, integrals, program), bounds, late, note)
     numbers, other = draw_parameters(scene, known.whole, program.laws.fields)
     instants = [tau for tau in known.taus if np.float32(tau) == tau][::_SOME]
-    try:
-        _, refined = characteristics(other.shortened(known.model.until), known.until, instants, [None] * len(bounds))
-    except (CostError, UnservedError) as error:
-        yield ProgramValues(f"{name}, C, others", taus, values, [], [], refused=str(error))
+    method = collocated(other.shortened(known.model.until), known.until, instants)
+    if isinstance(method, str):
+        yield ProgramValues(f"{name}, C, others", taus, values, [], [], refused=method)
         return
+    _, refined = method.refined([None] * len(bounds))
     sizes = [float(np.max(np.abs(each.values))) for each in refined]
-    judges = [
-        IntegratedOutput(instants, each.values, each.allowed * (size or 1.0))
-        for each, size in zip(refined, sizes, strict=True)
-    ]
+    judges = [IntegratedOutput(instants, each.values, each.allowed * each.scale) for each in refined]
     status, estimate, values = built.model(numbers, instants)
     bounds = [estimate] * len(program.outputs)
     note = f"{known.whole.name}: {name}: build returns {status} for other parameters" if status else ""

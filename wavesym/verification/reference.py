@@ -64,6 +64,11 @@ class Known:
         return self.model if self.independent is None else self.independent.shortened(self.model.until)
 
     @property
+    def names(self) -> list[str]:
+        """The names of the outputs."""
+        return [probe.name for probe in self.whole.probes]
+
+    @property
     def notes(self) -> Sequence[str]:
         """What a reader should know of it."""
         if self.model.until == self.whole.until:

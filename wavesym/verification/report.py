@@ -9,14 +9,12 @@ from wavesym.programs.request import Request
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene
 from wavesym.verification.checks import CHECKS
-from wavesym.verification.columns import Row, table
-from wavesym.verification.damped import damped
 from wavesym.verification.independent import independent_model
-from wavesym.verification.outcome import IntegratedOutput, Outcome
+from wavesym.verification.integrations import elements
+from wavesym.verification.outcome import REFUSED, IntegratedOutput, Outcome, Row, table
 from wavesym.verification.programs import compare_programs
 from wavesym.verification.reference import Known, known, unknown
 
-_REFUSED = "refused"
 _LATE = 0.05  # parts of the horizon that an integration may leave out at its end
 _LEGEND = "Errors are relative to the output's largest value."
 _PROGRAMS = (
@@ -39,7 +37,7 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
     def told(number: int, name: str, column: str, outcomes: Iterable[Outcome]) -> None:
         nonlocal passed, notes
         for outcome in outcomes:
-            verdict = "FAIL" if not outcome.passed else "-" if _REFUSED in outcome.cells.values() else "PASS"
+            verdict = "FAIL" if not outcome.passed else "-" if REFUSED in outcome.cells.values() else "PASS"
             rows[number].append({"scene": name, column: outcome.subject, **outcome.cells, "verdict": verdict})
             notes += [outcome.note] if outcome.note else []
             passed = passed and outcome.passed
@@ -50,7 +48,7 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
         notes += truth.notes
         found: dict[str, IntegratedOutput] = {}
         for number, check in enumerate(CHECKS, 1):
-            if (truth.outputs or check.run is damped) and not (
+            if (truth.outputs or check.run is elements) and not (
                 requests is not None and len(found) == len(model.probes)
             ):
                 outcomes = check.run(truth)
@@ -81,7 +79,7 @@ def _unseen(model: Model, integrals: Sequence[IntegratedOutput | None], compared
         if integral is None:
             why = f"{model.name}: {probe.name} is not verified, as no integration is exact enough to judge it"
             found.append(Outcome("none", {"of": probe.name, "error": "not seen"}, False, why))
-    if all(_REFUSED in outcome.cells.values() for outcome in compared):
+    if all(REFUSED in outcome.cells.values() for outcome in compared):
         found.append(Outcome("none", {"of": "-", "error": "refused"}, False, f"{model.name}: no program is verified"))
     return found
 

@@ -15,8 +15,8 @@ from wavesym.numbers.doubles import fraction, nearest
 from wavesym.programs.program import Program
 from wavesym.running.compiled import Compiled
 from wavesym.scene import Scene
-from wavesym.verification.graph import Array
 from wavesym.verification.independent import changes
+from wavesym.verification.problem import Array
 from wavesym.verification.reference import Known
 
 _CLEAR = 1e-6  # outputs are looked at so far from fronts and from changes of loads, and no closer together

@@ -11,13 +11,15 @@ from hypothesis import given, settings
 from scipy.special import eval_laguerre
 
 from tests.support.drawn import scenes
-from tests.verification.test_characteristics import changed
+from tests.verification.test_collocation import changed
 from wavesym.exact.reference import Reference
 from wavesym.scene import Scene, lower
-from wavesym.verification import checks, spacetime
-from wavesym.verification.graph import graph
+from wavesym.verification import integrations
+from wavesym.verification.differences import SpaceTimeGrid
+from wavesym.verification.integrations import _grid as grid
+from wavesym.verification.observed import read_by
+from wavesym.verification.problem import problem_of
 from wavesym.verification.reference import known
-from wavesym.verification.spacetime import SpaceTimeGrid, grid
 
 
 def building(load, until=6, base="ground", **outputs):
@@ -51,7 +53,7 @@ FOUR = pytest.mark.parametrize("scene", [BUILDING, FORCE, COLLISION, DRIVE], ids
 
 def with_cells(model, cells):
     """A grid with so many cells in a rod of length 1."""
-    return SpaceTimeGrid(graph(model), model.probes, Fraction(1, cells))
+    return SpaceTimeGrid(problem_of(model), read_by(model), Fraction(1, cells))
 
 
 def errors(first, finer, scene, until):
@@ -74,7 +76,7 @@ def test_the_order_is_two(scene):
 
 @FOUR
 def test_what_is_extrapolated_is_of_order_four(scene):
-    assert all(outcome.passed for outcome in checks.spacetime(known(lower(scene))))
+    assert all(outcome.passed for outcome in integrations.differences(known(lower(scene))))
     first = grid(lower(scene))
     instants = first.instants(6.0)
     truth = np.array(Reference(lower(scene)).values([first.tau(k) for k in instants.tolist()]))
@@ -126,7 +128,7 @@ def test_fronts_off_the_grid_are_kept_away_from_and_allowed_for():
     assert not first.aligned
     front = 517 / 1009 + 0.5
     assert min(abs(first.tau(k) - front) for k in first.instants(5.0)) >= 1 / first.cells
-    for outcome in checks.spacetime(known(lower(scene))):
+    for outcome in integrations.differences(known(lower(scene))):
         assert outcome.passed
         assert "extrapolated" not in outcome.cells
 
@@ -135,7 +137,7 @@ def test_places_off_the_grid_are_read_off_a_polynomial():
     scene = building(
         {"times": [0], "a": [1], "b": [0]}, strain=["0.1234"], velocity=["0.4321"], displacement=["1.9877"]
     )
-    for outcome in checks.spacetime(known(lower(scene))):
+    for outcome in integrations.differences(known(lower(scene))):
         assert outcome.passed
         assert float(outcome.cells["extrapolated"]) < 1e-7
         assert outcome.cells["order"] == "2.0"
@@ -144,7 +146,7 @@ def test_places_off_the_grid_are_read_off_a_polynomial():
 @settings(max_examples=20)
 @given(scenes())
 def test_agreement_with_the_reference(scene):
-    for outcome in checks.spacetime(known(lower(scene))):
+    for outcome in integrations.differences(known(lower(scene))):
         assert outcome.passed, outcome
 
 
@@ -161,19 +163,21 @@ def test_agreement_with_the_reference(scene):
 )
 def test_a_wrong_network_is_caught(scene, change, monkeypatch):
     truth = known(lower(scene))
-    assert all(outcome.passed for outcome in checks.spacetime(truth))
-    monkeypatch.setattr(spacetime, "graph", lambda model: graph(replace(model, network=change(model.network))))
-    assert not all(outcome.passed for outcome in checks.spacetime(truth))
+    assert all(outcome.passed for outcome in integrations.differences(truth))
+    monkeypatch.setattr(
+        integrations, "problem_of", lambda model: problem_of(replace(model, network=change(model.network)))
+    )
+    assert not all(outcome.passed for outcome in integrations.differences(truth))
 
 
 def test_what_would_take_too_long_is_said(monkeypatch):
     truth = known(lower(DRIVE))
-    monkeypatch.setattr(checks, "MOST_MOVED", 5e6)
-    shorter = checks.spacetime(truth)
+    monkeypatch.setattr(integrations, "MOST_MOVED", 5e6)
+    shorter = integrations.differences(truth)
     assert all(outcome.passed and float(outcome.cells["to"]) < 7 for outcome in shorter)
-    monkeypatch.setattr(checks, "FINE", 1e-12)
-    assert all("too coarse to tell errors below 1e-12" in outcome.note for outcome in checks.spacetime(truth))
-    monkeypatch.setattr(checks, "MOST_MOVED", 1e3)
-    refused = checks.spacetime(truth)
+    monkeypatch.setattr("wavesym.verification.outcome.FINE", 1e-12)
+    assert all("too coarse to tell errors below 1e-12" in outcome.note for outcome in integrations.differences(truth))
+    monkeypatch.setattr(integrations, "MOST_MOVED", 1e3)
+    refused = integrations.differences(truth)
     assert all(outcome.passed and "too long" in outcome.note for outcome in refused)
     assert {outcome.cells["to"] for outcome in refused} == {"refused"}

@@ -1,0 +1,356 @@
+"""Central differences at Courant number 1 over any network of bars, straight from the wave equation: no waves.
+
+A bar is delay/h cells, each of which a wave crosses in a step h of tau, for an h that all delays are multiples of.
+Inside a bar
+
+    U(j, t + h) = U(j + 1, t) + U(j - 1, t) - U(j, t - h),
+
+which is no approximation: fronts stay as sharp as they are. A point carries half a cell of each of its bars, so that
+
+    mass (u+ - 2 u + u-)/h^2 + damping (u+ - u-)/(2 h) + stiffness (u+ + 2 u + u-)/4
+        = sum over ends of ratio * impedance * ((U_beside - ratio u)/h - ratio h/2 (u+ - 2 u + u-)/h^2)
+        + the loads' mean from t - h to t + h,
+
+of order 2, and stable for any springs and dashpots. The first step is the balance of momentum from 0 to h, in which
+nothing but what was in the bars at the start acts on the bars' ends: a mass may be faster than its bars.
+
+Contacts push in the mean from t - h to t + h what keeps gaps at t + h from being negative, and only where they are 0:
+what opens inside a step is late by a part of it, which counts among what may be wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import ceil, lcm
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
+from wavesym.verification.problem import Array, Change, Problem, Struck, alike
+
+Instants = NDArray[np.int_]
+
+COARSEST = 16
+"""Cells per rod of the coarsest grid, at least."""
+
+LATE = 4
+"""What happens at a contact is late by so many steps at most, and what does not last as long did not happen."""
+
+# load times and places with larger denominators than this do not become points of the grid
+_FINEST_ALIGNED = 128
+
+# between points of the grid outputs are read off a polynomial through so many
+_STENCIL = 6
+
+# a point rounds three sums, a node and what is read off a little more
+_ROUNDINGS = 8
+
+# points and instants are told apart in doubles
+_SAME = 1e-6
+
+# what a step costs besides its points, in points
+_STEP = 5000
+
+# parts of what pushes and gaps are worth that tell whether a contact is closed, and gaps that are 0
+_TOLD, _ROUNDED = 1e-9, 1e-14
+
+Term = tuple[int, int, float]
+"""A displacement that a reading is the sum of: steps later (-1, 0, 1), the point, and its weight."""
+
+
+@dataclass(frozen=True)
+class Displaced:
+    """Readings at some instants, (readings, instants), what rounding may have added to each, (readings,);
+    and which contacts opened and closed, at the ends of steps."""
+
+    values: Array
+    roundoff: Array
+    changes: tuple[Change, ...]
+
+
+@dataclass(frozen=True)
+class SpaceTimeGrid:
+    """A network whose bars have cells of a step of tau. An instant k is tau = k * step."""
+
+    problem: Problem
+    readings: tuple[Probe, ...]
+    step: Fraction
+
+    @property
+    def cells(self) -> int:
+        """How many the shortest bar has."""
+        return int(min(self.problem.delays) / self.step)
+
+    @property
+    def aligned(self) -> bool:
+        """Whether all loads begin on the grid. All fronts are on it then, and errors are a series in h^2."""
+        return all((event.time / self.step).denominator == 1 for event in self.problem.events)
+
+    def finer(self, times: int) -> SpaceTimeGrid:
+        """The grid with that many cells for one."""
+        return replace(self, step=self.step / times)
+
+    def tau(self, instant: int) -> float:
+        """When an instant is."""
+        return float(instant * self.step)
+
+    def cost(self, until: float) -> float:
+        """What it takes to come to tau = `until`: points moved, roughly."""
+        points = float(sum(self.problem.delays) / self.step) + self.problem.points**2
+        return until / float(self.step) * (points + _STEP)
+
+    def instants(self, until: float, struck: Sequence[tuple[Change, float]] = ()) -> Instants:
+        """Those up to `until` at which what every output is read from has no front inside.
+
+        Fronts set out from points at multiples of the delays' common measure after 0, after every load, and after
+        what happened at contacts: `struck` has when, and how well that is known.
+        """
+        measure, step = self.problem.measure, float(self.step)
+        cuts = {event.time % measure for event in self.problem.events} | {Fraction(0)}
+        reaches = [1 if _is_whole(self._place(reading)) else _STENCIL for reading in self.readings]
+        instants = np.arange(1, int(until / step) - max(reaches) + 1)
+        free = np.ones(len(instants), dtype=bool)
+        window = float(measure / self.step)
+        for reading, reach in zip(self.readings, reaches, strict=True):
+            bar = reading.rod - 1
+            offset = Fraction(0) if reading.point is not None else fraction(reading.place) * self.problem.delays[bar]
+            for way in (offset, -offset):
+                for cut in cuts:
+                    passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
+                    free &= np.abs(passed) > reach - _SAME
+                for change, slack in struck:
+                    passed = instants - (change.tau - slack + way) / step
+                    after = passed % window
+                    free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
+        return instants[free]
+
+    def struck(self, until: float, most: float) -> tuple[SpaceTimeGrid, Struck] | None:
+        """The coarsest grid which, halved twice, has the same happen at contacts, and that; None if it costs more."""
+        grid = self
+        while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
+            last = np.array([int(until / float(grid.step))])
+            changes = [grid.finer(k).integrate(k * last).changes for k in (1, 2, 4)]
+            first, then = alike(changes[2], changes[1]), alike(changes[1], changes[0])
+            if first is not None and then is not None:
+                known = [after + before for (_, after), (_, before) in zip(first, then, strict=True)]
+                late = LATE * float(grid.step) / 4
+                return grid, [(change, each + late) for (change, _), each in zip(first, known, strict=True)]
+            grid = grid.finer(2)
+        return None
+
+    def integrate(self, instants: Instants) -> Displaced:
+        """The readings at positive instants in ascending order. At a front, the mean of what is before and after it."""
+        kept = np.unique(np.add.outer(instants, (-1, 0, 1)))
+        terms = [list(self._terms(reading)) for reading in self.readings]
+        places = np.unique([place for some in terms for _, place, _ in some])
+        history = np.zeros((len(kept), len(places)))
+        motion, row, largest = _Motion(self, int(instants[-1]) + 3), 0, 0.0
+        for step in range(int(instants[-1]) + 2):
+            if step == kept[row]:
+                history[row] = motion.displacements(places)
+                largest = max(largest, motion.largest)
+                row += 1
+            motion.advance()
+        values = np.zeros((len(self.readings), len(instants)))
+        rows = np.searchsorted(kept, instants)
+        for reading, value, some in zip(self.readings, values, terms, strict=True):
+            value += self.problem.start_strain[reading.rod - 1] if reading.quantity == "strain" else 0.0
+            for later, place, weight in some:
+                value += weight * history[rows + later, np.searchsorted(places, place)]
+        unsure = largest * self._roundoff(int(instants[-1])) + motion.missed * self._struck
+        return Displaced(values, unsure, tuple(self._lasting(motion.changes)))
+
+    @cached_property
+    def _struck(self) -> Array:
+        """What an impulse at a contact changes of the readings, at most: rods' ends move, masses are faster."""
+        impedance, heavy = self.problem.impedance, self.problem.mass[self.problem.mass > 0]
+        slowest, lightest = float(np.min(self.problem.speed)), float(np.min(heavy, initial=np.inf))
+        most = {
+            "displacement": 1 / float(np.min(impedance)),
+            "velocity": 1 / lightest,
+            "strain": 1 / lightest / slowest,
+        }
+        return np.array([most[reading.quantity] for reading in self.readings])
+
+    def _lasting(self, changes: Sequence[tuple[int, str, int]]) -> Iterator[Change]:
+        """What happened at contacts and stayed so for some steps: the rest is what fronts between instants do."""
+        for contact in range(len(self.problem.gaps)):
+            kept: list[tuple[str, int]] = []
+            for _, kind, step in (change for change in changes if change[0] == contact):
+                if kept and step - kept[-1][1] < LATE:
+                    kept.pop()
+                else:
+                    kept.append((kind, step))
+            yield from (Change(contact, kind, float(step * self.step)) for kind, step in kept)
+
+    def _roundoff(self, steps: int) -> Array:
+        """What rounding adds to the readings for displacements of 1, at most.
+
+        What is rounded at a point goes on as a displacement of every second point between two fronts (and no node
+        amplifies it): a displacement sees all those of its past, a difference those on whose fronts it lies.
+        """
+        slope = steps / float(self.step)
+        sizes = {"displacement": float(steps * steps), "velocity": slope}
+        found = [sizes.get(reading.quantity, slope / self.problem.speed[reading.rod - 1]) for reading in self.readings]
+        return _ROUNDINGS * float(UNIT_ROUNDOFF) * np.array(found)
+
+    @cached_property
+    def counts(self) -> NDArray[np.int_]:
+        """How many cells each bar has."""
+        return np.array([int(delay / self.step) for delay in self.problem.delays])
+
+    @cached_property
+    def firsts(self) -> NDArray[np.int_]:
+        """Where each bar begins in the field of all bars, one after the other; and the end of the last one."""
+        return np.append(0, np.cumsum(self.counts + 1))
+
+    def _place(self, reading: Probe) -> float:
+        """Where a reading is, in cells from the left end of its bar."""
+        if reading.point is not None:
+            return 0.0
+        return float(fraction(reading.place) * self.problem.delays[reading.rod - 1] / self.step)
+
+    def _terms(self, reading: Probe) -> Iterator[Term]:
+        """What a reading is the sum of, but the strain at the start."""
+        half = 1 / (2 * float(self.step))
+        bar, place = reading.rod - 1, self._place(reading)
+        cells, first = int(self.counts[bar]), int(self.firsts[bar])
+        if reading.point is not None:
+            cells, first = 1, int(self.firsts[-1]) + reading.point
+        slope = half / self.problem.speed[bar]
+        for j, weight in _between(place, cells):
+            match reading.quantity:
+                case "displacement":
+                    terms = [(0, j, 1.0)]
+                case "velocity":
+                    terms = [(1, j, half), (-1, j, -half)]
+                case _ if j in (0, cells):  # the end itself is where it is between two steps
+                    out = 1 if j == 0 else -1
+                    terms = [(0, j + out, out * 2 * slope), (1, j, -out * slope), (-1, j, -out * slope)]
+                case _:
+                    terms = [(0, j + 1, slope), (0, j - 1, -slope)]
+            yield from ((later, first + k, weight * factor) for later, k, factor in terms)
+
+
+def coarsest_grid(problem: Problem, readings: tuple[Probe, ...], until: Fraction) -> SpaceTimeGrid:
+    """The coarsest grid: loads and readings are on it where their denominators are small."""
+    measure, common = problem.measure, 1
+    offsets = [
+        fraction(reading.place) * problem.delays[reading.rod - 1] for reading in readings if reading.point is None
+    ]
+    for time in (*(event.time for event in problem.events), *offsets):
+        if lcm(common, (time / measure).denominator) <= _FINEST_ALIGNED:
+            common = lcm(common, (time / measure).denominator)
+    shortest = min(*problem.delays, until)
+    return SpaceTimeGrid(problem, readings, measure / common / ceil(COARSEST * measure / common / shortest))
+
+
+class _Motion:
+    """The displacements of all bars, one after the other, and of all points, now and a step before."""
+
+    def __init__(self, grid: SpaceTimeGrid, steps: int) -> None:
+        problem = self._problem = grid.problem
+        h = self._h = float(grid.step)
+        self._first = h * np.repeat(problem.start_velocity, grid.counts + 1)
+        starts = grid.firsts[:-1]
+        self._ends = np.stack([starts, starts + grid.counts], axis=1).ravel()
+        self._beside = self._ends + np.tile([1, -1], len(starts))
+        self._free = np.flatnonzero(problem.is_free)
+        self._bars, self._bars_before = np.zeros(len(self._first)), np.zeros(0)
+        self._now = self._before = np.zeros(problem.points)
+        # of free points the impulse of their loads, of others the displacement
+        self._moved = problem.load_integral(h * np.arange(steps, dtype=np.float64), 1).T
+        impedance = np.repeat(problem.impedance, 2)
+        radiated = np.diag(problem.onto**2 @ impedance)
+        mass = np.diag(problem.mass)
+        self._momentum = 2 * mass / h @ problem.velocity
+        self._momentum += 2 * problem.onto @ (impedance * problem.start_waves[::-1].T.ravel())
+        self._start = 2 * mass / h + problem.damping + radiated + h / 2 * problem.stiffness
+        mass = mass / h**2 + radiated / (2 * h)
+        self._ahead = mass + problem.damping / (2 * h) + problem.stiffness / 4
+        self._here = 2 * mass - radiated / h - problem.stiffness / 2
+        self._behind = mass - problem.damping / (2 * h) + problem.stiffness / 4
+        strained = np.repeat(problem.speed * problem.start_strain, 2) * np.tile([1.0, -1.0], len(starts))
+        self._strained = problem.onto @ (impedance * strained)
+        self._pulls = problem.onto * impedance / h
+        free = np.ix_(self._free, self._free)
+        self._inverse, self._inverse_start = np.linalg.inv(self._ahead[free]), np.linalg.inv(self._start[free])
+        self._open = problem.gaps > 0
+        self._pushed = np.zeros((LATE, len(problem.gaps)))
+        self._steps = 0
+        self.changes: list[tuple[int, str, int]] = []
+        self.missed = 0.0
+
+    def displacements(self, places: NDArray[np.int_]) -> Array:
+        """Those of some places in all bars and, after these, all points."""
+        return np.asarray(np.append(self._bars, self._now)[places])
+
+    @property
+    def largest(self) -> float:
+        """The largest displacement."""
+        return max(float(np.max(np.abs(self._now))), float(np.max(np.abs(self._bars))))
+
+    def advance(self) -> None:
+        """One step: points, then bars."""
+        h, free, step = self._h, self._free, self._steps
+        after = self._moved[step + 1].copy()
+        held = np.where(self._problem.is_free, 0.0, after)
+        if step == 0:  # mean velocities that balance momentum from 0 to h
+            inverse = np.asarray(h * self._inverse_start)
+            right = self._momentum + self._moved[1] / h - self._start @ held / h
+        else:
+            inverse = np.asarray(self._inverse)
+            right = self._pulls @ self._bars[self._beside] + self._strained
+            right += (self._moved[step + 1] - self._moved[step - 1]) / (2 * h)
+            right += self._here @ self._now - self._behind @ self._before - self._ahead @ held
+        self._steps += 1
+        after[free] = inverse @ right[free]
+        self._before, self._now = self._now, self._kept_apart(after, inverse)
+        bars = self._first.copy()
+        if step > 0:
+            bars[1:-1] = self._bars[2:] + self._bars[:-2] - self._bars_before[1:-1]
+        bars[self._ends] = self._problem.ratios * self._now[self._problem.ends]
+        self._bars_before, self._bars = self._bars, bars
+
+    def _kept_apart(self, after: Array, inverse: Array) -> Array:
+        """Displacements with what contacts push: as little as keeps every gap from being negative."""
+        problem, parting = self._problem, self._problem.parting[:, self._free]
+        if not len(problem.gaps):
+            return after
+        gaps = problem.gaps + problem.parting @ after
+        length, force = problem.worth
+        pushes = np.zeros(len(gaps))
+        yields = parting @ inverse @ parting.T
+        pushing = np.zeros(len(gaps), dtype=bool)
+        while len(wrong := np.flatnonzero(np.where(pushing, pushes < 0, gaps + yields @ pushes < -_ROUNDED * length))):
+            pushing[wrong[0]] ^= True  # the first of all: this comes to an end
+            pushes = np.zeros(len(gaps))
+            pushes[pushing] = np.linalg.solve(yields[np.ix_(pushing, pushing)], -gaps[pushing])
+        after[self._free] += inverse @ parting.T @ pushes
+        gaps += yields @ pushes
+        for contact in np.flatnonzero(np.where(self._open, pushes > _TOLD * force, gaps > _TOLD * length)).tolist():
+            self._open[contact] ^= True
+            self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
+            self.changes.append((contact, "opens" if self._open[contact] else "closes", self._steps))
+        self._pushed[self._steps % LATE] = pushes
+        return after
+
+
+def _between(place: float, cells: int) -> Iterator[tuple[int, float]]:
+    """Points of a rod, and the weights with which they stand for a place between them."""
+    if _is_whole(place):
+        yield round(place), 1.0
+        return
+    first = min(max(int(place) - _STENCIL // 2 + 1, 0), cells + 1 - _STENCIL)
+    points = range(first, first + _STENCIL)
+    for j in points:
+        yield j, float(np.prod([(place - k) / (j - k) for k in points if k != j]))
+
+
+def _is_whole(place: float) -> bool:
+    return abs(place - round(place)) < _SAME

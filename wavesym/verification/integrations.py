@@ -1,0 +1,336 @@
+"""The checks that integrate: outputs by collocation between fronts, central differences and finite elements.
+
+An integration is refined until it tells its own error. It judges the reference, and then programs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from itertools import pairwise
+
+import numpy as np
+
+from wavesym.exact.contacts.events import events
+from wavesym.exact.reference import Reference
+from wavesym.mechanics.event import ContactEvent
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import fraction, rational
+from wavesym.rivals import modal_elements
+from wavesym.rivals.lumped import DiscreteModel
+from wavesym.rivals.mass import Elements
+from wavesym.rivals.sums import summing
+from wavesym.verification.collocation import Motion, Undecided, integrate
+from wavesym.verification.differences import LATE, Instants, SpaceTimeGrid, coarsest_grid
+from wavesym.verification.observed import Term, observed, read_by
+from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, refused, shown
+from wavesym.verification.problem import Array, Change, Struck, alike, problem_of
+from wavesym.verification.reference import Known, spread
+
+# Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them
+_POINTS, _POINTS_OF_CONTACTS = 6, (8, 12)
+_MOST_POINTS = 96
+
+# integrations take no more doubles than that, and no more panels where contacts open and close
+_MOST_DOUBLES, _MOST_PANELS = 4_000_000, 400
+
+# solutions are not looked at where fronts that contacts make are as close as this, nor told apart in time
+_CLOSE = 1e-7
+
+# central differences move no more points than that
+MOST_MOVED = 2e8
+
+# central differences lag ever further behind: beyond this tau the grids would have to be finer
+_LONGEST = 60.0
+
+# of the instants away from fronts, so many are enough to begin with, and so many are looked at
+_FEWEST_INSTANTS, _MOST_INSTANTS = 20, 200
+
+# central differences tell nothing of springs that swing more radians than this in a step
+_SWING = 0.25
+
+# finite elements of the shortest rod, unknowns, and instants besides those at which loads change
+_COARSEST_ELEMENTS, _MOST_UNKNOWNS, _ELEMENT_INSTANTS = 2, 400, 400
+
+_NO_GRID = "on no grid that is not too fine the same happens at contacts"
+
+
+# collocation
+
+
+def collocation(known: Known) -> list[Outcome]:
+    """Collocation between fronts on what is known exactly; N is doubled until errors are bounded well.
+
+    With contacts N is one with which the same happens at them with 2N and 4N.
+    """
+    solved = _solved_once(known)
+    if isinstance(solved, str):
+        return refused(known, "N", solved)
+    taus = np.array(known.taus)
+    instants = [solved.clear(each.terms, taus) for each in observed(known.integrated)]
+    truths = [Truth(output.values[clear], output.scale) for output, clear in zip(known.outputs, instants, strict=True)]
+    method = solved.method([taus[clear].tolist() for clear in instants])
+    return method.outcomes(known.whole.name, known.names, truths, {})
+
+
+def beyond(known: Known) -> list[Outcome]:
+    """Collocation on the whole horizon, where exact values are known of its beginning only."""
+    if not known.outputs or known.model.until == known.whole.until:
+        return []
+    until = known.whole.horizon()
+    method = collocated(known.independent or known.whole, until, sorted({*spread(until), until}))
+    if isinstance(method, str):  # as of the beginning
+        return []
+    return method.outcomes(known.whole.name, known.names, [None] * len(known.outputs), {})
+
+
+def collocated(model: Model, until: float, taus: Sequence[float]) -> Method | str:
+    """Collocation of a model without contacts at the same instants for every output, or why there is none."""
+    solved = _solved(model, until)
+    return solved if isinstance(solved, str) else solved.method([taus] * len(model.probes))
+
+
+class _Solved:
+    """The motions of a model, with ever more points a panel."""
+
+    def __init__(self, model: Model, until: float) -> None:
+        """Solve it with N, 2N and 4N points.
+
+        Raises:
+            Undecided: that takes too many panels, or other things happen at contacts.
+        """
+        self._model, self._until, self._problem = model, until, problem_of(model)
+        self.has_contacts = len(self._problem.gaps) > 0
+        self._motions: dict[int, Motion] = {}
+        for points in _POINTS_OF_CONTACTS if self.has_contacts else (_POINTS,):
+            self.points, why = points, Undecided("more points a panel have other things happen at contacts")
+            try:
+                coarse, half, quarter = (self.motion(k * points).changes for k in (1, 2, 4))
+            except Undecided as undecided:
+                why = undecided
+                continue
+            if (found := alike(quarter, half)) is not None and alike(half, coarse) is not None:
+                self.struck = [(change, slack + _CLOSE) for change, slack in found]
+                return
+        raise why
+
+    def motion(self, points: int) -> Motion:
+        """The motion with so many points a panel."""
+        if points not in self._motions:
+            size = 2 * points * (len(self._problem.delays) + self._problem.points)
+            most = _MOST_PANELS if self.has_contacts else _MOST_DOUBLES // size
+            self._motions[points] = integrate(self._problem, self._until, points, most)
+        return self._motions[points]
+
+    def clear(self, terms: Sequence[Term], taus: Array) -> Array:
+        """Which instants are as far from fronts that contacts made as these are known: (n,)."""
+        motions = [self.motion(k * self.points) for k in (1, 2, 4)] if self.has_contacts else []
+        far = [motion.distance(reading, taus) for motion in motions for _, reading in terms]
+        return np.asarray(np.min(far, axis=0, initial=np.inf) > _CLOSE) if far else np.ones(len(taus), bool)
+
+    def method(self, instants: Sequence[Sequence[float]]) -> Method:
+        """The outputs at instants of each."""
+        views = observed(self._model)
+
+        def solve(finer: int) -> list[Solution]:
+            motion = self.motion(finer * self.points)
+            return [
+                Solution(view.values(partial(motion.at, taus=taus), taus), view.roundoff(motion.roundoff))
+                for view, taus in zip(views, instants, strict=True)
+            ]
+
+        def is_affordable(finer: int) -> bool:
+            return not self.has_contacts and finer * self.points <= _MOST_POINTS
+
+        return Method("integration", self.points, solve, is_affordable, "plain", instants)
+
+
+def _solved(model: Model, until: float) -> _Solved | str:
+    try:
+        return _Solved(model, until)
+    except Undecided as undecided:
+        return f"no integration between fronts, as {undecided}"
+
+
+@lru_cache(maxsize=1)
+def _solved_once(known: Known) -> _Solved | str:
+    return _solved(known.integrated, known.until)
+
+
+# central differences
+
+
+def differences(known: Known) -> list[Outcome]:
+    """Central differences with N, 2N and 4N cells a rod, at instants away from fronts.
+
+    As far as they can be had; where they stay coarse that is said, but no failure: what they allow is in the table.
+    With contacts N is so large that the same happens at them with 2N and 4N, and that is one more front.
+    """
+    model = known.integrated
+    first, struck = _grid(model), list[tuple[Change, float]]()
+    until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
+    if len(first.problem.gaps):
+        if (found := first.struck(until, MOST_MOVED)) is None:
+            return refused(known, "to", _NO_GRID)
+        first, struck = found
+    while len(first.instants(until, struck)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
+        first = first.finer(2)
+    finest = first
+    while finest.finer(8).cost(until) <= MOST_MOVED:
+        finest = finest.finer(2)
+    if (swing := first.problem.swings * finest.tau(1) / 4) > _SWING:
+        why = f"springs swing {swing:.2g} radians in the shortest step that central differences can take"
+        return refused(known, "to", why)
+    instants = _some(first.instants(until, struck))
+    if not len(instants):
+        why = f"to step between the fronts, central differences would take too long (at {first.tau(1):.1g} a step)"
+        return refused(known, "to", why)
+    taus = [first.tau(k) for k in instants.tolist()]
+    truths = [
+        Truth(np.array(values), output.scale)
+        for values, output in zip(Reference(known.model).values(taus), known.outputs, strict=True)
+    ]
+    views = observed(model)
+
+    def solve(finer: int) -> list[Solution]:
+        found = first.finer(finer).integrate(finer * instants)
+        values = dict(zip(first.readings, found.values, strict=True))
+        roundoff = dict(zip(first.readings, found.roundoff.tolist(), strict=True))
+        return [Solution(v.values(values.__getitem__, taus), v.roundoff(roundoff.__getitem__)) for v in views]
+
+    def is_affordable(finer: int) -> bool:
+        return first.finer(finer).cost(until) <= MOST_MOVED
+
+    rule: Rule = "extrapolated" if first.aligned and not struck else "wandering"
+    method = Method("space-time grid", first.cells, solve, is_affordable, rule, [taus] * len(views), clear=True)
+    return method.outcomes(model.name, known.names, truths, {"to": f"{until:.4g}"})
+
+
+def _grid(model: Model) -> SpaceTimeGrid:
+    return coarsest_grid(problem_of(model), read_by(model), fraction(model.until))
+
+
+def _some(instants: Instants) -> Instants:
+    """No more than are looked at, evenly spread."""
+    count = min(len(instants), _MOST_INSTANTS)
+    return np.asarray(instants[np.linspace(0, len(instants) - 1, count).round().astype(int)])
+
+
+# finite elements
+
+
+def elements(known: Known) -> list[Outcome]:
+    """Finite elements of consistent mass, damped by the same ratios, where modes are damped; nothing else knows these.
+
+    Their error is a series in the square of their length. There is no truth to compare them with.
+    """
+    model = known.independent or known.whole
+    if model.damping is None:
+        return []
+    summed = summing(modal_elements.RIVAL).states(model)
+    problem = summed.problem
+    shortest = np.maximum(np.rint(_COARSEST_ELEMENTS * problem.delay / np.min(problem.delay)), 1).astype(int)
+    step = problem.until / _ELEMENT_INSTANTS
+
+    @lru_cache
+    def history(finer: int) -> tuple[Array, Array]:
+        taus, values = DiscreteModel(Elements(problem, shortest * finer)).history(step)
+        return taus, summed.added(values, taus)
+
+    def is_affordable(finer: int) -> bool:
+        return int(np.sum(shortest)) * finer <= _MOST_UNKNOWNS
+
+    def solve(finer: int) -> list[Solution]:
+        return [Solution(values) for values in history(finer)[1]]
+
+    names = [probe.name for probe in model.probes]
+    taus = np.minimum(history(1)[0], model.horizon()).tolist()
+    method = Method(
+        "elements", _COARSEST_ELEMENTS, solve, is_affordable, "extrapolated", [taus] * len(names), clear=True
+    )
+    return method.outcomes(model.name, names, [None] * len(names), {})
+
+
+# contacts
+
+
+def happening(known: Known) -> list[Outcome]:
+    """When contacts open and close, against collocation between fronts and central differences."""
+    model, judged = known.model, known.integrated
+    if not judged.network.contacts:
+        return []
+    solved, stepped = _solved_once(known), _grid(judged).struck(known.until, MOST_MOVED)
+    seen = {
+        "fronts": None if isinstance(solved, str) else Happened(solved.struck, 0.0),
+        "grid": Happened(stepped[1], LATE * float(stepped[0].step)) if stepped else None,
+    }
+    notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
+    notes += [] if stepped else [f"{model.name}: {_NO_GRID}"]
+    outcomes = [Outcome("contacts", {}, True, note) for note in notes]
+    claimed, reaching = events(model), model.contacts(rational(model.horizon()))
+    for number, link in enumerate(model.network.contacts):
+        if link in reaching:
+            place = model.network.links[link].place
+            here = {name: each and each.at(number) for name, each in seen.items()}
+            outcomes += compare_events(place, [event for event in claimed if event.x == place], here, known.until)
+    return outcomes
+
+
+@dataclass(frozen=True)
+class Happened:
+    """What a method found at contacts, and what it does not see as it does not last as long."""
+
+    struck: Struck
+    shortest: float
+
+    def at(self, contact: int) -> Happened:
+        """At one contact."""
+        return Happened([each for each in self.struck if each[0].contact == contact], self.shortest)
+
+    def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
+        """The numbers of the events of a contact that it can have seen: without those that hardly last, if it must."""
+        kept = list(range(len(claimed)))
+        while len(kept) > max(len(self.struck), 1):
+            lasting = [claimed[then].double - claimed[now].double for now, then in pairwise(kept)]
+            if min(lasting) >= self.shortest:
+                break
+            at = lasting.index(min(lasting))
+            del kept[at : at + 2]
+        return kept
+
+
+def compare_events(
+    place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, Happened | None], until: float
+) -> Iterator[Outcome]:
+    """A row for each event of a contact, and for each that a method has besides.
+
+    A contact that carries no force may part by nothing on a grid: collocation decides, where there is one.
+    """
+    rows: list[dict[str, str]] = [{"tau": f"{event.double:.12g}"} for event in claimed]
+    passed = [True for _ in claimed]
+    more = []
+    for name, method in methods.items():
+        if method is None:
+            rows = [row | {name: "refused"} for row in rows]
+            continue
+        visible = method.visible(claimed)
+        for k, event in enumerate(claimed):
+            if k not in visible:
+                rows[k] |= {name: "too short"}
+            elif (at := visible.index(k)) < len(method.struck):
+                change, slack = method.struck[at]
+                error = abs(change.tau - event.double)
+                rows[k] |= {name: shown(error), f"{name} allowed": shown(slack)}
+                passed[k] &= change.kind == event.kind and error <= slack
+            else:
+                rows[k] |= {name: "none"}
+                passed[k] &= event.double > until - _CLOSE
+        for change, slack in method.struck[len(visible) :]:
+            if change.tau + slack < until:
+                cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": shown(slack)}
+                parts_by_nothing = name == "grid" and methods["fronts"] is not None
+                more.append(Outcome(f"{place} {change.kind}", cells, parts_by_nothing))
+    for event, row, right in zip(claimed, rows, passed, strict=True):
+        yield Outcome(f"{place} {event.kind}", row, right)
+    yield from more
