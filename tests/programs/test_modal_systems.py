@@ -17,11 +17,12 @@ from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.damping import Damping
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.modes.roughness import Roughness, roughness
+from wavesym.programs.modes.evaluator import modal_system
+from wavesym.programs.modes.loads import Roughness, roughness
+from wavesym.programs.modes.modal_system import scheme_tables
 from wavesym.programs.modes.rounding import rounded
-from wavesym.programs.modes.swinging import SwingingChain
-from wavesym.programs.modes.system import ModalModes, modal_system
-from wavesym.programs.modes.tables import scheme_tables
+from wavesym.programs.modes.truncation import ModalModes
+from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.scene import Scene, lower
 
@@ -86,8 +87,8 @@ def rounding(model, made):
 
 def with_modes(model, count):
     """The first `count` modes, and what the others can add."""
-    built = SwingingChain(model)
-    known = built.shares(count)
+    built = UndampedModes(model)
+    known = built.project(count)
     errors = built.errors(known, count)
     rest = np.zeros(count)
     return ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
@@ -259,13 +260,13 @@ def test_outputs_that_are_nearly_0_have_a_bound(loads):
 def test_what_no_number_of_modes_tells_from_0_is_refused_early(monkeypatch):
     """Of loads that nearly cancel: not after thousands of modes, but after the first."""
     model = chain(SYMMETRIC, both(-1.0000000001), velocity=["c"], until=9, tolerance="1e-3")
-    counts, every = [], SwingingChain.shares
+    counts, every = [], UndampedModes.project
 
     def counted(built, count):
         counts.append(count)
         return every(built, count)
 
-    monkeypatch.setattr(SwingingChain, "shares", counted)
+    monkeypatch.setattr(UndampedModes, "project", counted)
     with pytest.raises(ToleranceError, match="would not tell the largest value of velocity@c from 0"):
         modal_system(model)
     assert max(counts) < 200
@@ -373,7 +374,7 @@ def test_kinks_in_step_are_not_underestimated(count):
 def test_roughness_is_that_of_the_load():
     """Changes of slope at their times: of 0, 2, 1, then constant in steps of 1/2."""
     model = building(["1", "1"], [{"spacing": "1/2", "samples": [0, 2, 1]}])
-    (rough,) = roughness(SwingingChain(model).loads)
+    (rough,) = roughness(UndampedModes(model).loads)
     assert rough.times.tolist() == [0, 0.5, 1]
     assert rough.kinks.tolist() == [4, -6, 2]
     assert (rough.steps, rough.steepest) == ((0, 1, 2), 4)

@@ -20,8 +20,8 @@ from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice
 from wavesym.programs.choice import attempts, choose
 from wavesym.programs.making import make
-from wavesym.programs.modes import making
-from wavesym.programs.modes.making import modes
+from wavesym.programs.modes import evaluator
+from wavesym.programs.modes.evaluator import modes
 from wavesym.programs.request import Request
 from wavesym.results.response import Response
 from wavesym.running.compiled import imported
@@ -114,13 +114,13 @@ def test_floats_are_within_their_bounds():
 
 
 def test_a_frequency_that_is_off_is_beyond_the_bounds(monkeypatch):
-    right = making.modal_system
+    right = evaluator.modal_system
 
     def off(model):
         made = right(model)
         return replace(made, system=replace(made.system, frequency=made.system.frequency * (1 + 1e-3)))
 
-    monkeypatch.setattr(making, "modal_system", off)
+    monkeypatch.setattr(evaluator, "modal_system", off)
     given = scene()
     taus = np.linspace(0, 12, 97)
     _, errors, bounds = wrong(lower(given), DOUBLE, wavesym.evaluator(given)(taus), taus)
@@ -200,7 +200,7 @@ def test_a_tolerance_that_takes_too_many_modes_is_refused_with_all_that_was_trie
     def refuse(model):
         raise ToleranceError("output.tolerance: 0.01 cannot be met: modes: 7 modes leave 0.1")
 
-    monkeypatch.setattr(making, "modal_system", refuse)
+    monkeypatch.setattr(evaluator, "modal_system", refuse)
     monkeypatch.delitem(choice.MAKERS, "march")
     with pytest.raises(
         ToleranceError, match=r"^output.tolerance: 0.01 cannot be met: closed: .*; modes: 7 modes leave"

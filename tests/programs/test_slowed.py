@@ -14,9 +14,10 @@ from tests.support.modal import chain
 from wavesym.errors import ToleranceError, UnservedError
 from wavesym.exact.modes.dying import DyingSpectrum
 from wavesym.programs.making import make
-from wavesym.programs.modes import slowed
-from wavesym.programs.modes.slowed import SlowedChain
-from wavesym.programs.modes.system import ModalModes, modal_system
+from wavesym.programs.modes import complex_modes
+from wavesym.programs.modes.complex_modes import ComplexModes
+from wavesym.programs.modes.evaluator import modal_system
+from wavesym.programs.modes.truncation import ModalModes
 from wavesym.programs.request import Request
 from wavesym.running.toolchain import compiler
 from wavesym.targets.files import files
@@ -85,8 +86,8 @@ LONG = [name for name in LOSING if name != "held"]
 
 def with_modes(model, count):
     """The first `count` modes, and what the others can add."""
-    built = SlowedChain(model)
-    known = built.shares(count)
+    built = ComplexModes(model)
+    known = built.project(count)
     errors, rest = built.errors(known, count), np.zeros(count)
     return ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
 
@@ -178,7 +179,7 @@ def test_drawn_chains_with_dashpots_are_within_the_bound(data):
     assume(model.network.loses)
     taus = np.linspace(0, 5, 41)
     try:
-        slowed.refuse_absorbing(model.network)
+        complex_modes.refuse_absorbing(model.network)
     except UnservedError:
         assume(False)
     made = with_modes(model, 40)

@@ -8,7 +8,7 @@ import pytest
 import wavesym
 from wavesym.errors import CostError
 from wavesym.exact.extremes import TrueExtreme, extremes
-from wavesym.programs.modes.roughness import of_samples
+from wavesym.programs.modes.loads import sampled_roughness
 from wavesym.results import recorded, summary
 from wavesym.results.near_zero import zero_within
 from wavesym.results.recorded import ManyRecords, SharedModes
@@ -134,7 +134,7 @@ def test_many_records(monkeypatch):
 
     monkeypatch.setattr(recorded, "_extremes", noisy)
     values = np.array([[float(each) for each in samples] + [0.0, 0.0]])
-    records = ManyRecords(values, 0.0, 0.5, [of_samples(values[0, 1:])], 1.0)
+    records = ManyRecords(values, 0.0, 0.5, [sampled_roughness(values[0, 1:])], 1.0)
     found = SharedModes(model, 0.5).extremes(records)
     assert (found.values[0, 0, 0], found.taus[0, 0, 0]) == (0.0, 0.0)
     assert found.values[0, 0, 1] == pytest.approx(wavesym.summary(scene).outputs[0].max.value, rel=1e-4)

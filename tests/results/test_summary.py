@@ -23,7 +23,7 @@ from wavesym.exact.extremes import extremes
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
 from wavesym.programs.making import make
-from wavesym.programs.modes.panels import Panels
+from wavesym.programs.modes.records import Panels
 from wavesym.programs.request import Request
 from wavesym.results import sampled, summary
 from wavesym.results.rows import SAMPLES, own_samples

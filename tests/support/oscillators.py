@@ -16,7 +16,7 @@ from tests.support.assembly import exact
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.modal import ModalSystem
+from wavesym.programs.modes.modal_system import ModalSystem
 from wavesym.programs.program import ProgramOutput
 
 RECORD = Path(__file__).parents[2] / "examples" / "records" / "elcentro_1940_ns_peknold.csv"

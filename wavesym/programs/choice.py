@@ -186,7 +186,7 @@ def _pieces(model: Model, real: Real, asked: bool, optimize: str, served: bool) 
 
 # modes and marches are loaded where they are tried: most scenes have pieces
 def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
-    from wavesym.programs.modes.making import modes
+    from wavesym.programs.modes.evaluator import modes
 
     return modes(model, real)
 

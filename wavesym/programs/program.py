@@ -89,7 +89,7 @@ class Program:
     "modes", "runtime": a march whose parameters come at run time, by its `laws`, or "stream": one whose loads do. The
     last two are C alone.
     `tables` are flat (flat.py), by name, each number as it is written; which there are, the `program` of each
-    evaluator says, of marches march/tables.py, of modes modes/tables.py, of streams stream/tables.py.
+    evaluator says, of marches march/tables.py, of modes modes/modal_system.py, of streams stream/tables.py.
     `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. `sources`
     are the names of loads that modes and a stream can be given. Its error is `proved`, or an estimate. Of a stream
     `direct` has for each output the sources that act on it at once. `numpy_only` says why there is no C of it, and what

@@ -16,10 +16,10 @@ import numpy as np
 
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.modes.chain import ModalChain
+from wavesym.programs.modes.evaluator import modal_model
+from wavesym.programs.modes.loads import Roughness, scaled_roughness
 from wavesym.programs.modes.records import RecordResponse
-from wavesym.programs.modes.roughness import Roughness, scaled
-from wavesym.programs.modes.system import modal_chain
+from wavesym.programs.modes.truncation import ModalModel
 from wavesym.results.near_zero import zero_within
 from wavesym.results.tops import Closely, Numbers, Places, tops
 
@@ -81,14 +81,14 @@ class SharedModes:
     """
 
     def __init__(self, model: Model, spacing: float) -> None:
-        self._chain, self._spacing = modal_chain(model), spacing
+        self._chain, self._spacing = modal_model(model), spacing
         self._known: dict[int, _Modes] = {}
         self._modes(self._chain.fewest)
 
     def _modes(self, count: int) -> _Modes:
         """The first modes, found once."""
         if count not in self._known:
-            chain, known = self._chain, self._chain.shares(count)
+            chain, known = self._chain, self._chain.project(count)
             response = RecordResponse(chain.system(known, count), self._spacing, _PARTS)
             self._known[count] = _Modes(chain, known, count, response)
         return self._known[count]
@@ -105,14 +105,14 @@ class SharedModes:
 class _Modes(NamedTuple):
     """The first modes of a chain, and what records do to them."""
 
-    chain: ModalChain[Any]
+    chain: ModalModel[Any]
     known: Any
     number: int
     response: RecordResponse
 
 
 def _enough(
-    modes: Callable[[int], _Modes], chain: ModalChain[Any], records: ManyRecords, count: int
+    modes: Callable[[int], _Modes], chain: ModalModel[Any], records: ManyRecords, count: int
 ) -> RecordedExtremes:
     """By as many modes as the tolerance needs, from `count` on, or as are worth it."""
     tolerance, most = nearest(chain.model.tolerance), min(_MOST_MODES, chain.most)
@@ -135,10 +135,10 @@ def _by_modes(modes: _Modes, records: ManyRecords) -> RecordedExtremes:
     values, taus = (np.concatenate(each) for each in zip(*found, strict=True))
     largest = np.abs(values).max(axis=2)
     horizon = model.horizon()
-    felt = (scaled(rough, records.begin, records.spacing, records.factor, horizon) for rough in records.rough)
+    felt = (scaled_roughness(rough, records.begin, records.spacing, records.factor, horizon) for rough in records.rough)
     errors = np.array([chain.errors(known, count, [rough]) for rough in felt])
     errors += _ROUNDING * largest * np.sqrt(records.samples.shape[1])
-    errors[:, np.array(chain.silent)] = 0.0
+    errors[:, np.array(chain.zero_outputs)] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         bounds = np.where(errors > 0, errors / np.maximum(largest - errors, 0.0), 0.0).max(axis=1, initial=0.0)
     zero_within(values, taus, bounds[:, None, None], 0.0)  # all are at rest at first

@@ -13,7 +13,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.hats.split import rest_of
-from wavesym.programs.modes.panels import Panels
+from wavesym.programs.modes.records import Panels
 from wavesym.programs.program import Program
 
 Numbers = NDArray[np.float64]

@@ -16,7 +16,7 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.programs.modes.roughness import Roughness, of_samples
+from wavesym.programs.modes.loads import Roughness, sampled_roughness
 from wavesym.records.load import RecordedLoad
 from wavesym.results.recorded import ManyRecords, SharedModes
 from wavesym.scene import Scene, lower
@@ -136,7 +136,9 @@ def key(record: dict[str, Any]) -> tuple[str, ...]:
 @lru_cache(2048)
 def doubles(written: tuple[str, ...]) -> _Samples:
     values = np.array([_double(each) for each in written])
-    return _Samples(bool(values[0]), values, of_samples(values), of_samples(np.concatenate([[0.0], values])))
+    return _Samples(
+        bool(values[0]), values, sampled_roughness(values), sampled_roughness(np.concatenate([[0.0], values]))
+    )
 
 
 def _double(written: str) -> float:

@@ -10,7 +10,7 @@ from wavesym.documents.inspection.section import Facts, Listing, Plain, Section,
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.modes.frequencies import frequencies
 from wavesym.mechanics.model import Model
-from wavesym.programs.modes.damped import damped
+from wavesym.programs.modes.undamped import damping_ratios
 
 _SHOWN = 12  # and those that damping is said of
 _RIGID = 1  # modes without strain at most
@@ -28,12 +28,12 @@ def damped_modes(model: Model) -> Iterator[Section]:
         yield Facts("modes", "Modes are not known", {"refusal": str(refusal)})
         return
     w = found[found > 0][:count]
-    rule = damped(damping, w.tolist())
+    rule = damping_ratios(damping, w.tolist())
     after = f"all higher ones have {rule.ratios[-1]:g}"
     if rule.rayleigh:
         after = "at any frequency w it is ({:.6g}/w + {:.6g} w)/2".format(*rule.rayleigh)
     rows: list[dict[str, Plain | Told]] = []
-    for number, (frequency, ratio) in enumerate(zip(w.tolist(), rule.of(w).tolist(), strict=True), 1):
+    for number, (frequency, ratio) in enumerate(zip(w.tolist(), rule.at(w).tolist(), strict=True), 1):
         period = 2 * np.pi / frequency
         row: dict[str, Plain | Told] = {"mode": number, "frequency": frequency, "period": period, "damping": ratio}
         if model.clock:

@@ -12,8 +12,7 @@ from wavesym.lab.atlas.scenes import aimed, made
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.making import program
-from wavesym.programs.modes.evaluator import ModesEvaluator
-from wavesym.programs.modes.making import modes
+from wavesym.programs.modes.evaluator import ModesEvaluator, modes
 from wavesym.scene import Scene
 
 KAPPAS = [Fraction(1, 10), Fraction(1, 5), Fraction(1, 10)]

@@ -1,7 +1,21 @@
-"""What modes have of each other, and of what ports start, where dashpots take energy: in balls (left.py has the laws).
+"""The residual of loads and outputs without the modes that are taken, where dashpots take energy: proved.
 
-Most of what is started is in few slow modes. These are taken away in balls, so that what is left is not lost in the
-rounding of what is not.
+A state x is how far all points move and how fast, its norm the square root of twice its energy. x' = A x; as energy
+only falls, exp(A tau) makes no norm larger, and no sum over k of d_k exp(A (tau - t_k)) makes one more than `in_step`
+times as large (von Neumann's inequality). A load starts B; an output is the product with what a load in its place would
+start, L. So of a load that is linear between instants, beyond what it would do if it did not change, an output has at
+most
+
+    (in_step + steepest) |A^-p (1 - P) L| |A^-q (1 - P) B|,      p + q = 3 - (order of its derivative),
+
+where 1 - P takes away the modes that are taken. It needs none of the others, nor that they are all.
+
+Their energies are known without integrals: that of x and y, <A x, y> + <x, A y> is minus twice what dashpots take of
+their velocities. So modes X with X' = r X have <X, Y> = -2 sum c v_X conj(v_Y)/(r_X + conj(r_Y)), and with A g_q = g_(q
+- 1), g_0 = B, so follow <g_q, X> from <g_(q-1), X>, and <g_q, g_q> from what the load's own point does to it.
+
+These products are computed in balls. Most of what is started is in few slow modes. These are taken away in balls, so
+that what is left is not lost in the rounding of what is not.
 """
 
 from __future__ import annotations
@@ -11,13 +25,92 @@ from dataclasses import dataclass
 
 import numpy as np
 from flint import acb, acb_mat, arb
+from numpy.typing import NDArray
 
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Quantity
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.modes.left import POWERS, Complex, Started, Taken, left
-from wavesym.programs.modes.modal import Numbers
-from wavesym.programs.modes.ports import TERMS, Dashpot, SlowPort
+from wavesym.programs.modes.loads import Numbers
+from wavesym.programs.modes.low_frequency import TERMS, Dashpot, SlowPort
+
+Complex = NDArray[np.complex128]
+
+POWERS = 4
+"""p and q are less."""
+_UNIT = 2.0**-53
+
+
+@dataclass(frozen=True)
+class ModeEnergies:
+    """Modes by columns: their `rates`, twice their energies, how fast dashpots of `size` are `extended` in them.
+
+    `finer` is what imaginary parts of rates are beyond doubles, as they may differ by little. Modes that swing stand
+    for themselves and their conjugates, and count twice.
+    """
+
+    rates: Complex
+    finer: Numbers
+    energy: Numbers
+    size: Numbers
+    extended: Complex
+
+    @property
+    def twice(self) -> Numbers:
+        """How often each counts."""
+        return np.where(self.rates.imag != 0, 2.0, 1.0)
+
+    def after(self, first: int) -> ModeEnergies:
+        """All but the first ones."""
+        later = slice(first, None)
+        return ModeEnergies(
+            self.rates[later], self.finer[later], self.energy[later], self.size, self.extended[:, later]
+        )
+
+    def products(self) -> tuple[Complex, Complex]:
+        """<X, Y> of all modes, and <X, conj Y>, each wrong by a few roundings for each dashpot."""
+        weighted = self.size[:, None] * self.extended
+        rates = self.rates
+        with np.errstate(divide="ignore", invalid="ignore"):
+            swing = (rates.imag[:, None] - rates.imag) + (self.finer[:, None] - self.finer)
+            same = -2 * (weighted.T @ self.extended.conj()) / (rates.real[:, None] + rates.real + 1j * swing)
+            other = -2 * (weighted.T @ self.extended) / (rates[:, None] + rates)
+        np.fill_diagonal(same, self.energy)
+        return same, other
+
+
+@dataclass(frozen=True)
+class PortResponse:
+    """What a port starts: its shares in modes; |A^-q B|^2 for each q from the `least` on, and <A^-q B, X> of all modes,
+    (POWERS, modes)."""
+
+    shares: Complex
+    energies: Numbers
+    known: Complex
+    least: int
+
+
+def residual_norms(energies: ModeEnergies, ports: Sequence[PortResponse]) -> Numbers:
+    """|A^-q (1 - P) B| for q = 0, 1, ..., once the first 0, 1, 2, ... modes are taken: (ports, POWERS, modes + 1)."""
+    count = len(energies.rates)
+    same, other = energies.products()
+    made = np.full((len(ports), POWERS, count + 1), np.inf)
+    lower, lower2 = np.tril(same, -1), np.tril(other, -1)
+    rough = np.abs(lower) + np.abs(lower2)
+    own = np.abs(same.diagonal()) + np.abs(other.diagonal())
+    roundings = _UNIT * (2 * count + 64 + 8 * len(energies.size))
+    for port, row in zip(ports, made, strict=True):
+        for q in range(port.least, POWERS):
+            x = energies.twice * port.shares / (2 * energies.rates ** (q + 1))
+            met = np.real(np.conj(x) * port.known[q])
+            pairs = np.real(x * (lower @ x.conj() + lower2 @ x))
+            alone = np.real(np.abs(x) ** 2 * same.diagonal() + x * x * other.diagonal()) / 2
+            squares = port.energies[q] + np.cumsum(np.append(0.0, alone + pairs - 2 * met))
+            size = np.abs(x)
+            terms = size * (rough @ size) + size**2 * own + 2 * size * np.abs(port.known[q])
+            wrong = roundings * (port.energies[q] + np.cumsum(np.append(0.0, terms)))
+            row[q] = np.sqrt(np.maximum(squares, 0.0) + wrong)
+    return made
+
 
 _STILL = 2.0**-80  # of a frequency: what dies away more slowly does not in doubles
 _SLOW = 32  # modes that are taken away in balls
@@ -25,7 +118,7 @@ _ABOVE = 1 + 2.0**-50
 
 
 @dataclass(frozen=True)
-class StartedInBalls:
+class BallResponse:
     """What a port starts: its shares in modes, |A^-q B|^2 for each q, and <A^-q B, X> of all modes."""
 
     shares: Sequence[acb]
@@ -33,9 +126,9 @@ class StartedInBalls:
     known: Sequence[Sequence[acb]]
     least: int
 
-    def rounded(self, first: int) -> Started:
+    def rounded(self, first: int) -> PortResponse:
         """In doubles, without the first modes."""
-        return Started(
+        return PortResponse(
             np.array([complex(b) for b in self.shares[first:]], complex),
             np.array([max(float(each.upper()) * _ABOVE, 0.0) for each in self.energies]),
             np.array([[complex(h) for h in row[first:]] for row in self.known], complex),
@@ -53,14 +146,14 @@ class Dissipation:
         self._fast = [[rate * e for e in row] for rate, row in zip(self.rates, self._extended, strict=True)]
         self._energies = [self._energy(rate, fast) for rate, fast in zip(self.rates, self._fast, strict=True)]
 
-    def left(self, ports: Sequence[SlowPort], shares: Sequence[Sequence[acb]]) -> Numbers:
+    def residual_norms(self, ports: Sequence[SlowPort], shares: Sequence[Sequence[acb]]) -> Numbers:
         """What is left of ports once the first 0, 1, 2, ... modes are taken: (ports, POWERS, modes + 1)."""
         responses = [self._response(port, row) for port, row in zip(ports, shares, strict=True)]
-        taken = self._rounded()
-        made = left(taken, [response.rounded(0) for response in responses])
+        energies = self._rounded()
+        made = residual_norms(energies, [response.rounded(0) for response in responses])
         slow = min(_SLOW, len(self.rates))
         deflated = [response.rounded(slow) for response in self._without(responses, slow)]
-        made[:, :, slow:] = np.minimum(made[:, :, slow:], left(taken.after(slow), deflated))
+        made[:, :, slow:] = np.minimum(made[:, :, slow:], residual_norms(energies.after(slow), deflated))
         return made
 
     def _energy(self, rate: acb, fast: Sequence[acb]) -> arb:
@@ -81,26 +174,26 @@ class Dissipation:
             rate, fast = rate.conjugate(), [v.conjugate() for v in fast]
         return acb(-2 * self._taken(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
 
-    def _response(self, port: SlowPort, shares: Sequence[acb]) -> StartedInBalls:
+    def _response(self, port: SlowPort, shares: Sequence[acb]) -> BallResponse:
         moved = [[acb(_sum(dashpot, [q[k] for q in port.moved])) for dashpot in self._dashpots] for k in range(TERMS)]
         zero = [acb(0)] * len(self._dashpots)
 
         def fast(q: int) -> list[acb]:
             """How fast dashpots are extended by A^-q of what it starts."""
-            k = q - 2 + port.told
+            k = q - 2 + port.order
             return [-each for each in moved[k]] if k >= 0 else zero
 
         energies = []
         for q in range(POWERS):
-            if port.told:
+            if port.order:
                 energy = port.reads[2 * q + 2] - 2 * self._taken(moved[0], moved[2 * q + 1]).real
             else:
-                energy = -port.reads[2 * q - 2] if q else port.begun
+                energy = -port.reads[2 * q - 2] if q else port.impulse_energy
             for j in range(q - 1, -1, -1):
                 energy = -2 * self._taken(fast(q + j + 1), fast(q - j)).real - energy
             energies.append(energy)
         known = [(rate * b).conjugate() for rate, b in zip(self.rates, shares, strict=True)]
-        if port.told:
+        if port.order:
             known = [h + 2 * self._taken(moved[0], e) for h, e in zip(known, self._extended, strict=True)]
         rows = [known]
         for q in range(1, POWERS):
@@ -108,9 +201,9 @@ class Dissipation:
             pairs = zip(known, self._fast, self.rates, strict=True)
             known = [-(h + 2 * self._taken(acting, v)) / rate.conjugate() for h, v, rate in pairs]
             rows.append(known)
-        return StartedInBalls(shares, energies, rows, port.least)
+        return BallResponse(shares, energies, rows, port.least)
 
-    def _without(self, responses: Sequence[StartedInBalls], slow: int) -> list[StartedInBalls]:
+    def _without(self, responses: Sequence[BallResponse], slow: int) -> list[BallResponse]:
         """What ports start but for their parts in the first modes."""
         if not slow:
             return list(responses)
@@ -135,12 +228,12 @@ class Dissipation:
                 energies.append(each.energies[q] - taken)
                 rows.append(row)
                 column += 1
-            made.append(StartedInBalls(each.shares, energies, rows, each.least))
+            made.append(BallResponse(each.shares, energies, rows, each.least))
         return made
 
-    def _rounded(self) -> Taken:
+    def _rounded(self) -> ModeEnergies:
         rates = np.array([complex(rate) for rate in self.rates], complex)
-        return Taken(
+        return ModeEnergies(
             rates=rates,
             finer=np.array([float(a.imag - b.imag) for a, b in zip(self.rates, rates.tolist(), strict=True)]),
             energy=np.array([float(energy) for energy in self._energies]),

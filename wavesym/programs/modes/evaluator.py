@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from flint import fmpq
 
-from wavesym.numbers.doubles import midpoint, nearest, rational
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import midpoint, nearest, rational, relative
 from wavesym.numbers.reals import Real
+from wavesym.programs.modes.complex_modes import ComplexModes
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.modal import ModalSystem
+from wavesym.programs.modes.modal_system import ModalSystem, Stepper, padded, scheme_tables, stream_tables
 from wavesym.programs.modes.rounding import Rounded, rounded
-from wavesym.programs.modes.step import Stepper
-from wavesym.programs.modes.tables import padded, scheme_tables, stream_tables
+from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncated
+from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.programs.program import Program, ProgramOutput, Provenance, StreamedValues
 from wavesym.programs.schemes.modes import ModesScheme
 
@@ -70,7 +73,7 @@ class ModesEvaluator:
         return scheme_tables(self.system, self.loads, self.real) | stream
 
     @property
-    def told_sources(self) -> tuple[str, ...]:
+    def labelled_sources(self) -> tuple[str, ...]:
         """The names of the loads, with the units that a stream takes."""
         pairs = zip(self.sources, self.inputs, strict=True)
         return tuple(f"{source} [{unit}]" if unit else source for source, (_, unit) in pairs)
@@ -128,7 +131,7 @@ class ModesEvaluator:
             self.constants,
             self.bytes,
             provenance,
-            sources=self.told_sources,
+            sources=self.labelled_sources,
             proved=self.proved,
         )
 
@@ -156,3 +159,44 @@ class ModesEvaluator:
 def _leap(k: int, j: int) -> fmpq:
     """Numbers from -1 to 1 that differ much from one sample to the next, and from load to load."""
     return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)
+
+
+_PLAIN = fmpq(1), ""
+
+
+def modal_model(model: Model) -> ModalModel[Any]:
+    """A model as modes, until its last double or later: with dashpots these have complex frequencies."""
+    model = model.to_horizon()
+    return ComplexModes(model) if model.network.loses else UndampedModes(model)
+
+
+def modal_system(model: Model) -> ModalModes:
+    """The first modes of a model, as many as leave out at most half of its tolerance: see `truncated`."""
+    return truncated(modal_model(model))
+
+
+def modes(model: Model, real: Real) -> ModesEvaluator:
+    """The modes of a model in `real` numbers, whatever rounding does to them.
+
+    UnservedError for what has no modes, or loads that jump; ToleranceError where too many would be needed.
+    OverflowError where numbers would be beyond those of the format.
+    """
+    made = modal_system(model.to_horizon(real))
+    sources = tuple(step.removesuffix(":step") or ramp.removesuffix(":ramp") for step, ramp in made.sources)
+    spacing = made.loads.spacing(model.until, model.spacing)
+    evaluator = ModesEvaluator(
+        made.system,
+        made.loads,
+        sources,
+        spacing,
+        real,
+        model.horizon(real),
+        tuple(model.inputs.get(step or ramp, _PLAIN) for step, ramp in made.sources),
+        proved=made.proved,
+    )
+    totals = made.errors + evaluator.rounding.errors
+    outputs = tuple(
+        ProgramOutput(probe.name, relative(error, size), size)
+        for probe, error, size in zip(model.probes, totals.tolist(), made.largest.tolist(), strict=True)
+    )
+    return replace(evaluator, outputs=outputs)

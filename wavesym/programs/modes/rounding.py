@@ -16,8 +16,8 @@ import numpy as np
 
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
-from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.modal import ModalSystem, Numbers
+from wavesym.programs.modes.loads import LinearLoads, Numbers
+from wavesym.programs.modes.modal_system import ModalSystem
 from wavesym.programs.schemes.modes import ModesScheme
 
 _STEP = 16

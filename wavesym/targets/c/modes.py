@@ -8,7 +8,7 @@ from flint import arb
 
 from wavesym.numbers.doubles import bound
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.modes.tables import LANES
+from wavesym.programs.modes.modal_system import LANES
 from wavesym.programs.program import Program, StreamedValues
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel

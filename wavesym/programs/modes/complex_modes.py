@@ -1,4 +1,4 @@
-"""Modes of a chain with dashpots: each swings and dies away, or creeps; and what is left out, by its energy."""
+"""Modes of a chain with dashpots: each has a complex frequency; and the truncation error, by their energy."""
 
 from __future__ import annotations
 
@@ -16,35 +16,33 @@ from wavesym.exact.modes.dying import DyingSpectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
-from wavesym.programs.modes.chain import ModalChain
-from wavesym.programs.modes.dissipation import Dissipation, complexes, part
-from wavesym.programs.modes.left import Complex
-from wavesym.programs.modes.modal import ModalSystem, Numbers
-from wavesym.programs.modes.ports import Slowly, dashpots, series
-from wavesym.programs.modes.roughness import Roughness
-from wavesym.programs.modes.shares import share
-from wavesym.programs.modes.watched import Driver, Seen, places
+from wavesym.programs.modes.dissipation import Complex, Dissipation, complexes, part
+from wavesym.programs.modes.loads import Numbers, Roughness
+from wavesym.programs.modes.low_frequency import LowFrequency, dashpots, series
+from wavesym.programs.modes.modal_system import ModalSystem
+from wavesym.programs.modes.projection import Driver, ModalOutput, places, share
+from wavesym.programs.modes.truncation import ModalModel
 
 _BITS = 320
 _MORE = 1 + 1e-12
 
 
 @dataclass(frozen=True)
-class SlowedShares:
+class ComplexProjection:
     """Modes by columns, their rates (of exp(rate tau)), what outputs and loads are of them.
 
-    `slow` (outputs, loads, 3) is what outputs have of second integrals, integrals and loads where all changes slowly;
+    `slow` (outputs, loads, 3) is what outputs have of second integrals, integrals and loads where all changes low;
     `beside` (outputs, loads, modes + 1) what they have of loads beside the first 0, 1, 2, ... modes.
 
-    `left` (outputs and then loads, powers, modes + 1) is what their states have without the first modes.
+    `residuals` (outputs and then loads, powers, modes + 1) is what their states have without the first modes.
     """
 
     rates: Complex
-    seen: Complex
+    outputs: Complex
     shares: Complex
     slow: Numbers
     beside: Numbers
-    left: Numbers
+    residuals: Numbers
 
     @property
     def w(self) -> Numbers:
@@ -59,8 +57,8 @@ class SlowedShares:
 
 
 @dataclass(frozen=True)
-class SlowedChain(ModalChain[SlowedShares]):
-    """Its modes, and what those that are left out can add (dissipation.py)."""
+class ComplexModes(ModalModel[ComplexProjection]):
+    """Its modes, and the truncation error of those that are left out (dissipation.py)."""
 
     MOST = 1000
     WORK = 20_000
@@ -80,7 +78,7 @@ class SlowedChain(ModalChain[SlowedShares]):
         """The network with points wherever outputs are."""
         return self.spectrum.cut
 
-    def shares(self, count: int) -> SlowedShares:
+    def project(self, count: int) -> ComplexProjection:
         """The first modes. UnservedError for what modes do not serve."""
         self.refuse()
         network = self.model.network
@@ -88,30 +86,30 @@ class SlowedChain(ModalChain[SlowedShares]):
         refuse_absorbing(network)
         found = self.spectrum.first(count)
         with ctx.workprec(_BITS), series():
-            return slowed_shares(found, self.cut, self.seen, self.drivers)
+            return project_complex(found, self.cut, self.outputs, self.drivers)
 
-    def errors(self, known: SlowedShares, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+    def errors(self, known: ComplexProjection, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
         """What the modes after the first `count` can add to each output, under its own or other `loads`."""
         taken = min(count, len(known.rates))
         made = np.zeros(len(self.model.probes))
-        for o, output in enumerate(self.seen):
+        for o, output in enumerate(self.outputs):
             powers = range(3 - output.order + 1)
-            for j, rough in enumerate(self.rough if loads is None else loads):
-                ports = known.left[o], known.left[len(self.seen) + j]
+            for j, rough in enumerate(self.roughness if loads is None else loads):
+                ports = known.residuals[o], known.residuals[len(self.outputs) + j]
                 size = min(ports[0][p, taken] * ports[1][3 - output.order - p, taken] for p in powers)
                 made[o] += (rough.in_step + rough.steepest) * size
-        return np.where(self.silent, 0.0, _MORE * made)
+        return np.where(self.zero_outputs, 0.0, _MORE * made)
 
-    def system(self, known: SlowedShares, count: int) -> ModalSystem:
+    def system(self, known: ComplexProjection, count: int) -> ModalSystem:
         """The system of the first `count` modes."""
         rates = known.rates[:count]
-        orders = np.array([output.order for output in self.seen])
+        orders = np.array([output.order for output in self.outputs])
         direct = np.zeros((*known.slow.shape[:2], 3))
         for o, order in enumerate(orders.tolist()):
             direct[o, :, 1 : 3 - order] = known.slow[o, :, : 2 - order][:, ::-1]
             direct[o, :, 0] = known.beside[o, :, min(count, len(known.rates))]
         # a mode is rate z + loads; of one load, z = y' - conj(rate) y, y an oscillator's
-        read = known.seen[:, :count] * rates ** orders[:, None]
+        read = known.outputs[:, :count] * rates ** orders[:, None]
         pushed = known.pushed[:, :count]
         phase = pushed[np.abs(pushed).argmax(axis=0), np.arange(len(rates))]
         phase = np.where(phase != 0, phase / np.where(phase != 0, np.abs(phase), 1.0), 1.0)
@@ -120,14 +118,14 @@ class SlowedChain(ModalChain[SlowedShares]):
         every = np.append(np.arange(len(rates)), mixed)
         pushes = np.append(pushed.real, pushed.imag[:, mixed], axis=1)
         read = np.append(read, 1j * read[:, mixed], axis=1)
-        w, heard = np.abs(rates[every]), ~np.array(self.silent)
+        w, nonzero = np.abs(rates[every]), ~np.array(self.zero_outputs)
         return ModalSystem(
             w,
             np.clip(-rates[every].real / w, 0.0, 1.0),
             pushes.T.copy(),
-            -np.real(read * rates[every].conj()) * heard[:, None],
-            np.real(read) * heard[:, None],
-            direct * heard[:, None, None],
+            -np.real(read * rates[every].conj()) * nonzero[:, None],
+            np.real(read) * nonzero[:, None],
+            direct * nonzero[:, None, None],
         )
 
 
@@ -162,30 +160,30 @@ def refuse_absorbing(network: Network) -> None:
             )
 
 
-def slowed_shares(
-    found: Sequence[Mode], pieces: Cut, outputs: Sequence[Seen], drivers: Sequence[Driver]
-) -> SlowedShares:
+def project_complex(
+    found: Sequence[Mode], pieces: Cut, outputs: Sequence[ModalOutput], drivers: Sequence[Driver]
+) -> ComplexProjection:
     """Those of the modes of a network that is cut, in the precision and with the power series that are set."""
     network = pieces.network
-    slowly, losing = Slowly(Stiffness(network)), Dissipation(found, dashpots(network))
-    loads = [slowly.driver(driver) for driver in drivers]
-    seen = [[acb(output.of(mode)) for mode in found] for output in outputs]
+    low, losing = LowFrequency(Stiffness(network)), Dissipation(found, dashpots(network))
+    loads = [low.driver(driver) for driver in drivers]
+    values = [[acb(output.value(mode)) for mode in found] for output in outputs]
     shares = [[acb(share(network, driver, mode)) for mode in found] for driver in drivers]
     slow = np.zeros((len(outputs), len(loads), 3))
     beside = np.zeros((len(outputs), len(loads), len(found) + 1))
     for o, output in enumerate(outputs):
         for j, port in enumerate(loads):
-            read = slowly.read(output, port.moved)
-            felt = [arb(0)] * (2 - port.told) + [read[k] for k in range(port.told + 1)]
-            slow[o, j] = [float(each) for each in felt]
-            parts = zip(losing.rates, seen[o], shares[j], strict=True)
+            read = low.read(output, port.moved)
+            static = [arb(0)] * (2 - port.order) + [read[k] for k in range(port.order + 1)]
+            slow[o, j] = [float(each) for each in static]
+            parts = zip(losing.rates, values[o], shares[j], strict=True)
             each = [(part(rate, b) * a * rate ** (output.order - 2)).real for rate, a, b in parts]
-            beside[o, j] = [float(total) for total in accumulate(each, initial=felt[2 - output.order])]
-    return SlowedShares(
+            beside[o, j] = [float(total) for total in accumulate(each, initial=static[2 - output.order])]
+    return ComplexProjection(
         rates=np.array([complex(rate) for rate in losing.rates], complex),
-        seen=complexes(seen, len(found)),
+        outputs=complexes(values, len(found)),
         shares=complexes(shares, len(found)),
         slow=slow,
         beside=beside,
-        left=losing.left([*map(slowly.output, outputs), *loads], [*seen, *shares]),
+        residuals=losing.residual_norms([*map(low.output, outputs), *loads], [*values, *shares]),
     )

@@ -16,7 +16,7 @@ from flint import arb, arb_series, ctx, fmpq
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import End, Network
-from wavesym.programs.modes.watched import Driver, Seen
+from wavesym.programs.modes.projection import Driver, ModalOutput
 
 TERMS = 10
 """Of a power series."""
@@ -55,19 +55,19 @@ def dashpots(network: Network) -> list[Dashpot]:
 
 @dataclass(frozen=True)
 class SlowPort:
-    """How points move under it, and what it reads of this; `told` is 2 where it is an acceleration, twice integrated.
+    """How points move under it, and what it reads of this; `order` is 2 where it is an acceleration, twice integrated.
 
-    `least` is the power of 1/s from which on what it starts has a finite energy, and that energy (in 1/s^0) `begun`.
+    `least` is the power of 1/s from which on what it starts has a finite energy; `impulse_energy` is that in 1/s^0.
     """
 
     moved: Sequence[Series]
     reads: Series
-    told: int
+    order: int
     least: int
-    begun: arb
+    impulse_energy: arb
 
 
-class Slowly:
+class LowFrequency:
     """A network under loads that change slowly. UnservedError where dashpots alone, or nothing, hold it."""
 
     def __init__(self, stiffness: Stiffness) -> None:
@@ -127,14 +127,14 @@ class Slowly:
         slope = shared * ends[1 - end.side] - pulled * ends[end.side]
         return -slope if end.side else slope
 
-    def read(self, output: Seen, moved: Sequence[Series]) -> Series:
+    def read(self, output: ModalOutput, moved: Sequence[Series]) -> Series:
         """An output of how far points move, but for its derivatives."""
         if output.slope:
             weight, end = output.slope
             return self.slope(moved, end) * arb(weight)
         return sum((moved[point] * arb(weight) for point, weight in output.points.items()), arb_series([0]))
 
-    def output(self, output: Seen) -> SlowPort:
+    def output(self, output: ModalOutput) -> SlowPort:
         """The port that an output is."""
         network, zero, one = self._network, arb(0), arb_series([1])
         if output.slope:
@@ -151,14 +151,14 @@ class Slowly:
         free = {point: weight for point, weight in output.points.items() if network.points[point].motion is None}
         moved = self._under({point: one * arb(weight) for point, weight in free.items()})
         reads = sum((moved[point] * arb(weight) for point, weight in free.items()), arb_series([0]))
-        return SlowPort(moved, reads, 0, *self._begun(free))
+        return SlowPort(moved, reads, 0, *self._impulse_energy(free))
 
     def driver(self, driver: Driver) -> SlowPort:
         """The port that a load is."""
         network, gain, one = self._network, arb(driver.gain), arb_series([1])
         if network.points[driver.point].motion is None:
             moved = self._under({driver.point: one * gain})
-            return SlowPort(moved, moved[driver.point] * gain, 0, *self._begun({driver.point: driver.gain}))
+            return SlowPort(moved, moved[driver.point] * gain, 0, *self._impulse_energy({driver.point: driver.gain}))
         held, forces = arb_series([0]), dict[int, Series]()
         for bar in network.bars:
             pulled, shared = self._bars[bar.delay]
@@ -180,7 +180,7 @@ class Slowly:
         moved[driver.point] = one * gain
         return SlowPort(moved, (held * gain - pull) * gain, 2, 0, arb(0))
 
-    def _begun(self, weights: Mapping[int, fmpq]) -> tuple[int, arb]:
+    def _impulse_energy(self, weights: Mapping[int, fmpq]) -> tuple[int, arb]:
         """Of a force the first power whose energy is finite, and that of its impulse: where there are masses, both."""
         masses = {point: self._network.points[point].mass for point in weights}
         if not all(mass > 0 for mass in masses.values()):

@@ -21,26 +21,26 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.watched import Driver, Seen, places, seen
+from wavesym.programs.modes.projection import Driver, ModalOutput, modal_output, places
 
 _FIELD = fmpz_mod_ctx(2**127 - 39)
 _W, _E = _FIELD(0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357), _FIELD(0x0DD_BA11_2468_ACE0_FACE_0FF5_1DE5)
 _I = _FIELD(3) ** ((2**127 - 40) // 4)
 
 
-def silent(model: Model, drivers: Sequence[Driver], loads: LinearLoads) -> tuple[bool, ...]:
+def zero_outputs(model: Model, drivers: Sequence[Driver], loads: LinearLoads) -> tuple[bool, ...]:
     """Whether each output is: at a free end, where no load has come to before the end of the horizon, or cancelled.
 
     Damped modes move the whole chain at once. Without any load outputs are 0 of themselves.
     """
-    answer = _Answer(model)
+    response = _Response(model)
     shares = _histories(loads)
-    begun = [(each.point, _begin(loads, j)) for j, each in enumerate(drivers)]
-    acting = [(point, time) for point, time in begun if time is not None]
-    return tuple(_silent(model, probe, acting) or answer.cancels(probe, drivers, shares) for probe in model.probes)
+    starts = [(each.point, _start(loads, j)) for j, each in enumerate(drivers)]
+    acting = [(point, time) for point, time in starts if time is not None]
+    return tuple(_is_zero(model, probe, acting) or response.cancels(probe, drivers, shares) for probe in model.probes)
 
 
-def _silent(model: Model, probe: Probe, acting: Sequence[tuple[int, fmpq]]) -> bool:
+def _is_zero(model: Model, probe: Probe, acting: Sequence[tuple[int, fmpq]]) -> bool:
     network, bar = model.network, probe.rod - 1
     strained = probe.quantity in ("strain", "force")
     if strained and probe.place in (0, 1) and network.is_free(End(bar, int(probe.place))):
@@ -57,7 +57,7 @@ def _silent(model: Model, probe: Probe, acting: Sequence[tuple[int, fmpq]]) -> b
     return bool(acting) and not any(time + away[network.joint_of[point]] < model.until for point, time in acting)
 
 
-def _begin(loads: LinearLoads, j: int) -> fmpq | None:
+def _start(loads: LinearLoads, j: int) -> fmpq | None:
     """When a load begins to rise; None where it never does."""
     for k, row in enumerate(loads.samples):
         if row[j] != 0:
@@ -73,7 +73,7 @@ def _histories(loads: LinearLoads) -> list[list[fmpq]]:
     return [[rows[k, j] for j in range(len(loads.slopes))] for k in range(rank)]
 
 
-class _Answer:
+class _Response:
     """What loads do to outputs at one w and E, modulo a prime."""
 
     def __init__(self, model: Model) -> None:
@@ -83,7 +83,7 @@ class _Answer:
 
     def cancels(self, probe: Probe, drivers: Sequence[Driver], histories: Sequence[Sequence[fmpq]]) -> bool:
         """Whether what the loads do to an output adds up to 0."""
-        output = seen(self._network, self._cut, probe)
+        output = modal_output(self._network, self._cut, probe)
         done = [self._read(output, self._moved(driver)) for driver in drivers]
         zero = _FIELD(0)
         return all(
@@ -119,16 +119,16 @@ class _Answer:
         if network.points[driver.point].motion is None:
             forces[driver.point] = _modular(driver.gain)
         else:
-            told = moved[driver.point] = -_modular(driver.gain) / (_W * _W)
+            prescribed = moved[driver.point] = -_modular(driver.gain) / (_W * _W)
             for bar in network.bars:
                 ratio = _modular(bar.impedance * bar.ratios[0] * bar.ratios[1])
                 across = ratio * _W / self._circular[bar.delay][0]
                 for here, there in ((bar.left, bar.right), (bar.right, bar.left)):
-                    forces[there] += across * told if here == driver.point else zero
+                    forces[there] += across * prescribed if here == driver.point else zero
             for link in network.links:
                 across = _modular(link.ratio * link.stiffness) + _I * _W * _modular(link.ratio * link.damping)
                 for here, there in ((link.left, link.right), (link.right, link.left)):
-                    forces[there] += across * told if here == driver.point else zero
+                    forces[there] += across * prescribed if here == driver.point else zero
         law = self._stiffness.law(_modular)
         pairs = [self._circular[delay] for delay in sorted(self._circular)]
         matrix = law.matrix(_W, [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs], _I * _W)
@@ -137,7 +137,7 @@ class _Answer:
             moved[point] = q
         return moved
 
-    def _read(self, output: Seen, moved: Sequence[fmpz_mod]) -> fmpz_mod:
+    def _read(self, output: ModalOutput, moved: Sequence[fmpz_mod]) -> fmpz_mod:
         """An output, but for the powers of w that its derivatives have."""
         if output.slope is None:
             return sum((_modular(weight) * moved[point] for point, weight in output.points.items()), _FIELD(0))

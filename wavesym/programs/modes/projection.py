@@ -1,0 +1,265 @@
+"""The projection of loads and outputs on modes, and their sums over all modes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import fsum
+
+import numpy as np
+from flint import acb, arb, ctx, fmpq
+
+from wavesym.errors import UnservedError
+from wavesym.exact.modes.cuts import Cut
+from wavesym.exact.modes.shape import Mode
+from wavesym.exact.modes.statics import Shape, Statics
+from wavesym.exact.modes.stiffness import Quantity
+from wavesym.mechanics.gauge import ground
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import End, Network, Point
+from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import nearest
+from wavesym.programs.modes.loads import Numbers
+
+
+@dataclass(frozen=True)
+class ModalOutput:
+    """What is differentiated in time `order` times: sums of weights times how far points move, or times a slope."""
+
+    order: int
+    points: Mapping[int, fmpq]
+    slope: tuple[fmpq, End] | None = None
+
+    def value(self, shape: Mode | Shape) -> Quantity:
+        """What it is of a shape."""
+        if self.slope:
+            weight, end = self.slope
+            return shape.slope(end) * weight
+        return sum((shape.points[point] * weight for point, weight in self.points.items()), arb(0))
+
+    @property
+    def power(self) -> int:
+        """In how high a power of 1/w^2 its squares are summed up over all modes by `total`."""
+        return 2 if self.slope else 0 if self.order == 2 else 1
+
+    def total(self, statics: Statics) -> arb:
+        """The sum over all modes with strain of its square over w^(2 power)."""
+        if self.slope:
+            weight, end = self.slope
+            return statics.broken(end) * weight * weight
+        if self.order == 2:  # of masses alone
+            network, free = statics.stiffness.network, statics.free
+            total = sum((arb(b * b / network.points[point].mass) for point, b in self.points.items()), arb(0))
+            part = sum((free[point] * b for point, b in self.points.items()), arb(0)) if free else arb(0)
+            return total - part * part
+        return arb(self.value(statics.under(self.points)))
+
+
+@dataclass(frozen=True)
+class Driver:
+    """A load: `gain` times a force on a point, or times the acceleration of one that moves as it is told."""
+
+    point: int
+    gain: fmpq
+    step: str
+    ramp: str
+
+
+def drivers_of(network: Network) -> list[Driver]:
+    """All loads that a network can have: pairs of a step and a ramp. UnservedError for a velocity that is told."""
+    found: list[Driver] = []
+    for number, point in enumerate(network.points):
+        if point.motion == "fixed":
+            continue
+        for unit in point.loads:
+            first, second, *_ = *_load_powers(point, unit.coefficients), fmpq(0), fmpq(0)
+            if first != 0:
+                found.append(Driver(number, first, unit.source, ""))
+            elif found and found[-1].point == number and not found[-1].ramp and found[-1].gain == second:
+                found[-1] = Driver(number, second, found[-1].step, unit.source)
+            else:
+                found.append(Driver(number, second, "", unit.source))
+    return found
+
+
+def _load_powers(point: Point, coefficients: Sequence[fmpq]) -> list[fmpq]:
+    """A unit load as powers of tau: as a force, or as an acceleration."""
+    if point.motion != "velocity":
+        return [fmpq(c) for c in coefficients]
+    if coefficients[0] != 0:
+        raise UnservedError(
+            f"system.parts: a motion of told velocity given at {point.name or point.place}, one of told acceleration "
+            "expected in modes (pieces and march serve it)"
+        )
+    return [k * fmpq(c) for k, c in enumerate(coefficients)][1:]
+
+
+def places(model: Model) -> tuple[tuple[int, fmpq], ...]:
+    """Where bars are to be cut so that all outputs are at points. UnservedError where that makes a ring."""
+    for probe in model.probes:
+        if 0 < probe.place < 1 and probe.rod - 1 in model.network.bridged:
+            raise UnservedError(
+                f"output: {probe.name} inside a rod with a spring or dashpot beside it given, a place at its ends "
+                "expected in modes (pieces and march serve it)"
+            )
+    return tuple((probe.rod - 1, probe.place) for probe in model.probes if probe.rod)
+
+
+def modal_output(network: Network, pieces: Cut, probe: Probe) -> ModalOutput:
+    """What an output is, its factor included, on the network that is cut in pieces."""
+    factor = probe.factor
+    match probe.quantity:
+        case "strain" | "force":
+            bar = network.bars[probe.rod - 1]
+            weight = bar.impedance if probe.quantity == "force" else 1 / bar.speed
+            return ModalOutput(0, {}, (factor * weight, pieces.end(probe.rod - 1, probe.place)))
+        case "drift":
+            ends = End(pieces.firsts[probe.rod - 1], 0), pieces.end(probe.rod - 1, fmpq(1))
+            return ModalOutput(0, _sum(_moving(pieces, ends[1], factor), _moving(pieces, ends[0], -factor)))
+    if probe.point is not None:
+        points = {probe.point: factor}
+    elif probe.quantity == "acceleration":
+        points = {network.point_at(End(probe.rod - 1, int(probe.place))): factor}
+    else:
+        points = _moving(pieces, pieces.end(probe.rod - 1, probe.place), factor)
+    if probe.quantity == "relative":
+        points = _sum(points, {ground(network): -factor})
+    return ModalOutput({"velocity": 1, "acceleration": 2}.get(probe.quantity, 0), points)
+
+
+def _moving(pieces: Cut, end: End, weight: fmpq) -> dict[int, fmpq]:
+    return {pieces.network.point_at(end): weight * pieces.network.bars[end.bar].ratios[end.side]}
+
+
+def _sum(*parts: Mapping[int, fmpq]) -> dict[int, fmpq]:
+    total: dict[int, fmpq] = {}
+    for part in parts:
+        for point, weight in part.items():
+            total[point] = total.get(point, fmpq(0)) + weight
+    return {point: weight for point, weight in total.items() if weight != 0}
+
+
+_BITS = 256
+_ULPS = 16 * 2.0**-53  # of a sum of squares, each of which is rounded a few times
+
+
+@dataclass(frozen=True)
+class Projection:
+    """Modes by columns: `w`, what outputs are of them (`outputs`), their shares in loads; and sums over all modes.
+
+    `imposed` and `static`, (outputs, loads): what an output is of the shape that a load imposes, and under it when it
+    does not change. `powers` of outputs and loads: sums of squares are over w^(2 power), `totals` over all modes.
+    """
+
+    w: Numbers
+    outputs: Numbers
+    shares: Numbers
+    imposed: Numbers
+    static: Numbers
+    powers: tuple[Numbers, Numbers]
+    totals: tuple[Numbers, Numbers]
+
+    @cached_property
+    def spare(self) -> tuple[Numbers, Numbers]:
+        """Of each output, and each load, the sum of squares over all modes but the first k: (rows, modes + 1)."""
+        outputs, shares = (
+            _spare(self.w, *each) for each in zip((self.outputs, self.shares), self.powers, self.totals, strict=True)
+        )
+        return outputs, shares
+
+    def rest(self, count: int) -> Numbers:
+        """What the modes after the first `count` do to the outputs under loads that do not change: (outputs, loads)."""
+        w = np.where(self.w > 0, self.w, np.inf)[:count]
+        made = np.empty_like(self.static)
+        for j, share in enumerate(self.shares):
+            terms = self.outputs[:, :count] * (share[:count] / w / w)
+            made[:, j] = [fsum([whole, *(-row).tolist()]) for whole, row in zip(self.static[:, j], terms, strict=True)]
+        return made
+
+
+def _spare(w: Numbers, rows: Numbers, powers: Numbers, totals: Numbers) -> Numbers:
+    strained = np.where(w > 0, w, np.inf)
+    made = np.zeros((len(rows), len(w) + 1))
+    for row, power, total, out in zip(rows, powers, totals, made, strict=True):
+        squares = np.where(w > 0, row, 0.0) ** 2 / (strained ** (2 * power) if power else 1.0)
+        left = max(fsum([total, *(-squares).tolist()]), 0.0) + _ULPS * total
+        out[-1], out[:-1] = left, left + np.cumsum(squares[::-1])[::-1] * (1 + _ULPS * len(w))
+    return made
+
+
+def project(
+    found: Sequence[Mode], pieces: Cut, outputs: Sequence[ModalOutput], drivers: Sequence[Driver]
+) -> Projection:
+    """Those of the modes of a network that is cut."""
+    network = pieces.network
+    with ctx.workprec(_BITS):
+        statics = Statics(found[0].stiffness)
+        shapes = [_shapes(statics, driver) for driver in drivers]
+        share_totals = [
+            (static.points[driver.point] if imposed is None else statics.mass(imposed.points)) * driver.gain**2
+            for driver, (imposed, static) in zip(drivers, shapes, strict=True)
+        ]
+        gains = [driver.gain for driver in drivers]
+        return Projection(
+            w=np.array([float(mode.frequency) for mode in found]),
+            outputs=np.array([_column(each, found) for each in outputs]).reshape(len(outputs), len(found)),
+            shares=_array([[share(network, each, mode) for mode in found] for each in drivers], len(found)),
+            imposed=_array(
+                [
+                    [arb(0) if s is None else each.value(s) * g for g, (s, _) in zip(gains, shapes, strict=True)]
+                    for each in outputs
+                ],
+                len(drivers),
+            ),
+            static=_array(
+                [[each.value(s) * g for g, (_, s) in zip(gains, shapes, strict=True)] for each in outputs], len(drivers)
+            ),
+            powers=(np.array([each.power for each in outputs]), np.array([1 if s is None else 0 for s, _ in shapes])),
+            totals=(_above([each.total(statics) for each in outputs]), _above(share_totals)),
+        )
+
+
+def _column(output: ModalOutput, found: Sequence[Mode]) -> list[float]:
+    if len(output.points) == 1:  # so are most, of many modes
+        ((point, weight),) = output.points.items()
+        factor = nearest(weight)
+        return [factor * float(mode.points[point]) for mode in found]
+    return [float(output.value(mode)) for mode in found]
+
+
+def _shapes(statics: Statics, driver: Driver) -> tuple[Shape | None, Shape]:
+    """What a load imposes, and the shape under it when it does not change, both but for its gain."""
+    if statics.stiffness.network.points[driver.point].motion is None:
+        return None, statics.under({driver.point: fmpq(1)})
+    imposed = statics.imposed(driver.point)
+    return imposed, statics.accelerated(imposed)
+
+
+def share(network: Network, driver: Driver, mode: Mode) -> Quantity:
+    """The share of a mode of mass 1 in a load."""
+    if network.points[driver.point].motion is None:
+        return mode.points[driver.point] * driver.gain
+    # what holds the end in the mode, over w^2, is the mass that both move together, the mode and what the end imposes
+    pull = arb(0)
+    for number, bar in enumerate(network.bars):
+        if bar.left == driver.point:
+            pull += mode.slope(End(number, 0)) * (bar.impedance * bar.ratios[0])
+        if bar.right == driver.point:
+            pull -= mode.slope(End(number, 1)) * (bar.impedance * bar.ratios[1])
+    for link in network.links:
+        if driver.point in (link.left, link.right):
+            other = link.right if link.left == driver.point else link.left
+            pull += mode.points[other] * (link.ratio * link.stiffness)
+            if link.damping != 0:
+                pull += mode.points[other] * (mode.frequency * acb(0, link.ratio * link.damping))
+    return -pull * driver.gain / (mode.frequency * mode.frequency)
+
+
+def _array(rows: list[list[arb]], columns: int) -> Numbers:
+    return np.array([[float(value) for value in row] for row in rows]).reshape(len(rows), columns)
+
+
+def _above(values: Sequence[arb]) -> Numbers:
+    """Doubles that are not below."""
+    return np.asarray(np.nextafter([float(value.upper()) for value in values], np.inf), np.float64)
