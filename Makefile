@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated examples bench prove misra targets fuzz mutants peers check-all
+.PHONY: install demo test lint generated examples bench prove misra targets fuzz mutants check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -32,10 +32,6 @@ install: .venv/.installed
 	@echo '== Python packages into .venv: what `make $*` needs'
 	@$(PIP) '.[$*]'
 	@touch $@
-
-# other packages as rows of `wavesym chart`
-peers: install
-	@$(PIP) '.[peers]'
 
 demo: install
 	@echo '== The three examples of the paper, against direct integration: some seconds each'

@@ -147,7 +147,7 @@ def wheel(project: Path, folder: Path) -> Path:
 
 
 def contents(project: Path) -> set[str]:
-    """What belongs into the wheel: modules, the C of two of them, scenes, templates, the marker for types."""
+    """What belongs into the wheel: modules, the C of one of them, scenes, templates, the marker for types."""
     modules = {path.relative_to(project).as_posix() for path in project.glob("wavesym/**/*.py")}
     templates = {path.relative_to(project).as_posix() for path in project.glob("templates/**/*.*")}
     info = f"wavesym-{wavesym.__version__}.dist-info"
@@ -159,7 +159,7 @@ def contents(project: Path) -> set[str]:
         *(f"{path.relative_to(ROOT).as_posix()}" for path in (ROOT / "wavesym/papers").rglob("*.toml")),
         "wavesym/papers/pielorz1979/data/hashes.txt",
         *(f"wavesym/scene/first/{system}.toml" for system in ("building", "collision", "drive")),
-        *(f"wavesym/rivals/{name}.c" for name in ("characteristics", "specialised")),
+        "wavesym/methods/characteristics.c",
         "wavesym/py.typed",
         *(f"{info}/{name}" for name in ("METADATA", "RECORD", "WHEEL", "entry_points.txt", "licenses/LICENSE")),
     }

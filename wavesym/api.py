@@ -868,7 +868,7 @@ def advise(scene: Scene, tolerance: float = 0.01) -> Advice:
         WavesymError: for a tolerance that is not between 0 and 1.
         ToleranceError, CostError: where nothing could be generated either.
     """
-    from wavesym.rivals.advice import advise as advice
+    from wavesym.methods.advice import advise as advice
 
     if not 0 < tolerance < 1:
         raise WavesymError(f"--tolerance: {tolerance:g} is not between 0 and 1; write 0.01 for one percent")

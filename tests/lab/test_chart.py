@@ -14,11 +14,10 @@ from wavesym.api import evaluator
 from wavesym.cli import main
 from wavesym.lab.chart import subjects as listed
 from wavesym.lab.chart.measure import ChartRow, Measured, _Judge, measure, to_csv
-from wavesym.lab.chart.subjects import Subject, opponent, spacing, subjects, taus
+from wavesym.lab.chart.subjects import Subject, other_method, spacing, subjects, taus
 from wavesym.lab.floor import floor
 from wavesym.lab.timing import medians
-from wavesym.rivals.every import RIVALS
-from wavesym.rivals.sums import summing
+from wavesym.methods.every import METHODS
 from wavesym.scene import Scene, lower
 
 SCENE = Scene(
@@ -36,7 +35,7 @@ def subject(wrong=lambda tau: 0.0):
     def values(where):
         return response(where) + wrong(np.asarray(where))
 
-    return Subject("x", "rival", "C", "double", "", 0.1, None, at, lambda: values(at), values)
+    return Subject("x", "other", "C", "double", "", 0.1, None, at, lambda: values(at), values)
 
 
 def test_the_reference_has_no_error():
@@ -120,9 +119,9 @@ def test_what_waves_do_not_serve_is_measured_from_modes(shaken, by_modes):
 
 def test_what_modes_are_measured_from_is_the_limit_of_finite_elements(shaken):
     """Their error falls as the square of an element."""
-    rival = next(summing(rival) for rival in RIVALS if rival.name == "finite elements, modal")
-    at, stated = taus(12.0, 301, "double"), rival.states(lower(SHAKEN))
-    coarse, fine = (shaken.errors(opponent(rival, n, stated, at))[0] for n in (5, 20))
+    method = next(method for method in METHODS if method.name == "finite elements, modal")
+    at, problem = taus(12.0, 301, "double"), method.state(lower(SHAKEN))
+    coarse, fine = (shaken.errors(other_method(method, n, problem, at))[0] for n in (5, 20))
     assert fine < coarse / 12 < 1e-2
 
 
@@ -158,7 +157,7 @@ def test_the_floor_is_a_straight_line(single):
     np.testing.assert_array_equal(values, np.tile(3 + 0.5 * np.arange(1000), (2, 1)))  # that of the last call
 
 
-def row(name, k, kind="rival", **changes):
+def row(name, k, kind="other", **changes):
     made = ChartRow(name, kind, "C", "double", f"{k}", 2.0 * k, 1e-3 * k, 0.1**k, 0.2, None)
     return replace(made, **changes)
 
@@ -167,7 +166,7 @@ MEASURED = Measured(
     (
         *(row("closed", k, "wavesym", proved_bound=1e-3) for k in (1,)),
         *(row("pieces", k, "wavesym", ns_per_value=0.3 * k, proved_bound=1e-9) for k in (4, 8, 12)),
-        *(row(f"rival {n}", k, ns_per_value=10.0 * n * k) for n in range(8) for k in (1, 3, 5) if n),
+        *(row(f"method {n}", k, ns_per_value=10.0 * n * k) for n in range(8) for k in (1, 3, 5) if n),
         row("ball reference", 1, "wavesym", error_away=0.0, error_at_fronts=0.0),
         row("hopeless", 1, error_away=np.inf, error_at_fronts=7.0),
     ),
@@ -262,12 +261,14 @@ def test_other_formats_and_what_is_none(drawn, tmp_path):
 
 
 def test_measured_through(monkeypatch):
-    """All of it, with few rivals: curves, times, errors, set-up."""
-    monkeypatch.setattr(listed, "RIVALS", [replace(rival, resolutions=rival.resolutions[:2]) for rival in RIVALS[:4]])
+    """All of it, with few methods: curves, times, errors, set-up."""
+    monkeypatch.setattr(
+        listed, "METHODS", [replace(method, resolutions=method.resolutions[:2]) for method in METHODS[:4]]
+    )
     monkeypatch.setattr(listed, "TOLERANCES", listed.TOLERANCES[:1])
     told = []
     found = measure(SCENE, 301, told.append)
-    assert {row.name for row in found.rows} >= {"closed", "ball reference", *(rival.name for rival in RIVALS[:4])}
+    assert {row.name for row in found.rows} >= {"closed", "ball reference", *(method.name for method in METHODS[:4])}
     assert found.floor > 0
     for each in found.rows:
         assert each.ns_per_value > 0

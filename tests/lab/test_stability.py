@@ -23,11 +23,11 @@ from wavesym.lab.atlas.attempts import ROUNDED, truth
 from wavesym.lab.atlas.drawing import draw
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, to_csv
 from wavesym.lab.atlas.scenes import TOLERANCE, aimed, drive, made
+from wavesym.methods import characteristics, differences, discrete, elements, laplace
+from wavesym.methods.advice import springs
 from wavesym.pictures.saving import save
 from wavesym.programs import pieces
 from wavesym.programs.choice import choose
-from wavesym.rivals import characteristics, differences, elements, laplace, modes, steps
-from wavesym.rivals.advice import springs
 from wavesym.scene import lower
 
 
@@ -199,33 +199,32 @@ def test_march_as_drawn():
     check_march(endurance.family(quietly), {"kappa = 1/100": 1e-12, "kappa = 3/5": 5e-12})
 
 
-# rivals at fronts
+# other methods at fronts
 
 
-def test_rivals_at_fronts():
+def test_other_methods_at_fronts():
     known = truth(fronts.scene(), per_unit=40, around=fronts.AROUND)
-    for rival, resolution in (
-        (elements.RIVAL, 200),
-        (differences.RIVAL, 500),
-        (modes.RIVAL, 300),
-        (laplace.RIVAL, 3000),
+    for method, resolution in (
+        (elements.NEWMARK, 200),
+        (differences.METHOD, 500),
+        (discrete.MODAL, 100),
+        (laplace.METHOD, 3000),
     ):
-        at, away = fronts.errors(rival, resolution, known)
+        at, away = fronts.errors(method, resolution, known)
         assert at > 0.1
         assert away < at / 2
-    for rival, resolution in ((characteristics.FOURTH, 500), (steps.RIVAL, 1e-10)):
-        assert max(fronts.errors(rival, resolution, known)) < 1e-9
+    assert max(fronts.errors(characteristics.FOURTH, 500, known)) < 1e-9
 
 
 @pytest.mark.slow
-def test_rivals_as_drawn():
-    """Five of eight never converge at a front, and the others do; the title counts them."""
+def test_other_methods_as_drawn():
+    """Four of six never converge at a front, and the others do; the title counts them."""
     family = fronts.family(quietly)
-    assert "5 of 8" in family.title
+    assert "4 of 6" in family.title
     last = {name: family.curve(fronts.AT, name)[-1].error for name in family.curves(fronts.AT)}
-    assert len(last) == 8
-    assert sum(error > 0.1 for error in last.values()) == 5
-    assert sum(error < 1e-6 for error in last.values()) == 3
+    assert len(last) == 6
+    assert sum(error > 0.1 for error in last.values()) == 4
+    assert sum(error < 1e-6 for error in last.values()) == 2
 
 
 # guards: each evaluator refuses outside its proven range

@@ -4,8 +4,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from wavesym.rivals.mass import Elements, dense
-from wavesym.rivals.network import network_problem
+from wavesym.methods.elements import Elements
+from wavesym.methods.problem import undamped_problem
 from wavesym.scene import Scene, lower
 
 
@@ -27,11 +27,11 @@ def by_elements(model, resolution):
 
     The points come first.
     """
-    problem = network_problem(model)
+    problem = undamped_problem(model)
     cells = np.maximum(np.rint(problem.delay * resolution), 4).astype(int)
     elements = Elements(problem, cells)
-    free = np.setdiff1d(np.arange(elements.size), problem.told)
-    mass, stiffness = (dense(entries, elements.size) for entries in (elements.mass, elements.stiffness))
+    free = np.setdiff1d(np.arange(elements.size), problem.prescribed)
+    mass, stiffness = (matrix.toarray() for matrix in (elements.mass, elements.stiffness))
     return mass[free], mass[np.ix_(free, free)], stiffness[np.ix_(free, free)]
 
 

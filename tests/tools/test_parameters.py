@@ -7,10 +7,9 @@ import pytest
 
 import wavesym
 from tools.bench import parameters
+from tools.bench.by_hand import SampleGrid, in_c, in_numpy, line
 from tools.bench.harness import EVERY
 from wavesym.errors import UnservedError
-from wavesym.rivals.line import stated
-from wavesym.rivals.specialised import SampleGrid, in_c, in_numpy
 from wavesym.scene import lower
 
 FOLDER = Path(__file__).parents[2] / "bench"
@@ -18,9 +17,9 @@ SCENES = parameters.scenes(FOLDER)
 
 
 def errors(scene, stride):
-    problem = stated(lower(scene))
+    problem = line(lower(scene))
     grid = SampleGrid(problem, 101, stride)
-    other = stated(lower(scene.with_({"system.kappa": [2] * len(scene.system.kappa)})))
+    other = line(lower(scene.with_({"system.kappa": [2] * len(scene.system.kappa)})))
     found = in_c(grid, problem)(problem)()
     by_numpy = in_numpy(grid, [other, problem])
     assert np.allclose(by_numpy[1], found, rtol=0, atol=1e-12 * np.max(np.abs(found)))
@@ -37,7 +36,7 @@ def test_what_is_written_by_hand_is_right():
 
 
 def test_what_is_off_the_grid_is_refused():
-    problem = stated(lower(SCENES["building, m = 2, to 20"]))
+    problem = line(lower(SCENES["building, m = 2, to 20"]))
     with pytest.raises(UnservedError, match="a strain or velocity on the grid expected"):
         SampleGrid(problem, 101, 1)
     with pytest.raises(UnservedError, match="a whole number from 4 on"):

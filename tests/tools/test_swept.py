@@ -1,4 +1,4 @@
-"""What is measured of sweeps is sweeps that are done, and rivals that are right."""
+"""What is measured of sweeps is sweeps that are done, and what they are compared with is right."""
 
 from pathlib import Path
 
@@ -8,9 +8,8 @@ import pytest
 pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
 from tools.bench import many_sets, swept
+from tools.bench.by_hand import SampleGrid, line, peaks_in_c, peaks_in_numpy
 from wavesym.results.summary import summarised
-from wavesym.rivals.line import stated
-from wavesym.rivals.specialised import SampleGrid, peaks_in_c, peaks_in_numpy
 from wavesym.scene import lower
 
 DRIVE = swept.drive()
@@ -33,13 +32,13 @@ def test_what_a_batch_costs_and_what_memory_is_measured(monkeypatch: pytest.Monk
     assert all(float(told.split()[0]) > 0 for _, told in swept.overheads())
 
 
-def test_rivals_of_many_sets_find_the_peaks_that_the_exact_response_has() -> None:
+def test_programs_by_hand_find_the_peaks_that_the_exact_response_has() -> None:
     """In C and in NumPy alike; with twice the steps about eight times better, as a parabola's top is."""
     scenes = many_sets.varied(DRIVE, 4)
     true = np.array([[(o.min.value, o.max.value) for o in summarised(lower(each)).outputs] for each in scenes])
     kappa = np.array([many_sets.kappa_of(each) for each in scenes])
     assert many_sets._worst(many_sets.best_known(DRIVE, kappa), true) < 1e-11
-    problems = [stated(lower(each)) for each in scenes]
+    problems = [line(lower(each)) for each in scenes]
     errors = []
     for steps in (64, 256):
         grid = SampleGrid(problems[0], 40 * steps + 1, 1)
@@ -49,7 +48,7 @@ def test_rivals_of_many_sets_find_the_peaks_that_the_exact_response_has() -> Non
     assert errors[1] < min(errors[0] / 8, 1e-5)
 
 
-def test_many_sets_have_rows_of_rivals_at_equal_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_many_sets_have_rows_at_equal_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(many_sets, "SETS", 5)
     monkeypatch.setattr(many_sets, "MANY", 20)
     rows = list(many_sets.rows(DRIVE))

@@ -8,8 +8,8 @@ from flint import fmpq
 
 from wavesym.errors import ToleranceError
 from wavesym.mechanics.damping import Damping
+from wavesym.methods.discrete import DiscreteModel
 from wavesym.programs.request import Request
-from wavesym.rivals.lumped import DiscreteModel
 from wavesym.scene import Scene, lower
 from wavesym.verification import integrations as module
 from wavesym.verification import programs
@@ -77,8 +77,8 @@ def test_an_output_that_elements_do_not_judge_is_not_verified(monkeypatch):
     """Elements that do not agree with each other."""
 
     class Noisy(DiscreteModel):
-        def history(self, step):
-            taus, values = super().history(step)
+        def outputs(self, step):
+            taus, values = super().outputs(step)
             values[0] += 0.1 * np.max(np.abs(values)) * (-1.0) ** (self.elements.cells[0] // 2 % 3)
             return taus, values
 

@@ -1,6 +1,6 @@
-"""Peaks of many sets of parameters beside rivals that are written by hand for the scene, at equal error.
+"""Peaks of many sets of parameters beside programs that are written by hand for the scene, at equal error.
 
-Rivals get a grid as coarse as the tolerance lets them have, and parameters as they need them; compiling is apart.
+Those get a grid as coarse as the tolerance lets them have, and parameters as they need them; compiling is apart.
 Errors are those of the worst output of the worst set, of its largest value, against a program of a tolerance far below,
 whose extremes are the true ones where these are known, too.
 """
@@ -13,19 +13,18 @@ from functools import partial
 
 import numpy as np
 
+from tools.bench.by_hand import Line, SampleGrid, line, peaks_in_c, peaks_in_numpy
 from wavesym.lab.timing import medians
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.runtime.making import sets_program
-from wavesym.rivals.line import stated
-from wavesym.rivals.problem import Array, Problem
-from wavesym.rivals.specialised import SampleGrid, peaks_in_c, peaks_in_numpy
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene, lower
 
 SETS, MANY = 200, 100_000
 FIRST, LAST = Fraction(1, 20), Fraction(1, 2)
 """Of the second kappa, which is varied."""
-_STEPS = (64, 96, 128, 192, 256, 384, 512, 768, 1024)  # of rivals, in a unit of tau
+_STEPS = (64, 96, 128, 192, 256, 384, 512, 768, 1024)  # of programs by hand, in a unit of tau
 _FAR_BELOW = "1e-12"
 _GROUP = 25  # sets that NumPy takes at once: waves of more of them do not fit into any cache
 Peaks = Callable[[], Array]
@@ -48,7 +47,7 @@ def rows(scene: Scene) -> Iterator[Sequence[str]]:
     model, kappa = _model(scene), np.array([kappa_of(one) for one in scenes])
     true = best_known(scene, kappa)
     repeated = np.tile(kappa, (MANY // SETS, 1))
-    problems = [stated(lower(one)) for one in scenes]
+    problems = [line(lower(one)) for one in scenes]
     tolerance = nearest(lower(scene).tolerance)
     ways: dict[str, Peaks] = {"wavesym, C": partial(_ours, model, kappa)}
     for name, way in (("by hand, C", _in_c), ("by hand, NumPy, all at once", _in_numpy)):
@@ -84,12 +83,12 @@ def _ours(model: RuntimeModel, kappa: Array) -> Array:
 
 
 def _as_good(
-    way: Callable[[SampleGrid, Sequence[Problem]], Peaks],
-    problems: Sequence[Problem],
+    way: Callable[[SampleGrid, Sequence[Line]], Peaks],
+    problems: Sequence[Line],
     true: Array,
     tolerance: float,
 ) -> tuple[int, Peaks]:
-    """The fewest steps in a unit of tau with which a rival keeps the tolerance, or the most; and its call."""
+    """The fewest steps in a unit of tau with which a program by hand keeps the tolerance, or the most; and its call."""
     for steps in _STEPS:
         grid = SampleGrid(problems[0], round(steps * problems[0].until) + 1, 1)
         call = way(grid, problems)
@@ -98,10 +97,10 @@ def _as_good(
     return steps, call
 
 
-def _in_c(grid: SampleGrid, problems: Sequence[Problem]) -> Peaks:
+def _in_c(grid: SampleGrid, problems: Sequence[Line]) -> Peaks:
     return peaks_in_c(grid, problems)
 
 
-def _in_numpy(grid: SampleGrid, problems: Sequence[Problem]) -> Peaks:
+def _in_numpy(grid: SampleGrid, problems: Sequence[Line]) -> Peaks:
     groups = [problems[k : k + _GROUP] for k in range(0, len(problems), _GROUP)]
     return lambda: np.concatenate([peaks_in_numpy(grid, group) for group in groups])

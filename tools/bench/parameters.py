@@ -15,6 +15,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from tools.bench.by_hand import SampleGrid, in_c, in_numpy, line
 from tools.bench.harness import EVERY
 from wavesym.errors import UnservedError
 from wavesym.lab.timing import medians
@@ -22,9 +23,6 @@ from wavesym.numbers.doubles import nearest
 from wavesym.programs.request import PARTS
 from wavesym.programs.runtime.making import sets_program
 from wavesym.results.response import Response
-from wavesym.rivals import steps
-from wavesym.rivals.line import stated
-from wavesym.rivals.specialised import SampleGrid, in_c, in_numpy
 from wavesym.running.model import RuntimeModel
 from wavesym.running.native import FAST, address, library
 from wavesym.scene import Scene, lower
@@ -180,7 +178,7 @@ def _ours(scene: Scene, each: Scene, truth: Array) -> Iterator[Sequence[str]]:
 
 def _theirs(scene: Scene, truth: Array) -> Iterator[Sequence[str]]:
     model = lower(scene)
-    problem = stated(model)
+    problem = line(model)
     for stride in _STRIDES:
         try:
             grid = SampleGrid(problem, SAMPLES, stride)
@@ -199,11 +197,6 @@ def _theirs(scene: Scene, truth: Array) -> Iterator[Sequence[str]]:
         error = _worst(in_numpy(grid, [problem])[0], truth)
         way = f"by hand, NumPy, {_SETS} sets at once, {grid.steps} steps a unit"
         yield way, "", f"{1e6 * seconds / _SETS:.0f}", f"{error:.1e}", "", ""
-    if problem.until <= 40:
-        start = perf_counter()
-        found = steps.RIVAL.prepare(problem, steps.RIVAL.resolutions[-1])(_instants(problem.until))
-        seconds = perf_counter() - start
-        yield "SciPy, method of steps", "", f"{1e6 * seconds:.0f}", f"{_worst(found, truth):.1e}", "", ""
 
 
 def many_rows(folder: Path) -> Iterator[Sequence[str]]:

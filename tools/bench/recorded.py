@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 
 from wavesym.lab.timing import medians
 from wavesym.mechanics.model import Model
+from wavesym.methods.discrete import DiscreteModel
+from wavesym.methods.elements import Elements
+from wavesym.methods.problem import problem_of
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
-from wavesym.rivals import modal_elements
-from wavesym.rivals.lumped import DiscreteModel
-from wavesym.rivals.mass import Elements
-from wavesym.rivals.sums import summing
 from wavesym.scene import Scene, lower
 
 SAMPLES, SPACING = 1560, fmpq(4995, 1000)
@@ -67,7 +66,5 @@ def modes(model: Model, taus: Values) -> Values:
 
 def elements(model: Model, count: int) -> Values:
     """The outputs at the samples, `count` elements to a rod."""
-    stated = summing(modal_elements.RIVAL).states(model)
-    cells = np.full(len(stated.problem.ends), count)
-    taus, values = DiscreteModel(Elements(stated.problem, cells)).history(float(SPACING))
-    return stated.added(values, taus)
+    problem = problem_of(model)
+    return DiscreteModel(Elements(problem, np.full(len(problem.ends), count))).outputs(float(SPACING))[1]

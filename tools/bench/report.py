@@ -67,7 +67,7 @@ def report(folder: Path) -> Iterator[str]:
     yield ""
     yield "## Charts"
     yield ""
-    yield "Time a sample against largest error, rivals included, by `wavesym chart`; the numbers are in the CSVs."
+    yield "Time a sample against largest error, by `wavesym chart`, with other methods; the numbers are in the CSVs."
     yield ""
     yield from (f"![{label}]({label}.svg)" for label in "bdclr")
     yield ""
@@ -173,7 +173,7 @@ def _records(folder: Path) -> Iterator[str]:
     yield ""
     yield "## Many sets"
     yield ""
-    yield "The peaks of that drive from kappa on, compiling apart. Rivals have the coarsest grid that keeps 1e-6."
+    yield "The peaks of that drive from kappa on, compiling apart. Grids by hand are the coarsest that keep 1e-6."
     yield ""
     yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(swept.drive()))
 

@@ -16,11 +16,10 @@ from wavesym.exact.contacts.events import events
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
+from wavesym.methods.discrete import DiscreteModel
+from wavesym.methods.elements import Elements
+from wavesym.methods.problem import problem_of as damped_problem
 from wavesym.numbers.doubles import fraction, rational
-from wavesym.rivals import modal_elements
-from wavesym.rivals.lumped import DiscreteModel
-from wavesym.rivals.mass import Elements
-from wavesym.rivals.sums import summing
 from wavesym.verification.collocation import Motion, Undecided, integrate
 from wavesym.verification.differences import LATE, Instants, SpaceTimeGrid, coarsest_grid
 from wavesym.verification.observed import Term, observed, read_by
@@ -228,15 +227,13 @@ def elements(known: Known) -> list[Outcome]:
     model = known.independent or known.whole
     if model.damping is None:
         return []
-    summed = summing(modal_elements.RIVAL).states(model)
-    problem = summed.problem
+    problem = damped_problem(model)
     shortest = np.maximum(np.rint(_COARSEST_ELEMENTS * problem.delay / np.min(problem.delay)), 1).astype(int)
     step = problem.until / _ELEMENT_INSTANTS
 
     @lru_cache
     def history(finer: int) -> tuple[Array, Array]:
-        taus, values = DiscreteModel(Elements(problem, shortest * finer)).history(step)
-        return taus, summed.added(values, taus)
+        return DiscreteModel(Elements(problem, shortest * finer)).outputs(step)
 
     def is_affordable(finer: int) -> bool:
         return int(np.sum(shortest)) * finer <= _MOST_UNKNOWNS

@@ -18,10 +18,9 @@ from wavesym.lab.atlas import shaken
 from wavesym.lab.atlas.attempts import Array
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.mechanics.model import Model
-from wavesym.rivals.lumped import DiscreteModel
-from wavesym.rivals.mass import Elements
-from wavesym.rivals.modal_elements import RIVAL
-from wavesym.rivals.sums import summing
+from wavesym.methods.discrete import DiscreteModel
+from wavesym.methods.elements import Elements
+from wavesym.methods.problem import problem_of
 from wavesym.scene import lower
 
 _NEARLY = Fraction(1, 10**9)
@@ -86,12 +85,12 @@ def damping(panel: str, ratio: Fraction) -> Fraction | str | Mapping[str, Any]:
 
 def extrapolated(model: Model) -> Extrapolated:
     """The limit of elements that are halved again and again, by two powers of their length."""
-    stated = summing(RIVAL).states(model)
+    problem = problem_of(model)
     levels = []
     for count in _CELLS:
         cells = np.full(shaken.RODS, count)
-        taus, values = DiscreteModel(Elements(stated.problem, cells)).history(float(SPACING) / _INSTANTS)
-        levels.append(stated.added(values, taus))
+        taus, values = DiscreteModel(Elements(problem, cells)).outputs(float(SPACING) / _INSTANTS)
+        levels.append(values)
     once = [(4 * fine - coarse) / 3 for coarse, fine in pairwise(levels)]
     coarser, limit = ((16 * fine - coarse) / 15 for coarse, fine in pairwise(once))
     return Extrapolated(taus, levels[-1], limit, coarser)

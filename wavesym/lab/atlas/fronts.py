@@ -1,23 +1,21 @@
-"""What each rival does at a front, against its resolution: most converge away from fronts and never at one."""
+"""What each method does at a front, against its resolution: most converge away from fronts and never at one."""
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
 from wavesym.lab.atlas.attempts import Truth, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import made
-from wavesym.rivals.every import RIVALS
-from wavesym.rivals.peers import PEERS
-from wavesym.rivals.problem import Rival
+from wavesym.methods.every import METHODS
+from wavesym.methods.problem import Method
 from wavesym.scene import Scene
 
 UNTIL = 10
-AT = "at fronts: within 1/50 of an arrival"
-AWAY = "away from fronts: 1/10 or more from any arrival"
+AT = "at fronts: within 1/50 of an armethod"
+AWAY = "away from fronts: 1/10 or more from any armethod"
 
 _SAME, _NEAR, _FAR = 1e-6, 0.0201, 0.0999
 # so near that no grid or series here resolves it, and farther
@@ -37,23 +35,21 @@ def scene() -> Scene:
 
 
 def family(progress: Progress) -> CurveFamily:
-    """A curve for each rival, at fronts and away from them. Rivals that are other packages are left to the chart."""
+    """A curve for each method, at fronts and away from them."""
     known = truth(scene(), per_unit=40, around=AROUND)
     points: list[AtlasPoint] = []
     least: dict[str, float] = {}
-    for rival in RIVALS:
-        if rival in PEERS:
-            continue
-        for resolution in rival.resolutions:
-            progress(f"{rival.name}, {resolution:g} {rival.unit}")
-            at, away = errors(rival, resolution, known)
-            finer = refinement(rival, resolution)
-            points += [AtlasPoint(AT, rival.name, finer, at), AtlasPoint(AWAY, rival.name, finer, away)]
-            least[rival.name] = min(at, least.get(rival.name, at))
+    for method in METHODS:
+        for resolution in method.resolutions:
+            progress(f"{method.name}, {resolution:g} {method.unit}")
+            at, away = errors(method, resolution, known)
+            finer = refinement(method, resolution)
+            points += [AtlasPoint(AT, method.name, finer, at), AtlasPoint(AWAY, method.name, finer, away)]
+            least[method.name] = min(at, least.get(method.name, at))
     astray = sum(error > _WRONG for error in least.values())
     return CurveFamily(
         "fronts",
-        f"What rivals do at a front: {astray} of {len(least)} stay wrong by over {_WRONG:.0%} there, however fine",
+        f"Other methods at a front: {astray} of {len(least)} stay wrong by over {_WRONG:.0%} there, however fine",
         Axis("how many times finer than the coarsest grid, series or steps"),
         "largest error / largest value",
         tuple(sorted(points, key=lambda point: point.panel != AT)),
@@ -62,17 +58,17 @@ def family(progress: Progress) -> CurveFamily:
     )
 
 
-def errors(rival: Rival[Any], resolution: float, known: Truth) -> tuple[float, float]:
+def errors(method: Method, resolution: float, known: Truth) -> tuple[float, float]:
     """The largest error at fronts, and away from them."""
-    found = rival.prepare(rival.states(known.model), resolution)(known.taus)
+    found = method.prepare(method.state(known.model), resolution)(known.taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     distance = np.min(np.abs(known.taus[:, np.newaxis] - known.arrivals), axis=1)
-    # at an arrival itself either side of the jump will do
+    # at an armethod itself either side of the jump will do
     near = (distance > _SAME) & (distance <= _NEAR)
     return float(np.max(wrong[near])), float(np.max(wrong[distance >= _FAR]))
 
 
-def refinement(rival: Rival[Any], resolution: float) -> float:
+def refinement(method: Method, resolution: float) -> float:
     """How much finer a resolution is than the first."""
-    ratio = resolution / rival.resolutions[0]
-    return float(ratio**_PER_TOLERANCE if "tolerance" in rival.unit else ratio)
+    ratio = resolution / method.resolutions[0]
+    return float(ratio**_PER_TOLERANCE if "tolerance" in method.unit else ratio)

@@ -15,9 +15,9 @@ import numpy as np
 
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import made
+from wavesym.methods.advice import springs
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import march
-from wavesym.rivals.advice import springs
 from wavesym.scene import Scene, lower
 
 KAPPAS = tuple(Fraction(1, 10**k) for k in range(1, 6))

@@ -1,4 +1,4 @@
-"""Speed against accuracy, drawn: every evaluator and rival of a scene as a curve, errors at fronts and away from them.
+"""Speed against accuracy, drawn: evaluators of a scene and other methods as curves, errors at fronts and away.
 
 What tells curves apart is their marker and the line's style, so that the chart can be read without colours.
 """
@@ -29,7 +29,7 @@ _FONT = 8.0
 
 _OURS = {"closed": "s", "pieces": "o", "modes": "H", "march": "D", "ball reference": "*"}
 _DASHES = {("C", "double"): "-", ("NumPy", "double"): "--", ("C", "single"): "-.", ("NumPy", "single"): ":"}
-_RIVALS = (
+_OTHERS = (
     ("^", "--"),
     ("v", "-"),
     ("<", "--"),
@@ -87,7 +87,7 @@ def _title(scene: Scene, measured: Measured) -> str:
         f"{scene.name}: {parts.type}, {_rods(parts)}, "
         f"{outputs} output{'s' * (outputs > 1)}, tau to {float(scene.output.until):g}\n"
         f"Speed against accuracy, {measured.samples} equally spaced samples of each output (a stream: of its load). "
-        f"One thread; lower left is better.\nBlack: wavesym, grey: rivals.{known}"
+        f"One thread; lower left is better.\nBlack: wavesym, grey: other methods.{known}"
     )
 
 
@@ -100,11 +100,11 @@ def _curves(rows: Sequence[ChartRow]) -> list[tuple[_Style, list[ChartRow]]]:
     grouped: dict[tuple[str, str, str], list[ChartRow]] = {}
     for row in sorted(rows, key=lambda row: row.kind != "wavesym"):
         grouped.setdefault((row.name, row.language, row.precision), []).append(row)
-    rivals = cycle(_RIVALS)
+    others = cycle(_OTHERS)
     curves = []
     for (name, language, precision), points in grouped.items():
         ours = points[0].kind == "wavesym"
-        marker, dashes = (_OURS.get(name, "o"), _DASHES.get((language, precision), "-")) if ours else next(rivals)
+        marker, dashes = (_OURS.get(name, "o"), _DASHES.get((language, precision), "-")) if ours else next(others)
         shown = f"{name}, {language}" + (", single" if precision == "single" else "")
         curves.append((_Style(shown, marker, dashes, ours), points))
     return curves
@@ -172,7 +172,7 @@ def _setup(axes: Axes, curves: Sequence[tuple[_Style, list[ChartRow]]], new_para
     axes.grid(True, color="0.9", linewidth=0.5)
     axes.set_xlabel("set-up for a new parameter set / s")
     axes.set_title(
-        "set-up, apart from the times above: wavesym generates and compiles or imports code, rivals fill tables",
+        "set-up, apart from the times above: wavesym generates and compiles or imports code, others fill tables",
         fontsize=_FONT + 1,
         loc="left",
     )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import WavesymError
 from wavesym.lab.chart.standard import standard
-from wavesym.lab.chart.subjects import Subject, opponents, reference, subjects, taus
+from wavesym.lab.chart.subjects import Subject, other_methods, reference, subjects, taus
 from wavesym.lab.floor import floor
 from wavesym.lab.timing import medians
 from wavesym.programs.runtime.making import sets_program
@@ -71,10 +71,10 @@ class Measured:
 
 
 def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None] = lambda _: None) -> Measured:
-    """All evaluators and rivals of a scene. CompilerError where there is no C compiler, CostError."""
+    """All evaluators, and other methods, of a scene. CompilerError where there is no C compiler, CostError."""
     judge = _Judge(scene)
     found: list[tuple[Subject, tuple[float, float]]] = []
-    for source in (subjects, opponents) if judge.known.bound else (subjects, opponents, _only(reference)):
+    for source in (subjects, other_methods) if judge.known.bound else (subjects, other_methods, _only(reference)):
         for subject in source(scene, samples):
             progress(" ".join((*subject.curve, subject.resolution)))
             found.append((subject, judge.errors(subject)))

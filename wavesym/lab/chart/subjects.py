@@ -1,4 +1,4 @@
-"""What a chart compares: every evaluator of wavesym that a scene has, the ball reference, and the rivals."""
+"""What a chart compares: every evaluator of wavesym that a scene has, the ball reference, and other methods."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.lab.stream import own_samples, stream
+from wavesym.methods.every import METHODS
+from wavesym.methods.problem import Method, Problem
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS
 from wavesym.programs.choice import MAKERS, Made, choose
@@ -22,9 +24,6 @@ from wavesym.programs.making import program
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.program import Program
 from wavesym.results.response import Response
-from wavesym.rivals.every import RIVALS
-from wavesym.rivals.problem import P, Rival
-from wavesym.rivals.sums import summing
 from wavesym.running.native import address, library
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import sources
@@ -35,7 +34,7 @@ TOLERANCES = tuple(Fraction(1, 10**digits) for digits in (4, 6, 8, 10, 12, 14))
 
 # a value of the reference takes as long as thousands of others
 _BALL_SAMPLES = 21
-# finer than a resolution that takes so long no rival goes (seconds)
+# finer than a resolution that takes so long no method goes (seconds)
 _PATIENCE = 1.5
 
 
@@ -120,17 +119,17 @@ def reference(scene: Scene, samples: int) -> Subject:
     return Subject("ball reference", "wavesym", "Python", "exact", "", setup, bound, few, sample, response)
 
 
-def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
-    """The rivals that take the scene, each from coarse to fine."""
+def other_methods(scene: Scene, samples: int) -> Iterator[Subject]:
+    """The other methods that take the scene, each from coarse to fine."""
     model = lower(scene)
     at = taus(model.horizon(), samples, "double")
-    for rival in map(summing, RIVALS):
+    for method in METHODS:
         try:
-            stated = rival.states(model)
+            problem = method.state(model)
         except UnservedError:
             continue
-        for resolution in rival.resolutions:
-            subject = opponent(rival, resolution, stated, at)
+        for resolution in method.resolutions:
+            subject = other_method(method, resolution, problem, at)
             start = perf_counter()
             subject.sample()
             seconds = perf_counter() - start
@@ -140,27 +139,27 @@ def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
 
 
 def left_out(scene: Scene) -> Iterator[str]:
-    """A line for each rival that does not take the scene: which, and why."""
+    """A line for each method that does not take the scene: which, and why."""
     model = lower(scene)
-    for rival in map(summing, RIVALS):
+    for method in METHODS:
         try:
-            rival.states(model)
+            method.state(model)
         except UnservedError as error:
-            yield f"{rival.name}: {error}"
+            yield f"{method.name}: {error}"
 
 
-def opponent(rival: Rival[P], resolution: float, stated: P, at: Values) -> Subject:
-    """A rival at one resolution. The C that any parameter set can use is compiled before the clock starts."""
-    rival.prepare(stated, rival.resolutions[0])
+def other_method(method: Method, resolution: float, problem: Problem, at: Values) -> Subject:
+    """A method at one resolution. The C that any parameter set can use is compiled before the clock starts."""
+    method.prepare(problem, method.resolutions[0])
     start = perf_counter()
-    evaluate = rival.prepare(stated, resolution)
+    evaluate = method.prepare(problem, resolution)
     setup = perf_counter() - start
     return Subject(
-        name=rival.name,
-        kind="rival",
-        language=rival.language,
+        name=method.name,
+        kind="other",
+        language=method.language,
         precision="double",
-        resolution=f"{resolution:g} {rival.unit}",
+        resolution=f"{resolution:g} {method.unit}",
         setup=setup,
         bound=None,
         instants=at,

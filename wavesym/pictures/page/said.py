@@ -9,9 +9,9 @@ from wavesym.documents.summary import number
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.opening import contact_ends
 from wavesym.mechanics.model import Model
+from wavesym.methods.advice import advise
 from wavesym.pictures.timescale import Timescale
 from wavesym.results.summary import OutputSummary, Peak, Summary
-from wavesym.rivals.advice import advise
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
 _CALLED = {

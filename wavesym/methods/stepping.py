@@ -15,30 +15,39 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import not_below, rational
-from wavesym.rivals.problem import Array
 
 _TERMS = 18  # of a series of exp, for what is at most 1: the next one is 1e-17
 _AT_ONCE = 2048  # instants
 
 
 @dataclass(frozen=True)
-class Batch:
-    """Systems that do not feel each other, at rest before the first event: x (batch, size).
+class Systems:
+    """Systems that are not coupled, at rest before the first event: x (systems, size).
 
-    `matrix` has shape (batch, size, size); at event e x gains jumps[e], of shape (events, batch, size); outputs gain
-    the sum of `shown` times x, (outputs, batch, size).
+    `matrix` has shape (systems, size, size); at event e x gains jumps[e], of shape (events, systems, size). The
+    readings are the sum of `readings` times x, (readings, systems, size).
     """
 
     matrix: Array
     jumps: Array
-    shown: Array
+    readings: Array
 
 
-def stepped(batches: Sequence[Batch], events: Sequence[Fraction], until: float, step: float) -> tuple[Array, Array]:
-    """Instants from 0 to `until`, and the outputs there, (outputs, instants); at an event they are what is after it.
+def step_systems(
+    every: Sequence[Systems], events: Sequence[Fraction], until: float, step: float
+) -> tuple[Array, Array]:
+    """Step systems, and add up their readings.
 
-    `events` are 0 = t_0 < t_1 < ... <= until. From one to the next instants are equally spaced, by `step` at most.
+    Args:
+        every: systems with the same number of events and readings.
+        events: 0 = t_0 < t_1 < ... <= until.
+        until: the horizon.
+        step: the largest distance of instants, which are equally spaced from one event to the next.
+
+    Returns:
+        Instants from 0 to `until`, and the readings there, (readings, instants); at an event what is after it.
     """
     ends = [*events, Fraction(until)]
     kinds: dict[Fraction, int] = {}
@@ -50,37 +59,37 @@ def stepped(batches: Sequence[Batch], events: Sequence[Fraction], until: float, 
         for start, k in zip(events, kind, strict=True)
     ]
     firsts = np.append(0, np.cumsum(counts[kind]))
-    values = np.zeros((len(batches[0].shown), firsts[-1] + 1))
-    for batch in batches:
-        shown = batch.shown.reshape(len(batch.shown), prod(batch.shown.shape[1:]))
-        states, last = _at_events(batch, lengths, kind)
-        values[:, -1] += shown @ last.ravel()
+    values = np.zeros((len(every[0].readings), firsts[-1] + 1))
+    for systems in every:
+        readings = systems.readings.reshape(len(systems.readings), prod(systems.readings.shape[1:]))
+        states, last = _at_events(systems, lengths, kind)
+        values[:, -1] += readings @ last.ravel()
         for k, (length, count) in enumerate(zip(lengths, counts, strict=True)):
             here = np.flatnonzero(kind == k)
-            leap = exponential(batch.matrix * (length / count))
+            leap = exponential(systems.matrix * (length / count))
             x, block = np.moveaxis(states[here], 0, -1), 1
             while block < count and block * len(here) < _AT_ONCE:
                 x, leap, block = np.concatenate([x, leap @ x], axis=-1), leap @ leap, 2 * block
             for first in range(0, count, block):
                 columns = (firsts[here] + first + np.arange(min(block, count - first))[:, np.newaxis]).ravel()
-                values[:, columns] += shown @ x.reshape(shown.shape[1], x.shape[-1])[:, : len(columns)]
+                values[:, columns] += readings @ x.reshape(readings.shape[1], x.shape[-1])[:, : len(columns)]
                 x = leap @ x
     return np.concatenate([*spaced, [until]]), values
 
 
-def _at_events(batch: Batch, lengths: Array, kind: NDArray[np.int_]) -> tuple[Array, Array]:
-    """x after each event, (events, batch, size), and at the end; after event e comes a stretch of lengths[kind[e]]."""
-    over = [exponential(batch.matrix * length) for length in lengths]
-    states = np.empty_like(batch.jumps)
-    x = np.zeros_like(batch.jumps[0])
+def _at_events(systems: Systems, lengths: Array, kind: NDArray[np.int_]) -> tuple[Array, Array]:
+    """x after each event, (events, systems, size), and at the end; after event e come lengths[kind[e]] of time."""
+    over = [exponential(systems.matrix * length) for length in lengths]
+    states = np.empty_like(systems.jumps)
+    x = np.zeros_like(systems.jumps[0])
     for e, k in enumerate(kind):
-        states[e] = x + batch.jumps[e]
+        states[e] = x + systems.jumps[e]
         x = (over[k] @ states[e][..., np.newaxis])[..., 0]
     return states, x
 
 
 def exponential(matrix: Array) -> Array:
-    """exp of matrices, (batch, size, size): a series of what is halved until it is small, then squared as often."""
+    """exp of matrices, (systems, size, size): a series of what is halved until it is small, then squared as often."""
     largest = np.max(np.sum(np.abs(matrix), axis=-2), axis=-1)
     halvings = np.ceil(np.log2(np.maximum(largest, 1.0)))[:, np.newaxis, np.newaxis]
     small = matrix / 2.0**halvings

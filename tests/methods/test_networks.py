@@ -1,4 +1,4 @@
-"""Rivals on chains that are written out: two take any of them, the others say in one line why they do not."""
+"""Other methods on any chain: some take all of them, the others say in one line why they do not."""
 
 import math
 from dataclasses import replace
@@ -11,12 +11,13 @@ from wavesym.api import evaluator
 from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.lab.chart.subjects import left_out
-from wavesym.rivals import characteristics, elements, laplace, modal_elements, modes
-from wavesym.rivals.every import RIVALS
-from wavesym.rivals.line import stated
+from wavesym.methods import characteristics, differences, discrete, elements, laplace
+from wavesym.methods.every import METHODS
 from wavesym.scene import Scene, lower
 
-NETWORKS = (elements.RIVAL, modal_elements.RIVAL, laplace.RIVAL)
+CHARACTERISTICS = (characteristics.SECOND, characteristics.FOURTH)
+REFUSED = dict.fromkeys(CHARACTERISTICS, ("springs and dashpots",))
+RESOLUTIONS = {discrete.MODAL: 40, laplace.METHOD: 1000}
 
 
 def scene(parts, branch=(), load=(), **output):
@@ -54,7 +55,7 @@ SCENES = {
         strain=["side:0", "1/2"],
         velocity=["side:1/4", "5/2"],
     ),
-    "told ends and what is there at the start": scene(
+    "prescribed ends and what is there at the start": scene(
         [
             {"motion": "acceleration", "velocity": "1/2", "name": "a"},
             {"rod": "5/4", "strain": "1/3", "velocity": "1/2"},
@@ -80,48 +81,71 @@ def truth(name):
     return taus, values, np.max(np.abs(values), axis=1, keepdims=True)
 
 
-def errors(rival, name, resolution, broken=lambda problem: problem):
+def errors(method, name, resolution, broken=lambda problem: problem):
     taus, values, sizes = truth(name)
-    found = rival.prepare(broken(rival.states(lower(SCENES[name]))), resolution)(taus)
+    found = method.prepare(broken(method.state(lower(SCENES[name]))), resolution)(taus)
     return np.max(np.abs(found - values) / sizes, axis=1)
 
 
 @pytest.mark.parametrize("name", SCENES)
+def test_differences_converge(name):
+    """A step divides all delays, so that there may be many more cells than stated."""
+    first, last = (np.max(errors(differences.METHOD, name, n)) for n in (250, 1000))
+    assert last < 2e-3
+    assert math.log(first / last, 4) > 1.6
+
+
+@pytest.mark.parametrize(
+    ("method", "order"), list(zip(CHARACTERISTICS, (1.6, 3.4), strict=True)), ids=["second", "fourth"]
+)
+@pytest.mark.parametrize("name", [name for name in SCENES if "springs" not in name])
+def test_characteristics_converge(name, method, order):
+    first, last = (np.max(errors(method, name, n)) for n in (600, 2400))
+    assert last < 1e-4
+    assert last < 1e-12 or math.log(first / last, 4) > order
+
+
+@pytest.mark.parametrize("name", SCENES)
 def test_laplace_converges(name):
-    first, last = (np.max(errors(laplace.RIVAL, name, n)) for n in (400, 2000))
+    first, last = (np.max(errors(laplace.METHOD, name, n)) for n in (400, 2000))
     assert last < 2e-3
     assert math.log(first / last, 5) > 2
 
 
 @pytest.mark.parametrize(
-    ("rival", "coarse", "order"),
-    [(elements.RIVAL, 40, 0.8), (modal_elements.RIVAL, 8, 0.7)],
+    ("method", "coarse", "order"),
+    [(elements.NEWMARK, 40, 0.8), (discrete.MODAL, 8, 0.7)],
     ids=["Newmark", "modal"],
 )
 @pytest.mark.parametrize("name", SCENES)
-def test_elements_converge_where_nothing_jumps(name, rival, coarse, order):
+def test_elements_converge_where_nothing_jumps(name, method, coarse, order):
     """Displacements, or what is as smooth."""
     smooth = [k for k, output in enumerate(lower(SCENES[name]).probes) if output.quantity == "displacement"] or [2]
-    first, last = (np.max(errors(rival, name, n)[smooth]) for n in (coarse, 4 * coarse))
+    first, last = (np.max(errors(method, name, n)[smooth]) for n in (coarse, 4 * coarse))
     assert last < 0.08 / coarse
     assert math.log(first / last, 4) > order
 
 
-@pytest.mark.parametrize("rival", NETWORKS, ids=lambda rival: rival.name)
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
 @pytest.mark.parametrize(
     ("name", "broken"),
     [
-        ("unequal rods", lambda problem: replace(problem, delay=problem.delay[::-1])),
+        ("unequal rods", lambda problem: replace(problem, delays=problem.delays[::-1])),
         ("springs and dashpots", lambda problem: replace(problem, stiffness=problem.stiffness / 2)),
         ("springs and dashpots", lambda problem: replace(problem, damping=np.diag(np.diag(problem.damping)))),
         ("branch with gears", lambda problem: replace(problem, ratios=abs(problem.ratios))),
-        ("told ends and what is there at the start", lambda problem: replace(problem, strain=-problem.strain)),
+        (
+            "prescribed ends and what is there at the start",
+            lambda problem: replace(problem, start_strain=-problem.start_strain),
+        ),
     ],
     ids=["delays", "springs", "links", "gears", "strain"],
 )
-def test_a_fault_is_seen(rival, name, broken):
-    resolution = {"finite elements, Newmark": 100, "finite elements, modal": 40, "Laplace inversion": 1000}[rival.name]
-    right, wrong = np.median(errors(rival, name, resolution)), np.max(errors(rival, name, resolution, broken))
+def test_a_fault_is_seen(method, name, broken):
+    if name in REFUSED.get(method, ()):
+        pytest.skip("the method does not take it")
+    resolution = RESOLUTIONS.get(method, 100)
+    right, wrong = np.median(errors(method, name, resolution)), np.max(errors(method, name, resolution, broken))
     assert right < 0.05
     assert wrong > 3 * right
     assert wrong > 0.1
@@ -136,69 +160,39 @@ LINE = scene(
 )
 
 
-@pytest.mark.parametrize("rival", RIVALS, ids=lambda rival: rival.name)
-def test_a_line_of_equal_rods_is_taken_by_all(rival, monkeypatch):
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
+def test_a_line_of_equal_rods_is_taken_by_all(method, monkeypatch):
     monkeypatch.setitem(SCENES, "line", LINE)
-    assert np.median(errors(rival, "line", rival.resolutions[len(rival.resolutions) // 2])) < 0.01
+    assert np.median(errors(method, "line", method.resolutions[len(method.resolutions) // 2])) < 0.01
 
 
-BRAKED = [{"mass": 1, "name": "a"}, {"rod": 1}, {"joint": True, "dashpot": "1/3"}]
-WALLED = [{"mass": 1, "name": "a"}, {"rod": 1}, "fixed"]
+def test_who_does_not_take_a_chain_says_so():
+    why = "a spring, or a dashpot between points, given"
+    assert list(left_out(SCENES["springs and dashpots"])) == [
+        f"{method.name}: system: {why}, none expected" for method in CHARACTERISTICS
+    ]
 
 
-@pytest.mark.parametrize("parts", [BRAKED, WALLED], ids=["dashpot", "fixed end"])
-def test_ends_of_a_line(parts):
-    """Characteristics take them. Modes do not, and would be far off with a dashpot."""
-    given = lower(scene(parts, load=STEP, velocity=["a"], strain=["1/2"]))
-    fourth = characteristics.FOURTH
-    taus = np.linspace(0.05, 4.95, 50)
-    values = np.array(Reference(given).values(taus.tolist()))
-    np.testing.assert_allclose(fourth.prepare(fourth.states(given), 100)(taus), values, rtol=0, atol=1e-7)
-    with pytest.raises(UnservedError, match=r"a dashpot given|an end that moves as told given"):
-        modes.RIVAL.states(given)
-
-
-@pytest.mark.parametrize(
-    ("name", "why"),
-    [
-        ("unequal rods", "a rod of another length or speed than 1"),
-        ("springs and dashpots", "a branch or a link"),
-        ("branch with gears", "a branch or a link"),
-        ("told ends and what is there at the start", "a rod of another length or speed than 1"),
-    ],
-)
-def test_who_does_not_take_a_chain_says_so(name, why):
-    refusing = [rival for rival in RIVALS if rival not in NETWORKS]
-    for rival in refusing:
-        with pytest.raises(UnservedError, match=why):
-            rival.states(lower(SCENES[name]))
-    assert [line.partition(":")[0] for line in left_out(SCENES[name])] == [rival.name for rival in refusing]
-
-
-@pytest.mark.parametrize(
-    ("parts", "why"),
-    [
-        ([{"mass": 1, "name": "a", "spring": 1}, {"rod": 1}], "a spring"),
-        ([{"mass": 1, "name": "a"}, {"rod": 1, "dashpot": 1}], "a branch or a link|a spring, or a dashpot between"),
-        ([{"mass": 1, "name": "a", "velocity": 1}, {"rod": 1}], "a mass that is faster"),
-        ([{"mass": 1, "name": "a"}, {"rod": 1, "strain": 1}], "strained at the start"),
-    ],
-)
-def test_what_a_line_does_not_have(parts, why):
-    with pytest.raises(UnservedError, match=why):
-        stated(lower(scene(parts, velocity=["a"])))
+def test_delays_without_a_measure_are_refused_by_grids():
+    """A step would be 1/1001 of the longest delay."""
+    nearly = scene([{"mass": 1, "name": "a"}, {"rod": 1}, {"mass": 1}, {"rod": "1.001"}], load=STEP, velocity=["a"])
+    assert [line.partition(":")[0] for line in left_out(nearly)] == [
+        method.name for method in (*CHARACTERISTICS, differences.METHOD)
+    ]
+    with pytest.raises(UnservedError, match="a common measure of 1/1e\\+03 of the longest, 1/200 at least expected"):
+        differences.METHOD.state(lower(nearly))
 
 
 OPEN = {"type": "collision", "m": 4, "kappa": ["1/10", "1/5"], "velocity": [1, "-1/2"], "contacts": "open"}
 
 
-@pytest.mark.parametrize("rival", RIVALS, ids=lambda rival: rival.name)
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
 @pytest.mark.parametrize(
     "system",
     [OPEN, {"type": "chain", "parts": [{"rod": 1, "velocity": 1}, "contact", {"rod": 1}]}],
     ids=["named", "own"],
 )
-def test_none_takes_contacts_that_open(rival, system):
+def test_none_takes_contacts_that_open(method, system):
     given = Scene(name="scene", system=system, output={"until": 5, "velocity": ["1/2"]})
     with pytest.raises(UnservedError, match="contact that opens and closes"):
-        rival.states(lower(given))
+        method.state(lower(given))

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flint import fmpq
+from scipy.sparse import diags_array
 
 from wavesym import api
 from wavesym.cli import main
 from wavesym.mechanics.damping import Damping
-from wavesym.rivals import advice, mass
-from wavesym.rivals.advice import advise
+from wavesym.methods import advice, elements
+from wavesym.methods.advice import advise
 from wavesym.scene import Scene, lower
 
 
@@ -59,14 +60,13 @@ def test_the_lighter_the_rods_the_better_the_springs():
 def test_mass_that_is_shared_out_wrongly_is_seen(monkeypatch):
     """Half shares at the ends are of the same order as none."""
     right = worst(tower(0.04))
-    pairs = mass.Elements._pairs
-    monkeypatch.setattr(
-        mass.Elements,
-        "_pairs",
-        lambda self, bar, inner, across: (
-            pairs(self, bar, inner + across, 0) if across > 0 else pairs(self, bar, inner, across)
-        ),
-    )
+
+    def shared(self):
+        parts = self.mean.T @ diags_array(self._masses) @ self.mean
+        ends = self.stretch.T @ diags_array(self._masses / 4) @ self.stretch
+        return parts + ends + self._at_points(np.diag(self.problem.mass))
+
+    monkeypatch.setattr(elements.Elements, "mass", property(shared))
     assert worst(tower(0.04))[1] > 10 * right[1]
 
 

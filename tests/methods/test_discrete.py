@@ -8,14 +8,13 @@ from flint import fmpq
 from scipy.linalg import expm, sqrtm
 
 from wavesym.mechanics.damping import Damping
+from wavesym.methods.advice import springs
+from wavesym.methods.discrete import DiscreteModel
+from wavesym.methods.elements import Elements
+from wavesym.methods.problem import problem_of
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
-from wavesym.rivals import modal_elements
-from wavesym.rivals.advice import springs
-from wavesym.rivals.lumped import DiscreteModel
-from wavesym.rivals.mass import Elements
-from wavesym.rivals.sums import summing
 from wavesym.scene import Scene, lower
 
 FLOOR, ROOF = 0.3, 0.2  # kappa
@@ -91,11 +90,10 @@ def test_elements_come_to_what_damped_modes_are():
         output={"until": 400, "acceleration": [1, 4], "force": [0], "drift": [2], "relative": [4]},
     )
     model = lower(scene).tolerating(fmpq(1, 10**7))
-    read = summing(modal_elements.RIVAL).states(model)
+    problem = problem_of(model)
 
     def elements(count):
-        taus, values = DiscreteModel(Elements(read.problem, np.full(4, count))).history(5.1)
-        return taus, read.added(values, taus)
+        return DiscreteModel(Elements(problem, np.full(4, count))).outputs(5.1)
 
     (taus, coarse), (_, fine), (_, finer) = (elements(count) for count in (4, 8, 16))
     right = make(model, Request(evaluator="modes")).evaluate(taus)

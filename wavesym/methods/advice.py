@@ -10,29 +10,32 @@ from flint import fmpq
 from wavesym.documents.advice import Advice, Candidate, Discrepancy
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
+from wavesym.methods.discrete import DiscreteModel
+from wavesym.methods.elements import Elements
+from wavesym.methods.problem import Array, problem_of
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import attempt, choose
 from wavesym.programs.making import program
 from wavesym.programs.program import Program
-from wavesym.rivals.lumped import DiscreteModel
-from wavesym.rivals.mass import Elements
-from wavesym.rivals.modal_elements import RIVAL
-from wavesym.rivals.problem import Array
-from wavesym.rivals.sums import summing
 
 WEIGHTS: Mapping[str, float] = {"massless": 0.0, "consistent": 1.0}
 """The models in place of waves, from cheap to dear, and what of their mass the rods have."""
 
 # while a wave crosses the shortest rod, and in all
 _INSTANTS, _MOST_INSTANTS = 8, 20_000
-# of what is told apart, what the waves themselves may be wrong by
+# of the tolerance, what the waves themselves may be wrong by
 _EXACT = fmpq(1, 100)
 
 
 def advise(model: Model, tolerance: float) -> Advice:
-    """What `tolerance`, in parts of the largest value of each output, asks for.
+    """Compare models in place of waves with waves.
 
-    ToleranceError, CostError where there is no program of the waves either.
+    Args:
+        model: a scene's model.
+        tolerance: the largest difference that is allowed, in parts of the largest value of each output.
+
+    Raises:
+        ToleranceError, CostError: there is no program of the waves either.
     """
     histories: dict[str, Array] = {}
     refused: dict[str, str] = {}
@@ -70,18 +73,23 @@ def _soonest(model: Model) -> Program:
 
 
 def springs(model: Model, weight: float, step: float | None = None) -> tuple[Array, Array]:
-    """Instants, and the outputs there (outputs, instants), where each rod is one spring with `weight` of its mass.
+    """Solve a model whose rods are springs, one each.
 
-    Instants are `step` apart at most, or as close as it takes to see a wave in the shortest rod.
-    UnservedError for contacts that open and close, for what nothing holds where rods weigh nothing, and for damping of
-    modes that there are not.
+    Args:
+        model: a scene's model.
+        weight: how much of its mass each rod has, 0 or 1.
+        step: the largest distance of instants; None for as close as it takes to see a wave in the shortest rod.
+
+    Returns:
+        Instants, and the outputs there (outputs, instants).
+
+    Raises:
+        UnservedError: contacts open and close, nothing holds a part where rods weigh nothing, or a mode is damped that
+            there is not.
     """
-    stated = summing(RIVAL).states(model)
-    problem = stated.problem
-    one = np.ones(len(problem.ends), dtype=int)
+    problem = problem_of(model)
     close = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
-    taus, values = DiscreteModel(Elements(problem, one, weight)).history(step or close)
-    return taus, stated.added(values, taus)
+    return DiscreteModel(Elements(problem, np.ones(len(problem.ends), dtype=int), weight)).outputs(step or close)
 
 
 def _differences(ours: Array, waves: Array) -> Iterator[Discrepancy]:

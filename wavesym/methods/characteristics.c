@@ -1,32 +1,49 @@
-/* The method of characteristics on a grid, with exponential integration at the bodies.
+/* The method of characteristics on a grid, with exponential integration at the points.
  *
- * On every window [n, n + 1) of tau what arrives at a node was sent in the window before. There the node's velocity q is
- * that of   q' + rate q = r,   r = alpha a + beta b + loads,   with r the polynomial through POINTS neighbouring points:
- * order 2 with 2 of them, 4 with 4. Windows are cut into panels where loads may jump; no polynomial reaches over a cut.
+ * Time is cut into windows, of which every delay is a whole number. What arrives at an end of a bar in a window was sent
+ * by its other end in a window before. The velocity q of a point is that of   mass q' + gamma q = r,   where r is the sum
+ * of weight * what arrives over its ends, and its loads; with r the polynomial through POINTS neighbouring samples: order
+ * 2 with 2 of them, 4 with 4. Windows are cut into panels where loads may jump; no polynomial reaches over a cut.
  */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-enum { BEFORE = POINTS / 2 - 1 };   /* points of an inner stencil before the step itself */
+enum { BEFORE = POINTS / 2 - 1 };   /* samples of an inner stencil before the step itself */
 enum { STENCILS = 1 + 3 * POINTS }; /* decay over a step; gains at the first, an inner and the last step of a panel */
 
+/* Waves are numbered by the ends that send them, left and right ones by turns; then come the velocities of points. */
 struct grid {
-    size_t nodes, panels, points, events, terms, outputs, windows;
-    const double *alpha, *beta, *instant; /* instant: 1/gamma of a node without mass, 0 at a body */
-    const double *stencils;               /* [panel][node + 1][STENCILS]; the last node's are for plain integrals */
-    const double *velocity, *before;      /* of bodies at tau = 0; of the waves [2][nodes] before it */
-    const double *start, *step;           /* of panels */
-    const size_t *steps, *first;          /* a panel's points are first ... first + steps */
-    const size_t *event_window, *event_panel, *event_node;
-    const double *event_load;             /* [event][3] */
-    /* an output is a sum of waves, or of their integrals; that with the largest lag comes first in every window */
+    size_t points, ends, panels, samples, events, terms, outputs, windows, depth; /* depth: windows that are kept */
+    double window;                       /* how long it is */
+    const size_t *massless;              /* of points; the weights and loads of those without mass are over gamma */
+    const double *stencils;              /* [panel][point + 1][STENCILS]; the last point's are for plain integrals */
+    const double *velocity, *before;     /* of points at tau = 0; of the waves before it */
+    const double *start, *step;          /* of panels */
+    const size_t *steps, *first;         /* a panel's samples are first ... first + steps */
+    const size_t *first_end, *end_of;    /* the ends at a point are end_of[first_end[point]] ... */
+    const size_t *lag;                   /* of ends, in windows */
+    const double *ratio, *weight;        /* of ends */
+    const size_t *event_window, *event_panel, *event_point;
+    const double *event_load;            /* [event][3] */
+    /* an output is a sum of waves, or of their integrals; the one with the largest lag comes first in every window */
     const size_t *term_output, *term_wave, *term_integral, *term_first;
     const double *term_sign, *term_lag, *term_base;
 };
 
-/* q at the points of a panel; r and q may not overlap. */
-static void carried(const double *stencil, size_t steps, const double *restrict r, double *restrict q)
+static size_t window_size(const struct grid *g)
+{
+    return (g->ends + g->points) * g->samples;
+}
+
+/* What arrived at an end in window n, as its other end sent it; `kept` are the last windows. */
+static const double *arriving(const struct grid *g, const double *kept, size_t n, size_t end)
+{
+    return kept + (n + g->depth - g->lag[end]) % g->depth * window_size(g) + (end ^ 1) * g->samples;
+}
+
+/* q at the samples of a panel; r and q may not overlap. */
+static void integrate(const double *stencil, size_t steps, const double *restrict r, double *restrict q)
 {
     const double e1 = stencil[0], e2 = e1 * e1, e3 = e2 * e1, e4 = e2 * e2;
     const double *first = stencil + 1, *inner = first + POINTS, *last = inner + POINTS;
@@ -60,7 +77,7 @@ static void carried(const double *stencil, size_t steps, const double *restrict 
 }
 
 /* The first of tau[k] ... tau[count - 1] that is not below the limit, as far as rounding lets one tell. */
-static size_t reached(const double *tau, size_t k, size_t count, double limit)
+static size_t first_from(const double *tau, size_t k, size_t count, double limit)
 {
     while (k < count) {
         const size_t middle = k + (count - k) / 2;
@@ -104,10 +121,6 @@ static void add(const double *f, size_t steps, double origin, double step, doubl
         if (first) {
             for (size_t j = 0; j < count; ++j) {
                 out[j] = sign * from[j * lie.stride];
-            }
-        } else if (lie.stride == 1) {
-            for (size_t j = 0; j < count; ++j) {
-                out[j] += sign * from[j];
             }
         } else {
             for (size_t j = 0; j < count; ++j) {
@@ -192,12 +205,12 @@ static void read_off(const struct grid *g, double n, const double *waves, const 
                      size_t count, double dtau, double *out)
 {
     for (size_t term = 0; term < g->terms; ++term) {
-        const double *field = (g->term_integral[term] ? integrals : waves) + g->term_wave[term] * g->points;
-        const double origin = n + g->term_lag[term];
-        size_t k = reached(tau, 0, count, origin);
+        const double *field = (g->term_integral[term] ? integrals : waves) + g->term_wave[term] * g->samples;
+        const double origin = n * g->window + g->term_lag[term];
+        size_t k = first_from(tau, 0, count, origin);
         for (size_t p = 0; p < g->panels && k < count; ++p) {
-            const double till = p + 1 < g->panels ? g->start[p + 1] : 1.0;
-            const size_t end = reached(tau, k, count, origin + till);
+            const double until = p + 1 < g->panels ? g->start[p + 1] : g->window;
+            const size_t end = first_from(tau, k, count, origin + until);
             if (end > k) {
                 add(field + g->first[p], g->steps[p], origin + g->start[p], g->step[p], g->term_sign[term], tau + k,
                     end - k, spacing(dtau, g->step[p]), g->term_first[term], out + g->term_output[term] * count + k);
@@ -213,17 +226,17 @@ static void add_up(const struct grid *g, const double *waves, double *integrals,
     for (size_t term = 0; term < g->terms; ++term) {
         const size_t wave = g->term_wave[term];
         for (size_t p = 0; g->term_integral[term] && p < g->panels; ++p) {
-            double *to = integrals + wave * g->points + g->first[p];
+            double *to = integrals + wave * g->samples + g->first[p];
             to[0] = p ? to[-1] : total[term];
-            carried(g->stencils + (p * (g->nodes + 1) + g->nodes) * STENCILS, g->steps[p],
-                    waves + wave * g->points + g->first[p], to);
+            integrate(g->stencils + (p * (g->points + 1) + g->points) * STENCILS, g->steps[p],
+                      waves + wave * g->samples + g->first[p], to);
         }
-        total[term] = integrals[wave * g->points + g->points - 1];
+        total[term] = integrals[wave * g->samples + g->samples - 1];
     }
 }
 
 /* How far apart ascending tau are, 0 where not evenly. */
-static double even(const double *tau, size_t count)
+static double spacing_of(const double *tau, size_t count)
 {
     const double dtau = count > 1 ? (tau[count - 1] - tau[0]) / (double)(count - 1) : 0;
     double worst = 0;
@@ -234,78 +247,93 @@ static double even(const double *tau, size_t count)
     return worst < 1e-12 * (1 + tau[count - 1]) ? dtau : 0;
 }
 
-/* out[output*count + k] at ascending tau[k]; count is at least 1.
- * work: points + nodes*(4*points + 2*points + 4) + terms doubles. */
-void sample(const struct grid *g, const double *tau, size_t count, double *out, double *work)
+/* The waves that leave a point's ends in a panel, and its velocity q; `load` is moved on to the end of the panel. Ends are
+ * taken two at a time, as most points have two: the second of an odd one is the first again, without weight. */
+static void pass_point(const struct grid *g, size_t point, size_t panel, double *kept, size_t n, double *load,
+                       double *velocity, double *work)
 {
-    const double dtau = even(tau, count);
-    const size_t size = 2 * g->nodes * g->points;
-    double *waves[2] = {work, work + size};
-    double *integrals = work + 2 * size, *r = integrals + size;
-    double *velocity = r + g->points, *load = velocity + g->nodes, *total = load + 3 * g->nodes;
-    size_t event = 0;
-    memset(load, 0, 3 * g->nodes * sizeof *load);
-    memset(integrals, 0, size * sizeof *integrals);
-    memset(total, 0, g->terms * sizeof *total);
-    memcpy(velocity, g->velocity, g->nodes * sizeof *velocity);
-    for (size_t wave = 0; wave < 2 * g->nodes; ++wave) {
-        for (size_t k = 0; k < g->points; ++k) {
-            waves[0][wave * g->points + k] = g->before[wave];
+    const size_t samples = g->steps[panel] + 1, at = g->first[panel];
+    const double step = g->step[panel], length = step * (double)g->steps[panel];
+    const size_t *const from = g->end_of + g->first_end[point], *const to = g->end_of + g->first_end[point + 1];
+    double *now = kept + n % g->depth * window_size(g);
+    double *q = now + (g->ends + point) * g->samples + at, *r = g->massless[point] ? q : work;
+    const double f0 = load[0], f1 = load[1], f2 = load[2];
+    for (const size_t *end = from; end < to; end += 2) {
+        const size_t other = end + 1 < to ? end[1] : *end;
+        const double *restrict a = arriving(g, kept, n, *end) + at, *restrict b = arriving(g, kept, n, other) + at;
+        const double alpha = g->weight[*end], beta = other != *end ? g->weight[other] : 0;
+        if (end == from) {
+            for (size_t k = 0; k < samples; ++k) {
+                r[k] = alpha * a[k] + beta * b[k];
+            }
+        } else {
+            for (size_t k = 0; k < samples; ++k) {
+                r[k] += alpha * a[k] + beta * b[k];
+            }
         }
     }
-    add_up(g, waves[0], integrals, total);
-    read_off(g, -1.0, waves[0], integrals, tau, count, dtau, out);
-    for (size_t n = 0; n < g->windows; ++n) {
-        const double *old = waves[n % 2];
-        double *new = waves[(n + 1) % 2];
-        for (size_t p = 0; p < g->panels; ++p) {
-            const size_t points = g->steps[p] + 1, at = g->first[p];
-            const double length = g->step[p] * (double)g->steps[p];
-            for (; event < g->events && g->event_window[event] == n && g->event_panel[event] == p; ++event) {
-                for (size_t j = 0; j < 3; ++j) {
-                    load[3 * g->event_node[event] + j] += g->event_load[3 * event + j];
-                }
-            }
-            for (size_t x = 0; x < g->nodes; ++x) {
-                /* beyond the ends there is nothing: alpha, beta are 0 there, and any wave will do */
-                const double *restrict a = old + (g->nodes + (x > 0 ? x - 1 : 0)) * g->points + at;
-                const double *restrict b = old + (x + 1 < g->nodes ? x + 1 : x) * g->points + at;
-                double *restrict left = new + x * g->points + at;
-                double *restrict right = new + (g->nodes + x) * g->points + at;
-                const double alpha = g->alpha[x], beta = g->beta[x], instant = g->instant[x];
-                double *force = load + 3 * x;
-                for (size_t k = 0; k < points; ++k) {
-                    r[k] = alpha * a[k] + beta * b[k];
-                }
-                if (force[0] != 0 || force[1] != 0 || force[2] != 0) {
-                    const double f0 = force[0], f1 = force[1], f2 = force[2], step = g->step[p];
-                    for (size_t k = 0; k < points; ++k) {
-                        const double t = step * (double)(int)k;
-                        r[k] += f0 + t * (f1 + t * f2);
-                    }
-                    force[0] += length * (f1 + length * f2);
-                    force[1] += 2 * length * f2;
-                }
-                if (instant != 0) {
-                    for (size_t k = 0; k < points; ++k) {
-                        const double q = instant * r[k];
-                        left[k] = q - a[k];
-                        right[k] = q - b[k];
-                    }
-                } else {
-                    left[0] = velocity[x];
-                    carried(g->stencils + (p * (g->nodes + 1) + x) * STENCILS, g->steps[p], r, left);
-                    velocity[x] = left[points - 1];
-                    for (size_t k = 0; k < points; ++k) {
-                        const double q = left[k];
-                        left[k] = q - a[k];
-                        right[k] = q - b[k];
-                    }
-                }
+    if (f0 != 0 || f1 != 0 || f2 != 0) {
+        for (size_t k = 0; k < samples; ++k) {
+            const double t = step * (double)(int)k;
+            r[k] += f0 + t * (f1 + t * f2);
+        }
+        load[0] += length * (f1 + length * f2);
+        load[1] += 2 * length * f2;
+    }
+    if (!g->massless[point]) {
+        q[0] = *velocity;
+        integrate(g->stencils + (panel * (g->points + 1) + point) * STENCILS, g->steps[panel], r, q);
+        *velocity = q[samples - 1];
+    }
+    for (const size_t *end = from; end < to; end += 2) {
+        const size_t other = end + 1 < to ? end[1] : *end;
+        const double *restrict a = arriving(g, kept, n, *end) + at, *restrict b = arriving(g, kept, n, other) + at;
+        double *left = now + *end * g->samples + at, *right = now + other * g->samples + at;
+        const double one = g->ratio[*end], two = g->ratio[other];
+        for (size_t k = 0; k < samples; ++k) {
+            left[k] = one * q[k] - a[k];
+            right[k] = two * q[k] - b[k];
+        }
+    }
+}
+
+/* out[output*count + k] at ascending tau[k]; count is at least 1.
+ * work: samples*((ends + points)*(depth + 1) + 1) + 4*points + terms doubles. */
+void sample(const struct grid *g, const double *tau, size_t count, double *out, double *work)
+{
+    const double dtau = spacing_of(tau, count);
+    const size_t size = window_size(g);
+    double *integrals = work + g->depth * size, *r = integrals + size;
+    double *velocity = r + g->samples, *load = velocity + g->points, *total = load + 3 * g->points;
+    size_t event = 0;
+    memset(load, 0, 3 * g->points * sizeof *load);
+    memset(integrals, 0, size * sizeof *integrals);
+    memset(total, 0, g->terms * sizeof *total);
+    memcpy(velocity, g->velocity, g->points * sizeof *velocity);
+    for (size_t wave = 0; wave < g->ends + g->points; ++wave) {
+        for (size_t d = 0; d < g->depth; ++d) {
+            for (size_t k = 0; k < g->samples; ++k) {
+                work[d * size + wave * g->samples + k] = g->before[wave];
             }
         }
-        add_up(g, new, integrals, total);
-        read_off(g, (double)(int)n, new, integrals, tau, count, dtau, out);
+    }
+    for (size_t d = g->depth; d > 0; --d) {
+        add_up(g, work, integrals, total);
+        read_off(g, -(double)(int)d, work, integrals, tau, count, dtau, out);
+    }
+    for (size_t n = 0; n < g->windows; ++n) {
+        for (size_t p = 0; p < g->panels; ++p) {
+            for (; event < g->events && g->event_window[event] == n && g->event_panel[event] == p; ++event) {
+                for (size_t j = 0; j < 3; ++j) {
+                    load[3 * g->event_point[event] + j] += g->event_load[3 * event + j];
+                }
+            }
+            for (size_t point = 0; point < g->points; ++point) {
+                pass_point(g, point, p, work, n, load + 3 * point, velocity + point, r);
+            }
+        }
+        add_up(g, work + n % g->depth * size, integrals, total);
+        read_off(g, (double)(int)n, work + n % g->depth * size, integrals, tau, count, dtau, out);
     }
     for (size_t term = 0; term < g->terms; ++term) {
         if (g->term_integral[term]) {

@@ -9,15 +9,19 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import gcd
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
-from wavesym.rivals.characteristics import lagrange
-from wavesym.rivals.problem import Array, Problem
+from wavesym.mechanics.model import Model
+from wavesym.methods.characteristics import lagrange, unlinked_problem
+from wavesym.methods.problem import Array, LoadEvent
+from wavesym.numbers.doubles import nearest
 from wavesym.running.native import FAST, address, library
 
 _SOURCE = Path(__file__).with_suffix(".c")
@@ -25,28 +29,89 @@ _GAUSS = np.polynomial.legendre.leggauss(24)
 _FIRSTS = (0, -1, -2)
 
 
+class Reading(NamedTuple):
+    """A strain or velocity in rod 1 ... m, `offset` in [0, 1] from its left end."""
+
+    quantity: str
+    rod: int
+    offset: float
+
+
+@dataclass(frozen=True)
+class Line:
+    """m rods of length 1 with waves of speed 1 in a line, and at node x = 0 ... m
+
+        inertia q' + gamma q = alpha a + beta b + loads,
+
+    with a and b the waves that arrive from the left and the right. `before` are waves until tau = 0, sent to the left
+    and to the right, (2, m + 1); all else has shape (m + 1,).
+    """
+
+    inertia: Array
+    alpha: Array
+    beta: Array
+    gamma: Array
+    velocity: Array
+    before: Array
+    events: tuple[LoadEvent, ...]
+    readings: tuple[Reading, ...]
+    until: float
+
+    @property
+    def nodes(self) -> int:
+        """m + 1."""
+        return len(self.inertia)
+
+
+def line(model: Model) -> Line:
+    """The line of a model. UnservedError where it is none of equal rods."""
+    problem = unlinked_problem(model)
+    ends = np.stack([np.arange(problem.points - 1), np.arange(1, problem.points)], axis=1)
+    alike = all(np.all(each == 1) for each in (problem.delay, problem.speed, problem.ratios))
+    if not np.array_equal(problem.ends, ends) or not alike or not problem.sums.is_trivial:
+        raise UnservedError("system: rods that differ, branches or sums given, a line of equal rods expected")
+    free = ~np.isin(np.arange(problem.points), problem.prescribed)
+    alpha, beta = (np.where(free, 2 * each, 0.0) for each in _beside(problem.impedance))
+    return Line(
+        inertia=problem.mass,
+        alpha=alpha,
+        beta=beta,
+        gamma=np.where(free, np.diag(problem.damping) + (alpha + beta) / 2, 1.0),
+        velocity=problem.velocity,
+        before=np.stack([_beside(problem.start_waves[:, 1])[0], _beside(problem.start_waves[:, 0])[1]]),
+        events=problem.events,
+        readings=tuple(Reading(each.quantity, each.rod, nearest(each.place)) for each in problem.readings),
+        until=problem.until,
+    )
+
+
+def _beside(rods: Array) -> tuple[Array, Array]:
+    """A quantity of rods (m,) at the nodes: of the rod on the left, on the right; 0 where there is none."""
+    return np.append(0.0, rods), np.append(rods, 0.0)
+
+
 class SampleGrid:
     """`stride` steps from each of `count` samples to the next, the last at the horizon or before; for one scene."""
 
-    def __init__(self, problem: Problem, count: int, stride: int) -> None:
+    def __init__(self, problem: Line, count: int, stride: int) -> None:
         steps = stride * (count - 1) / problem.until
         if steps != round(steps) or steps < 4:
             raise UnservedError(f"samples: {steps:g} steps in a unit of tau given, a whole number from 4 on expected")
         self.steps, self.count, self.stride = round(steps), count, stride
         self.windows = int(problem.until) + 1
-        self.outputs = len(problem.watches)
+        self.outputs = len(problem.readings)
         self.terms = [
-            (output, watch.rod - (way == 1), way, sign, round(lag * self.steps))
-            for output, watch in enumerate(problem.watches)
+            (output, reading.rod - (way == 1), way, sign, round(lag * self.steps))
+            for output, reading in enumerate(problem.readings)
             for way, sign, lag in (
-                (1, -1.0 if watch.quantity == "strain" else 1.0, watch.offset),
-                (0, 1.0, 1 - watch.offset),
+                (1, -1.0 if reading.quantity == "strain" else 1.0, reading.offset),
+                (0, 1.0, 1 - reading.offset),
             )
         ]
-        self.events = sorted((int(event.time), event.node) for event in problem.events)
-        for watch in problem.watches:
-            if watch.quantity == "displacement" or watch.offset * self.steps % 1:
-                raise UnservedError(f"{watch.quantity} given, a strain or velocity on the grid expected")
+        self.events = sorted((int(event.time), event.point) for event in problem.events)
+        for reading in problem.readings:
+            if reading.quantity == "displacement" or reading.offset * self.steps % 1:
+                raise UnservedError(f"{reading.quantity} given, a strain or velocity on the grid expected")
         if any(event.time % 1 for event in problem.events):
             raise UnservedError("load: an instant between whole tau given, none expected")
 
@@ -55,20 +120,27 @@ class SampleGrid:
         """Fronts pass outputs at multiples of so many steps."""
         return gcd(self.steps, *(lag for *_, lag in self.terms))
 
-    def arguments(self, problem: Problem) -> list[Array]:
+    def arguments(self, problem: Line) -> list[Array]:
         """What changes with parameters."""
-        loads = [event.coefficients for event in sorted(problem.events, key=lambda event: (event.time, event.node))]
-        before = np.stack(problem.beside(problem.rods)) / 2
-        of = problem.inertia, problem.alpha, problem.beta, problem.gamma, problem.velocity, before, np.array(loads)
+        loads = [event.coefficients for event in sorted(problem.events, key=lambda event: (event.time, event.point))]
+        of = (
+            problem.inertia,
+            problem.alpha,
+            problem.beta,
+            problem.gamma,
+            problem.velocity,
+            problem.before,
+            np.array(loads),
+        )
         return [np.ascontiguousarray(each, np.float64) for each in of]
 
 
-def in_c(grid: SampleGrid, problem: Problem) -> Callable[[Problem], Callable[[], Array]]:
+def in_c(grid: SampleGrid, problem: Line) -> Callable[[Line], Callable[[], Array]]:
     """A call that makes samples of a set of parameters, (outputs, count); compiled for the sizes of this scene."""
     out = np.empty((grid.outputs, grid.count))
     function = _compiled(grid, problem).parameters_to_samples
 
-    def of(chosen: Problem) -> Callable[[], Array]:
+    def of(chosen: Line) -> Callable[[], Array]:
         arguments = grid.arguments(chosen)
         where = [address(argument) for argument in arguments]
         call = [*map(ctypes.c_void_p, where), ctypes.c_size_t(grid.count), ctypes.c_void_p(address(out))]
@@ -83,7 +155,7 @@ def in_c(grid: SampleGrid, problem: Problem) -> Callable[[Problem], Callable[[],
     return of
 
 
-def peaks_in_c(grid: SampleGrid, problems: Sequence[Problem]) -> Callable[[], Array]:
+def peaks_in_c(grid: SampleGrid, problems: Sequence[Line]) -> Callable[[], Array]:
     """A call that makes the least and the greatest value of each output, (sets, outputs, 2), set by set."""
     rows, out = np.empty((grid.outputs, grid.count)), np.empty((len(problems), grid.outputs, 2))
     arguments = [np.stack(each) for each in zip(*map(grid.arguments, problems), strict=True)]
@@ -99,7 +171,7 @@ def peaks_in_c(grid: SampleGrid, problems: Sequence[Problem]) -> Callable[[], Ar
     return peaks
 
 
-def _compiled(grid: SampleGrid, problem: Problem) -> ctypes.CDLL:
+def _compiled(grid: SampleGrid, problem: Line) -> ctypes.CDLL:
     """For the sizes of a scene."""
     output, node, way, sign, lag = zip(*grid.terms, strict=True)
     windows, nodes = zip(*grid.events, strict=True) if grid.events else ((), ())
@@ -124,7 +196,7 @@ def _listed(values: Sequence[float]) -> str:
     return ", ".join(map(str, values)) or "0"
 
 
-def in_numpy(grid: SampleGrid, problems: Sequence[Problem]) -> Array:
+def in_numpy(grid: SampleGrid, problems: Sequence[Line]) -> Array:
     """Samples of all sets at once: (sets, outputs, count)."""
     one, steps = problems[0], grid.steps
     h, sets = 1 / steps, len(problems)
@@ -170,7 +242,7 @@ def in_numpy(grid: SampleGrid, problems: Sequence[Problem]) -> Array:
     return out
 
 
-def peaks_in_numpy(grid: SampleGrid, problems: Sequence[Problem]) -> Array:
+def peaks_in_numpy(grid: SampleGrid, problems: Sequence[Line]) -> Array:
     """The least and the greatest value of each output, (sets, outputs, 2), as `peaks_in_c` has them; all at once."""
     values = in_numpy(grid, problems)
     return np.stack([_top(grid, -values) * -1.0, _top(grid, values)], axis=-1)

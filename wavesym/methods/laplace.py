@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import czt
 
-from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.gauge import Gauge
+from wavesym.methods.problem import Array, Evaluate, Method, Problem, undamped_problem
 from wavesym.numbers.doubles import fraction
-from wavesym.rivals.network import NetworkProblem, network_problem
-from wavesym.rivals.problem import Array, Evaluate, Rival
 
 _PERIODS = 2.0  # T, in horizons
 _DAMPED = 34.0  # 2 c T: what comes back from beyond 2 T is e^-34 of it
@@ -26,13 +25,13 @@ _MOST = 1 << 22  # entries of a matrix of exponentials at a time
 Complex = NDArray[np.complex128]
 
 
-def _transforms(problem: NetworkProblem, s: Complex) -> Complex:
-    """The outputs' transforms at s (complex, (k,)): shape (outputs, k)."""
+def _transforms(problem: Problem, s: Complex) -> Complex:
+    """The readings' transforms at s (complex, (k,)): shape (readings, k)."""
     block = max(1, _MOST // (2 * len(problem.delay) + problem.points) ** 2)
     return np.hstack([_block(problem, s[first : first + block]) for first in range(0, len(s), block)])
 
 
-def _block(problem: NetworkProblem, s: Complex) -> Complex:
+def _block(problem: Problem, s: Complex) -> Complex:
     # unknowns: what the ends of the bars send, left and right by turns, then the points' velocities
     first = 2 * len(problem.delay)
     size = first + problem.points
@@ -42,45 +41,45 @@ def _block(problem: NetworkProblem, s: Complex) -> Complex:
     matrix[:, first:, first:] = problem.damping + problem.stiffness / s[:, np.newaxis, np.newaxis]
     matrix[:, points, points] += np.multiply.outer(s, problem.mass)
     known[:, first:] = problem.mass * problem.velocity
-    for bar, side, point, ratio, impedance in problem.at_ends():
-        sent, met, at = 2 * bar + side, 2 * bar + 1 - side, first + point
+    for bar, side, point, ratio, impedance in problem.each_end():
+        sent, opposite, at = 2 * bar + side, 2 * bar + 1 - side, first + point
         delay = np.exp(-s * problem.delay[bar])
-        gone = problem.held[bar, 1 - side] * (1 - delay) / s  # what is in the bar at tau = 0 and arrives here
+        earlier = problem.start_waves[bar, 1 - side] * (1 - delay) / s  # what is in the bar at tau = 0 and arrives here
         matrix[:, sent, sent] = 1.0
-        matrix[:, sent, met] = delay
+        matrix[:, sent, opposite] = delay
         matrix[:, sent, at] = -ratio
-        known[:, sent] = -gone
-        matrix[:, at, met] -= 2 * ratio * impedance * delay
+        known[:, sent] = -earlier
+        matrix[:, at, opposite] -= 2 * ratio * impedance * delay
         matrix[:, at, at] += ratio**2 * impedance
-        known[:, at] += 2 * ratio * impedance * gone
-    for point in problem.told:  # it feels nothing
+        known[:, at] += 2 * ratio * impedance * earlier
+    for point in problem.prescribed:  # no force acts on it
         matrix[:, first + point, :] = 0.0
         matrix[:, first + point, first + point] = 1.0
         known[:, first + point] = 0.0
     for event in problem.events:
         f0, f1, f2 = event.coefficients
-        known[:, first + event.node] += np.exp(-s * float(event.time)) * (f0 / s + f1 / s**2 + 2 * f2 / s**3)
+        known[:, first + event.point] += np.exp(-s * float(event.time)) * (f0 / s + f1 / s**2 + 2 * f2 / s**3)
     solved = np.asarray(np.linalg.solve(matrix, known[..., np.newaxis])[..., 0].T, dtype=np.complex128)
-    return np.array([_read(problem, probe, s, solved) for probe in problem.probes])
+    return np.array([_reading(problem, reading, s, solved) for reading in problem.readings])
 
 
-def _read(problem: NetworkProblem, probe: Probe, s: Complex, solved: Complex) -> Complex:
-    """The transform of an output."""
-    if probe.point is not None:
-        velocity = solved[2 * len(problem.delay) + probe.point]
-        return np.asarray(velocity / s if probe.quantity == "displacement" else velocity)
-    bar, place = probe.rod - 1, float(fraction(probe.place))
-    came = []
+def _reading(problem: Problem, reading: Gauge, s: Complex, solved: Complex) -> Complex:
+    """The transform of a reading."""
+    if reading.point is not None:
+        velocity = solved[2 * len(problem.delay) + reading.point]
+        return np.asarray(velocity / s if reading.quantity == "displacement" else velocity)
+    bar, place = reading.rod - 1, float(fraction(reading.place))
+    arriving = []
     for side, way in ((0, place), (1, 1 - place)):
         delay = np.exp(-s * way * problem.delay[bar])
-        came.append(solved[2 * bar + side] * delay + problem.held[bar, side] * (1 - delay) / s)
-    right, left = came
-    if probe.quantity == "strain":
+        arriving.append(solved[2 * bar + side] * delay + problem.start_waves[bar, side] * (1 - delay) / s)
+    right, left = arriving
+    if reading.quantity == "strain":
         return np.asarray((left - right) / problem.speed[bar])
-    return np.asarray((left + right) / (s if probe.quantity == "displacement" else 1))
+    return np.asarray((left + right) / (s if reading.quantity == "displacement" else 1))
 
 
-def _prepare(problem: NetworkProblem, resolution: float) -> Evaluate:
+def _solve(problem: Problem, resolution: float) -> Evaluate:
     span = _PERIODS * problem.until
     c = _DAMPED / (2 * span)
     k = np.arange(int(resolution))
@@ -104,4 +103,4 @@ def _prepare(problem: NetworkProblem, resolution: float) -> Evaluate:
     return evaluate
 
 
-RIVAL = Rival("Laplace inversion", "SciPy", "terms", (100, 300, 1000, 3000, 10000, 30000), network_problem, _prepare)
+METHOD = Method("Laplace inversion", "SciPy", "terms", (100, 300, 1000, 3000, 10000, 30000), undamped_problem, _solve)

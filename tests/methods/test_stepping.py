@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from wavesym.rivals import stepping
-from wavesym.rivals.stepping import Batch, exponential, stepped
+from wavesym.methods import stepping
+from wavesym.methods.stepping import Systems, exponential, step_systems
 
 FREQUENCIES = st.sampled_from([0.0, 1e-9, 1e-3, 0.5, 1.0, 40.0])
 RATIOS = st.sampled_from([0.0, 0.05, 1 - 1e-9, 1.0, 1 + 1e-9, 3.0])
@@ -41,8 +41,8 @@ def test_steps_between_events_are_exact(times, oscillators):
     events = sorted({Fraction(0), *times} - {Fraction(5)})
     matrix = np.array([oscillator(*each) for each in oscillators])
     jumps = np.random.default_rng(7).normal(size=(len(events), len(matrix), 4))
-    shown = np.random.default_rng(8).normal(size=(2, len(matrix), 4))
-    taus, values = stepped([Batch(matrix, jumps, shown)], events, 5.0, 0.4)
+    readings = np.random.default_rng(8).normal(size=(2, len(matrix), 4))
+    taus, values = step_systems([Systems(matrix, jumps, readings)], events, 5.0, 0.4)
     assert np.all(np.diff(taus) <= 0.4 + 1e-12)
     assert all(0 <= np.min(abs(taus - float(event))) < 1e-15 for event in events)
     for tau, column in list(zip(taus, values.T, strict=True))[:: max(1, len(taus) // 5)]:
@@ -50,7 +50,7 @@ def test_steps_between_events_are_exact(times, oscillators):
         for event, jump in zip(events, jumps, strict=True):
             if event <= tau:
                 x = [expm(each * (tau - float(event))) @ one for each, one in zip(matrix, jump, strict=True)]
-                right += np.einsum("obs,bs->o", shown, x)
+                right += np.einsum("obs,bs->o", readings, x)
         np.testing.assert_allclose(column, right, rtol=0, atol=1e-9 * max(1.0, np.abs(right).max()))
 
 

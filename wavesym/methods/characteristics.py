@@ -1,0 +1,197 @@
+"""Characteristics on a grid, exponential integration at the points, in C: what a careful engineer would write.
+
+Waves are kept at grid points of tau; a mass's velocity between two of them is exact for what arrives being a line
+(order 2) or a cubic (order 4) between neighbouring points. A window is the longest time that all delays are multiples
+of, so that what arrives was sent a whole number of windows earlier. The grid has a point wherever a load jumps, so that
+no interpolation reaches over a front. `characteristics.c` has the loops, this file the weights.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from bisect import bisect_right
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from wavesym.errors import UnservedError
+from wavesym.mechanics.model import Model
+from wavesym.methods.problem import Array, Evaluate, Method, Problem, gridded_problem
+from wavesym.numbers.doubles import fraction
+from wavesym.running.native import FAST, address, library
+
+_SOURCE = Path(__file__).with_suffix(".c")
+_GAUSS = np.polynomial.legendre.leggauss(24)
+
+_COUNTS = ("points", "ends", "panels", "samples", "events", "terms", "outputs", "windows", "depth")
+_TABLES = (
+    *("massless", "stencils", "velocity", "before", "start", "step", "steps", "first"),
+    *("first_end", "end_of", "lag", "ratio", "weight", "event_window", "event_panel", "event_point", "event_load"),
+    *("term_output", "term_wave", "term_integral", "term_first", "term_sign", "term_lag", "term_base"),
+)
+
+
+class _Grid(ctypes.Structure):
+    """`struct grid`."""
+
+    _fields_ = [
+        *((name, ctypes.c_size_t) for name in _COUNTS),
+        ("window", ctypes.c_double),
+        *((name, ctypes.c_void_p) for name in _TABLES),
+    ]
+
+
+def unlinked_problem(model: Model) -> Problem:
+    """State the problem of a model whose points are masses, dashpots and ends of bars alone.
+
+    Raises:
+        UnservedError: as `gridded_problem`, and where there are springs, or dashpots between points.
+    """
+    problem = gridded_problem(model)
+    if np.any(problem.stiffness) or np.any(problem.damping - np.diag(np.diag(problem.damping))):
+        raise UnservedError("system: a spring, or a dashpot between points, given, none expected")
+    return problem
+
+
+def _solve(order: int, problem: Problem, resolution: float) -> Evaluate:
+    compiled = library(_SOURCE.read_text(encoding="utf-8"), (*FAST, f"-DPOINTS={order}"))
+    measure = float(problem.measure)
+    cuts = sorted({0, 1} | {event.time / problem.measure % 1 for event in problem.events})
+    lengths = measure * np.diff(np.array([float(cut) for cut in cuts]))
+    steps = np.maximum(order, np.rint(lengths * resolution)).astype(np.uintp)
+    lags = np.repeat([int(delay / problem.measure) for delay in problem.delays], 2)
+    depth = int(max(lags)) + 1
+    impedance = np.repeat(problem.impedance, 2)
+    ends = problem.ends.ravel()
+    free = ~np.isin(np.arange(problem.points), problem.prescribed)
+    ratios = problem.ratios.ravel()
+    before = problem.start_waves.ravel()
+    gamma = np.where(free, np.diag(problem.damping) + problem.onto**2 @ impedance, 1.0)
+    massless = ~free | (problem.mass == 0)
+    over = np.where(massless, gamma, 1.0)
+    terms = _terms(problem)
+    events = sorted(
+        (int(when), bisect_right(cuts, when % 1) - 1, event.point, *event.coefficients)
+        for event in problem.events
+        for when in (event.time / problem.measure,)
+    )
+    by_point = np.argsort(ends, kind="stable")
+    sizes = {
+        "points": problem.points,
+        "ends": len(ends),
+        "panels": len(steps),
+        "samples": int(np.sum(steps + 1)),
+        "events": len(events),
+        "terms": len(terms),
+        "outputs": len(problem.readings),
+        "windows": int(Fraction(problem.until) // problem.measure) + 1,
+        "depth": depth,
+    }
+    doubles = {
+        "stencils": np.stack([_stencils(problem.mass, gamma, step, order) for step in lengths / steps]),
+        "velocity": problem.velocity,
+        "before": np.append(before, np.zeros(problem.points)),
+        "start": np.append(0.0, np.cumsum(lengths))[:-1],
+        "step": lengths / steps,
+        "ratio": ratios,
+        "weight": np.where(free[ends], 2 * ratios * impedance, 0.0) / over[ends],
+        "event_load": np.array([np.array(event[3:]) / over[event[2]] for event in events]),
+        "term_sign": np.array([sign for *_, sign, _ in terms]),
+        "term_lag": np.array([lag for *_, lag in terms]),
+        "term_base": np.array([sign * (depth * measure - lag) for *_, sign, lag in terms])
+        * np.append(before, np.zeros(problem.points))[[wave for _, wave, *_ in terms]],
+    }
+    integers = {
+        "massless": massless,
+        "steps": steps,
+        "first": np.cumsum(steps + 1) - (steps + 1),
+        "first_end": np.searchsorted(ends[by_point], np.arange(problem.points + 1)),
+        "end_of": by_point,
+        "lag": lags,
+        "event_window": np.array([window for window, *_ in events]),
+        "event_panel": np.array([panel for _, panel, *_ in events]),
+        "event_point": np.array([point for _, _, point, *_ in events]),
+        "term_output": np.array([output for output, *_ in terms]),
+        "term_wave": np.array([wave for _, wave, *_ in terms]),
+        "term_integral": np.array([integral for _, _, integral, *_ in terms]),
+        "term_first": np.diff([-1, *(output for output, *_ in terms)]),
+    }
+    tables = {name: np.ascontiguousarray(table, dtype=np.float64) for name, table in doubles.items()}
+    tables |= {name: np.ascontiguousarray(table, dtype=np.uintp) for name, table in integers.items()}
+    grid = _Grid(*sizes.values(), measure, *(address(tables[name]) for name in _TABLES))
+    waves = len(ends) + problem.points
+    work = np.empty(sizes["samples"] * (waves * (depth + 1) + 1) + 4 * problem.points + len(terms))
+
+    def evaluate(taus: Array) -> Array:
+        _ = tables  # C reads them, so that they must live as long as this
+        out = np.empty((sizes["outputs"], len(taus)))
+        count = ctypes.c_size_t(len(taus))
+        where = [ctypes.c_void_p(address(array)) for array in (taus, out, work)]
+        compiled.sample(ctypes.byref(grid), where[0], count, *where[1:])
+        return out
+
+    return evaluate
+
+
+def _terms(problem: Problem) -> list[tuple[int, int, bool, float, float]]:
+    """(output, wave, whether its integral, sign, lag): dU/dtau is the sum of the two waves in a bar.
+
+    Waves are those that ends send, then the velocities of points. dU/dx is left less right, over the speed.
+    """
+    terms: list[tuple[int, int, bool, float, float]] = []
+    for output, reading in enumerate(problem.readings):
+        integral, bar = reading.quantity == "displacement", reading.rod - 1
+        if reading.point is not None:
+            terms.append((output, problem.ends.size + reading.point, integral, 1.0, 0.0))
+            continue
+        place, delay = float(fraction(reading.place)), float(problem.delays[bar])
+        slope = 1 / float(problem.speed[bar]) if reading.quantity == "strain" else 1.0
+        right = -slope if reading.quantity == "strain" else 1.0
+        both = (
+            (output, 2 * bar, integral, right, place * delay),
+            (output, 2 * bar + 1, integral, slope, (1 - place) * delay),
+        )
+        terms += sorted(both, key=lambda term: term[-1], reverse=True)
+    return terms
+
+
+def _stencils(mass: Array, gamma: Array, step: float, order: int) -> Array:
+    """For every point, and for plain integrals: the decay over a step, then gains at a first, inner and last step.
+
+    Gains are step * integral over s in [0, 1] of exp(-rate step (1 - s)) times Lagrange's polynomials in s.
+    """
+    # what has no mass is not integrated; 1 keeps its line finite
+    inertia = np.append(np.where(mass > 0, mass, 1.0), 1.0)
+    z = np.append(gamma, 0.0)[:, np.newaxis] / inertia[:, np.newaxis] * step
+    s, weights = (_GAUSS[0] + 1) / 2, _GAUSS[1] / 2
+    kernel = np.exp(-z * (1 - s)) * weights * step / inertia[:, np.newaxis]
+    # the stencil starts at the step itself, so that it is inside the panel, or ends at its end
+    firsts = (0, 1 - order // 2, 2 - order)
+    return np.hstack([np.exp(-z), *(kernel @ lagrange(s, first, order) for first in firsts)])
+
+
+def lagrange(s: Array, first: int, points: int) -> Array:
+    """Lagrange's polynomials on the points first, first + 1, ... at s: shape (len(s), points)."""
+    places = range(first, first + points)
+    return np.stack(
+        [np.prod([(s - other) / (place - other) for other in places if other != place], axis=0) for place in places],
+        axis=1,
+    )
+
+
+# with divisors of the usual numbers of samples
+_STEPS = (10, 25, 50, 125, 250, 500, 1000, 2000)
+
+SECOND, FOURTH = (
+    Method(
+        f"characteristics, order {order}",
+        "C",
+        "steps per unit of tau",
+        _STEPS,
+        unlinked_problem,
+        partial(_solve, order),
+    )
+    for order in (2, 4)
+)
