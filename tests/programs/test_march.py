@@ -75,27 +75,24 @@ def test_every_kind_of_joint(real) -> None:
     assert {joint.space.law for joint in made.plan.joints} == {SCATTERER, BODY, BLOCK}
     assert made.error_bound < (1e-9 if real is DOUBLE else 0.5)
     assert np.all(missed(model, made, 12 if real is DOUBLE else 5) <= 1)
-    assert np.all(missed_at(model, made.degree, real, blocked=True, most=5) <= 1)
 
 
 @settings(max_examples=20)
 @given(bodies())
 def test_bodies_beside_each_other_and_beside_other_joints(table) -> None:
-    """In both precisions, and as blocks."""
+    """In both precisions."""
     model = lower(Scene(**table))
     for real in (DOUBLE, SINGLE):
         made = march(model, real)
         assert any(joint.space.law == BODY for joint in made.plan.joints)
         assert np.all(missed(model, made, 8) <= 1)
-        assert np.all(missed_at(model, made.degree, real, blocked=True, most=8) <= 1)
 
 
 @settings(max_examples=8)
 @given(bodies(until=4), st.integers(4, 9))
 def test_bodies_at_degrees_that_are_too_low(table, degree) -> None:
     model = lower(Scene(**table))
-    for blocked in (False, True):
-        assert np.all(missed_at(model, degree, blocked=blocked, most=8) <= 1)
+    assert np.all(missed_at(model, degree, most=8) <= 1)
 
 
 def by_laplace(table, model: Model, taus) -> np.ndarray:

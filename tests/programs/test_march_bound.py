@@ -138,11 +138,10 @@ def test_energy_never_grows(table) -> None:
     fine = max(joint.space.norm for joint in plan.joints) * float(fraction(plan.step)) <= 8
     if driven or not fine or len(plan.joints) < len(network.joints) or plan.windows > 200:
         return
-    for blocked in (False, True):
-        energy = energy_of(plan, 30, blocked=blocked)
-        assert np.all(np.diff(energy) <= 1e-9 * (energy[0] + 1))
-        if not any(x.damping for x in (*network.points, *network.links)):
-            assert np.allclose(energy, energy[0], rtol=1e-6, atol=0)
+    energy = energy_of(plan, 30)
+    assert np.all(np.diff(energy) <= 1e-9 * (energy[0] + 1))
+    if not any(x.damping for x in (*network.points, *network.links)):
+        assert np.allclose(energy, energy[0], rtol=1e-6, atol=0)
 
 
 @pytest.mark.parametrize(
@@ -191,9 +190,7 @@ def of_one_kind(law: str) -> Scene:
 
 
 LEFT_OUT = {"bodies": "_of_bodies", "blocks": "_of_blocks", "scatterers": "_of_scatterers"}
-KINDS = pytest.mark.parametrize(
-    ("law", "blocked"), [("bodies", False), ("bodies", True), ("blocks", False), ("scatterers", False)]
-)
+KINDS = pytest.mark.parametrize("law", ["bodies", "blocks", "scatterers"])
 
 
 def without(part: slice, what: str) -> tuple[str, Callable[..., tuple[np.ndarray, ...]]]:
@@ -208,52 +205,48 @@ def without(part: slice, what: str) -> tuple[str, Callable[..., tuple[np.ndarray
     return LEFT_OUT[what], less
 
 
-def proved(plan: MarchPlan, degree: int, real=DOUBLE, *, blocked: bool = False) -> tuple[float, float]:
+def proved(plan: MarchPlan, degree: int, real=DOUBLE) -> tuple[float, float]:
     """Of the norm of energy of the error what is truncated and rounded, at most, in the size of the loads."""
-    verdict, size = judge(plan, degree, real, blocked=blocked), nearest(power_of_two([largest_number(plan)]))
+    verdict, size = judge(plan, degree, real), nearest(power_of_two([largest_number(plan)]))
     return size * verdict.truncated, size * verdict.rounded
 
 
 @KINDS
-def test_rounding_that_is_left_out_is_seen(law: str, blocked: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rounding_that_is_left_out_is_seen(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A march in single precision beside the same in double: in the norm of energy it is wrong, but as is proved."""
     plan, degree = march_plan(lower(of_one_kind(law)), SINGLE), 12
-    error = apart(
-        plan, all_windows(plan, degree, SINGLE, blocked=blocked), all_windows(plan, degree, DOUBLE, blocked=blocked)
-    )
-    rounded = proved(plan, degree, SINGLE, blocked=blocked)[1]
+    error = apart(plan, all_windows(plan, degree, SINGLE), all_windows(plan, degree, DOUBLE))
+    rounded = proved(plan, degree, SINGLE)[1]
     assert 0 < error <= rounded < 1e4 * error
-    assert rounded == pytest.approx(2.0**29 * proved(plan, degree, DOUBLE, blocked=blocked)[1], rel=1e-3)
-    monkeypatch.setattr(bounds.Losses, *without(slice(0, 3), "blocks" if blocked else law))
-    assert proved(plan, degree, SINGLE, blocked=blocked)[1] < error
+    assert rounded == pytest.approx(2.0**29 * proved(plan, degree, DOUBLE)[1], rel=1e-3)
+    monkeypatch.setattr(bounds.Losses, *without(slice(0, 3), law))
+    assert proved(plan, degree, SINGLE)[1] < error
 
 
 @KINDS
-def test_truncation_that_is_left_out_is_seen(law: str, blocked: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_truncation_that_is_left_out_is_seen(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A march of a low degree beside one of a high degree, in the norm of energy; scatterers need no degree."""
     plan = march_plan(lower(of_one_kind(law)))
     for degree in (4, 6, 9):
-        error = apart(plan, all_windows(plan, degree, blocked=blocked), all_windows(plan, 40, blocked=blocked))
-        truncated, rounded = proved(plan, degree, blocked=blocked)
+        error = apart(plan, all_windows(plan, degree), all_windows(plan, 40))
+        truncated, rounded = proved(plan, degree)
         assert error <= truncated + rounded
         if law == "scatterers":
             assert truncated == 0
         else:
             assert truncated < 100 * error
     if law != "scatterers":
-        monkeypatch.setattr(bounds.Losses, *without(slice(3, 4), "blocks" if blocked else law))
-        assert sum(proved(plan, degree, blocked=blocked)) < error
+        monkeypatch.setattr(bounds.Losses, *without(slice(3, 4), law))
+        assert sum(proved(plan, degree)) < error
 
 
 @KINDS
-def test_values_are_wrong_by_more_than_a_bound_without_truncation(
-    law: str, blocked: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_values_are_wrong_by_more_than_a_bound_without_truncation(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
     model = lower(of_one_kind(law))
-    assert np.max(missed_at(model, 5, blocked=blocked)) < 1
+    assert np.max(missed_at(model, 5)) < 1
     if law != "scatterers":
-        monkeypatch.setattr(bounds.Losses, *without(slice(3, 4), "blocks" if blocked else law))
-        assert np.max(missed_at(model, 5, blocked=blocked)) > 1
+        monkeypatch.setattr(bounds.Losses, *without(slice(3, 4), law))
+        assert np.max(missed_at(model, 5)) > 1
 
 
 def test_values_are_wrong_by_more_than_a_bound_of_another_precision(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,26 +47,24 @@ def parts(found: Array, true: Array, allowed: Array) -> Array:
     return np.where(error == 0, 0, error / np.maximum(allowed, LEAST))
 
 
-def scheme_of(plan: MarchPlan, degree: int, real: Real = DOUBLE, *, blocked: bool = False) -> MarchScheme:
+def scheme_of(plan: MarchPlan, degree: int, real: Real = DOUBLE) -> MarchScheme:
     """What marches a plan in NumPy."""
-    made = MarchTables(plan, degree, real, blocked=blocked)
+    made = MarchTables(plan, degree, real)
     kind = np.float32 if real is SINGLE else np.float64
     return MarchScheme(made.tables([False] * len(plan.outputs)), made.constants(), plan.tau_max, kind)
 
 
-def missed_at(model: Model, degree: int, real: Real = DOUBLE, *, blocked: bool = False, most: int = 12) -> Array:
-    """The same at any degree, in parts of what is proved; of a march whose bodies may be `blocked`."""
+def missed_at(model: Model, degree: int, real: Real = DOUBLE, most: int = 12) -> Array:
+    """The same at any degree, in parts of what is proved."""
     plan = march_plan(model, real)
     taus = asked(model, real, most)
-    found = scheme_of(plan, degree, real, blocked=blocked).evaluate(taus)
-    return parts(found, exact(model, taus), np.array(judge(plan, degree, real, blocked=blocked).errors))
+    found = scheme_of(plan, degree, real).evaluate(taus)
+    return parts(found, exact(model, taus), np.array(judge(plan, degree, real).errors))
 
 
-def all_windows(
-    plan: MarchPlan, degree: int, real: Real = DOUBLE, *, blocked: bool = False
-) -> tuple[MarchScheme, WindowBlock]:
+def all_windows(plan: MarchPlan, degree: int, real: Real = DOUBLE) -> tuple[MarchScheme, WindowBlock]:
     """Of a plan with few of them, as one block."""
-    scheme = scheme_of(plan, degree, real, blocked=blocked)
+    scheme = scheme_of(plan, degree, real)
     return scheme, Marching(scheme, plan.windows).block(0, plan.windows)
 
 

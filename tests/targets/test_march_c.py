@@ -230,11 +230,11 @@ def test_it_allocates_nothing_and_exports_its_prefix(tmp_path: Path) -> None:
 
 BREAKS = {
     "a ring": ("const int turn = steps[number] + 1;", "const int turn = steps[number] + 2;"),
-    "a body": ("*x = q[0] + (ended_at - at_first[0] * q[0]);", "*x = q[0] + ended_at;"),
-    "a block": ("x[k] += found[points * SIZE + k];", "x[k] += found[k];"),
+    "a body": ("return q[0] + (last_sum - at_first[0] * q[0]);", "return q[0] + last_sum;"),
+    "a block": ("x[k] += gained[k];", "x[k] += velocities[k];"),
     "a scatterer": (
-        "add(wave_sent(state, send[other], panel), *factor++, a, SIZE);",
-        "add(wave_sent(state, send[other], panel), -*factor++, a, SIZE);",
+        "add(on->sent[other], *factor++, on->arriving[port], SIZE);",
+        "add(on->sent[other], -*factor++, on->arriving[port], SIZE);",
     ),
 }
 

@@ -122,7 +122,7 @@ def test_the_tables_are_those_of_balls_but_for_rounding(gears, program):
 def test_no_table_is_called_as_a_parameter_is(program):
     """Tables are macros in C, which would take its name from a field."""
     tables = re.findall(r"^#define (\w+) state->made\.", sources(program, "c")["gears.c"], re.M)
-    assert {"law", "gain", "matrix", "growth"} < set(tables)
+    assert {"drive", "gain", "matrix", "growth"} < set(tables)
     assert not {*tables} & {*POSITIVE, *FIELDS}
 
 
@@ -254,7 +254,11 @@ FAULTS = {
     "a start": ("before[a] = -twice[a];", "before[a] = 0;"),
     "what passes": ("to[p * SIZE + k] = point >= 0 && k == power ?", "to[p * SIZE + k] = point < 0 && k == power ?"),
     "what goes back": ("- (other == port ? (real)1 : (real)0)", ""),
+    "a ratio": ("step / ((real)(4 * k) + step * above)", "step / (real)(4 * k)"),
+    "a loss": ("rows[SIZE] = 2 * above * last;", "rows[SIZE] = 0;"),
+    "a drive": ("push[port] *= drive[joint];", ""),
 }
+OF_SCATTERERS, OF_BODIES = ("what goes back",), ("a ratio", "a loss", "a drive")
 
 
 @pytest.mark.slow
@@ -263,8 +267,12 @@ def test_a_fault_in_the_tables_is_seen(fault, monkeypatch):
     from wavesym.targets.c import stream
 
     right, wrong = FAULTS[fault]
-    case = "base force" if fault in ("what passes", "what goes back") else "drive"
-    scene = loaded(*CASES[case], PANEL)
+    case = "base force" if fault in OF_SCATTERERS else "drive" if fault in OF_BODIES else "every joint"
+    scene, places = CASES[case]
+    names = ["kappa"]
+    if case == "every joint":
+        scene, names = scene.with_({"system": RESTING}), ["mass", "spring"]
+    scene = loaded(scene, places, PANEL)
 
     def spoiled(file, of, kernel=stream.kernel):
         text = kernel(file, of)
@@ -274,7 +282,7 @@ def test_a_fault_in_the_tables_is_seen(fault, monkeypatch):
 
     monkeypatch.setattr(stream, "kernel", spoiled)
     with np.errstate(invalid="ignore"):
-        found, error = ran(built(scene, runtime=["kappa"]), scene)
+        found, error = ran(built(scene, runtime=names), scene)
     assert not error < 1e-9 or max(found.status) > 0
 
 

@@ -3,6 +3,7 @@
  * the first empty line. */
 #include "tables.h"
 #include "../series.h"
+#include "../joint.c"
 
 /* A march: `waves` has a ring for each track, its last windows; x are the states of the joints. */
 typedef struct march {
@@ -81,8 +82,8 @@ static void read_at(const march *state, real t, real out[OUTPUTS])
     }
 }
 
-/* What acts on a point on a panel: three coefficients. */
-static void acts(const march *state, int force, int panel, real *c)
+/* A force on a panel: three coefficients. */
+static void force_of(const march *state, int force, int panel, real *c)
 {
     const real *const power = state->load[force];
     const int *const then = state->changed[force];
@@ -108,138 +109,28 @@ static void change(march *state, int panel)
     }
 }
 
-/* A body on a panel: from p and its velocity at the start that at the end, and its own. */
-static void step_body(march *state, int joint, int panel)
-{
-    const real *const e = matrix + answer[panel * JOINTS + joint];
-    const real *const at_first = e + SIZE;
-    const real *const at_last = e + 2 * SIZE;
-    real *const x = state->x + first_state[joint];
-    const int force = force_on[first_point[joint]];
-    const int first = first_port[joint];
-    const int end = first_port[joint + 1];
-    real p[SIZE + 1];
-    real q[SIZE];
-    const real *const arrived = wave(state, arrive[first], steps[arrive[first]], panel);
-    for (int k = 0; k < SIZE; ++k) {
-        p[k] = push[first] * arrived[k];
-    }
-    p[SIZE] = 0;
-    for (int port = first + 1; port < end; ++port) {
-        add(p, push[port], wave(state, arrive[port], steps[arrive[port]], panel), SIZE);
-    }
-    if (force >= 0) {
-        real c[3];
-        acts(state, force, panel, c);
-        add(p, drive[joint], c, 3);
-    }
-    real y = 0;
-    real begun_at = 0;
-    real ended_at = 0;
-    for (int k = DEGREE; k > 0; --k) {
-        y = e[k] * (((k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1]) + y);
-        q[k] = y;
-        begun_at += at_first[k] * y;
-        ended_at += at_last[k] * y;
-    }
-    begun_at = *x - begun_at;
-    q[0] = begun_at - e[0] * begun_at;
-    *x = q[0] + (ended_at - at_first[0] * q[0]);
-    real before = 2 * q[0];
-    for (int k = 1; k <= DEGREE; ++k) {
-        before = q[k] - e[k] * before;
-        q[k] = before;
-    }
-    for (int port = first; port < end; ++port) {
-        const real *const a = wave(state, arrive[port], steps[arrive[port]], panel);
-        real *const out = wave_sent(state, send[port], panel);
-        for (int k = 0; k < SIZE; ++k) {
-            out[k] = ratio[port] * q[k] - a[k];
-        }
-    }
-}
-
-/* A block on a panel: from what acts on its points, and x at the start, their velocities, and x on. */
-static void step_block(march *state, int joint, int panel)
-{
-    const int points = first_point[joint + 1] - first_point[joint];
-    const int states = first_state[joint + 1] - first_state[joint];
-    const int width = points * SIZE + states;
-    const real *const columns = matrix + answer[panel * JOINTS + joint];
-    real *const x = state->x + first_state[joint];
-    real given[WIDEST];
-    real found[WIDEST];
-    for (int k = 0; k < width; ++k) {
-        given[k] = k < points * SIZE ? (real)0 : x[k - points * SIZE];
-        found[k] = 0;
-    }
-    for (int point = 0; point < points; ++point) {
-        const int force = force_on[first_point[joint] + point];
-        if (force >= 0) {
-            acts(state, force, panel, given + point * SIZE);
-        }
-    }
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        add(given + point_of[port] * SIZE, push[port], wave(state, arrive[port], steps[arrive[port]], panel), SIZE);
-    }
-    for (int k = 0; k < width; ++k) {
-        add(found, given[k], columns + k * width, width);
-    }
-    for (int k = 0; k < states; ++k) {
-        x[k] += found[points * SIZE + k];
-    }
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const real *const a = wave(state, arrive[port], steps[arrive[port]], panel);
-        const real *const q = found + point_of[port] * SIZE;
-        real *const out = wave_sent(state, send[port], panel);
-        for (int k = 0; k < SIZE; ++k) {
-            out[k] = ratio[port] * q[k] - a[k];
-        }
-    }
-}
-
-/* A joint without state: what it sends is a sum of what arrives and acts. */
-static void scatter(march *state, int joint, int panel)
-{
-    const int first = first_port[joint];
-    const int end = first_port[joint + 1];
-    const real *factor = matrix + answer[panel * JOINTS + joint];
-    for (int port = first; port < end; ++port) {
-        real *const out = wave_sent(state, send[port], panel);
-        for (int k = 0; k < SIZE; ++k) {
-            out[k] = 0;
-        }
-    }
-    for (int port = first; port < end; ++port) {
-        const real *const a = wave(state, arrive[port], steps[arrive[port]], panel);
-        for (int other = first; other < end; ++other) {
-            add(wave_sent(state, send[other], panel), *factor++, a, SIZE);
-        }
-    }
-    for (int point = first_point[joint]; point < first_point[joint + 1]; ++point) {
-        real c[3] = {0, 0, 0};
-        if (force_on[point] >= 0) {
-            acts(state, force_on[point], panel, c);
-        }
-        for (int other = first; other < end; ++other) {
-            add(wave_sent(state, send[other], panel), *factor++, c, 3);
-        }
-    }
-}
-
 /* The window that has just been made known. */
 static void advance(march *state)
 {
     for (int panel = 0; panel < PANELS; ++panel) {
+        real acting[(FORCES + 1) * POWERS] = {0};
         change(state, panel);
+        for (int force = 0; force < FORCES; ++force) {
+            force_of(state, force, panel, acting + force * POWERS);
+        }
         for (int joint = 0; joint < JOINTS; ++joint) {
-            if (BODIES > 0 && law[joint] == BODY) {
-                step_body(state, joint, panel);
-            } else if (BLOCKS > 0 && law[joint] == BLOCK) {
-                step_block(state, joint, panel);
-            } else {
-                scatter(state, joint, panel);
+            const int first = first_port[joint];
+            joint_on_panel on = no_ends;
+            real given[WIDEST + 1];
+            real velocities[WIDEST];
+            on.table = matrix + answer[panel * JOINTS + joint];
+            on.pushes = push + first;
+            on.driven = drive[joint];
+            for (int port = first; port < first_port[joint + 1]; ++port) {
+                on.arriving[port - first] = wave(state, arrive[port], steps[arrive[port]], panel);
+                on.sent[port - first] = wave_sent(state, send[port], panel);
             }
+            step_joint(joint, &on, acting, state->x + first_state[joint], given, velocities);
         }
     }
 }

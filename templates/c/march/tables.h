@@ -1,4 +1,5 @@
 /* tables.h: stands for what march.c.j2 writes above the text of march.c, where that is read by itself. */
+#define TABLES
 #include "../name.h"
 
 #include "../real.h"
@@ -18,6 +19,8 @@ enum {
     SLOTS = 13,
     CYCLE = 2,
     WIDEST = 2 * SIZE + 1,
+    MOST_PORTS = 2,
+    POWERS = 3,
     BODY = 1,
     BLOCK = 2
 };

@@ -93,7 +93,7 @@ static void eliminate(elimination *by, const real *rates)
 }
 
 /* The series of the states of a joint that are `begun` at the start, under f = pushed T_power. */
-static void respond(const elimination *by, const real *begun_at, const real *pushed, int power, motion *x)
+static void solve_panel(const elimination *by, const real *begun_at, const real *pushed, int power, motion *x)
 {
     motion y[SIZE + 1] = {{0}};
     motion start;
@@ -134,18 +134,19 @@ static void respond(const elimination *by, const real *begun_at, const real *pus
 
 /* How fast anything in a joint is, at most: the norm of its rates, scaled so that energy is |x|^2 / 2; or `turning`, of
  * what springs make of it alone. No number where that is beyond all bounds. */
-static real speed_of(const stream *state, int joint, int turning)
+static real speed_of(const name_made *made, int joint, int turning)
 {
     const int first = first_state[joint];
     const int states = first_state[joint + 1] - first_state[joint];
-    const real *const rates = law + law_of[joint];
+    const real *const rates = made->rates + at_rates[joint];
+    const real *const weight = made->weight + first;
     real rows = 0;
     real columns = 0;
     for (int a = 0; a < states; ++a) {
         real row = 0;
         real column = 0;
         for (int b = 0; b < states; ++b) {
-            const real of = weight[first + a] / weight[first + b];
+            const real of = weight[a] / weight[b];
             const real scaled = of > 0 && is_number(of) ? root(of) : not_a_number();
             const real to = rates[a * states + b] * scaled;
             const real back = rates[b * states + a] / scaled;
@@ -159,18 +160,19 @@ static real speed_of(const stream *state, int joint, int turning)
     return rows > 0 && is_number(rows) ? root(rows) : rows;
 }
 
-/* A joint with a state: a column of its matrix, and of what its polynomials miss, for each number that it is given: the
+/* A block: a column of its matrix, and of what its polynomials miss, for each number that it is given: the
  * coefficients of what acts on its points, then x at the start. What is missed is the root of an energy. */
-static void answer_of(stream *state, int joint)
+static void tabulate_block(stream *state, int joint)
 {
     const int points = first_point[joint + 1] - first_point[joint];
     const int states = first_state[joint + 1] - first_state[joint];
     const int width = points * SIZE + states;
-    const real *const own = law + law_of[joint];
-    const real *const pushed = own + states * states;
-    const real *const shown = pushed + states * points;
-    const real *const passed = shown + points * states;
-    const real turned = speed_of(state, joint, 0) * panel;
+    const name_made *const made = &state->made;
+    const real *const own = made->rates + at_rates[joint];
+    const real *const pushed = made->pushed + at_pushed[joint];
+    const real *const shown = made->shown + at_shown[joint];
+    const real *const passed = made->passed + at_passed[joint];
+    const real turned = speed_of(made, joint, 0) * panel;
     const real energy = 2 * (root(turned) + (1 + turned) * (real)0.70711) * (panel / (real)(4 * SIZE));
     real rates[SQUARE] = {0};
     elimination by;
@@ -190,7 +192,7 @@ static void answer_of(stream *state, int joint)
             begun_at[a] = column == points * SIZE + a ? (real)1 : (real)0;
             acting[a] = point >= 0 ? pushed[a * points + point] : (real)0;
         }
-        respond(&by, begun_at, acting, point >= 0 ? power : -2, x);
+        solve_panel(&by, begun_at, acting, point >= 0 ? power : -2, x);
         for (int p = 0; p < points; ++p) {
             for (int k = 0; k < SIZE; ++k) {
                 to[p * SIZE + k] = point >= 0 && k == power ? passed[p * points + point] : (real)0;
@@ -207,16 +209,46 @@ static void answer_of(stream *state, int joint)
         }
         multiply(left, rates, x[DEGREE], MOST_MOVED, MOST_MOVED);
         for (int a = 0; a < states; ++a) {
-            slip[first_slip[joint] + a * width + column] = energy * root(weight[first_state[joint] + a]) * left[a];
+            slip[first_slip[joint] + a * width + column] = energy * root(made->weight[first_state[joint] + a]) * left[a];
         }
     }
 }
 
+/* A body: slack and ratios, loss and first, 0 and last, of q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) - p_(k+1)). */
+static void tabulate_body(stream *state, int joint)
+{
+    const name_made *const made = &state->made;
+    const real rate = -made->rates[at_rates[joint]];
+    const real step = rate * panel;
+    const real energy = 2 * (root(step) + (1 + step) * (real)0.70711) * root(made->weight[first_state[joint]]);
+    real *const rows = matrix + answer[joint];
+    real above = 0;
+    real first = 0;
+    real last = 0;
+    for (int k = DEGREE; k > 0; --k) {
+        const real ratio_of = step / ((real)(4 * k) + step * above);
+        first = (real)(k % 2 ? -1 : 1) - above * first;
+        last = 1 - above * last;
+        above = ratio_of;
+        rows[k] = ratio_of;
+        rows[SIZE + k] = first;
+        rows[2 * SIZE + k] = last;
+    }
+    rows[0] = -2 * above * first / (1 - 2 * above * first);
+    rows[SIZE] = 2 * above * last;
+    rows[2 * SIZE] = 0;
+    drive[joint] = made->pushed[at_pushed[joint]] / rate;
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        push[port] *= drive[joint];
+    }
+    slip[first_slip[joint]] = energy * step / (real)(4 * SIZE);
+}
+
 /* One without: what goes back into each end, from what arrives at each, and from what acts on each point. */
-static void scattering_of(stream *state, int joint)
+static void tabulate_scatterer(stream *state, int joint)
 {
     const int points = first_point[joint + 1] - first_point[joint];
-    const real *const passed = law + law_of[joint];
+    const real *const passed = state->made.passed + at_passed[joint];
     real *factor = matrix + answer[joint];
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
         for (int other = first_port[joint]; other < first_port[joint + 1]; ++other) {
@@ -236,22 +268,33 @@ static void scattering_of(stream *state, int joint)
 static real step_lost(const stream *state, int joint)
 {
     const int points = first_point[joint + 1] - first_point[joint];
-    const int states = first_state[joint + 1] - first_state[joint];
+    const int first = first_state[joint];
+    const int states = first_state[joint + 1] - first;
     const int width = points * SIZE + states;
+    const real *const missed = slip + first_slip[joint];
+    real p[SIZE + 1] = {0};
+    real q[SIZE];
     real energy = 0;
     real sum = 0;
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        energy += panel * track_impedance[arrive[port]];
+        energy += panel * state->made.track_impedance[arrive[port]];
+        p[0] += push[port];
+        for (int a = 0; law[joint] == BLOCK && a < states; ++a) {
+            sum += absolute(push[port] * missed[a * width + point_of[port] * SIZE]);
+        }
     }
-    for (int a = 0; a < states; ++a) {
-        const real *const missed = slip + first_slip[joint] + a * width;
-        energy += is_mass[first_state[joint] + a] ? weight[first_state[joint] + a] / 2 : (real)0;
-        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-            sum += absolute(push[port] * missed[point_of[port] * SIZE]);
+    for (int b = 0; b < states; ++b) {
+        energy += is_mass[first + b] ? state->made.weight[first + b] / 2 : (real)0;
+        for (int a = 0; law[joint] == BLOCK && a < states; ++a) {
+            sum += is_mass[first + b] ? absolute(missed[a * width + points * SIZE + b]) : (real)0;
         }
-        for (int b = 0; b < states; ++b) {
-            sum += is_mass[first_state[joint] + b] ? absolute(missed[points * SIZE + b]) : (real)0;
-        }
+    }
+    if (law[joint] == BODY) {
+        (void)step_body(matrix + answer[joint], p, 0, q);
+        sum += missed[0] * absolute(q[DEGREE]);
+        p[0] = 0;
+        (void)step_body(matrix + answer[joint], p, 1, q);
+        sum += missed[0] * absolute(q[DEGREE]);
     }
     return sum > 0 ? sum / root(energy) : sum;
 }
@@ -262,21 +305,22 @@ static void weigh_tracks(stream *state, int joint)
 {
     const int points = first_point[joint + 1] - first_point[joint];
     const int states = first_state[joint + 1] - first_state[joint];
-    const real *const shown = law + law_of[joint] + states * states + states * points;
-    const real *const passed = shown + points * states;
+    const name_made *const made = &state->made;
+    const real *const shown = made->shown + at_shown[joint];
+    const real *const passed = made->passed + at_passed[joint];
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
         const int point = point_of[port];
         real carried = 0;
         real moved = 0;
         real passing = 0;
         if (slots[send[port]] > 1) {
-            root_impedance[send[port]] = root(track_impedance[send[port]]);
+            root_impedance[send[port]] = root(made->track_impedance[send[port]]);
         } else {
             for (int a = 0; a < states; ++a) {
-                moved += (real)1.4143 * absolute(shown[point * states + a]) / root(weight[first_state[joint] + a]);
+                moved += (real)1.4143 * absolute(shown[point * states + a]) / root(made->weight[first_state[joint] + a]);
             }
             for (int other = first_port[joint]; other < first_port[joint + 1]; ++other) {
-                const real strong = root(track_impedance[send[other]]);
+                const real strong = root(made->track_impedance[send[other]]);
                 const real own = point_of[other] == point ? ratio[other] * strong / 2 : (real)0;
                 carried = carried > own ? carried : own;
                 passing += strong > 0 ? absolute(passed[point * points + point_of[other]] * push[other]) / strong : (real)0;
@@ -295,19 +339,22 @@ static int made_of(stream *state, const name_parameters *parameters)
     if (!good(parameters)) {
         return 1;
     }
-    laws_of(parameters, state);
-    if (!laws_within_reach(state)) {
+    laws_of(parameters, &state->made);
+    if (!laws_within_reach(&state->made)) {
         return 1;
     }
     for (int joint = 0; joint < JOINTS; ++joint) {
-        const real speed = speed_of(state, joint, 0);
+        const real speed = speed_of(&state->made, joint, 0);
         fastest = speed <= fastest ? fastest : speed;
-        if (first_state[joint] < first_state[joint + 1]) {
-            answer_of(state, joint);
-            fine &= step_lost(state, joint) <= tolerance && speed_of(state, joint, 1) * panel <= (real)CALM;
+        if (law[joint] == BODY) {
+            tabulate_body(state, joint);
+        } else if (law[joint] == BLOCK) {
+            tabulate_block(state, joint);
+            fine &= speed_of(&state->made, joint, 1) * panel <= (real)CALM;
         } else {
-            scattering_of(state, joint);
+            tabulate_scatterer(state, joint);
         }
+        fine &= step_lost(state, joint) <= tolerance;
         weigh_tracks(state, joint);
     }
     for (int k = 0; k < HEARD; ++k) {

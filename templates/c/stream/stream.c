@@ -3,6 +3,7 @@
  * the first empty line. */
 #include "tables.h"
 #include "../series.h"
+#include "../joint.c"
 
 /* A place for what has no breakpoint of its own: the start of the panel, or none that is left. */
 enum { EDGE = -1, NONE = -2 };
@@ -109,45 +110,32 @@ static int phase_before(const stream *state, int panels, int *windows)
     return phase;
 }
 
-/* A wave at a time of the panel on which it was sent. */
-static real value(const stream *state, int number, int panels, real t)
+/* A wave at one time of the panel on which it was sent; or its integral, from another time there on. */
+static real read_wave(const stream *state, int number, int panels, int as_integral, real from, real to)
 {
     int windows;
     int after = state->first_breakpoint[phase_before(state, panels, &windows)];
-    real sum = series(state->waves[slot_of(state, number, panels)], t * scale - 1);
+    const real *c = state->waves[slot_of(state, number, panels)];
+    real sum = as_integral ? integral(c, from, to) : series(c, to * scale - 1);
     for (; after >= 0; after = state->next_breakpoint[after]) {
-        const real since = t - state->place[after];
-        if (since >= -nearness(state)) {
-            const real u = since > 0 ? since * scale - 1 : (real)-1;
-            sum += series(state->waves[slot_after(state, after, number, windows)], u);
+        const real since = to - state->place[after];
+        c = state->waves[slot_after(state, after, number, windows)];
+        if (as_integral && since > 0) {
+            sum += integral(c, from > state->place[after] ? from - state->place[after] : (real)0, since);
+        } else if (!as_integral && since >= -nearness(state)) {
+            sum += series(c, since > 0 ? since * scale - 1 : (real)-1);
         }
     }
     return sum;
 }
 
-/* What it adds up to from one time in that panel to another. */
-static real gathered(const stream *state, int number, int panels, real from, real to)
-{
-    int windows;
-    int after = state->first_breakpoint[phase_before(state, panels, &windows)];
-    real sum = integral(state->waves[slot_of(state, number, panels)], from, to);
-    for (; after >= 0; after = state->next_breakpoint[after]) {
-        const real begin = from > state->place[after] ? from - state->place[after] : (real)0;
-        const real end = to - state->place[after];
-        if (end > begin) {
-            sum += integral(state->waves[slot_after(state, after, number, windows)], begin, end);
-        }
-    }
-    return sum;
-}
-
-/* What term k of an output adds up to from the start of the current panel to t. */
-static real gathered_since(const stream *state, int k, real t)
+/* The integral of term k of an output from the start of the current panel to t. */
+static real integral_since(const stream *state, int k, real t)
 {
     const real early = t < rest[k] ? t : rest[k];
-    real sum = gathered(state, track[k], late[k], 0, t - early);
+    real sum = read_wave(state, track[k], late[k], 1, 0, t - early);
     if (early > 0) {
-        sum += gathered(state, track[k], late[k] + 1, panel - rest[k], panel - rest[k] + early);
+        sum += read_wave(state, track[k], late[k] + 1, 1, panel - rest[k], panel - rest[k] + early);
     }
     return sum;
 }
@@ -156,7 +144,7 @@ static real value_now(const stream *state, int k)
 {
     const real t = state->time - rest[k];
     const int before = t < -nearness(state);
-    return value(state, track[k], late[k] + before, before ? t + panel : t);
+    return read_wave(state, track[k], late[k] + before, 0, 0, before ? t + panel : t);
 }
 
 /* More by which polynomials have missed the truth: of the root of an energy, and of a wave at once. */
@@ -166,19 +154,18 @@ static void lose(stream *state, real energy, real wave)
     state->lost_wave += wave;
 }
 
-/* What a joint with a state makes of the first `known` of the numbers that it is given: velocities, and x at the end less
- * x; and what its polynomials miss. */
-static void answer_to(stream *state, int joint, const real *given, int known, real *found)
+/* What the polynomials of a joint miss under what is given to it, of its states. */
+static void lose_missed(stream *state, int joint, const real *given, const real *velocities)
 {
     const int states = first_state[joint + 1] - first_state[joint];
-    const int width = (first_point[joint + 1] - first_point[joint]) * SIZE + states;
-    const real *const columns = matrix + answer[joint];
+    const real *const factors = slip + first_slip[joint];
     real missed[MOST_STATES] = {0};
     real sum = 0;
-    for (int k = 0; k < known; ++k) {
-        add(found, given[k], columns + k * width, width);
+    if (BODIES > 0 && law[joint] == BODY) {
+        missed[0] = factors[0] * (given[DEGREE] - velocities[DEGREE]);
+    } else if (BLOCKS > 0) {
+        multiply(missed, factors, given, states, (first_point[joint + 1] - first_point[joint]) * SIZE + states);
     }
-    multiply(missed, slip + first_slip[joint], given, states, width);
     for (int k = 0; k < states; ++k) {
         sum += absolute(missed[k]);
     }
@@ -186,8 +173,8 @@ static void answer_to(stream *state, int joint, const real *given, int known, re
     state->lost_slope += steep * sum;
 }
 
-/* The state at the end of the panel gains what moves for so long since a breakpoint: velocities, and by how much springs
- * have become longer. */
+/* The state at the end of the panel gains what moves for so long, from rest: velocities, and by how much springs have
+ * become longer. */
 static void gain_state(stream *state, int joint, const real *velocities, real span)
 {
     const int points = first_point[joint + 1] - first_point[joint];
@@ -203,93 +190,42 @@ static void gain_state(stream *state, int joint, const real *velocities, real sp
     }
 }
 
-/* A joint with a state on the panel that begins, or after a breakpoint of it: what it sends, of what arrives, of its state
- * and of forces. */
-static void move(stream *state, int joint, int breakpoint, const real *acting)
+/* A joint on the panel that begins; or from rest, for the last `span` of the panel. */
+static void respond(stream *state, int joint, joint_on_panel *on, const real *acting, int at_rest, real span)
 {
-    const int points = first_point[joint + 1] - first_point[joint];
-    const int states = first_state[joint + 1] - first_state[joint];
-    const int width = points * SIZE + states;
-    real *const x = state->x + first_state[joint];
-    real given[WIDEST];
-    real found[WIDEST];
-    for (int k = 0; k < width; ++k) {
-        given[k] = k < points * SIZE || breakpoint >= 0 ? (real)0 : x[k - points * SIZE];
-        found[k] = 0;
-    }
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        add(given + point_of[port] * SIZE, push[port], arriving_wave(state, breakpoint, arrive[port]), SIZE);
-    }
-    if (breakpoint >= 0) {
-        answer_to(state, joint, given, points * SIZE, found);
-        gain_state(state, joint, found, panel - state->place[breakpoint]);
-    } else {
-        for (int point = 0; point < points; ++point) {
-            const int force = force_on[first_point[joint] + point];
-            for (int k = 0; force >= 0 && k < POWERS; ++k) {
-                given[point * SIZE + k] += acting[force * POWERS + k];
-            }
-        }
-        answer_to(state, joint, given, width, found);
-        for (int k = 0; k < states; ++k) {
-            x[k] += found[points * SIZE + k];
-        }
-    }
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const real *const a = arriving_wave(state, breakpoint, arrive[port]);
-        const real *const q = found + point_of[port] * SIZE;
-        real *const out = sent_wave(state, breakpoint, send[port]);
-        for (int k = 0; k < SIZE; ++k) {
-            out[k] = ratio[port] * q[k] - a[k];
+    real given[WIDEST + 1];
+    real velocities[WIDEST];
+    real x[MOST_STATES] = {0};
+    on->table = matrix + answer[joint];
+    on->pushes = push + first_port[joint];
+    on->driven = drive[joint];
+    step_joint(joint, on, acting, at_rest ? x : state->x + first_state[joint], given, velocities);
+    if (first_state[joint] < first_state[joint + 1]) {
+        lose_missed(state, joint, given, velocities);
+        if (at_rest) {
+            gain_state(state, joint, velocities, span);
         }
     }
 }
 
-/* One without: what it sends is a sum of what arrives, and of forces. */
-static void scatter(stream *state, int joint, int breakpoint, const real *acting)
-{
-    const int first = first_port[joint];
-    const int end = first_port[joint + 1];
-    const real *factor = matrix + answer[joint];
-    for (int port = first; port < end; ++port) {
-        real *const out = sent_wave(state, breakpoint, send[port]);
-        for (int k = 0; k < SIZE; ++k) {
-            out[k] = 0;
-        }
-    }
-    for (int port = first; port < end; ++port) {
-        const real *const a = arriving_wave(state, breakpoint, arrive[port]);
-        for (int other = first; other < end; ++other) {
-            add(sent_wave(state, breakpoint, send[other]), *factor++, a, SIZE);
-        }
-    }
-    for (int point = first_point[joint]; point < first_point[joint + 1]; ++point) {
-        for (int other = first; other < end; ++other) {
-            if (breakpoint < 0 && force_on[point] >= 0) {
-                add(sent_wave(state, breakpoint, send[other]), *factor, acting + force_on[point] * POWERS, POWERS);
-            }
-            ++factor;
-        }
-    }
-}
-
-/* All joints; of a breakpoint only where anything arrives. */
-static void move_all(stream *state, int breakpoint, const real *acting)
+/* All joints on the panel that begins; or after a breakpoint of it, where anything arrives. */
+static void respond_all(stream *state, int breakpoint, const real *acting)
 {
     for (int joint = 0; joint < JOINTS; ++joint) {
+        const int ports = first_port[joint + 1] - first_port[joint];
         real arrives = breakpoint < 0 ? (real)1 : (real)0;
-        for (int port = first_port[joint]; breakpoint >= 0 && port < first_port[joint + 1]; ++port) {
-            arrives += size_of(arriving_wave(state, breakpoint, arrive[port]));
+        joint_on_panel on = no_ends;
+        for (int k = 0; k < ports; ++k) {
+            on.arriving[k] = arriving_wave(state, breakpoint, arrive[first_port[joint] + k]);
+            on.sent[k] = sent_wave(state, breakpoint, send[first_port[joint] + k]);
+            arrives += breakpoint < 0 ? (real)0 : size_of(on.arriving[k]);
         }
-        if (!(arrives <= 0) && first_state[joint] < first_state[joint + 1]) {
-            move(state, joint, breakpoint, acting);
-        } else if (!(arrives <= 0)) {
-            scatter(state, joint, breakpoint, acting);
+        if (!(arrives <= 0)) {
+            respond(state, joint, &on, acting, breakpoint >= 0, breakpoint < 0 ? panel : panel - state->place[breakpoint]);
         } else {
-            for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-                real *const out = sent_wave(state, breakpoint, send[port]);
-                for (int k = 0; k < SIZE; ++k) {
-                    out[k] = 0;
+            for (int k = 0; k < ports; ++k) {
+                for (int power = 0; power < SIZE; ++power) {
+                    on.sent[k][power] = 0;
                 }
             }
         }
@@ -322,7 +258,7 @@ static void follow(stream *state)
     int *place = state->first_breakpoint + state->phase;
     while (*place >= 0) {
         const int after = *place;
-        move_all(state, after, NULL);
+        respond_all(state, after, NULL);
         state->quiet[after] = are_left(state, after) ? 0 : state->quiet[after] + 1;
         if (state->quiet[after] > DEEPEST) {
             *place = state->next_breakpoint[after];
@@ -372,7 +308,7 @@ static void begin(stream *state)
         }
     }
     forces_of(state, acting, state->load, state->slope, 0);
-    move_all(state, EDGE, acting);
+    respond_all(state, EDGE, acting);
     follow(state);
 }
 
@@ -382,13 +318,13 @@ static void finish(stream *state)
     for (int output = 0; output < OUTPUTS; ++output) {
         for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
             if (summed[k]) {
-                state->total[output] += gain[k] * gathered_since(state, k, panel);
+                state->total[output] += gain[k] * integral_since(state, k, panel);
             }
         }
     }
     for (int k = 0; k < TRACKS; ++k) {
         const real of_all = state->first_breakpoint[state->phase] < 0 ? sent_wave(state, EDGE, k)[0]
-                                                                      : gathered(state, k, 0, 0, panel) / panel;
+                                                                      : read_wave(state, k, 0, 1, 0, panel) / panel;
         const real mean = root_impedance[k] * absolute(of_all);
         state->size = slots[k] > 1 && mean > state->size ? mean : state->size;
         state->at[k] = state->at[k] + 1 < slots[k] ? state->at[k] + 1 : 0;
@@ -485,78 +421,52 @@ static void miss(const real *known, real delay, real factor, real *wrong, real *
     *square_root += factor * known[3] * left * kink[5];
 }
 
-/* Loads jump and bend now, at the start of a step: from here on joints move and send more. */
-static void kick(stream *state, const real *jump, const real *bend, real dtau)
+/* Loads jump and bend now, at the start of a step: from here on joints send more. */
+static void change_loads(stream *state, const real *jump, const real *bend, real dtau)
 {
-    const real until_end = panel - state->time;
+    static const real nothing[SIZE] = {0};
     const real span = dtau > 0 && dtau < panel ? dtau : panel; /* a load bends for this step, and stays where it is then */
     real acting[(FORCES + 1) * POWERS] = {0};
-    real moved[LOADED_POINTS + 1][SIZE];
+    real more[LOADED_PORTS + 1][SIZE];
     int breakpoint = breakpoint_now(state);
     const real late_by = moved_by(state, breakpoint);
-    int first = 0;
     real missed = 0;
     real energy = 0;
+    int all = 0;
     forces_of(state, acting, jump, bend, 1);
     for (int n = 0; n < LOADED; ++n) {
-        const int joint = loaded[n];
-        const int points = first_point[joint + 1] - first_point[joint];
-        const int states = first_state[joint + 1] - first_state[joint];
-        const int ports = first_port[joint + 1] - first_port[joint];
-        const real *const passed = matrix + answer[joint] + ports * ports;
-        real given[WIDEST] = {0};
-        real found[WIDEST] = {0};
-        for (int point = 0; point < points; ++point) {
-            const int force = force_on[first_point[joint] + point];
-            for (int k = 0; force >= 0 && k < POWERS; ++k) {
-                given[point * SIZE + k] += acting[force * POWERS + k];
-            }
-        }
-        if (states > 0) {
-            answer_to(state, joint, given, points * SIZE, found);
-            if (breakpoint != EDGE) {
-                gain_state(state, joint, found, until_end);
-            }
-            for (int k = 0; breakpoint == EDGE && k < states; ++k) {
-                state->x[first_state[joint] + k] += found[points * SIZE + k];
-            }
-        }
+        const int first = first_port[loaded[n]];
+        const int ports = first_port[loaded[n] + 1] - first;
+        joint_on_panel on = no_ends;
         for (int port = 0; port < ports; ++port) {
-            const int number = first_port[joint] + port;
-            const real factor = root_impedance[send[number]] * absolute(ratio[number]);
+            on.arriving[port] = nothing;
+            on.sent[port] = more[all + port];
+        }
+        respond(state, loaded[n], &on, acting, 1, breakpoint == EDGE ? panel : panel - state->time);
+        for (int port = 0; port < ports; ++port, ++all) {
+            const real factor = root_impedance[send[first + port]];
             real known[4];
-            real *const velocity = moved[first + point_of[number]];
-            for (int k = 0; k < SIZE; ++k) {
-                velocity[k] = found[point_of[number] * SIZE + k];
-            }
-            for (int point = 0; states == 0 && point < points; ++point) {
-                add(velocity, passed[point * ports + port] / ratio[number], given + point * SIZE, POWERS);
-            }
-            begin_of(velocity, known);
-            state->rounded += rounding * factor * size_of(velocity);
+            begin_of(more[all], known);
+            state->rounded += rounding * factor * size_of(more[all]);
             state->rounded += late_by * factor * (absolute(known[0]) / panel + absolute(known[1]) + panel * absolute(known[2]));
             state->due += factor * (absolute(known[0]) + span * (absolute(known[1]) + panel * absolute(known[2])));
             if (breakpoint == NONE) {
                 miss(known, state->time, factor, &missed, &energy);
             }
         }
-        first += points;
     }
     if (breakpoint == NONE && !(missed <= share * dtau * state->size)) {
         breakpoint = new_breakpoint(state);
     }
-    first = 0;
+    all = 0;
     for (int n = 0; n < LOADED; ++n) {
-        for (int port = first_port[loaded[n]]; port < first_port[loaded[n] + 1]; ++port) {
-            const real *const velocity = moved[first + point_of[port]];
-            real *const out = sent_wave(state, breakpoint, send[port]);
+        for (int port = first_port[loaded[n]]; port < first_port[loaded[n] + 1]; ++port, ++all) {
             real instead[SIZE];
             if (breakpoint == NONE) {
-                interpolate(instead, velocity, state->time);
+                interpolate(instead, more[all], state->time);
             }
-            add(out, ratio[port], breakpoint == NONE ? instead : velocity, SIZE);
+            add(sent_wave(state, breakpoint, send[port]), 1, breakpoint == NONE ? instead : more[all], SIZE);
         }
-        first += first_point[loaded[n] + 1] - first_point[loaded[n]];
     }
     if (breakpoint == NONE) {
         lose(state, energy, missed);
@@ -579,7 +489,7 @@ static void read_now(stream *state, real *out)
         out[output] = state->total[output];
         for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
             if (summed[k]) {
-                out[output] += gain[k] * gathered_since(state, k, state->time);
+                out[output] += gain[k] * integral_since(state, k, state->time);
             } else if (shown_force[k] >= 0) {
                 out[output] += gain[k] * force_now(state, shown_force[k]);
             } else {
@@ -725,7 +635,7 @@ static void make_step(stream *state, real dtau, const real *load)
         advance(state, dtau / 2, middle);
     }
     if (jumps || bends) {
-        kick(state, jump, bend, dtau);
+        change_loads(state, jump, bend, dtau);
     }
     for (int j = 0; brief && j < LOADS; ++j) {
         state->load[j] += jump[j];

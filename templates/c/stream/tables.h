@@ -1,4 +1,5 @@
 /* tables.h: stands for what stream.c.j2 writes above the text of stream.c, where that is read by itself. */
+#define TABLES
 #include "../name.h"
 
 #include "../real.h"
@@ -23,7 +24,10 @@ typedef struct {
 enum { NAME_LAW_COUNT = 16, NAME_PORTS = 4, NAME_ANSWERS = 1000, NAME_SLIPS = 100, NAME_HEARD = 4 };
 
 typedef struct {
-    name_real law[NAME_LAW_COUNT + 1];
+    name_real rates[NAME_LAW_COUNT + 1];
+    name_real pushed[NAME_LAW_COUNT + 1];
+    name_real shown[NAME_LAW_COUNT + 1];
+    name_real passed[NAME_LAW_COUNT + 1];
     name_real weight[NAME_STATES + 1];
     name_real begun[NAME_STATES + 1];
     name_real push[NAME_PORTS + 1];
@@ -33,6 +37,7 @@ typedef struct {
     name_real strength[NAME_FORCES * NAME_LOADS + 1];
     name_real gain[NAME_HEARD + 1];
     name_real matrix[NAME_ANSWERS + 1];
+    name_real drive[NAME_PORTS + 1];
     name_real slip[NAME_SLIPS + 1];
     name_real root_impedance[NAME_TRACKS + 1];
     name_real state_gain[NAME_TRACKS + 1];
@@ -59,12 +64,17 @@ enum {
     STATES = NAME_STATES,
     JOINTS = 3,
     LOADED = 1,
-    LOADED_POINTS = 1,
+    LOADED_PORTS = 2,
+    BODIES = 1,
+    BLOCKS = 1,
     MOST_STATES = 1,
     ENTRIES = NAME_ENTRIES,
     DEEPEST = 2,
+    MOST_PORTS = 2,
     POWERS = 3,
-    WIDEST = SIZE + 1
+    WIDEST = SIZE + 1,
+    BODY = 1,
+    BLOCK = 2
 };
 
 /* tracks: what is sent into one end of a rod; how many panels it keeps, and windows of each breakpoint, where they begin,
@@ -77,12 +87,14 @@ extern const real held[];
 /* what an error of a track counts for: in its rod, or at its point, where states may count besides */
 extern const real root_impedance[];
 extern const real state_gain[];
-/* joints: where their points, states and ports start in the next tables; their matrix, by columns, which answers to
- * (coefficients of what acts on its points, x at the start) by (those of the velocities, x at the end less x), or, without
- * states, to (what arrives at its ports, what acts on its points) by what is sent */
+/* joints: what they do (0 scatter, BODY, BLOCK), where their points, states and ports start in the next tables, how
+ * strong loads are on a body; their matrix, by columns: of a body three rows of SIZE, slack and ratios, loss and first, 0
+ * and last */
+extern const int law[];
 extern const int first_point[];
 extern const int first_state[];
 extern const int first_port[];
+extern const real drive[];
 extern const int answer[];
 extern const real matrix[];
 extern const real begun[];
@@ -91,7 +103,8 @@ extern const int force_on[];
 extern const int moves_with[];
 extern const int first_stretch[];
 extern const real lengthening[];
-/* what the polynomials of a joint miss, of its states, as the root of an energy, by rows */
+/* what the polynomials of a joint miss, of its states, as the root of an energy: of a body its last p less q so many times,
+ * of a block of what its matrix takes, by rows */
 extern const int first_slip[];
 extern const real slip[];
 /* ports: the point of the joint, factors, and tracks */
@@ -122,7 +135,10 @@ extern const real rest[];
 extern const int shown_force[];
 
 /* where the laws of a joint begin; whether a state is a velocity */
-extern const int law_of[];
+extern const int at_rates[];
+extern const int at_pushed[];
+extern const int at_shown[];
+extern const int at_passed[];
 extern const int is_mass[];
 
 #ifdef NAME_RUNTIME
@@ -132,18 +148,16 @@ extern const name_parameters name_defaults;
 extern const real largest_number;
 
 int good(const name_parameters *p);
-void laws_of(const name_parameters *p, stream *state);
-int laws_within_reach(const stream *state);
+void laws_of(const name_parameters *p, name_made *made);
+int laws_within_reach(const name_made *made);
 int name_build(stream *state, const name_parameters *parameters);
 
 #define matrix state->made.matrix
+#define drive state->made.drive
 #define slip state->made.slip
 #define growth state->made.growth
-#define track_impedance state->made.track_impedance
 #define root_impedance state->made.root_impedance
 #define state_gain state->made.state_gain
-#define law state->made.law
-#define weight state->made.weight
 #define begun state->made.begun
 #define push state->made.push
 #define held state->made.held

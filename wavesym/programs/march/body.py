@@ -61,6 +61,14 @@ class BodyOperator:
         """As programs have it: slack and ratios, loss and first, 0 and last."""
         return (self.slack, *self.ratio[1:], self.loss, *self.first[1:], 0.0, *self.last[1:])
 
+    def highest(self, acting: float, start: float) -> float:
+        """The highest coefficient of q where p is constant and q is `start` at the start of the panel."""
+        y = 2 * acting * self.ratio[1]
+        q = 2 * (1 - self.slack) * (start - self.first[1] * y)
+        for k, ratio in enumerate(self.ratio[1:], 1):
+            q = (y if k == 1 else 0.0) - ratio * q
+        return q
+
 
 def body_operator(step: fmpq, degree: int) -> BodyOperator:
     """The operator of bodies with rate * length = `step` > 0 on series of `degree`, each number rounded once."""

@@ -97,14 +97,14 @@ class Verdict:
         )
 
 
-def judge(plan: MarchPlan, degree: int, real: Real, *, blocked: bool = False) -> Verdict:
+def judge(plan: MarchPlan, degree: int, real: Real) -> Verdict:
     """March once over the horizon at `degree` for a program in `real` numbers, and bound its errors.
 
-    Its bodies may be `blocked`. All is divided by the size of what moves it, so that no square of a wave underflows
-    here. OverflowError where waves grow beyond what programs take.
+    All is divided by the size of what moves it, so that no square of a wave underflows here. OverflowError where waves
+    grow beyond what programs take.
     """
     scale = power_of_two([largest_number(plan)])
-    verdict = _judge(plan.scaled(1 / scale), degree, real, scale, blocked)
+    verdict = _judge(plan.scaled(1 / scale), degree, real, scale)
     errors, sizes, heights, slopes = (
         tuple(nearest(scale) * value for value in of)
         for of in (verdict.errors, verdict.sizes, verdict.heights, verdict.slopes)
@@ -112,9 +112,9 @@ def judge(plan: MarchPlan, degree: int, real: Real, *, blocked: bool = False) ->
     return replace(verdict, errors=errors, sizes=sizes, heights=heights, slopes=slopes)
 
 
-def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq, blocked: bool) -> Verdict:
+def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     """The same for a plan whose motions are so many times as small as those of the program."""
-    made = MarchTables(plan, degree, DOUBLE, blocked=blocked)
+    made = MarchTables(plan, degree, DOUBLE)
     scheme = MarchScheme(made.tables([False] * len(plan.outputs)), made.constants(), plan.tau_max, np.float64)
     unit, smallest = nearest(real.roundoff), not_below(real.smallest / scale)
     reach = nearest(min(real.reach / scale, DOUBLE.reach))
@@ -338,10 +338,12 @@ class Losses:
         operators = [made.body(joint, panel.length) for joint in joints]
         known = {id(one): body_roundings(one, group.ports.shape[1] + 4) for one in operators}
         rates = np.array([[nearest(joint.space.rate * panel.length)] for joint in joints])
+        share = 4 * rates[:, 0] + 2
         return BodyLosses(
             np.array([known[id(one)] for one in operators]),
             np.array([one.leak for one in operators]),
-            self._weights[group.states[:, 0]] * (4 * rates[:, 0] + 2),
+            self._weights[group.states[:, 0]] * share,
+            np.sqrt(2 * share),
         )
 
     def _of_bodies(
@@ -362,7 +364,9 @@ class Losses:
         last = (sent[..., 0, -1] + a[..., 0, -1]) / group.ratio[:, 0]
         excess = np.abs(last - np.sum(group.push * a[..., -1], axis=-1))
         about = 4 * unit * (np.abs(sent[..., 0, -1]) + np.abs(a[..., 0, -1])) / turned[:, 0]
-        missed = of.leak * (excess + about + q + (2 * self._pushes + 4) * unit * acting)
+        missed = of.leak * (excess + about)
+        # what rounding makes of the same counts as if the body were wrong by it at the end
+        ends += of.kept * of.leak * (q + (2 * self._pushes + 4) * unit * acting)
         single = sqrt(group.size) * wrong
         return wrong**2, single, ends[..., None], np.asarray(np.sum(of.lost * missed**2, axis=-1))
 
@@ -418,11 +422,13 @@ class Losses:
 
 @dataclass(frozen=True)
 class BodyLosses:
-    """Of bodies on a panel: their `roundings`, (joints, q or end, 3), leaks, and what a leak of 1 costs, squared."""
+    """Of bodies on a panel: their `roundings`, (joints, q or end, 3), leaks, and what a leak of 1 costs, squared, or as
+    an error of the velocity at the end."""
 
     roundings: Array
     leak: Array
     lost: Array
+    kept: Array
 
 
 def _square(wrong: Array) -> Array:

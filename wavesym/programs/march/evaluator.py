@@ -19,7 +19,7 @@ from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.bound import Verdict, judge
 from wavesym.programs.march.plan import HIGHEST_DEGREE, MarchPlan, least_numbers, march_plan
-from wavesym.programs.march.space import BLOCK, BODY, SCATTERER
+from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
 from wavesym.programs.march.tables import MarchTables, state_bytes, table_bytes
 from wavesym.programs.program import Program, ProgramOutput, Provenance
 
@@ -152,10 +152,10 @@ def _made(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
     return March(plan, degree, real, outputs), verdict
 
 
-def first_degree(plan: MarchPlan, real: Real, *, blocked: bool = False) -> int:
+def first_degree(plan: MarchPlan, real: Real) -> int:
     """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved.
 
-    A stiff spring adds those of a body on it. Blocks, as which bodies may be `blocked`, cost its square.
+    A stiff spring adds those of a body on it. Blocks cost its square.
     """
     if not any(joint.space.states for joint in plan.joints):
         return _LEAST_DEGREE
@@ -164,7 +164,7 @@ def first_degree(plan: MarchPlan, real: Real, *, blocked: bool = False) -> int:
     slow = sum(rate for rate in bodies if rate > 0) / len(bodies)
     turning = max(joint.space.turning for joint in plan.joints)
     detail = math.sqrt(2 * slow * longest * plan.crossings) + min(turning * longest / 2, 1e6)
-    spare = 8 if blocked or any(joint.space.law == BLOCK for joint in plan.joints) else 12
+    spare = 8 if any(joint.space.law == BLOCK for joint in plan.joints) else 12
     return math.ceil(detail) + (spare if real is DOUBLE else spare // 2)
 
 
@@ -174,16 +174,17 @@ def _fastest(plan: MarchPlan) -> float:
 
 def _multiplications(plan: MarchPlan, degree: int) -> int:
     """On one window."""
-    total = 0
-    for space in (joint.space for joint in plan.joints):
-        ports, size = len(space.ports), degree + 1
-        if space.law == SCATTERER:
-            total += (ports + space.points) * size * ports
-        elif space.law == BODY:
-            total += (2 * ports + 4) * size
-        else:
-            total += (space.points * size + space.states) ** 2
-    return len(plan.panels) * total
+    return len(plan.panels) * sum(step_multiplications(joint.space, degree) for joint in plan.joints)
+
+
+def step_multiplications(space: JointSpace, degree: int) -> int:
+    """Multiplications with an addition of a joint on a panel, for polynomials of `degree`."""
+    ports, size = len(space.ports), degree + 1
+    if space.law == SCATTERER:
+        return (ports + space.points) * size * ports
+    if space.law == BODY:
+        return (2 * ports + 4) * size
+    return int((space.points * size + space.states) ** 2)
 
 
 def _kinds(plan: MarchPlan) -> int:

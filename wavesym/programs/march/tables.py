@@ -19,10 +19,10 @@ from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
 
 
 class MarchTables:
-    """The numbers of a march at some degree in `real` numbers; `bodies` that are blocks as well are `blocked`."""
+    """The numbers of a march at some degree in `real` numbers."""
 
-    def __init__(self, plan: MarchPlan, degree: int, real: Real, *, blocked: bool = False) -> None:
-        self._plan, self._degree, self._real, self._blocked = plan, degree, real, blocked
+    def __init__(self, plan: MarchPlan, degree: int, real: Real) -> None:
+        self._plan, self._degree, self._real = plan, degree, real
 
     @cached_property
     def responses(self) -> dict[tuple[object, ...], BodyOperator | BlockResponse]:
@@ -30,7 +30,7 @@ class MarchTables:
         found: dict[tuple[object, ...], BodyOperator | BlockResponse] = {}
         for joint in self._plan.joints:
             for panel in self._plan.panels:
-                if (law := self.law(joint)) != SCATTERER and (key := self._key(joint, panel.length)) not in found:
+                if (law := joint.space.law) != SCATTERER and (key := response_key(joint, panel.length)) not in found:
                     found[key] = (
                         body_operator(joint.space.rate * panel.length, self._degree)
                         if law == BODY
@@ -38,13 +38,9 @@ class MarchTables:
                     )
         return found
 
-    def law(self, joint: MarchedJoint) -> int:
-        """What the step of a joint is."""
-        return BLOCK if self._blocked and joint.space.states else joint.space.law
-
     def body(self, joint: MarchedJoint, length: fmpq) -> BodyOperator:
         """The operator of a body on panels of some length."""
-        found = self.responses[self._key(joint, length)]
+        found = self.responses[response_key(joint, length)]
         assert isinstance(found, BodyOperator)
         return found
 
@@ -52,12 +48,9 @@ class MarchTables:
         """What the polynomials of a block miss; of a joint without state nothing."""
         if not joint.space.states:
             return np.zeros((0, 0))
-        found = self.responses[self._key(joint, length)]
+        found = self.responses[response_key(joint, length)]
         assert isinstance(found, BlockResponse)
         return found.missed
-
-    def _key(self, joint: MarchedJoint, length: fmpq) -> tuple[object, ...]:
-        return response_key(joint, length, self.law(joint))
 
     def tables(self, nothing: Sequence[bool]) -> dict[str, tuple[float, ...]]:
         """All tables, by name; `nothing` says of each output whether it is 0 throughout."""
@@ -106,13 +99,13 @@ class MarchTables:
         spaces = [joint.space for joint in plan.joints]
         ports = [port for space in spaces for port in space.ports]
         matrix, where = self._matrices()
-        drives = [joint.space.drive if self.law(joint) == BODY else fmpq(0) for joint in plan.joints]
+        drives = [space.drive for space in spaces]
 
         def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
             return tuple(map(real.nearest, values))
 
         return {
-            "law": tuple(map(self.law, plan.joints)),
+            "law": tuple(space.law for space in spaces),
             "first_point": firsts(space.points for space in spaces),
             "first_state": firsts(space.states for space in spaces),
             "first_port": firsts(len(space.ports) for space in spaces),
@@ -137,8 +130,8 @@ class MarchTables:
             "degree": self._degree,
             "panels": len(plan.panels),
             "joints": len(plan.joints),
-            "bodies": sum(self.law(joint) == BODY for joint in plan.joints),
-            "blocks": sum(self.law(joint) == BLOCK for joint in plan.joints),
+            "bodies": sum(joint.space.law == BODY for joint in plan.joints),
+            "blocks": sum(joint.space.law == BLOCK for joint in plan.joints),
             "states": sum(joint.space.states for joint in plan.joints),
             "forces": plan.forces,
             "events": len(plan.events),
@@ -147,10 +140,11 @@ class MarchTables:
             # where no joint has a state as well: a compiler may look at what is never run then
             "widest": max(
                 joint.space.points * (self._degree + 1) + joint.space.states
-                if self.law(joint) == BLOCK
+                if joint.space.law == BLOCK
                 else self._degree + 1
                 for joint in plan.joints
             ),
+            "most_ports": max(len(joint.space.ports) for joint in plan.joints),
             "cycle": plan.cycle[0],
             "span": real.nearest(fmpq(plan.cycle[1])),
             "step": real.nearest(plan.step),
@@ -163,7 +157,7 @@ class MarchTables:
         where = []
         for panel in self._plan.panels:
             for joint in self._plan.joints:
-                key = self._key(joint, panel.length)
+                key = response_key(joint, panel.length)
                 if key not in begins:
                     begins[key] = len(matrix)
                     matrix += map(self._real.nearest, self._matrix(joint, key))
@@ -180,8 +174,9 @@ class MarchTables:
                 yield from joint.space.scattering.transpose().entries()
 
 
-def response_key(joint: MarchedJoint, length: fmpq, law: int) -> tuple[object, ...]:
+def response_key(joint: MarchedJoint, length: fmpq) -> tuple[object, ...]:
     """Joints with the same one have the same matrix on panels of this length."""
+    law = joint.space.law
     if law == BODY:
         return ("body", str(joint.space.rate * length))
     if law == BLOCK:
@@ -203,7 +198,7 @@ def table_bytes(plan: MarchPlan, degree: int, real: Real) -> int:
     sizes = {}
     for joint in plan.joints:
         for panel in plan.panels:
-            key = response_key(joint, panel.length, joint.space.law)
+            key = response_key(joint, panel.length)
             sizes[key] = matrix_size(joint.space, degree)
     delays = {heard.delay for output in plan.outputs for heard in output.heard}
     stretches = sum(len(plan.stretches(delay)) for delay in delays) * 3 + 1

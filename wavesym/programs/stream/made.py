@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import chain
 from typing import Any
 
@@ -10,14 +10,18 @@ from flint import fmpq_mat
 
 from wavesym.programs.flat import firsts
 from wavesym.programs.march.plan import MarchedJoint
+from wavesym.programs.march.space import BODY
+from wavesym.programs.march.tables import matrix_size
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.units import Function
 from wavesym.programs.stream.free import FreeStream
 from wavesym.programs.stream.plan import StreamPlan
 from wavesym.programs.stream.quick import CALM, rows_of
 
-MADE = ("held", "root_impedance", "state_gain", "matrix", "begun", "push", "slip", "base", "strength", "gain")
+MADE = ("held", "root_impedance", "state_gain", "matrix", "drive", "begun", "push", "slip", "base", "strength", "gain")
 """The tables that are computed."""
+LAWS = ("rates", "pushed", "shown", "passed")
+"""The matrices of joints that they follow from."""
 
 
 def laws_of(free: FreeStream) -> RuntimeLaws:
@@ -25,7 +29,7 @@ def laws_of(free: FreeStream) -> RuntimeLaws:
     rings = free.rings
     spaces = [joint.space for joint in rings.joints]
     functions: dict[str, Iterable[Function]] = {
-        "law": chain.from_iterable(map(_law, spaces)),
+        **{name: [value for space in spaces for value in _flat(getattr(space, name))] for name in LAWS},
         "weight": (weight for space in spaces for weight in space.weights),
         "begun": (value for space in spaces for value in space.begun),
         "push": (port.push for space in spaces for port in space.ports),
@@ -41,11 +45,10 @@ def laws_of(free: FreeStream) -> RuntimeLaws:
 def places(free: FreeStream, plan: StreamPlan, degree: int) -> dict[str, tuple[float, ...]]:
     """Where in them what belongs to a joint begins, and which of its states are velocities."""
     joints = plan.rings.joints
-    law = firsts(len(list(_law(joint.space))) for joint in joints)
     return {
-        "answer": firsts(_answer_size(joint, degree) for joint in joints),
+        "answer": firsts(matrix_size(joint.space, degree) for joint in joints),
         "first_slip": firsts(_slip_size(joint, degree) for joint in joints),
-        "law_of": law,
+        **{f"at_{name}": firsts(len(_flat(getattr(joint.space, name))) for joint in joints) for name in LAWS},
         "is_mass": tuple(
             int(n < rows.masses) for rows in map(rows_of, free.rings.joints) if rows for n in range(len(rows.weights))
         ),
@@ -56,7 +59,7 @@ def sizes(plan: StreamPlan, degree: int) -> dict[str, float]:
     """How many numbers of them there are."""
     joints = plan.rings.joints
     return {
-        "answers": sum(_answer_size(joint, degree) for joint in joints),
+        "answers": sum(matrix_size(joint.space, degree) for joint in joints),
         "slips": sum(_slip_size(joint, degree) for joint in joints),
         "calm": CALM,
         "tracks": len(plan.rings.tracks),
@@ -64,17 +67,11 @@ def sizes(plan: StreamPlan, degree: int) -> dict[str, float]:
     }
 
 
-def _law(space: Any) -> Iterator[Function]:
-    for matrix in (space.rates, space.pushed, space.shown, space.passed):
-        yield from matrix.entries() if isinstance(matrix, fmpq_mat) else chain.from_iterable(matrix)
-
-
-def _answer_size(joint: MarchedJoint, degree: int) -> int:
-    space = joint.space
-    wide = space.points * (degree + 1) + space.states
-    return wide**2 if space.states else len(space.ports) * (len(space.ports) + space.points)
+def _flat(matrix: Any) -> list[Any]:
+    """The entries of a matrix, or of rows, by rows."""
+    return list(matrix.entries() if isinstance(matrix, fmpq_mat) else chain.from_iterable(matrix))
 
 
 def _slip_size(joint: MarchedJoint, degree: int) -> int:
     space = joint.space
-    return space.states * (space.points * (degree + 1) + space.states)
+    return 1 if space.law == BODY else space.states * (space.points * (degree + 1) + space.states)

@@ -38,7 +38,7 @@ from wavesym.programs.stream.tables import StreamTables
 
 _ONE = fmpq(1)
 _ROUNDINGS = 64  # no tolerance is smaller
-_SPARE = 4  # of the tolerance one step of each load takes so much less
+_SPARE = 5  # of the tolerance one step of each load takes so much less
 
 
 def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, tested: bool = False) -> Program:
@@ -142,12 +142,12 @@ def _at_worst(plan: StreamPlan, verdict: Verdict, tolerance: fmpq) -> str:
 
 def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
     """The least degree that will do, and what it is worth."""
-    degree, spent = max(first_degree(plan.rings, real, blocked=True) - 4, 4), 0.0
+    degree, spent = max(first_degree(plan.rings, real) - 8, 4), 0.0
     tolerance = nearest(max(model.tolerance, _ROUNDINGS * real.roundoff))
     while True:
         spent = refuse_long(plan.rings, degree, spent, real)
         try:
-            verdict = judge(plan.rings, degree, real, blocked=True)
+            verdict = judge(plan.rings, degree, real)
         except OverflowError:
             raise
         except ArithmeticError as error:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import sqrt
 from typing import Any, cast
 
-import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.errors import CostError
 from wavesym.numbers.doubles import nearest
@@ -41,8 +38,8 @@ def quick_enough(free: FreeStream, plan: StreamPlan, degree: int, tolerance: flo
 
     def fine(of: StreamPlan) -> bool:
         tables = StreamTables(of, degree, real)
-        slips = (step_lost(free, n, of, tables.slips(joint), degree) for n, joint in enumerate(of.rings.joints))
-        return max(slips) <= tolerance / _SPARE
+        pairs = zip(of.rings.joints, free.rings.joints, strict=True)
+        return max(step_lost(joint, rows_of(made), of.panel, tables) for joint, made in pairs) <= tolerance / _SPARE
 
     quick = plan.quicker(free.quicker)
     while not fine(plan) or (degree < _HIGH and not fine(quick)):
@@ -50,23 +47,16 @@ def quick_enough(free: FreeStream, plan: StreamPlan, degree: int, tolerance: flo
     return degree, free.quicker if fine(quick) else fmpq(1)
 
 
-def step_lost(free: FreeStream, number: int, plan: StreamPlan, slips: Sequence[float], degree: int) -> float:
+def step_lost(joint: MarchedJoint, rows: JointRows | None, panel: fmpq, tables: StreamTables) -> float:
     """What part of the energy that comes polynomials lose at most where all waves and bodies, at rest so far, jump to
     1; a root; as templates/c/stream/made.c has it.
     """
-    space, rows = plan.rings.joints[number].space, rows_of(free.rings.joints[number])
+    space = joint.space
     if rows is None or not space.states:
         return 0.0
-    size = degree + 1
-    jumps: NDArray[np.float64] = np.zeros(space.points * size + space.states)
-    for port in space.ports:
-        jumps[port.point * size] += abs(nearest(port.push))
-    jumps[space.points * size :][: rows.masses] = 1
-    energy = (
-        plan.panel * sum((port.impedance for port in space.ports), fmpq(0))
-        + sum(space.weights[: rows.masses], fmpq(0)) / 2
-    )
-    lost = float(np.sum(np.abs(np.reshape(slips, (space.states, -1))) @ jumps))
+    energy = panel * sum((port.impedance for port in space.ports), fmpq(0))
+    energy += sum(space.weights[: rows.masses], fmpq(0)) / 2
+    lost = tables.jump_missed(joint, rows.masses)
     return lost / sqrt(nearest(energy)) if lost else 0.0
 
 

@@ -13,14 +13,16 @@ from numpy.typing import NDArray
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.flat import firsts
+from wavesym.programs.march.evaluator import step_multiplications
 from wavesym.programs.march.plan import MarchedJoint
-from wavesym.programs.march.space import SHOWN
+from wavesym.programs.march.space import BLOCK, BODY, SHOWN
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.stream.interpolation import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
 
 Array = NDArray[np.float64]
 
+_OF_HORIZON = ("events", "slots", "cycle", "span", "step")  # constants of a march that a stream has not
 _LONGEST = 10**6  # panels of a step, each of which takes its time
 _SHORTEST = fmpq(1, 10**30)  # of steps but 0
 _SPARE = 4  # breakpoints that are given up take so much less than the tolerance
@@ -32,7 +34,7 @@ class StreamTables:
 
     def __init__(self, plan: StreamPlan, degree: int, real: Real) -> None:
         self._plan, self._degree, self._real = plan, degree, real
-        self._rings = MarchTables(plan.rings, degree, real, blocked=True)
+        self._rings = MarchTables(plan.rings, degree, real)
         self._joints = plan.rings.joints
 
     def tables(self) -> dict[str, tuple[float, ...]]:
@@ -41,8 +43,7 @@ class StreamTables:
         half = nearest(panel / 2)
         heard = [one for output in rings.outputs for one in output.heard]
         late = [plan.late(one.delay) for one in heard]
-        # its bodies are blocks
-        joints = {name: table for name, table in self._rings.joints().items() if name not in ("law", "drive")}
+        joints = self._rings.joints()
         slips = [self.slips(joint) for joint in self._joints]
         spaces = [joint.space for joint in self._joints]
         shown = {joint.sends[0]: joint.forces[0] for joint in self._joints if joint.space is SHOWN}
@@ -88,21 +89,15 @@ class StreamTables:
         long, length = real.nearest(plan.panel), nearest(plan.panel)
         exponent = 20 if real is DOUBLE else 10
         return {
-            "degree": self._degree,
-            "panels": len(plan.rings.panels),
-            "joints": len(self._joints),
-            "states": sum(joint.space.states for joint in self._joints),
-            "tracks": len(plan.rings.tracks),
+            **{name: value for name, value in self._rings.constants().items() if name not in _OF_HORIZON},
             "slot_count": sum(self._slots),
             "entry_count": sum(self._entries),
             "breakpoints": plan.breakpoints,
             "deepest": max(track.steps for track in plan.rings.tracks),
             "loads": len(plan.inputs),
-            "forces": len(plan.acting),
             "loaded_count": len(plan.loaded),
-            "loaded_points": sum(self._joints[n].space.points for n in plan.loaded),
+            "loaded_ports": sum(len(self._joints[n].space.ports) for n in plan.loaded),
             "most_states": max(1, *(joint.space.states for joint in self._joints), 1),
-            "widest": self._widest,
             "panel": long,
             "panel_low": real.nearest(plan.panel - rational(long)),
             "scale": real.nearest(2 / plan.panel),
@@ -140,10 +135,8 @@ class StreamTables:
         size = self._degree + 1
         summed = sum(one.summed for output in self._plan.rings.outputs for one in output.heard)
         total = 2 * 3 * 4 * size * summed
-        for joint in self._joints:
-            space = joint.space
-            wide = space.points * size + space.states
-            total += wide * (wide + space.states) if space.states else size * len(space.ports) ** 2
+        total += sum(step_multiplications(joint.space, self._degree) for joint in self._joints)
+        total += sum(len(self.slips(joint)) for joint in self._joints)
         return total
 
     @property
@@ -151,9 +144,10 @@ class StreamTables:
         """About the same for a step that begins at the edge of a panel: loads change, and all outputs are read."""
         size, total = self._degree + 1, 0
         for n in self._plan.loaded:
-            space = self._joints[n].space
+            joint, space = self._joints[n], self._joints[n].space
             wide = space.points * size + space.states
-            total += (3 * space.points + space.states) * wide + size * len(space.ports)
+            total += 3 * space.points * wide if space.law == BLOCK else step_multiplications(space, self._degree)
+            total += len(self.slips(joint)) + size * (space.states + len(space.ports))
         for output in self._plan.rings.outputs:
             total += sum((2 * 4 * 3 if one.summed else 3) * size for one in output.heard)
         return total
@@ -186,11 +180,6 @@ class StreamTables:
     def _until(self) -> fmpq:
         return self._plan.rings.model.until
 
-    @property
-    def _widest(self) -> int:
-        size = self._degree + 1
-        return max(joint.space.points * size + joint.space.states for joint in self._joints)
-
     def _weight(self, track: int) -> tuple[float, float]:
         """What an error counts for on a track: as a wave, and (one over) what the state of the joint adds."""
         rings = self._plan.rings
@@ -206,9 +195,29 @@ class StreamTables:
         """What the polynomials of a joint miss, as roots of energies, from what its matrix takes."""
         if not joint.space.states:
             return []
-        turned = nearest(self._plan.panel) * joint.space.norm
-        rows = 2 * (sqrt(turned) + (1 + turned) / sqrt(2)) * self._rings.missed(joint, self._plan.panel)
-        return [float(f"{value * 1.01:.3g}") for value in rows.ravel().tolist()]
+        panel = self._plan.panel
+        turned = nearest(panel) * joint.space.norm
+        rows = (
+            np.array([self._rings.body(joint, panel).leak * sqrt(nearest(joint.space.weights[0]))])
+            if joint.space.law == BODY
+            else self._rings.missed(joint, panel).ravel()
+        )
+        rows = 2 * (sqrt(turned) + (1 + turned) / sqrt(2)) * rows
+        return [float(f"{value * 1.01:.3g}") for value in rows.tolist()]
+
+    def jump_missed(self, joint: MarchedJoint, masses: int) -> float:
+        """What these are at most, added up, where waves that arrive, and the first `masses` states, jump to 1."""
+        space, slips = joint.space, np.array(self.slips(joint))
+        pushes = [abs(nearest(port.push)) for port in space.ports]
+        if space.law == BODY:
+            operator = self._rings.body(joint, self._plan.panel)
+            acting = nearest(space.drive) * sum(pushes)
+            return float(slips[0] * (abs(operator.highest(acting, 0.0)) + abs(operator.highest(0.0, 1.0))))
+        jumps = np.zeros(space.points * (self._degree + 1) + space.states)
+        for port, push in zip(space.ports, pushes, strict=True):
+            jumps[port.point * (self._degree + 1)] += push
+        jumps[len(jumps) - space.states :][:masses] = 1
+        return float(np.sum(np.abs(slips.reshape(space.states, -1)) @ jumps))
 
     def _rounded(self, values: Iterable[float]) -> tuple[float, ...]:
         return tuple(self._real.nearest(rational(value)) for value in values)

@@ -21,6 +21,7 @@ class CMarch:
     constants: dict[str, str]
     numbers: str
     series: str
+    joint: str
     kernel: str
 
 
@@ -32,6 +33,7 @@ def source(scene: Description, program: Program) -> str:
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
         series=kernel("series.h", scene),
+        joint=kernel("joint.c", scene),
         kernel=kernel("march/march.c", scene),
     )
     return render("c/march/march.c.j2", context)

@@ -7,6 +7,7 @@ from itertools import accumulate
 
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.program import Program, SteppedValues
+from wavesym.programs.stream.made import MADE
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, multiplied, parameter_fields
@@ -21,8 +22,8 @@ _ALLOWED = 10  # times the error bound
 class CStream:
     """templates/c/stream/stream.c.j2.
 
-    Of parameters that come at run time `fields` are told, `laws` are what is assigned, with the expression, to `arrays`
-    of so many numbers each; else these are empty.
+    With parameters at run time `laws` are assigned, each with its expression, to `functions`, arrays of so many
+    numbers; `made_tables` are the tables that `build` computes, in the state. Without parameters these are empty.
     """
 
     scene: Description
@@ -30,9 +31,11 @@ class CStream:
     constants: dict[str, str]
     numbers: str
     series: str
+    joint: str
     kernel: str
     fields: tuple[CRuntimeField, ...]
-    arrays: tuple[tuple[str, str], ...]
+    functions: tuple[tuple[str, str], ...]
+    made_tables: tuple[str, ...]
     products: Lines
     laws: tuple[tuple[str, str], ...]
     heard: str
@@ -76,9 +79,11 @@ def source(scene: Description, program: Program) -> str:
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
         series=kernel("series.h", scene),
+        joint=kernel("joint.c", scene),
         kernel=kernel("stream/stream.c", scene),
         fields=_fields(program),
-        arrays=_arrays(program),
+        functions=tuple((name, str(len(of))) for name, of in laws.functions.items()) if laws else (),
+        made_tables=MADE if laws else (),
         products=multiplied(laws, laws.every, program.real) if laws else (),
         laws=tuple(assigned(laws, laws.functions, program.real)) if laws else (),
         heard=str(len(laws.functions["gain"])) if laws else "",
@@ -120,7 +125,7 @@ def _arrays(program: Program) -> tuple[tuple[str, str], ...]:
     made = {name: len(functions) for name, functions in program.laws.functions.items()}
     tracks = program.constants["tracks"]
     more = {"matrix": program.constants["answers"], "slip": program.constants["slips"]}
-    more |= {"root_impedance": tracks, "state_gain": tracks}
+    more |= {"drive": program.constants["joints"], "root_impedance": tracks, "state_gain": tracks}
     return tuple((name, str(count)) for name, count in (made | more).items())
 
 

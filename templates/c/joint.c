@@ -1,0 +1,128 @@
+/* joint.c: a joint on a panel, as marches and streams step it: from the waves that arrive at its ends and what acts on its
+ * points those that it sends. Generated files have what stands below the first empty line, under the tables of joints. */
+#ifndef TABLES
+#include "march/tables.h"
+#include "series.h"
+#endif
+
+/* A joint on a panel: its matrix there, what waves that arrive at its ends push with and how strong loads are, the waves
+ * that arrive, and where those go that it sends. */
+typedef struct {
+    const real *table;
+    const real *pushes;
+    real driven;
+    const real *arriving[MOST_PORTS];
+    real *sent[MOST_PORTS];
+} joint_on_panel;
+
+static const joint_on_panel no_ends = {NULL, NULL, 0, {NULL}, {NULL}};
+
+/* A joint without state: what it sends is a sum of what arrives and acts. */
+static void scatter(int joint, const joint_on_panel *on, const real *acting)
+{
+    const real *factor = on->table;
+    const int ports = first_port[joint + 1] - first_port[joint];
+    for (int port = 0; port < ports; ++port) {
+        for (int k = 0; k < SIZE; ++k) {
+            on->sent[port][k] = 0;
+        }
+    }
+    for (int port = 0; port < ports; ++port) {
+        for (int other = 0; other < ports; ++other) {
+            add(on->sent[other], *factor++, on->arriving[port], SIZE);
+        }
+    }
+    for (int point = first_point[joint]; point < first_point[joint + 1]; ++point) {
+        for (int other = 0; other < ports; ++other) {
+            if (acting && force_on[point] >= 0) {
+                add(on->sent[other], *factor, acting + force_on[point] * POWERS, POWERS);
+            }
+            ++factor;
+        }
+    }
+}
+
+/* A body: its velocity q from p, with p[SIZE] = 0, and from what it is at the start; gives what it is at the end. */
+static real step_body(const real *rows, const real *p, real initial, real *q)
+{
+    const real *const at_first = rows + SIZE;
+    const real *const at_last = rows + 2 * SIZE;
+    real y = 0;
+    real first_sum = 0;
+    real last_sum = 0;
+    for (int k = DEGREE; k > 0; --k) {
+        y = rows[k] * (((k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1]) + y);
+        q[k] = y;
+        first_sum += at_first[k] * y;
+        last_sum += at_last[k] * y;
+    }
+    first_sum = initial - first_sum;
+    q[0] = first_sum - rows[0] * first_sum;
+    real before = 2 * q[0];
+    for (int k = 1; k <= DEGREE; ++k) {
+        before = q[k] - rows[k] * before;
+        q[k] = before;
+    }
+    return q[0] + (last_sum - at_first[0] * q[0]);
+}
+
+/* A block: velocities of its points, followed by x at the end less x, from what acts on them, followed by x. */
+static void step_block(const real *columns, const real *given, real *velocities, int width)
+{
+    for (int k = 0; k < width; ++k) {
+        velocities[k] = 0;
+    }
+    for (int k = 0; k < width; ++k) {
+        if (!(given[k] == 0)) { /* as where loads alone act */
+            add(velocities, given[k], columns + k * width, width);
+        }
+    }
+}
+
+/* A joint under forces (coefficients of each, NULL for none), whose states x go from the start of the panel to its end.
+ * Where it has states `given` becomes what acts on its points, with p for a body, and then the `velocities` of these
+ * points follow. */
+static void step_joint(int joint, const joint_on_panel *on, const real *acting, real *x, real *given, real *velocities)
+{
+    const int body = BODIES > 0 && law[joint] == BODY;
+    const int first = first_port[joint];
+    const int points = first_point[joint + 1] - first_point[joint];
+    const int states = first_state[joint + 1] - first_state[joint];
+    if (states < 1) {
+        scatter(joint, on, acting);
+        return;
+    }
+    for (int k = 0; k < points * SIZE; ++k) {
+        given[k] = 0;
+    }
+    for (int point = 0; acting && point < points; ++point) {
+        const int force = force_on[first_point[joint] + point];
+        if (force >= 0) {
+            add(given + point * SIZE, body ? on->driven : (real)1, acting + force * POWERS, POWERS);
+        }
+    }
+    for (int port = first; port < first_port[joint + 1]; ++port) {
+        add(given + point_of[port] * SIZE, on->pushes[port - first], on->arriving[port - first], SIZE);
+    }
+    if (body) {
+        given[SIZE] = 0;
+        *x = step_body(on->table, given, *x, velocities);
+    } else if (BLOCKS > 0) {
+        real *const gained = velocities + points * SIZE;
+        for (int k = 0; k < states; ++k) {
+            given[points * SIZE + k] = x[k];
+        }
+        step_block(on->table, given, velocities, points * SIZE + states);
+        for (int k = 0; k < states; ++k) {
+            x[k] += gained[k];
+        }
+    }
+    for (int port = first; port < first_port[joint + 1]; ++port) {
+        const real *const a = on->arriving[port - first];
+        const real *const q = velocities + point_of[port] * SIZE;
+        real *const out = on->sent[port - first];
+        for (int k = 0; k < SIZE; ++k) {
+            out[k] = ratio[port] * q[k] - a[k];
+        }
+    }
+}
