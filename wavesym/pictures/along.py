@@ -5,7 +5,7 @@ The scene is asked for other outputs than its own, so that places, units and pro
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -14,12 +14,12 @@ import numpy as np
 
 from wavesym.mechanics.length import LengthUnit, in_unit, place_text
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import rational
 from wavesym.pictures.histories import Histories, Points, histories
 from wavesym.pictures.reduction import columns_of, extremes_between
 from wavesym.programs.program import Program
-from wavesym.scene import Scene, lower
-from wavesym.scene.outputs import QUANTITIES, Output
+from wavesym.scene import Scene
+from wavesym.scene.lowering import probes
+from wavesym.scene.outputs import Output, observables
 from wavesym.systems.place import Place, position_of
 from wavesym.systems.station import Station
 
@@ -69,27 +69,32 @@ class Along:
         return self.quantity == "drift"
 
 
-def along(scene: Scene) -> tuple[Along, ...]:
-    """Motion, then strain or drift, of all of a scene's chain. CostError, ToleranceError as for such outputs."""
-    asked = {quantity: _asked(scene, quantity) for quantity in _quantities(scene)}
-    written = {quantity: [spot.written for _, spots in lines for spot in spots] for quantity, lines in asked.items()}
-    made = histories(_watching(scene, {quantity: written.get(quantity, []) for quantity in QUANTITIES}))
+def along(scene: Scene, model: Model, program: Program | None = None) -> tuple[Along, ...]:
+    """Motion, then strain or drift, of all of a scene's chain.
+
+    Args:
+        scene: whose chain it is.
+        model: the same, lowered.
+        program: one that has the outputs of `observed`, where there is one already.
+
+    Raises:
+        CostError, ToleranceError: as for such outputs.
+    """
+    places = {quantity: _places(scene, quantity) for quantity in _quantities(scene)}
+    made = histories(observed(scene, model), program=program)
     length = _length(scene)
-    return tuple(replace(_of(made, quantity, lines), length=length) for quantity, lines in asked.items())
+    return tuple(replace(_of(made, quantity, lines), length=length) for quantity, lines in places.items())
 
 
-def _watching(scene: Scene, places: Mapping[str, Sequence[str]]) -> Model:
-    """The scene with other outputs, whose places are those of its chain without units."""
+def observed(scene: Scene, model: Model) -> Model:
+    """The model of a scene with the outputs that tell what happens along its chain."""
+    written = {
+        quantity: [spot.written for _, spots in _places(scene, quantity) for spot in spots]
+        for quantity in _quantities(scene)
+    }
     # numbers stay as they are: written out, those that come from units may be longer than a scene's text may be
-    output = Output.model_validate({"until": scene.output.until, "tolerance": scene.output.tolerance, **places})
-    model = lower(scene.dimensionless().model_copy(update={"output": output}))
-    scale = scene.scale
-    if scale is None:
-        return model
-    probes = (
-        replace(p, factor=rational(scale.factor(p.quantity, p.rod)), unit=scale.unit(p.quantity)) for p in model.probes
-    )
-    return replace(model.watching(probes), clock=scale.clock)
+    output = Output.model_validate({"until": scene.output.until, "tolerance": scene.output.tolerance, **written})
+    return model.watching(probes(scene, observables(output, scene.system, scene.load)))
 
 
 def _quantities(scene: Scene) -> tuple[str, str]:
@@ -100,7 +105,7 @@ def _quantities(scene: Scene) -> tuple[str, str]:
     return "displacement" if scene.load else "velocity", "strain"
 
 
-def _asked(scene: Scene, quantity: str) -> list[tuple[str, tuple[Spot, ...]]]:
+def _places(scene: Scene, quantity: str) -> list[tuple[str, tuple[Spot, ...]]]:
     """The places of each line."""
     lines = {name: stations for name, stations in scene.system.lines.items() if stations[-1].x}
     rods = sum(1 for stations in lines.values() for _ in pairwise(stations))

@@ -32,8 +32,8 @@ def draw(scene: Scene, model: Model, kind: str) -> tuple[Figure, list[str]]:
     if kind == "xt":
         return xt.draw(model, scene.system.lines, scene.physical), []
     if kind == "envelope":
-        return envelope.draw(model, along(scene)), []
+        return envelope.draw(model, along(scene, model)), []
     if kind == "map":
-        return heatmap.draw(model, along(scene), load_histories(model, scene.scale)), []
+        return heatmap.draw(model, along(scene, model), load_histories(model, scene.scale)), []
     made = histories(model)
     return panels.draw(made, load_histories(model, scene.scale)), notes(made)

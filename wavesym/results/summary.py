@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from html import escape
 from typing import Any, NamedTuple
 
@@ -11,7 +12,7 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError, UnservedError, WavesymError, did_you_mean
+from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError, did_you_mean
 from wavesym.exact.arrival import first_arrivals, light_arrivals
 from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes
 from wavesym.mechanics.model import Model
@@ -151,18 +152,36 @@ def summary_and_program(
 
     True ones are proved where `run` gives values right to the last bit; else they are those of the program that `auto`
     takes, found by samples. The program is that whose values were searched, which has the bound of the summary; None
-    where there was none. ToleranceError, CostError where there is no such program either.
+    where there was none. Drifts are outputs of the same solution, unless that would cost too much.
+    ToleranceError, CostError where there is no such program either.
     """
-    found = _found(model, samples)
+    drifts = drifts if len(drifts) <= _MOST_DRIFTS else ()
+    known = {probe.rod for probe in model.probes if probe.quantity == "drift"}
+    others = [probe for probe in drifts if probe.rod not in known]
+    models = [model.watching([*model.probes, *others]), model] if others else [model]
+    solved, found = _found(models, samples)
+    outputs = _outputs(solved, found)
+    every = [*zip(solved.probes, outputs, strict=True), *_apart(model, solved, others, samples)] if drifts else []
     summary = Summary(
         model.name,
-        _outputs(model, found),
+        outputs[: len(model.probes)],
         found.bound,
         found.proved,
         found.how,
         model.clock.unit if model.clock else None,
+        _largest(every),
     )
-    return replace(summary, largest_drift=_largest(model, samples, summary.outputs, drifts)), found.program
+    return summary, found.program
+
+
+def _apart(
+    model: Model, solved: Model, others: Sequence[Probe], samples: Sequence[float] | None
+) -> Iterator[tuple[Probe, OutputSummary]]:
+    """Drifts that cost too much beside the outputs, by themselves; none where they cannot be had."""
+    if others and solved is model:
+        with suppress(WavesymError):
+            alone, found = _found([model.watching(others)], samples)
+            yield from zip(others, _outputs(alone, found), strict=True)
 
 
 class _Found(NamedTuple):
@@ -177,13 +196,19 @@ class _Found(NamedTuple):
         return self.program is not None and self.program.kind == "modes"
 
 
-def _found(model: Model, samples: Sequence[float] | None) -> _Found:
-    if samples is not None:
-        return _at(model, np.asarray(samples))
-    try:
-        return _Found(extremes(model), BOUND, True, "true extremes")
-    except (CostError, UnservedError):
-        return _searched(model)
+def _found(models: Sequence[Model], samples: Sequence[float] | None) -> tuple[Model, _Found]:
+    """The extremes of the first of some models that can be solved, exactly rather than by a program, and that model."""
+    methods = [_exact, _searched] if samples is None else [lambda model: _at(model, np.asarray(samples))]
+    *attempts, last = [(method, model) for method in methods for model in models]
+    for method, model in attempts:
+        with suppress(CostError, UnservedError, ToleranceError):
+            return model, method(model)
+    method, model = last
+    return model, method(model)
+
+
+def _exact(model: Model) -> _Found:
+    return _Found(extremes(model), BOUND, True, "true extremes")
 
 
 def _outputs(model: Model, found: _Found) -> tuple[OutputSummary, ...]:
@@ -200,23 +225,10 @@ def _outputs(model: Model, found: _Found) -> tuple[OutputSummary, ...]:
     )
 
 
-def _largest(
-    model: Model, samples: Sequence[float] | None, outputs: Sequence[OutputSummary], drifts: Sequence[Probe]
-) -> OutputSummary | None:
-    """The largest drift: those that are outputs are known, those that are not cost nothing but themselves."""
-    if len(drifts) > _MOST_DRIFTS:
-        return None
-    asked = {
-        probe.rod: output for probe, output in zip(model.probes, outputs, strict=True) if probe.quantity == "drift"
-    }
-    others = model.watching(probe for probe in drifts if probe.rod not in asked)
-    known = [asked[probe.rod] for probe in drifts if probe.rod in asked]
-    if others.probes:
-        try:
-            known += _outputs(others, _found(others, samples))
-        except WavesymError:
-            return None
-    largest = min(known, key=lambda output: (-abs(output.largest.value), output.largest.at.tau), default=None)
+def _largest(outputs: Iterable[tuple[Probe, OutputSummary]]) -> OutputSummary | None:
+    """The largest of the outputs that are drifts; None where no rod changes."""
+    drifts = [each for probe, each in outputs if probe.quantity == "drift"]
+    largest = min(drifts, key=lambda output: (-abs(output.largest.value), output.largest.at.tau), default=None)
     return largest if largest is not None and largest.largest.value else None
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
+from typing import NamedTuple
 
 from flint import fmpq
 
@@ -26,13 +27,38 @@ from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
 from wavesym.systems.place import Place
 
+_KEPT = "lowered"  # beside the fields of a scene
 _USUAL_DAMPING = fmpq(1, 5)  # of critical; above it a ratio is more often a slip than meant
 
 
 def lower(scene: Scene) -> Model:
-    """The model of a scene; every number in it is an fmpq. SceneError for what is no Scene: a path, say."""
+    """The model of a scene; every number in it is an fmpq.
+
+    It is made once and kept with the scene, so that whoever asks again gets the same one.
+
+    Args:
+        scene: what the user wrote, validated.
+
+    Raises:
+        SceneError: for what is no Scene: a path, say.
+    """
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
+    parts = (scene.name, scene.system, scene.load, scene.output)
+    kept = vars(scene).get(_KEPT)  # a copy of a scene with other parts has the model of the first
+    if kept is None or any(one is not other for one, other in zip(kept.parts, parts, strict=True)):
+        kept = vars(scene)[_KEPT] = _Lowered(parts, _lowered(scene))
+    return kept.model
+
+
+class _Lowered(NamedTuple):
+    """A model, and the parts of the scene that it was made from."""
+
+    parts: tuple[object, ...]
+    model: Model
+
+
+def _lowered(scene: Scene) -> Model:
     output = scene.output
     length = scene.physical.length if scene.physical else None
     chain, network = named_chain(scene), scene.system.network(scene.load, length)
@@ -40,7 +66,7 @@ def lower(scene: Scene) -> Model:
         name=scene.name,
         network=network,
         loads=_loads(scene),
-        probes=tuple(_probe(output, scene.scale) for output in scene.outputs),
+        probes=probes(scene, scene.outputs),
         until=rational(output.until),
         tolerance=rational(output.tolerance),
         labels=_labels(scene, chain, network),
@@ -67,11 +93,16 @@ def _damping(scene: Scene) -> Damping | None:
     return damping if damping and any(damping.ratios) else None
 
 
+def probes(scene: Scene, outputs: Iterable[Observable]) -> tuple[Probe, ...]:
+    """Outputs on a scene's chain as a model has them, in the units of the scene's results."""
+    return tuple(_probe(output, scene.scale) for output in outputs)
+
+
 def drifts(scene: Scene) -> tuple[Probe, ...]:
     """The drift of every rod of the main line, as an output."""
     rods = [station.right for station in scene.system.lines[""] if station.right is not None]
     places = (Place(Fraction(k), 0, "", rod + 1, Fraction(1)) for k, rod in enumerate(rods, 1))
-    return tuple(_probe(Observable("drift", place.x, 0, f"drift@{place.x}", place), scene.scale) for place in places)
+    return probes(scene, (Observable("drift", place.x, 0, f"drift@{place.x}", place) for place in places))
 
 
 def sample_comb(scene: Scene) -> tuple[fmpq, fmpq] | None:

@@ -11,9 +11,9 @@ from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.pictures.along import Along, along
+from wavesym.pictures.along import Along, along, observed
 from wavesym.pictures.groups import load_panel, notes, panels
-from wavesym.pictures.histories import Histories, History, histories
+from wavesym.pictures.histories import Histories, History, drawable, histories
 from wavesym.pictures.loads import load_histories
 from wavesym.pictures.page.crossings import crossings
 from wavesym.pictures.page.places import along_pictures, maps
@@ -77,13 +77,14 @@ def page(scene: Scene) -> str:
 def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[int], Report]:
     """All of it, computed once, whose curves may be drawn with fewer columns than `most`."""
     scale, until = timescale(model), nearest(model.until)
-    summary, program = _summary(model, drifts(scene))
-    made = histories(drawn, most, program)
+    summary, searched = _summary(model, drifts(scene))
+    drawn_by = searched or _program_of_all(drawn, observed(scene, model))
+    made = histories(drawn, most, drawn_by)
     loads = load_histories(model, scene.scale)[:_LOADS]
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
     lines = scene.system.lines
-    found, refused = _along(scene)
+    found, refused = _along(scene, model, None if searched else drawn_by)
     structured = structure(model, lines)
     title = f"The structure of {model.name}"
     report = Report(
@@ -127,10 +128,19 @@ def _summary(model: Model, drifts: Sequence[Probe]) -> tuple[Summary | WavesymEr
         return error, None
 
 
-def _along(scene: Scene) -> tuple[tuple[Along, ...], str]:
+def _program_of_all(drawn: Model, placed: Model) -> Program | None:
+    """One program for the curves over time and for what happens along the chain; None where there is none for both."""
+    names = {probe.name for probe in drawn.probes}
+    try:
+        return drawable(drawn.watching([*drawn.probes, *(each for each in placed.probes if each.name not in names)]))
+    except WavesymError:
+        return None
+
+
+def _along(scene: Scene, model: Model, program: Program | None) -> tuple[tuple[Along, ...], str]:
     """What happens along the chain, or why that is not known."""
     try:
-        return along(scene), ""
+        return along(scene, model, program), ""
     except WavesymError as error:
         return (), f"Not drawn: {error}"
 
