@@ -13,9 +13,11 @@ import pytest
 
 import wavesym
 from wavesym import api
+from wavesym.pictures import histories
 from wavesym.results import result as results
+from wavesym.results import summary as summaries
 from wavesym.results.rows import SAMPLES
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lowering
 
 DRIVE = Scene.from_toml("drive_m1")
 FRAME = Scene(
@@ -126,3 +128,33 @@ def test_a_result_evaluates_a_scene_once(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(results, "Response", responding)
     DRIVE.run(samples=3)
     assert counted == {"lower": 1, "response": 1}
+
+
+def test_a_page_lowers_once_and_takes_one_program_beside_the_extremes(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Exact extremes and one program for all curves; where extremes are searched, the program that is searched too."""
+    lowered = lowering._lowered
+    counted: Counter[str] = Counter()
+
+    def lower(scene: Scene) -> object:
+        counted["lowered"] += 1
+        return lowered(scene)
+
+    def extremes_of(model: object) -> object:
+        counted["exact"] += 1
+        return exact(model)  # type: ignore[arg-type]
+
+    def made(*given: object, **named: object) -> object:
+        counted["programs"] += 1
+        return making(*given, **named)  # type: ignore[arg-type]
+
+    exact, making = summaries.extremes, histories.make
+    monkeypatch.setattr(lowering, "_lowered", lower)
+    monkeypatch.setattr(summaries, "extremes", extremes_of)
+    monkeypatch.setattr(histories, "make", made)
+    scene = Scene.from_toml("building_m2")
+    wavesym.report(scene, tmp_path / "page.html")
+    api.unexpected_lines(scene)
+    assert (counted["lowered"], counted["exact"]) == (1, 1)
+    assert counted["programs"] <= 2  # a march is tried first, which may not serve

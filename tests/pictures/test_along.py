@@ -34,7 +34,7 @@ def exact(scene: Scene, quantity: str, places: list[str], taus: np.ndarray) -> n
 
 
 def test_floors_and_storeys_are_those_of_outputs() -> None:
-    relative, drift = along(GROUND)
+    relative, drift = along(GROUND, lower(GROUND))
     assert [spot.written for spot in drift.bands[0].spots] == ["1", "2", "3"]
     at = relative.taus[::37]
     floors = exact(GROUND, "displacement", ["0", "1", "2", "3"], at)
@@ -56,7 +56,7 @@ def test_numbers_from_units_may_be_longer_than_text() -> None:
         output={"until": "50 ms", "strain": [0]},
     )
     assert len(str(scene.load[0].b[0])) > 100
-    _, drift = along(scene)
+    _, drift = along(scene, lower(scene))
     at = drift.taus[::37]
     found = exact(scene, "drift", ["1", "2"], at)
     assert np.allclose(drift.bands[0].values[:, ::37], found, rtol=0, atol=ALLOWED * np.max(np.abs(found)))
@@ -64,7 +64,7 @@ def test_numbers_from_units_may_be_longer_than_text() -> None:
 
 def test_strains_run_from_end_to_end_of_each_rod() -> None:
     drive = Scene.from_toml("drive_m1")
-    _, strain = along(drive)
+    _, strain = along(drive, lower(drive))
     written = [spot.written for spot in strain.bands[0].spots]
     assert (written[0], written[-1]) == ("0+", "1-")
     assert strain.bands[0].spots[0].low == 0
@@ -77,7 +77,7 @@ def test_strains_run_from_end_to_end_of_each_rod() -> None:
 def test_sides_that_are_one_place_are_asked_for_once() -> None:
     """A contact that counts as closed has one strain and one velocity, and stands for both of its sides."""
     collision = Scene.from_toml("collision_m4")
-    for quantity in along(collision):
+    for quantity in along(collision, lower(collision)):
         spots = quantity.bands[0].spots
         assert [spot.low for spot in spots[1:]] == [spot.high for spot in spots[:-1]]
         assert sum(spot.x == 2 for spot in spots) == 1

@@ -316,3 +316,16 @@ def test_every_fraction_of_a_delay_is_met():
     )
     first, *_ = first_arrivals(lower(scene))
     assert Fraction(int(first.p), int(first.q)) == Fraction(1, 3) + Fraction(1, 7)
+
+
+def test_a_top_beside_both_sides_of_an_instant_is_found():
+    """Where an output is sampled on both sides of a jump of another, equal neighbours hide no top."""
+    taus = np.array([0, 0.2, 0.4, 0.6, nextafter(1, 0), 1, 1.4, 1.6, 1.8, 2])
+
+    def top(tau):
+        waves = np.where(np.abs(tau - 0.9) > 0.35, 0.05 * np.cos(5 * np.pi * tau), 0.0)
+        return np.round(1 - (tau - 0.9) ** 2 + waves, 12)
+
+    values, when = sampled_extremes(taus, top(taus)[None], top)
+    assert values[0, 1] == pytest.approx(1, abs=1e-6)
+    assert when[0, 1] == pytest.approx(0.9, abs=2e-3)

@@ -20,6 +20,7 @@ Evaluate = Callable[[Numbers], Numbers]
 _FINER = 9
 _ROUNDS = 5  # each makes a part a quarter as wide
 _TOPS = 3  # of an output and a side that are looked at
+_TWINS = 1e-15  # relative: neighbouring doubles
 _EQUAL = 1e-14  # of the largest value: rounding makes no later instant of a plateau higher
 
 
@@ -55,9 +56,20 @@ def _tops(both: Numbers) -> NDArray[np.intp]:
     return np.asarray(np.argpartition(top, -kept, axis=2)[:, :, -kept:]) + 1
 
 
+def _neighbours(taus: Numbers) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The sample before each and the one after it: of the two sides of what may jump not the other side."""
+    place = np.arange(taus.size)
+    twins = np.diff(taus) <= _TWINS * np.abs(taus[1:])
+    before, after = place - 1, place + 1
+    before[1:][twins] -= 1
+    after[:-1][twins] += 1
+    return np.maximum(before, 0), np.minimum(after, taus.size - 1)
+
+
 def _refined(each: Evaluate, taus: Numbers, tops: NDArray[np.intp]) -> Iterator[tuple[Numbers, Numbers]]:
     """Of ever finer samples around the `tops` the highest values, top by top, (outputs, sides), and their tau."""
-    low, high = taus[tops - 1], taus[tops + 1]
+    before, after = _neighbours(taus)
+    low, high = taus[before[tops]], taus[after[tops]]
     for _ in range(_ROUNDS):
         finer = np.linspace(low, high, _FINER, axis=3)  # (outputs, sides, tops, finer)
         values = each(finer.reshape(len(finer), -1)).reshape(finer.shape) * np.array([-1.0, 1.0])[:, None, None]
