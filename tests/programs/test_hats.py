@@ -372,7 +372,7 @@ def test_what_users_call_takes_it() -> None:
     _, surface, _ = layered(list(map(nearest, el_centro())), np.array([0.1]), 600)
     assert response(0.1 + np.arange(600) / 3)[0] == pytest.approx(surface[:, 0], abs=1e-11)
     assert response.program
-    assert (response.program.kind, response.program.evaluator) == ("hats", "march")
+    assert (response.program.kernel, response.program.evaluator) == ("hats", "march")
     peaks = wavesym.summary(scene)
     assert peaks.how.startswith("march at ")
     assert peaks.outputs[0].max.value >= surface.max() - 1e-11

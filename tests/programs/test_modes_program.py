@@ -322,7 +322,7 @@ def test_run_says_that_values_are_of_modes_and_how_good(tmp_path, capsys):
     given = wavesym.Scene.from_toml(path)
     response = wavesym.evaluator(given)
     assert f"values of modes, not right to the last bit: proved bound of the error {response.error_bound:g}" in err
-    assert response.program.kind == "modes"
+    assert response.program.kernel == "modes"
     assert response.error_bound <= 1e-4
     rows = np.array([[float(x) for x in line.split(",")] for line in out.splitlines()[1:]])
     np.testing.assert_array_equal(rows[:, 1:].T, response(rows[:, 0]))

@@ -59,7 +59,7 @@ def test_a_program_is_its_generated_numpy(name, evaluator, precision):
 @each_program
 def test_its_numbers_are_of_its_format(evaluator, precision):
     program, _ = made("building", evaluator, precision)
-    assert program.kind == evaluator
+    assert program.kernel == evaluator
     assert program.real is REALS[precision]
     assert program.provenance.reason
     assert program.error_bound == max(output.bound for output in program.outputs)

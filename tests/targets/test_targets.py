@@ -24,7 +24,7 @@ class Basic:
     tested = False
 
     def files(self, description, program):
-        return {f"{description.name}.bas": f"10 PRINT {program.kind}, {program.reference}\n"}
+        return {f"{description.name}.bas": f"10 PRINT {program.kernel}, {program.reference}\n"}
 
 
 def test_another_language_is_a_name_and_a_target(monkeypatch):

@@ -21,7 +21,6 @@ from wavesym.exact.contacts.opening import ContactEnd, contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
-from wavesym.programs.hats.split import rest_of
 from wavesym.programs.making import make
 from wavesym.programs.march.plan import march_plan
 from wavesym.programs.program import Program
@@ -93,7 +92,7 @@ def histories(model: Model, columns: int = 1, program: Program | None = None) ->
     contacts = contact_ends(model)
     formal = [_formal(model, probe, contacts) for probe in model.probes]
     dense = _dense(model)
-    sudden = rest_of(model) if program.kind == "hats" else model  # records do not jump
+    sudden = program.under_jumps(model)
     fronts = [[] if dense else arrivals(sudden, probe) for probe in model.probes]
     taus = _instants(program, columns, fronts, formal)
     values = program.evaluate(taus)[[names.index(probe.name) for probe in model.probes]]

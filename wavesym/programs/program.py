@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from wavesym.exact.contacts.opening import ContactEnd
 from wavesym.mechanics.event import ContactEvent
@@ -85,18 +85,19 @@ class SteppedValues:
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces", "march", "hats", that of one hat of each record, in NumPy alone,
-    "modes", "runtime": a march whose parameters come at run time, by its `laws`, or "stream": one whose loads do. The
-    last two are C alone.
+    `kernel` names what runs its tables, in C and in NumPy: "closed", "pieces", "march", "hats" (one hat of each record,
+    in NumPy alone), "modes", "runtime" and "stream" (in C alone).
     `tables` are flat (flat.py), by name, each number as it is written; which there are, the `program` of each
     evaluator says, of marches march/tables.py, of modes modes/modal_system.py, of streams stream/tables.py.
-    `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. `sources`
-    are the names of loads that modes and a stream can be given. Its error is `proved`, or an estimate. Of a stream
-    `direct` has for each output the sources that act on it at once. `numpy_only` says why there is no C of it, and what
-    helps. `parts` are what C with parameters at run time has besides values.
+    `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test.
+    `laws` are functions of parameters that come at run time. `sources` are the names of loads that it takes while it
+    runs, `step` the constant that says how long its steps are then: "spacing" where all are equal, "panel" where others
+    cost accuracy, empty where it takes no loads. Of a stream `direct` has for each output the sources that act on it at
+    once. `hats` says that records are added up hat by hat. Its error is `proved`, or an estimate. `numpy_only` says why
+    there is no C of it, and what helps. `parts` are what C with parameters at run time has besides values.
     """
 
-    kind: str
+    kernel: str
     real: Real
     tau_max: float
     outputs: tuple[ProgramOutput, ...]
@@ -111,11 +112,24 @@ class Program:
     direct: tuple[tuple[int, ...], ...] = ()
     numpy_only: str = ""
     parts: tuple[str, ...] = ()
+    step: Literal["", "spacing", "panel"] = ""
+    hats: bool = False
 
     @property
     def evaluator(self) -> str:
-        """What a user calls its kind."""
-        return {"hats": "march"}.get(self.kind, self.kind)
+        """What a user calls it."""
+        return "march" if self.hats else self.kernel
+
+    @property
+    def has_equal_steps(self) -> bool:
+        """Whether it is stepped exactly, in steps of one length: loads and outputs do not jump."""
+        return self.step == "spacing"
+
+    def under_jumps(self, model: Model) -> Model:
+        """A model under the loads by which its outputs may jump: records that are added up hat by hat do not."""
+        from wavesym.programs.hats.split import rest_of
+
+        return rest_of(model) if self.hats else model
 
     @property
     def error_bound(self) -> float:
@@ -158,4 +172,4 @@ class Program:
         from wavesym.programs.schemes import SCHEMES
 
         real = np.dtype(f"f{self.real.bytes}").type
-        return SCHEMES[self.kind](self.tables, self.constants, self.tau_max, real)
+        return SCHEMES[self.kernel](self.tables, self.constants, self.tau_max, real)

@@ -12,7 +12,6 @@ from wavesym.exact.knots import Knots
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.hats.split import rest_of
 from wavesym.programs.modes.records import Panels
 from wavesym.programs.program import Program
 
@@ -38,9 +37,9 @@ def apart(model: Model, step: float) -> str:
 
 def sampled(model: Model, program: Program, step: float) -> tuple[Numbers, Numbers]:
     """Instants no more than `step` apart, in order, with both sides of jumps, and the values of a program there."""
-    if program.kind == "modes" and program.real is DOUBLE:
+    if program.has_equal_steps and program.real is DOUBLE:
         return Panels.of(program).sampled(step)
-    fronts = jumps(rest_of(model) if program.kind == "hats" else model)  # records do not jump
+    fronts = jumps(program.under_jumps(model))
     taus = np.unique([*program.instants(step), *fronts, *map(just_before, fronts)])
     return taus, program.evaluate(taus)
 

@@ -193,7 +193,7 @@ class _Found(NamedTuple):
 
     @property
     def modal(self) -> bool:
-        return self.program is not None and self.program.kind == "modes"
+        return self.program is not None and self.program.has_equal_steps
 
 
 def _found(models: Sequence[Model], samples: Sequence[float] | None) -> tuple[Model, _Found]:

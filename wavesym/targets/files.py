@@ -48,8 +48,8 @@ def sources(program: Program, language: str) -> dict[str, str]:
 
 def runtime_sets(program: Program, parts: tuple[str, ...]) -> dict[str, str]:
     """The C of a program whose parameters come at run time, for many sets of them in one call: these parts of it."""
-    kind = import_module(f"wavesym.targets.c.{program.kind}")
-    made: dict[str, str] = kind.sets(describe(program), replace(program, parts=parts))
+    kernel = import_module(f"wavesym.targets.c.{program.kernel}")
+    made: dict[str, str] = kernel.sets(describe(program), replace(program, parts=parts))
     return made
 
 

@@ -56,7 +56,7 @@ def _size(program: Program) -> dict[str, object]:
     """Bytes of tables, and of code, which grows with the laws where parameters come at run time."""
     if program.laws:
         return {"target": SMALL_TARGET, "data": program.bytes}
-    return {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kind]}
+    return {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kernel]}
 
 
 def _clock(program: Program) -> dict[str, object]:
@@ -103,11 +103,10 @@ def _events(description: Description) -> dict[str, object]:
 
 def _streamed(program: Program) -> dict[str, object]:
     """The loads of a stream with the units of their samples, and the time between these, or how long a panel is."""
-    key = {"modes": "spacing", "stream": "panel"}.get(program.kind)
-    if key is None:
+    if not program.step:
         return {}
-    told: dict[str, object] = {} if program.proved else {"proved": False}
-    if program.kind == "stream":
+    described: dict[str, object] = {} if program.proved else {"proved": False}
+    if not program.has_equal_steps:
         pairs = zip(program.outputs, program.direct, strict=True)
-        told["direct"] = {output.name: [program.sources[j] for j in of] for output, of in pairs if of}
-    return {key: program.constants[key], "loads": list(program.sources), **told}
+        described["direct"] = {output.name: [program.sources[j] for j in of] for output, of in pairs if of}
+    return {program.step: program.constants[program.step], "loads": list(program.sources), **described}

@@ -8,6 +8,9 @@ from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.description import Description
 
+_MATH = frozenset({"closed"})
+"""Kernels that call functions of <math.h>."""
+
 
 @dataclass(frozen=True)
 class CMakeProject:
@@ -29,7 +32,7 @@ class PkgConfig:
 
 def package(scene: Description, program: Program) -> dict[str, str]:
     """Text by file name: CMakeLists.txt and NAME.pc.in, which CMake fills with the places of an installation."""
-    math = program.kind == "closed"  # the others need no function that is not in C itself
+    math = program.kernel in _MATH
     project = CMakeProject(scene, math, tested=program.reference is not None)
     return {
         "CMakeLists.txt": render("package/CMakeLists.txt.j2", project),

@@ -136,6 +136,7 @@ class HatMarch:
             self.bytes,
             provenance,
             numpy_only=self.refusal,
+            hats=True,
         )
 
 

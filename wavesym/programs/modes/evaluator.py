@@ -133,6 +133,7 @@ class ModesEvaluator:
             provenance,
             sources=self.labelled_sources,
             proved=self.proved,
+            step="spacing",
         )
 
     def streamed(self) -> StreamedValues:

@@ -98,6 +98,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         sources=tuple(f"{given.name} [{given.unit}]" if given.unit else given.name for given in plan.inputs),
         proved=False,
         direct=plan.direct,
+        step="panel",
     )
     if free:
         program = _freed(program, free, plan, degree, quicker)

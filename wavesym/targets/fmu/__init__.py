@@ -91,12 +91,12 @@ def _model(scene: Description, program: Program) -> FmuModel:
         seconds=scene.seconds or "1.0",
         inputs=str(len(program.sources)),
         direct=str(int(any(program.direct))),
-        linear=str(int(_stepped(program))),
-        stepped=str(int(_stepped(program))),
+        linear=str(int(program.has_equal_steps)),
+        stepped=str(int(program.has_equal_steps)),
         constants=tuple(one.start for one in found if one.variability == "constant"),
         parameters=tuple(one for one in found if one.causality == "parameter" and one.kind == "Real"),
         positive=tuple(str(int(field.positive)) for field in parameters(program) for _ in field.values),
-        step=literal(program.constants["spacing" if _stepped(program) else "panel"]),
+        step=literal(program.constants[program.step]),
         longest=literal(program.constants.get("longest", 0.0)),
     )
 
@@ -109,7 +109,7 @@ def _description(scene: Description, program: Program) -> FmuDescription:
         about=f"{scene.model[0]}. {scene.units.replace('Time is tau, of which one', 'One tau')}",
         variables=found,
         units=defined(one.unit for one in found),
-        stepped=_stepped(program),
+        stepped=program.has_equal_steps,
         stop=_time(program, model.until),
         step=_time(program, panel(program)),
     )
@@ -118,13 +118,9 @@ def _description(scene: Description, program: Program) -> FmuDescription:
 def panel(program: Program) -> fmpq:
     """How long a panel of a stream is, or its step where all are equal, in tau."""
     constants = program.constants
-    if _stepped(program):
+    if program.has_equal_steps:
         return rational(constants["spacing"])
     return rational(constants["panel"]) + rational(constants["panel_low"])
-
-
-def _stepped(program: Program) -> bool:
-    return program.kind == "modes"
 
 
 def _time(program: Program, tau: fmpq) -> str:

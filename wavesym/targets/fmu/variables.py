@@ -64,7 +64,7 @@ def parameters(program: Program) -> tuple[RuntimeField, ...]:
 
 
 def _variables(program: Program) -> Iterator[Variable]:
-    model, stepped = program.provenance.model, program.kind == "modes"
+    model, stepped = program.provenance.model, program.has_equal_steps
     seconds = "s" if model.clock else ""
     yield Variable("time", "independent", "continuous", "time" if seconds else "time in tau", unit=seconds)
     for source in program.sources:
@@ -81,11 +81,11 @@ def _variables(program: Program) -> Iterator[Variable]:
         yield Variable("lost", "local", "continuous", about)
     clock = model.clock.seconds if model.clock else fmpq(1)
     if stepped:
-        about, length = "steps are whole multiples of this", program.constants["spacing"]
+        about = "steps are whole multiples of this"
     else:
-        about, length = "inputs that change at its multiples alone cost no accuracy", program.constants["panel"]
-    name = "spacing" if stepped else "panel"
-    yield Variable(name, "local", "constant", about, f"{nearest(rational(length) * clock):.15g}", seconds)
+        about = "inputs that change at its multiples alone cost no accuracy"
+    length = program.constants[program.step]
+    yield Variable(program.step, "local", "constant", about, f"{nearest(rational(length) * clock):.15g}", seconds)
     settable = parameters(program)
     for name, numbers in model.letters.items():
         for index, value in numbers.items() if name not in {field.name for field in settable} else ():
