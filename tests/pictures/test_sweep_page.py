@@ -96,6 +96,25 @@ def test_what_failed_says_why(page: str, folder: Path) -> None:
     assert "6: 4 done, 2 failed, 0 left" in page
 
 
+def test_no_name_of_a_file_is_an_escape_sequence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Names may come from others; a page is read in a terminal, too."""
+    monkeypatch.setattr(running, "_several", lambda: False)
+    for name in ("\x1b[31mred.csv", "red\x07.csv"):
+        (tmp_path / name).write_text("no record")
+    (tmp_path / "a.csv").write_text("accel\n0\n1\n")
+    (tmp_path / "scene.toml").write_text(
+        """name = "shaken"
+        system = { type = "building", m = 1, kappa = ["1/4", "3/5"], base = "ground" }
+        load = [{ record = "a.csv", spacing = 1 }]
+        output = { until = 2, velocity = [1] }"""
+    )
+    (tmp_path / "sweep.toml").write_text('scene = "scene.toml"\nrecords = "*red*"\n')
+    assert api.run_sweep(tmp_path / "sweep.toml", tmp_path / "made", None, None, False) == 2
+    made = sweep_page(tmp_path / "made")
+    assert re.findall("[\x00-\x08\x0b-\x1f]", made) == []
+    assert made.count("\\x1b[31mred.csv") >= 3
+
+
 def test_a_map_has_the_colours_of_its_values() -> None:
     """Right and upward, the least in the first shade, the greatest in the last, and grey where there is none."""
     axes = tuple(

@@ -277,6 +277,14 @@ def test_more_samples_than_a_record_has_are_refused_before_they_are_read(tmp_pat
     assert time.monotonic() - start < 5
 
 
+@pytest.mark.parametrize("mark", [",", ";", "\t"])
+def test_a_line_of_a_million_columns_is_refused_before_it_is_taken_apart(tmp_path, mark):
+    start = time.process_time()
+    with pytest.raises(SceneError, match="line 1: more than 10000 columns"):
+        read_record(made(tmp_path, mark.join(["1"] * 1_000_000) + "\n"))
+    assert time.process_time() - start < 1
+
+
 def test_a_count_of_a_million_takes_no_memory(tmp_path):
     path = made(tmp_path, AT2.replace("5,", "999999,"))
     tracemalloc.start()

@@ -21,6 +21,7 @@ from wavesym.records.record_file import RecordFile, bare, damaged, decimal
 _TIMES = ("time", "t", "tau")
 _QUANTITIES = "acc|accel|acceleration|velocity|displacement|force|moment|torque"
 _MARKS = "\t;,"
+_MOST_COLUMNS = 10_000
 _QUOTING = re.compile(r'(?:[^"#]|"[^"]*("|$))*')
 _BRACKETS = re.compile(r"(.*\S)\s*(?:\[(.*)\]|\((.*)\))")
 _SUFFIX = re.compile(rf"(time|t|{_QUANTITIES})_([a-z].*)", re.IGNORECASE)
@@ -40,6 +41,8 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
     rows = _rows(lines)
     top = list(islice(rows, 2))
     at, head = top[0] if top else (1, "")
+    if max(head.count(mark) for mark in _MARKS) >= _MOST_COLUMNS:
+        raise damaged(file, at, f"more than {_MOST_COLUMNS} columns, a column of samples and one of times expected")
     mark = _mark(file, top)
     named = [_column(place, cell) for place, cell in enumerate(_cells(file, at, head, mark))]
     if all(decimal(column.header.replace(",", ".")) is not None for column in named):

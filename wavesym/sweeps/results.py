@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field, ValidationError
 
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, printable
 from wavesym.scene.paths import changed
 from wavesym.sweeps.manifest import Manifest
 from wavesym.sweeps.marks import BatchMark
@@ -44,9 +44,9 @@ class StoredColumn:
         return not isinstance(self.coordinate[0], str)
 
     def told(self, k: int) -> str:
-        """A value, short."""
+        """A value, short, in one line without what a terminal or a browser would do."""
         value = self.coordinate[k]
-        return value if isinstance(value, str) else f"{value:.6g} {self.unit}".rstrip()
+        return printable(value) if isinstance(value, str) else f"{value:.6g} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True)

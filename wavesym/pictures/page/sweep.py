@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from wavesym.errors import printable
 from wavesym.pictures.page.plots import Shown
 from wavesym.pictures.page.said import SaidTable
 from wavesym.pictures.page.svg import element
@@ -162,8 +163,9 @@ def _failed(found: SweepResults) -> SaidTable:
     """Why cases failed."""
     reasons = found.status.reasons
     rows = tuple(
-        (str(each["case"]), ", ".join(f"{path} = {value}" for path, value in each["values"].items()), each["reason"])
+        (str(each["case"]), printable(", ".join(f"{path} = {value}" for path, value in values.items())), each["reason"])
         for each in reasons[:_REASONS]
+        for values in (each["values"],)
     )
     notes = (f"The first {_REASONS} of {len(reasons)}; wavesym sweep --status has all",)
     return SaidTable(("Case", "Values", "Reason"), rows, notes if len(reasons) > _REASONS else ())
