@@ -36,6 +36,18 @@ def test_a_kernel_is_c_as_it_stands(kernel, precision):
     assert complaint(kernel, C, *FORMATS[precision]) == ""
 
 
+HEAD = re.compile(r"^static (?:inline )?(\w[\w ]*? \*?)(?:OF\()?\w+\)?\(([^{;]*)\)\n\{", re.MULTILINE)
+VECTORS = re.compile(r"(const )?(num|wide|mask)( \w+)?")
+
+
+def test_no_set_of_numbers_is_passed_by_value():
+    """clang warns of each that is wider than those of the machine: callers might pass it otherwise."""
+    heads = [head for kernel in KERNELS for head in HEAD.findall((C / kernel).read_text())]
+    assert len(heads) > 100
+    said = [word.strip() for kind, words in heads for word in (kind, *" ".join(words.split()).split(","))]
+    assert [word for word in said if VECTORS.fullmatch(word)] == []
+
+
 @pytest.mark.parametrize(
     ("kernel", "right", "wrong"),
     [

@@ -419,8 +419,8 @@ static void OF(gather_point)(OF(work_of) *m, const OF(laws) *law, int joint, int
 }
 
 /* What the ends at the one point of a joint send: `times` a series, less what arrives; two ends at once. */
-static void OF(send_point)(OF(work_of) *m, int joint, int panel, const places *now, int degree, const num *q, num times,
-                           num *size)
+static void OF(send_point)(OF(work_of) *m, int joint, int panel, const places *now, int degree, const num *q,
+                           const num *times, num *size)
 {
     const int end = first_port[joint + 1];
     for (int port = first_port[joint]; port < end; port += 2) {
@@ -429,7 +429,7 @@ static void OF(send_point)(OF(work_of) *m, int joint, int panel, const places *n
         const num *const b = m->waves[now->arrived[arrive[next]]][panel];
         num *const left = m->waves[now->sent[send[port]]][panel];
         num *const right = m->waves[now->sent[send[next]]][panel];
-        const num one = ratio[port] * times, other = ratio[next] * times;
+        const num one = ratio[port] * *times, other = ratio[next] * *times;
         for (int k = 0; k <= degree; ++k) {
             left[k] = one * q[k] - a[k];
             right[k] = other * q[k] - b[k];
@@ -627,7 +627,8 @@ static void OF(march_bodies)(OF(work_of) *all, const OF(laws) *law, int sets, in
             num(*const q)[NAME_ROW] = m->path[panel] + first_state[joint];
             const num rest = (table[0][DRIVE] * m->acting[panel][first_point[joint]][degree] - q[0][degree]) *
                              (table[0][RATE] * (half_length[panel] / (real)(2 * (degree + 1))));
-            OF(send_point)(m, joint, panel, now, degree, q[0], ZERO + 1, size + set);
+            const num once = ZERO + 1;
+            OF(send_point)(m, joint, panel, now, degree, q[0], &once, size + set);
             OF(add_magnitude)(missed + set, &rest);
             OF(enlarge)(size + set, &m->state[1][first_state[joint]]);
         }
@@ -683,10 +684,9 @@ static void OF(march)(OF(work_of) *all, const OF(laws) *law, int sets, int windo
                 if (states_of(joint) < 1 && points_of(joint) == 1 && first_port[joint + 1] - first_port[joint] <= 2) {
                     OF(scatter_point)(all + set, law + set, joint, panel, &now, degree, size + set);
                 } else if (states_of(joint) < 1 && points_of(joint) == 1) {
-                    const num passed = law[set].passed[at_passed[joint]];
                     OF(gather_point)(all + set, law + set, joint, panel, &now, degree);
                     OF(send_point)(all + set, joint, panel, &now, degree, all[set].acting[panel][first_point[joint]],
-                                   passed, size + set);
+                                   &law[set].passed[at_passed[joint]], size + set);
                 } else {
                     OF(march_joint)(all + set, law + set, joint, panel, &now, degree, size + set, missed + set);
                 }
