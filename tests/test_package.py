@@ -76,7 +76,7 @@ def test_commands_keep_numpy_to_one_thread(monkeypatch: pytest.MonkeyPatch, told
 
 
 @pytest.mark.parametrize(
-    "first", first_always(["__import__('wavesym.exact.tables.table')", "wavesym.evaluator", "wavesym.tables"])
+    "first", first_always(["__import__('wavesym.derivation.table')", "wavesym.evaluator", "wavesym.tables"])
 )
 def test_tables_is_the_function_whatever_was_imported_before(first: str) -> None:
     assert run_python(f"import wavesym\n{first}\nprint(callable(wavesym.tables))") == "True\n"

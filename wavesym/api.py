@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
+    from wavesym.derivation.table import Row, Table
     from wavesym.documents.advice import Advice
     from wavesym.exact.tables.network_table import NetworkTable
-    from wavesym.exact.tables.table import Row, Table
     from wavesym.mechanics.chain import Chain
     from wavesym.mechanics.model import Model
     from wavesym.mechanics.node import System
@@ -477,8 +477,8 @@ def _files(scene: Scene, directory: str | PathLike[str] | None, request: Request
 
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system, exact; errors as of `tables`."""
+    from wavesym.derivation.table import full_table
     from wavesym.exact.tables.network_table import network_table
-    from wavesym.exact.tables.table import full_table
     from wavesym.numbers.doubles import rational
 
     lowered = lower(scene)
@@ -524,10 +524,10 @@ def symbolic_tables(scene: Scene, intervals: int | None, format: str) -> tuple[l
 
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
+    from wavesym.derivation.rate_letters import in_rates
+    from wavesym.derivation.table import full_table
+    from wavesym.derivation.table_size import refuse_costly
     from wavesym.documents.tables import symbolic_lines
-    from wavesym.exact.tables.rate_letters import in_rates
-    from wavesym.exact.tables.symbolic_cost import refuse_costly
-    from wavesym.exact.tables.table import full_table
     from wavesym.mechanics.symbolic import symbolic
     from wavesym.numbers.doubles import rational
 

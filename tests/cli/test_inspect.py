@@ -25,7 +25,7 @@ from wavesym.documents.inspection.document import inspection
 from wavesym.documents.inspection.section import Facts, Listing, Told
 from wavesym.documents.inspection.text import MOST_ROWS, section_lines
 from wavesym.errors import CostError, ToleranceError, WavesymError
-from wavesym.exact.contacts.opening import contact_ends
+from wavesym.exact.contacts.events import contact_ends
 from wavesym.exact.motion import Motion
 from wavesym.programs import choice
 from wavesym.programs.choice import choose

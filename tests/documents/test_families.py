@@ -8,14 +8,14 @@ from graphlib import TopologicalSorter
 import pytest
 from flint import fmpq
 
+from wavesym.derivation.increments import integrated
 from wavesym.derivation.numbers import expression, number, symbol
 from wavesym.derivation.recurrence import RATE
+from wavesym.derivation.table import full_table
 from wavesym.documents.derivation.chain_laws import meanings, own_laws
 from wavesym.documents.derivation.document import derivation
 from wavesym.documents.derivation.families import integral, own_rate, solved
 from wavesym.documents.derivation.patterns import GENERIC, pattern_laws, patterns, rates
-from wavesym.exact.tables.increments import integrated
-from wavesym.exact.tables.table import full_table
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.mechanics.symbolic import symbolic

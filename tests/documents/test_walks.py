@@ -7,10 +7,10 @@ import subprocess
 
 import pytest
 
+from wavesym.derivation.table import Function
+from wavesym.derivation.walks import departures, function_walks, letters, units, walks_until
 from wavesym.documents.walks import walk_polynomials
 from wavesym.errors import CostError
-from wavesym.exact.tables.table import Function
-from wavesym.exact.tables.walks import departures, function_walks, letters, units, walks_until
 from wavesym.mechanics.symbolic import generic
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.drive import DRIVE

@@ -16,7 +16,7 @@ from tests.support.drawn import systems
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact.contacts import schedule
-from wavesym.exact.contacts.opening import contact_ends
+from wavesym.exact.contacts.events import contact_ends
 from wavesym.numbers.doubles import fraction, middle, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.scene import lower

@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from tests.support.parting import Rod, Struck
 from tests.support.touching import FIXED, at, body, contact, line, q, rod, seen, told, values
 from wavesym.errors import CostError, WavesymError
+from wavesym.exact.arrivals import identically_zero
+from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.contacts import schedule as room
 from wavesym.exact.contacts.cluster import Cluster
 from wavesym.exact.contacts.events import events
 from wavesym.exact.contacts.schedule import GrazingError
-from wavesym.exact.field import Field
-from wavesym.exact.knots import Knots
 from wavesym.exact.reference import Reference
-from wavesym.exact.silence import silent
+from wavesym.pictures.field import Field
 
 DELAYS = [1, 1, "1/2", "3/2", "1.000000001"]
 IMPEDANCES = [1, 1, 2, "1/3"]
@@ -214,8 +214,8 @@ def test_outputs_of_single_precision_and_fields_know_of_contacts():
     velocity, _ = Field(model).at(0, np.zeros(3), np.array([0.25, 1.5, 5.5]))
     (exact,) = values(model, ["1/4", "3/2", "11/2"])
     assert velocity == pytest.approx([float(v.p) / float(v.q) for v in exact], abs=1e-12)
-    assert silent(model, q(6)) == [False]
-    assert Knots(model, q(6)).stretches > 20
+    assert identically_zero(model, q(6)) == [False]
+    assert Breakpoints(model, q(6)).stretches > 20
 
 
 def test_a_gap_that_is_touched_exactly_stays_open():

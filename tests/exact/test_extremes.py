@@ -308,7 +308,8 @@ def test_a_short_stiff_rod_beside_a_light_mass_costs_no_bits(monkeypatch):
     assert asked == [motion.first_bits] * 2
     assert motion.first_bits <= 1024
     assert all(
-        motion._knots.joints[number][-1] <= until + fmpq(1, 15) for number, until in model.reached(motion.until).items()
+        motion._breakpoints.joints[number][-1] <= until + fmpq(1, 15)
+        for number, until in model.reached(motion.until).items()
     )
 
 

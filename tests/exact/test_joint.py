@@ -9,7 +9,8 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpq, fmpq_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw, JointMotion
+from wavesym.exact.joints.enclosed import STILL, Enclosed
+from wavesym.exact.joints.joint import JointLaw, JointMotion
 from wavesym.mechanics.network import Bar, Link, Network, Point
 
 SMALL = st.fractions(0, 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))

@@ -9,8 +9,8 @@ from flint import fmpq, fmpq_mat, fmpq_poly
 from hypothesis import given
 from hypothesis import strategies as st
 
+from wavesym.derivation.increments import start
 from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.tables.increments import start
 from wavesym.exact.tables.joint_response import (
     JointResponse,
     joint_polynomial,

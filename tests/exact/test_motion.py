@@ -12,10 +12,10 @@ from tests.support.drawn import scenes
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import motion as room
-from wavesym.exact.joints.joint import Enclosed
-from wavesym.exact.joints.network_waves import SentWave, weighted
-from wavesym.exact.motion import Motion, is_zero
-from wavesym.exact.tables.ball import Balls
+from wavesym.exact.joints.enclosed import Enclosed, weighted
+from wavesym.exact.joints.network_waves import SentWave
+from wavesym.exact.motion import Motion
+from wavesym.exact.tables.ball import Balls, is_zero
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End
 from wavesym.numbers.doubles import rational
@@ -205,7 +205,7 @@ def test_of_what_begins_at_the_end_only_the_first_value_is_seen():
 def test_loads_after_the_horizon_are_not_there():
     late = [{"body": 2, "times": ["1/2", "29/10", "31/10"], "steps": [1, 2, 3]}]
     motion = made(drive(3, late, strain=["1/2"]))
-    assert motion._knots.joints[0][:4] == [fmpq(0), fmpq(1, 2), fmpq(9, 10), fmpq(1)]
+    assert motion._breakpoints.joints[0][:4] == [fmpq(0), fmpq(1, 2), fmpq(9, 10), fmpq(1)]
     at_the_end = made(drive(3, [{"body": 2, "times": [3], "steps": [1]}], velocity=[1]))
     assert at_the_end._acting == (Applied("M2", fmpq(3), fmpq(1)),)
 

@@ -18,15 +18,14 @@ from tests.exact.test_chain_truth import STEPPED
 from tests.support.chains import chains
 from tests.support.drawn import scenes
 from tests.support.laplace import Laplace, Ratio
+from wavesym.derivation.increments import Increment, combined
+from wavesym.derivation.table import Function, full_table
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.tables.ball import Balls, segments
-from wavesym.exact.tables.increments import Increment, combined
 from wavesym.exact.tables.network_joints import NetworkJoints
-from wavesym.exact.tables.network_response import RuledNetwork
-from wavesym.exact.tables.network_table import NetworkTable, network_table
+from wavesym.exact.tables.network_table import NetworkTable, RuledNetwork, network_table
 from wavesym.exact.tables.signal import Signal, observed, signals
-from wavesym.exact.tables.table import Function, full_table
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
@@ -255,8 +254,7 @@ def test_a_rod_end_of_another_law_is_seen(place: str, monkeypatch: pytest.Monkey
 
     true = joint_rule()
     wrong = true._replace(**{place: (getattr(true, place)[0], 3 * getattr(true, place)[1])})
-    for module in ("tables.network_response", "tables.foreseen", "joints.joint"):
-        monkeypatch.setattr(f"wavesym.exact.{module}.joint_rule", lambda: wrong)
+    monkeypatch.setattr("wavesym.exact.joints.joint.joint_rule", lambda: wrong)
     assert faulty(STEPPED, {})
 
 

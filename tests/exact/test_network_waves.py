@@ -11,10 +11,10 @@ from flint import arb, arb_poly, ctx, fmpq
 import wavesym
 from tests.support.truth import Truth
 from wavesym.errors import CostError
-from wavesym.exact import knots as room
-from wavesym.exact.joints.joint import Enclosed
+from wavesym.exact import breakpoints as room
+from wavesym.exact.breakpoints import Breakpoints
+from wavesym.exact.joints.enclosed import Enclosed
 from wavesym.exact.joints.network_waves import NetworkWaves, SentWave
-from wavesym.exact.knots import Knots
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.network import Bar, End, Link, Network, Point
 from wavesym.numbers.doubles import rational
@@ -54,7 +54,7 @@ def test_waves_are_where_they_are_said_to_be(name, terms):
     number = {(o.quantity, o.x, o.side): k for k, o in enumerate(scene.outputs)}
     loosest = arb(0)
     with ctx.workprec(256):
-        waves = NetworkWaves(model.network, Knots(model, model.until).joints, model.loads, terms)
+        waves = NetworkWaves(model.network, Breakpoints(model, model.until).joints, model.loads, terms)
         for tau in (fmpq(k) + part for k in range(4) for part in (fmpq(0), fmpq(5, 14), fmpq(5, 7))):
             at = Fraction(int(tau.p), int(tau.q))
             for x in range(scene.system.m + 1):
@@ -123,7 +123,7 @@ def chain(lengths, until, output=None, load=None):
 def test_knots_are_sums_of_delays():
     """Every way from the loaded body and back: 2 a + 2 b ... for rods a, b, as far as it is felt in time."""
     model = chain([1, "3/2"], 6)
-    joints = Knots(model, model.until).joints
+    joints = Breakpoints(model, model.until).joints
     first = {2 * a + 3 * b for a in range(4) for b in range(3) if not (b and not a) and 2 * a + 3 * b <= 6}
     assert joints[0][:-1] == sorted(fmpq(k) for k in first)
     assert [k for k in joints[2] if k <= 5][1:4] == [fmpq(5, 2), fmpq(9, 2)][:3] + joints[2][3:4]
@@ -134,27 +134,27 @@ def test_knots_are_sums_of_delays():
 )
 def test_nearly_equal_lengths_cost_their_knots(lengths, most):
     model = chain(lengths, 20)
-    assert Knots(model, model.until).stretches < most
+    assert Breakpoints(model, model.until).stretches < most
 
 
 def test_too_many_knots_are_refused_with_their_count(monkeypatch):
-    monkeypatch.setattr(room, "MOST_KNOTS", 100)
+    monkeypatch.setattr(room, "MOST_BREAKPOINTS", 100)
     model = chain([1, "1.414213562", "1.732050808"], 20)
     with pytest.raises(CostError, match=r"fronts meet joints more than 100 times by tau = \d"):
-        _ = Knots(model, model.until).stretches
+        _ = Breakpoints(model, model.until).stretches
 
 
 def test_equal_lengths_have_windows():
     model = chain([2, 2], 5, load=[{"at": "a", "times": ["1/2"], "steps": [1]}])
-    joints = Knots(model, model.until).joints
+    joints = Breakpoints(model, model.until).joints
     assert joints[0] == [fmpq(k, 2) for k in (0, 1, 4, 5, 8, 9, 12)]
     (probe,) = model.probes
-    assert Knots(model, model.until).breakpoints(model.sums[probe]) == [fmpq(k, 2) for k in (0, 1, 4, 5, 8, 9)]
+    assert Breakpoints(model, model.until).of_output(model.sums[probe]) == [fmpq(k, 2) for k in (0, 1, 4, 5, 8, 9)]
 
 
 def test_only_what_can_be_felt_is_moved():
     model = chain([1] * 9, 3, {"velocity": [2]})
-    assert sorted(Knots(model, model.until).joints) == [0, 1, 2, 3, 4, 5]
+    assert sorted(Breakpoints(model, model.until).joints) == [0, 1, 2, 3, 4, 5]
     assert model.reached(rational(3))[5] == 0
 
 
@@ -165,7 +165,7 @@ def test_an_absorbing_end_sends_exactly_nothing():
     system = {"type": "chain", "parts": [*parts, "absorbing"]}
     model = lower(wavesym.Scene(name="ends", system=system, load=load, output={"until": 8, "velocity": ["a"]}))
     with ctx.workprec(128):
-        waves = NetworkWaves(model.network, Knots(model, model.until).joints, model.loads, 32)
+        waves = NetworkWaves(model.network, Breakpoints(model, model.until).joints, model.loads, 32)
     for bar in (0, 1):
         for known in waves.sent[End(bar, 1)].stretches:
             assert known.polynomial.length() == 0
@@ -175,6 +175,6 @@ def test_an_absorbing_end_sends_exactly_nothing():
 def test_a_rod_that_is_longer_than_the_horizon_costs_nothing():
     """Its window is cut at the horizon; half of infinity is a dashpot: 1 - exp(-tau)."""
     model = chain(["1e12"], 6, load=[{"at": "a", "times": ["5/2"], "steps": [1]}])
-    assert max(Knots(model, model.until).joints[0]) == 7
+    assert max(Breakpoints(model, model.until).joints[0]) == 7
     (values,) = Reference(model).values([2.5, 3.5, 6.0])
     assert values == pytest.approx([0.0, *(1 - math.exp(2.5 - tau) for tau in (3.5, 6.0))], rel=1e-15)

@@ -9,9 +9,9 @@ from tests.support.touching import FIXED, body, contact, line, q, rod, seen, tol
 from wavesym.errors import CostError
 from wavesym.exact.contacts import schedule as room
 from wavesym.exact.contacts.events import events
+from wavesym.exact.joints.enclosed import ORDER, Onset, combined
+from wavesym.exact.joints.exact_motion import onsets
 from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.joints.joint_onset import onsets
-from wavesym.exact.joints.onset import ORDER, Onset, combined
 from wavesym.exact.reference import Reference
 from wavesym.programs.pieces import pieces
 

@@ -102,6 +102,6 @@ def test_tables_that_would_be_large_are_refused_before_they_are_made(monkeypatch
     def made(*_):
         raise AssertionError("a table was begun")
 
-    monkeypatch.setattr("wavesym.exact.tables.network_response.departures", made)
+    monkeypatch.setattr("wavesym.exact.tables.network_table.departures", made)
     with pytest.raises(CostError, match=r"^output.until: the tables would hold .* at most 1.0e\+01 expected"):
         signals(lower(scene(40, strain=["1/2"])), most=10)

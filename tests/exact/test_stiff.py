@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 import wavesym
 from tests.exact.test_chain_truth import missed, wrong_values
 from wavesym.errors import CostError
+from wavesym.exact.breakpoints import MOST_BREAKPOINTS, Breakpoints
 from wavesym.exact.contacts.events import events
 from wavesym.exact.joints.joint import SWING, JointLaw
-from wavesym.exact.knots import MOST_KNOTS, Knots
 from wavesym.exact.motion import Motion
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
@@ -77,10 +77,10 @@ def test_cuts_are_no_further_apart_than_a_series_bears(
     stiffness = 10 ** min(exponent, 3 if middle is LIGHT else 9)
     known = model(table(middle, stiffness, (left, right), 4))
     until = fmpq(4)
-    cut = Knots(known, until).joints
+    cut = Breakpoints(known, until).joints
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(JointLaw, "longest", None)
-        natural = Knots(known, until).joints
+        natural = Breakpoints(known, until).joints
     network = known.network
     for number, times in cut.items():
         assert set(natural[number][:-1]) <= set(times)
@@ -97,17 +97,17 @@ def test_cuts_are_no_further_apart_than_a_series_bears(
 def test_soft_springs_are_not_cut(right: str) -> None:
     known = model(table(BETWEEN, 36, ("1", right), 6))
     assert any(law.longest for law in (JointLaw.of(known.network, joint) for joint in known.network.joints))
-    cut = dict(Knots(known, fmpq(6)).joints)
+    cut = dict(Breakpoints(known, fmpq(6)).joints)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(JointLaw, "longest", None)
-        assert dict(Knots(known, fmpq(6)).joints) == cut
+        assert dict(Breakpoints(known, fmpq(6)).joints) == cut
 
 
 @pytest.mark.parametrize("right", ["1", "1.5"])
 @pytest.mark.parametrize("middle", [GROUND, LIGHT], ids=["mass", "massless"])
 def test_what_would_be_cut_too_often_is_refused_at_once(middle: list[dict[str, Any]], right: str) -> None:
     known = model(table(middle, 10**12, ("1", right), 20))
-    with pytest.raises(CostError, match=rf"swing at a rate of up to .* stretches .*at most {MOST_KNOTS} expected"):
+    with pytest.raises(CostError, match=rf"a rate of up to .* stretches .*at most {MOST_BREAKPOINTS} expected"):
         Motion(known, fmpq(20))
 
 

@@ -14,11 +14,11 @@ from hypothesis import HealthCheck, assume, given, settings
 import wavesym
 from tests.support.chains import chains
 from tests.support.drawn import loads, systems
+from wavesym.derivation.increments import Increment, add, start, trimmed
 from wavesym.errors import CostError
+from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.motion import Motion
-from wavesym.exact.silence import silent
 from wavesym.exact.tables.ball import Balls
-from wavesym.exact.tables.increments import Increment, add, start, trimmed
 from wavesym.exact.tables.signal import Signal, signals
 from wavesym.mechanics import gauge
 from wavesym.mechanics.model import Model
@@ -216,7 +216,7 @@ def test_what_cancels_is_nothing_whatever_moves() -> None:
     load = [{"at": "base", "times": [0], "steps": [1]}]
     model = watched(chain, load, relative=["base", "3"], drift=["2"])
     assert model.sums[model.probes[1]] == ()
-    assert silent(model, rational(model.horizon())) == [False, True, False]
+    assert identically_zero(model, rational(model.horizon())) == [False, True, False]
     values = wavesym.evaluator(Scene(name="a", system=chain, load=load, output={"until": 4, "relative": ["base"]}))
     assert values([0.0, 1.0, 4.0]).tolist() == [[0.0, 0.0, 0.0]]
 
@@ -232,4 +232,4 @@ def test_equal_pulls_on_both_sides_do_not_accelerate() -> None:
         {"mass": 1, "name": "other"},
     ]
     model = watched({"type": "chain", "parts": ends}, push, acceleration=["middle", "one"], drift=["1"])
-    assert silent(model, rational(model.horizon())) == [True, False, False]
+    assert identically_zero(model, rational(model.horizon())) == [True, False, False]

@@ -8,8 +8,8 @@ import pytest
 from flint import fmpq
 
 from wavesym.derivation.delay import delay_equations
+from wavesym.derivation.table import full_table
 from wavesym.errors import WavesymError
-from wavesym.exact.tables.table import full_table
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Rod, System, UnitLoad, single
 from wavesym.verification.node_law import differences

@@ -31,13 +31,13 @@ from tests.mutation.operators import Mutant, Names, mutants
 ROOT = Path(__file__).resolve().parents[2]
 ROOMS = ("wavesym/programs/**/*.py", "templates/c/**/*.c", "templates/c/series.h")
 ROOMS += tuple(
-    f"wavesym/exact/{name}.py" for name in ("tables/ball", "contacts/opening", "motion", "reference", "tables/signal")
+    f"wavesym/exact/{name}.py" for name in ("tables/ball", "contacts/events", "motion", "reference", "tables/signal")
 )
 ROOMS += tuple(f"wavesym/numbers/{name}.py" for name in ("balls", "chebyshev", "doubles", "reals"))
 # All of it is run for a mutant that survives: it may take a minute and a half where a tenth of 300 do.
 TESTS = ("programs", "numbers", "verification/test_properties.py")
 TESTS += tuple(f"exact/test_{name}.py" for name in ("ball", "collision", "motion", "reference", "signal"))
-TESTS += ("exact/test_joint.py", "exact/test_network_waves.py", "exact/test_silence.py")
+TESTS += ("exact/test_joint.py", "exact/test_network_waves.py", "exact/test_arrivals.py")
 TESTS += tuple(f"targets/test_{name}.py" for name in ("march_c", "march_short_panels", "selftest"))
 COPIED = ("wavesym", "templates", "tests", "examples", "pyproject.toml")
 PYTEST = f"""ulimit -v {4 << 20}; exec "$0" -m pytest -x -q --tb=short -p no:cacheprovider --basetemp=tmp/pytest \

@@ -5,8 +5,8 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wavesym.exact.tables.rate_letters import in_rates
-from wavesym.exact.tables.table import full_table
+from wavesym.derivation.rate_letters import in_rates
+from wavesym.derivation.table import full_table
 from wavesym.mechanics.symbolic import generic
 from wavesym.numbers import factored as module
 from wavesym.numbers.factored import irreducible

@@ -15,7 +15,7 @@ import pytest
 from flint import fmpq, fmpq_mat
 
 from tests.papers.falsified import ENTRIES
-from wavesym.exact.tables.table import Function
+from wavesym.derivation.table import Function
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, range_of, sides, span
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.jets import Jet

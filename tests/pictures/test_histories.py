@@ -14,9 +14,9 @@ from flint import fmpq
 
 from tests.pictures.clear import texts_keep_clear
 from wavesym.api import evaluator
-from wavesym.exact.contacts.opening import contact_ends
+from wavesym.derivation.increments import start
+from wavesym.exact.contacts.events import contact_ends
 from wavesym.exact.reference import Reference
-from wavesym.exact.tables.increments import start
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe

@@ -7,10 +7,10 @@ import pytest
 from flint import arb
 
 import wavesym
-from wavesym.exact.field import Field
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.pictures import xt
+from wavesym.pictures.field import Field
 from wavesym.pictures.stations import open_times
 from wavesym.scene import Scene, lower
 

@@ -53,7 +53,7 @@ def long_numbers(count):
 def idle(monkeypatch):
     """Nothing that takes long may begin."""
     monkeypatch.setattr(motion, "NetworkWaves", begun)
-    monkeypatch.setattr("wavesym.exact.tables.network_response.departures", begun)
+    monkeypatch.setattr("wavesym.exact.tables.network_table.departures", begun)
 
 
 def test_numbers_of_99_characters_cost_tables_and_not_windows(idle):

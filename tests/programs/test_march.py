@@ -19,7 +19,7 @@ from tests.support.laplace import Laplace
 from tests.support.marches import missed, missed_at
 from tests.support.truth import Truth
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
-from wavesym.exact.silence import silent
+from wavesym.exact.arrivals import identically_zero
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import fraction
@@ -304,7 +304,7 @@ def test_what_is_zero_by_symmetry_is_exactly_zero() -> None:
     assert [output.bound == 0 for output in made.outputs] == [True, False, True, False, True]
     values = assemble(made).evaluate(np.linspace(0, 12, 1001))
     assert np.any(values != 0, axis=1).tolist() == [False, True, False, True, False]
-    assert silent(lower(scene), fmpq(12)) == [True, False, True, False, True]
+    assert identically_zero(lower(scene), fmpq(12)) == [True, False, True, False, True]
 
 
 def test_a_chain_that_stays_at_rest_asks_for_no_higher_degree() -> None:

@@ -18,7 +18,7 @@ import wavesym
 from wavesym.cli import main
 from wavesym.cli.run import DEFAULT_SAMPLES
 from wavesym.errors import CostError
-from wavesym.exact.arrival import first_arrivals, light_arrivals
+from wavesym.exact.arrivals import first_arrivals, light_arrivals
 from wavesym.exact.extremes import extremes
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import wavesym
-from wavesym.exact.field import Field
+from wavesym.pictures.field import Field
 from wavesym.scene import Scene, builtin_text, lower
 
 FOLDER = Path(wavesym.__file__).parents[1] / "examples" / "chains"

@@ -6,8 +6,8 @@ from flint import fmpq
 
 from tools.bench import equal_degree, recorded, report
 from tools.bench.equal_degree import Fitted, at_degree, fitted, ratios
+from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.contacts.events import events
-from wavesym.exact.knots import Knots
 from wavesym.numbers.doubles import rational
 from wavesym.running.native import FAST
 from wavesym.scene import lower
@@ -36,7 +36,7 @@ def test_three_lengths_cost_their_knots():
                 met.add(at)
                 coming.append(at)
     ways = {time for time, place in met if place == 0}
-    knots = Knots(model, rational(model.horizon())).joints[0]
+    knots = Breakpoints(model, rational(model.horizon())).joints[0]
     assert {knot for knot in knots if knot <= fmpq(39, 2)} == {way for way in ways if way <= fmpq(39, 2)}
 
 

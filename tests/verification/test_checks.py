@@ -12,14 +12,14 @@ from types import SimpleNamespace
 import pytest
 from flint import fmpq
 
+from wavesym.derivation import table as tables
+from wavesym.derivation.increments import combined
+from wavesym.derivation.table import Function, full_table
 from wavesym.errors import ToleranceError
 from wavesym.exact import reference
 from wavesym.exact.extremes import extremes
 from wavesym.exact.motion import Motion
-from wavesym.exact.tables import table as tables
-from wavesym.exact.tables.increments import combined
-from wavesym.exact.tables.network_response import RuledNetwork
-from wavesym.exact.tables.table import Function, full_table
+from wavesym.exact.tables.network_table import RuledNetwork
 from wavesym.numbers.doubles import not_below
 from wavesym.programs.making import make
 from wavesym.programs.request import Request

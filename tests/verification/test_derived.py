@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from wavesym.cli import main
+from wavesym.derivation import table as tables
 from wavesym.derivation.delay import delay_equations
-from wavesym.exact.tables import table as tables
 from wavesym.systems.drive import DRIVE
 from wavesym.verification import derived as module
 from wavesym.verification.derived import derived

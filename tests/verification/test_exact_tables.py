@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 from flint import fmpq
 
-from wavesym.exact.tables import table as tables
-from wavesym.exact.tables.table import Function, full_table
+from wavesym.derivation import table as tables
+from wavesym.derivation.table import Function, full_table
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND

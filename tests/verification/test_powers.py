@@ -9,6 +9,8 @@ from flint import fmpq, fmpz_poly, nmod_poly
 from sympy import Add, Rational, binomial
 
 from wavesym.derivation.delay import COUNT, INDEX
+from wavesym.derivation.table import Function, Rules
+from wavesym.derivation.walks import Unit, departures, function_walks, letters, units, walks_until
 from wavesym.documents.derivation.highest_powers import (
     BODY,
     HIGHEST,
@@ -20,8 +22,6 @@ from wavesym.documents.derivation.highest_powers import (
     PowerFamily,
     PowerRow,
 )
-from wavesym.exact.tables.table import Function, Rules
-from wavesym.exact.tables.walks import Unit, departures, function_walks, letters, units, walks_until
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.mechanics.symbolic import generic

@@ -14,10 +14,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.drawn import loads, ratios, scenes, systems
+from wavesym.derivation.table import full_table
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.ball import segments, values
 from wavesym.exact.tables.signal import signals
-from wavesym.exact.tables.table import full_table
 from wavesym.numbers.doubles import rational
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower

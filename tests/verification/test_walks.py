@@ -7,8 +7,8 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wavesym.exact.tables.table import full_table
-from wavesym.exact.tables.walks import letters, units, walks_until
+from wavesym.derivation.table import full_table
+from wavesym.derivation.walks import letters, units, walks_until
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND

@@ -1,4 +1,4 @@
-"""The derived laws in exact numbers: what tables, pieces and marches are run from. No SymPy here.
+"""The derived laws in exact numbers: what tables, pieces and marches run. SymPy is imported to make them.
 
 The increment that a function gains at the start of an interval is sum_g exp(-g w) sum_k F[g,k] w**k. To apply a D + b
 to it, D = d/dw, is to put, for every rate g and power k,
@@ -79,3 +79,17 @@ class JointRule(NamedTuple):
 
 DERIVATIVE = Weights(Linear(fmpq(0), fmpq(-1)), Linear(fmpq(1), fmpq(1)), fmpq(1))
 """The weights of D alone: with them on the left, a rule integrates."""
+
+
+def joint_rule() -> JointRule:
+    """What rods and points bring to a joint; derived when it is first asked for: SymPy is needed only there."""
+    from wavesym.derivation.recurrence import joint_rule
+
+    return joint_rule()
+
+
+def factor_weights(rate: fmpq) -> Weights:
+    """What D + `rate` does to the coefficients of exponentials times powers; derived as `joint_rule` is."""
+    from wavesym.derivation.recurrence import factor_weights
+
+    return factor_weights(rate)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
+from wavesym.derivation.table import Row, Table
 from wavesym.exact.tables.network_table import NetworkTable
-from wavesym.exact.tables.table import Row, Table
 from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.factored import written
 from wavesym.numbers.ratio import Ratio

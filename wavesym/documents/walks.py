@@ -9,9 +9,9 @@ from dataclasses import asdict, dataclass
 
 from flint import fmpq
 
+from wavesym.derivation.table import Function, Rules
+from wavesym.derivation.walks import Letters, Unit, departures, function_walks, letters, units, walks
 from wavesym.errors import CostError
-from wavesym.exact.tables.table import Function, Rules
-from wavesym.exact.tables.walks import Letters, Unit, departures, function_walks, letters, units, walks
 from wavesym.mechanics.node import Quantity
 from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.ratio import Ratio

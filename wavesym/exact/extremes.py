@@ -26,9 +26,9 @@ from flint import arb, arb_poly, ctx, fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, UnservedError
-from wavesym.exact.motion import Motion, is_zero
-from wavesym.exact.silence import silent
-from wavesym.exact.tables.ball import Segment
+from wavesym.exact.arrivals import identically_zero
+from wavesym.exact.motion import Motion
+from wavesym.exact.tables.ball import Segment, is_zero
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.balls import precise
@@ -85,7 +85,7 @@ def extremes(model: Model) -> list[Range]:
             f"{motion.first_bits} bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter "
             "horizon or fewer outputs help)"
         )
-    zero = silent(model, motion.until)
+    zero = identically_zero(model, motion.until)
     return [NOTHING if nothing else _range(motion, probe) for probe, nothing in zip(motion.probes, zero, strict=True)]
 
 

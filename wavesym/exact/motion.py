@@ -12,10 +12,11 @@ from math import e, inf, log2
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.errors import CostError, UnservedError
-from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw
-from wavesym.exact.joints.network_waves import Acting, NetworkWaves, Waves, later
-from wavesym.exact.knots import Knots
-from wavesym.exact.silence import smooth_starts
+from wavesym.exact.arrivals import smooth_starts
+from wavesym.exact.breakpoints import Breakpoints
+from wavesym.exact.joints.enclosed import STILL, Enclosed, later, weighted
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.network_waves import Acting, NetworkWaves, Waves
 from wavesym.exact.tables.ball import Segment
 from wavesym.mechanics.gauge import Weighted
 from wavesym.mechanics.model import Model
@@ -52,16 +53,16 @@ class Motion:
         self.probes = model.probes
         self._model, self._network = model, model.network
         self._acting = model.acting(until)
-        self._knots = Knots(model, until)
+        self._breakpoints = Breakpoints(model, until)
         self._solved: dict[int, Waves] = {}
-        if (kept := self._knots.crossings) > MOST_STRETCHES:
+        if (kept := self._breakpoints.crossings) > MOST_STRETCHES:
             raise CostError(
-                f"output.until: {self._knots.told} are {kept:g} stretches to keep, at most {MOST_STRETCHES} expected "
-                "(a shorter horizon helps)"
+                f"output.until: {self._breakpoints.label} are {kept:g} stretches to keep, at most {MOST_STRETCHES} "
+                "expected (a shorter horizon helps)"
             )
-        if (loaded := self._knots.stretches) > MOST_LOADED:
+        if (loaded := self._breakpoints.stretches) > MOST_LOADED:
             raise CostError(
-                f"load: {self._knots.told} are {loaded} stretches between loads, at most {MOST_LOADED} expected "
+                f"load: {self._breakpoints.label} are {loaded} stretches between loads, at most {MOST_LOADED} expected "
                 "(fewer load times help)"
             )
 
@@ -98,7 +99,7 @@ class Motion:
     @cached_property
     def _series(self) -> bool:
         """Whether joints have a state, which makes series of what arrives: mass, or springs."""
-        points = {point for number in self._knots.reached for point in self._network.joints[number].points}
+        points = {point for number in self._breakpoints.reached for point in self._network.joints[number].points}
         return any(
             self._network.points[point].stiffness != 0
             or (self._network.points[point].mass != 0 and self._network.points[point].motion is None)
@@ -122,13 +123,13 @@ class Motion:
     @cached_property
     def _hardest(self) -> tuple[JointLaw, fmpq]:
         """The joint whose series has to bear most on its longest stretch: its law, and exp(what)."""
-        laws = ((JointLaw.of(self._network, self._network.joints[n]), n) for n in self._knots.joints)
-        return max(((law, law.fastest * self._knots.longest(n)) for law, n in laws), key=lambda each: each[1])
+        laws = ((JointLaw.of(self._network, self._network.joints[n]), n) for n in self._breakpoints.joints)
+        return max(((law, law.fastest * self._breakpoints.longest(n)) for law, n in laws), key=lambda each: each[1])
 
     @cached_property
     def size(self) -> arb:
         """A lower bound of the largest wave, as a velocity: from the starts and ends of the stretches of joints."""
-        joints, joint_of = self._knots.joints, self._network.joint_of
+        joints, joint_of = self._breakpoints.joints, self._network.joint_of
         with ctx.workprec(self.first_bits):
             return max(
                 (
@@ -161,11 +162,11 @@ class Motion:
     @property
     def stretches(self) -> int:
         """How many stretches of all joints waves are made of."""
-        return self._knots.stretches
+        return self._breakpoints.stretches
 
     def starts(self, probe: Probe) -> Sequence[fmpq]:
         """Where its segments start: where it may jump or bend, and 0."""
-        return self._knots.breakpoints(self._model.sums[probe])
+        return self._breakpoints.of_output(self._model.sums[probe])
 
     def _integrates(self, probe: Probe) -> bool:
         return any(reading.order < 0 for _, reading in self._model.sums[probe])
@@ -192,7 +193,7 @@ class Motion:
 
         One lies on the last stretch: it ends with that of the horizon.
         """
-        if (known := self._knots.schedule) is None:
+        if (known := self._breakpoints.schedule) is None:
             return [False] * len(starts)
         short = (high - low <= known.vague and not_below(low) == not_below(high) for low, high in pairwise(starts))
         return [*short, False]
@@ -206,23 +207,23 @@ class Motion:
         if bits not in self._solved:
             if (size := self.size_in(bits)) > _LARGEST:
                 raise CostError(
-                    f"output.until: the waves of {self._knots.told} with {bits} bits would take {size:.1e} bytes, at "
-                    f"most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
+                    f"output.until: the waves of {self._breakpoints.label} with {bits} bits would take {size:.1e} "
+                    f"bytes, at most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
                 )
             self._solved[bits] = self._waves(bits)
         return self._solved[bits]
 
     def size_in(self, bits: int) -> int:
         """About how many bytes the waves take with so many bits."""
-        return self._knots.size(self.terms(bits), bits)
+        return self._breakpoints.size(self.terms(bits), bits)
 
     def _waves(self, bits: int) -> Waves:
-        if (known := self._knots.schedule) is not None:
+        if (known := self._breakpoints.schedule) is not None:
             from wavesym.exact.contacts.schedule import waves  # of contacts, which few scenes have
 
             return waves(self._network, self._acting, known, bits)
         with ctx.workprec(bits):
-            return NetworkWaves(self._network, self._knots.joints, self._acting, self.terms(bits))
+            return NetworkWaves(self._network, self._breakpoints.joints, self._acting, self.terms(bits))
 
 
 def _segments(
@@ -259,15 +260,12 @@ def _within(known: Enclosed) -> arb_poly:
 def _sum(parts: Iterable[tuple[fmpq, Enclosed]]) -> Enclosed:
     """A sum with factors; of what cancels nothing is left, where all of it is known exactly."""
     terms = list(parts)
-    polynomial, error = arb_poly(), arb(0)
-    for factor, known in terms:
-        polynomial += known.polynomial if factor == 1 else arb(factor) * known.polynomial
-        error += abs(arb(factor)) * known.error
-    exact = [(factor, known.exact) for factor, known in terms if known.exact is not None]
-    nothing = error == 0 and all(c.contains(0) for c in polynomial.coeffs()) and len(exact) == len(terms)
-    if nothing and sum((factor * p for factor, p in exact), fmpq_poly()).length() == 0:
-        return STILL
-    return Enclosed(polynomial, error.upper())
+    total = weighted(terms)
+    if total.error == 0 and all(c.contains(0) for c in total.polynomial.coeffs()):
+        exact = [(factor, known.exact) for factor, known in terms if known.exact is not None]
+        if len(exact) == len(terms) and sum((factor * p for factor, p in exact), fmpq_poly()).length() == 0:
+            return STILL
+    return total
 
 
 def _values(waves: Waves, terms: Iterable[Weighted], start: fmpq) -> Iterator[tuple[fmpq, Enclosed]]:
@@ -296,8 +294,7 @@ def _values(waves: Waves, terms: Iterable[Weighted], start: fmpq) -> Iterator[tu
 
 
 def _velocity(waves: Waves, point: int, start: fmpq) -> Enclosed:
-    known, offset = waves.velocities[point].at(start)
-    return Enclosed(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
+    return later(*waves.velocities[point].at(start))
 
 
 def waves_size(model: Model) -> int:
@@ -307,8 +304,3 @@ def waves_size(model: Model) -> int:
     except (CostError, UnservedError):
         return _LARGEST
     return motion.size_in(motion.first_bits)
-
-
-def is_zero(segments: Sequence[Segment]) -> bool:
-    """Whether an output is 0 throughout."""
-    return all(polynomial.length() == 0 for segment in segments for polynomial in segment.families.values())

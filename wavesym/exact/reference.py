@@ -1,7 +1,7 @@
 """The reference: values of a model's outputs that are right to the last bit, whatever they cost.
 
 Two routes lead there, and both are balls: the exact tables, where they are of moderate size, and power series from
-knot to knot, where they are not (many unequal rates, many reflections).
+breakpoint to breakpoint, where they are not (many unequal rates, many reflections).
 """
 
 from __future__ import annotations
@@ -99,10 +99,8 @@ class Reference:
 
         It is 0, too, where contacts open and close and nothing is more than 2^-200 of the largest wave.
         """
-        if self.model.network.contacts:
-            vanishes = self._motion.vanishes
-            return [largest(source, self.tau_max, self._first_bits, vanishes) for source in self._sources()]
-        return [largest(source, self.tau_max, self._first_bits) for source in self._sources()]
+        vanishes = self._motion.vanishes if self.model.network.contacts else lambda sizes: False
+        return [largest(source, self.tau_max, self._first_bits, vanishes) for source in self._sources()]
 
     def breakpoints(self) -> list[float]:
         """All tau at which an output may jump or bend, as doubles at or just above."""

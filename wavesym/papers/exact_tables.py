@@ -7,8 +7,8 @@ from functools import cache
 
 from flint import fmpq
 
-from wavesym.exact.tables.increments import Increment
-from wavesym.exact.tables.table import Function, Rules, unit_response
+from wavesym.derivation.increments import Increment
+from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND

@@ -17,7 +17,7 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import SpacingError, ToleranceError, WavesymError
-from wavesym.exact.contacts.opening import ContactEnd, contact_ends
+from wavesym.exact.contacts.events import ContactEnd, contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below

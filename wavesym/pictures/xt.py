@@ -19,11 +19,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from wavesym.exact.contacts.opening import contact_ends
-from wavesym.exact.field import Field
+from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
+from wavesym.pictures.field import Field
 from wavesym.pictures.stations import open_times
 from wavesym.pictures.timescale import timescale
 from wavesym.pictures.xt_nodes import draw_nodes, legend

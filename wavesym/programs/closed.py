@@ -26,8 +26,8 @@ from itertools import pairwise
 
 from flint import arb, arb_poly, fmpq
 
+from wavesym.derivation.increments import Increment
 from wavesym.exact.tables.ball import largest, segments, shifted
-from wavesym.exact.tables.increments import Increment
 from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real

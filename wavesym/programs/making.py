@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from wavesym.exact.contacts.events import events
-from wavesym.exact.contacts.opening import contact_ends
+from wavesym.exact.contacts.events import contact_ends, events
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import Made, choose
 from wavesym.programs.program import Program, Provenance

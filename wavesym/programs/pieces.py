@@ -26,10 +26,10 @@ from itertools import pairwise
 from flint import arb, arb_poly, fmpq
 
 from wavesym.errors import CostError
+from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.contacts.events import what_helps
-from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, is_zero
-from wavesym.exact.silence import silent
-from wavesym.exact.tables.ball import Balls, Segment
+from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion
+from wavesym.exact.tables.ball import Balls, Segment, is_zero
 from wavesym.mechanics.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
@@ -271,7 +271,7 @@ class _Fits:
     @cached_property
     def _silent(self) -> set[int]:
         """The outputs that are 0 throughout though waves arrive, which no number of bits tells."""
-        return {k for k, nothing in enumerate(silent(self._model, rational(self._tau_max))) if nothing}
+        return {k for k, nothing in enumerate(identically_zero(self._model, rational(self._tau_max))) if nothing}
 
     def fitted(self, per_unit: int, most: int = MOST_BYTES) -> Pieces:
         """Pieces, about `per_unit` of them in a unit of tau. CostError where they would take more than `most` bytes."""

@@ -7,7 +7,7 @@ from functools import cached_property
 from math import ceil
 from typing import TYPE_CHECKING, Literal
 
-from wavesym.exact.contacts.opening import ContactEnd
+from wavesym.exact.contacts.events import ContactEnd
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError
-from wavesym.exact.knots import Knots
+from wavesym.exact.breakpoints import Breakpoints
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE
@@ -46,11 +46,11 @@ def sampled(model: Model, program: Program, step: float) -> tuple[Numbers, Numbe
 
 def jumps(model: Model) -> list[float]:
     """Where in (0, until] an output may jump, as doubles at or above, in order; none where there are too many."""
-    knots = Knots(model, rational(model.horizon()))
+    breakpoints = Breakpoints(model, rational(model.horizon()))
     try:
-        if knots.stretches > _MOST_JUMPS:
+        if breakpoints.stretches > _MOST_JUMPS:
             return []
-        exact = {time for probe in model.probes for time in knots.breakpoints(model.sums[probe])}
+        exact = {time for probe in model.probes for time in breakpoints.of_output(model.sums[probe])}
     except CostError:
         return []
     return sorted({not_below(time) for time in exact if time > 0})

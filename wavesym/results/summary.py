@@ -13,7 +13,7 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError, did_you_mean
-from wavesym.exact.arrival import first_arrivals, light_arrivals
+from wavesym.exact.arrivals import first_arrivals, light_arrivals
 from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from wavesym.exact.contacts.opening import contact_ends
+from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 
-from wavesym.exact.contacts.opening import ContactEnd
+from wavesym.exact.contacts.events import ContactEnd
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational

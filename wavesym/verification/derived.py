@@ -9,13 +9,13 @@ from typing import NamedTuple
 from flint import fmpq
 
 from wavesym.derivation.delay import delay_equations
+from wavesym.derivation.increments import Increment, add, trimmed
 from wavesym.derivation.recurrence import recurrence
+from wavesym.derivation.table import Function, Table, full_table
+from wavesym.derivation.walks import Letters, departures, function_walks, letters, units, walks_until
 from wavesym.documents.derivation.families import solved
 from wavesym.documents.derivation.highest_powers import POWERS as FAMILIES
 from wavesym.documents.derivation.patterns import patterns, rates
-from wavesym.exact.tables.increments import Increment, add, trimmed
-from wavesym.exact.tables.table import Function, Table, full_table
-from wavesym.exact.tables.walks import Letters, departures, function_walks, letters, units, walks_until
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters, System
 from wavesym.systems import presets

@@ -6,8 +6,8 @@ from math import factorial
 
 from flint import fmpq, fmpq_poly, fmpz_mpoly
 
-from wavesym.exact.tables.increments import Increment, trimmed
-from wavesym.exact.tables.walks import Letters, Unit
+from wavesym.derivation.increments import Increment, trimmed
+from wavesym.derivation.walks import Letters, Unit
 
 
 def expanded(polynomial: fmpz_mpoly, unit: Unit, letters: Letters) -> Increment:

@@ -21,7 +21,7 @@ from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Node
 
 if TYPE_CHECKING:  # tables are what is checked, not what is used
-    from wavesym.exact.tables.table import Function, Table
+    from wavesym.derivation.table import Function, Table
 
 Change = dict[fmpq, fmpq_poly]
 """sum over rates g of exp(-g w) * polynomial(w); what is 0 is left out."""

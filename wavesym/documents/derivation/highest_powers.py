@@ -1,7 +1,7 @@
 """The highest powers, the paper's Tables 2, 3 and 4, as formulas in interval, rod, body and source; stated as data.
 
 A wave that leaves node y at tau = t came from its source at node s in t steps from node to node. Every visit to the
-body at node l is a factor T (`exact.tables.walks`), after the first one visit costs a way to a neighbour and back; so
+body at node l is a factor T (`derivation.walks`), after the first one visit costs a way to a neighbour and back; so
 there are at most 1 + (t - |s - l| - |l - y|)/2, and the highest power of w beside exp(-gamma_l w) is one less. What is
 stated here is proved as an upper bound in `verification.powers`, by induction over the derived laws.
 """

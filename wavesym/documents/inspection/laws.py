@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from wavesym.derivation.exact_rule import Linear, LoadTerm, Rule, Term, Weights
+from wavesym.derivation.table import Function, Rules
 from wavesym.documents.inspection.modelled import cone, nodes_in_reach
 from wavesym.documents.inspection.networked import joint_laws, not_served
 from wavesym.documents.inspection.section import Listing, Plain, Section, Told
-from wavesym.exact.tables.table import Function, Rules
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
 

@@ -8,8 +8,8 @@ from flint import fmpq
 
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.errors import CostError, UnservedError
+from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.knots import Knots
 from wavesym.exact.tables.joint_response import joint_polynomial, rates, written
 from wavesym.exact.tables.network_joints import MOST_POINTS
 from wavesym.mechanics.model import Model
@@ -126,7 +126,7 @@ def joint_laws(model: Model) -> Listing:
     """M, C and K of the joints in the light cone, and the knots of each."""
     until = rational(model.horizon())
     try:
-        found = Knots(model, until)
+        found = Breakpoints(model, until)
         knots = {number: found.count(number) for number in found.reached}
         refusal = ""
     except CostError as error:

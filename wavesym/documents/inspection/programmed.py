@@ -9,8 +9,7 @@ from wavesym.documents.inspection.section import Facts, Listing, Plain, Section,
 from wavesym.documents.inspection.streamed import streamed
 from wavesym.documents.inspection.variants import told_degrees, variants
 from wavesym.errors import CostError, ToleranceError
-from wavesym.exact.contacts.events import events
-from wavesym.exact.contacts.opening import contact_ends
+from wavesym.exact.contacts.events import contact_ends, events
 from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import Tried, attempts, best

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from wavesym.derivation.table import Table, full_table
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.network_table import NetworkTable, network_table
-from wavesym.exact.tables.table import Table, full_table
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, combinations
 
 from flint import fmpq
 
@@ -85,6 +85,12 @@ def _moving(start: int, ways: Mapping[int, Sequence[tuple[int, fmpq]]]) -> Itera
             if other not in known:
                 known.add(other)
                 coming.append((other, ratio * factor))
+
+
+def subsets(contacts: Iterable[int]) -> list[Closed]:
+    """All choices of some contacts, small ones first."""
+    every = sorted(contacts)
+    return [frozenset(some) for size in range(len(every) + 1) for some in combinations(every, size)]
 
 
 def parted(law: JointLaw, touches: Mapping[int, Touch], linked: Closed) -> list[list[int]]:

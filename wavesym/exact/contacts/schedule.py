@@ -1,8 +1,8 @@
 """When contacts open and close: found once, with so many bits that all later requests can rest on it.
 
-Joints are moved as in `network_waves`, but knots become known only as time goes on: a joint is moved no further than to
-the next knot that is known, nor further than the shortest delay beside it reaches. As nobody has read beyond that, a
-contact that opens or closes on the way cuts the stretch there. `docs/contacts.md` has the argument.
+Joints are moved as in `network_waves`, but breakpoints become known only as time goes on: a joint is moved no further
+than to the next one that is known, nor further than the shortest delay beside it reaches. As nobody has read beyond
+that, a contact that opens or closes on the way cuts the stretch there. `docs/contacts.md` has the argument.
 """
 
 from __future__ import annotations
@@ -11,17 +11,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from heapq import heappop, heappush
-from itertools import chain, combinations
 from typing import NamedTuple, TypeVar
 
 from flint import arb, ctx, fmpq
 
 from wavesym.errors import CostError, WavesymError
-from wavesym.exact.contacts.cluster import Closed
+from wavesym.exact.contacts.cluster import Closed, subsets
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
 from wavesym.exact.contacts.touching_joint import Moved, SwingError
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replayed
-from wavesym.exact.joints.joint import Enclosed
+from wavesym.exact.joints.enclosed import Enclosed
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import middle, nearest
@@ -183,7 +182,7 @@ class _Doubt:
 
 @dataclass
 class _Course:
-    """A joint on its way: since when and how far its present stretch is known, and the knots to come.
+    """A joint on its way: since when and how far its present stretch is known, and the breakpoints to come.
 
     It is moved no further at a time than `shortest`: nobody reads what is sent before, and springs do not swing more;
     and not beyond `end`, later than its `last` instant that matters: until then it is known what comes to it.
@@ -200,20 +199,20 @@ class _Course:
     doubt: _Doubt | None = None
     spread: fmpq | None = None
     swing: fmpq = _NOTHING
-    knots: list[fmpq] = field(default_factory=list)
+    breakpoints: list[fmpq] = field(default_factory=list)
     stages: list[Stage] = field(default_factory=list)
 
     def comes(self, time: fmpq) -> bool:
-        """Whether there is a knot at an instant; it and all before are done with."""
+        """Whether there is a breakpoint at an instant; it and all before are done with."""
         found = False
-        while self.knots and self.knots[0] <= time:
-            found = heappop(self.knots) == time or found
+        while self.breakpoints and self.breakpoints[0] <= time:
+            found = heappop(self.breakpoints) == time or found
         return found
 
     def limit(self, start: fmpq) -> fmpq:
         """How far it can be moved from an instant on."""
         far = min(start + self.shortest, self.end)
-        return min(self.knots[0], far) if self.knots else far
+        return min(self.breakpoints[0], far) if self.breakpoints else far
 
 
 class _Search:
@@ -246,7 +245,7 @@ class _Search:
         sources = {unit.source for point in joint.points for unit in network.points[point].loads}
         for load in loads:
             if load.source in sources and 0 < load.time <= last:
-                heappush(course.knots, load.time)
+                heappush(course.breakpoints, load.time)
         return course
 
     def _refuse_many_moves(self) -> None:
@@ -293,8 +292,8 @@ class _Search:
 
     def _advance(self, course: _Course, time: fmpq) -> None:
         """From where a joint's motion is known up to the next limit, or to where a contact may change."""
-        knot, limit = course.comes(time), course.limit(time)
-        if course.moved is not None and not knot and not self._swings(course.moved, limit - course.since):
+        breakpoint, limit = course.comes(time), course.limit(time)
+        if course.moved is not None and not breakpoint and not self._swings(course.moved, limit - course.since):
             moved = self._moved(course, course.since, limit - course.since, course.moved.closed)
             self._kept(course, moved, self._end(course, moved, time - course.since))
             return
@@ -384,7 +383,7 @@ class _Search:
     def _decided(self, course: _Course, start: fmpq, limit: fmpq) -> tuple[Moved, _End | None] | None:
         """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
         shut = [n for n, gap in course.gaps.items() if gap.shut]
-        for closed in _most_first(shut):
+        for closed in sorted(subsets(shut), key=len, reverse=True):
             moved = self._moved(course, start, limit - start, closed)
             if all(_starts_well(moved, n, gap) for n, gap in course.gaps.items()):
                 end = self._end(course, moved, fmpq(0))
@@ -466,14 +465,14 @@ class _Search:
                 gap.grow(moved.rates[n], moved.length)
 
     def _tell(self, course: _Course, start: fmpq, moved: Moved) -> None:
-        """What a joint sends is kept; what begins there is a knot at the other ends of its bars."""
+        """What a joint sends is kept; what begins there is a breakpoint at the other ends of its bars."""
         network = self._network
         begun = self._waves.record(course.number, start, moved)
         for (end, _), new in zip(network.joints[course.number].ends, begun, strict=True):
             other = self._courses.get(network.joint_of[network.point_at(network.beyond(end))])
             time = start + network.bars[end.bar].delay
             if new and other is not None and time <= other.last:
-                heappush(other.knots, time)
+                heappush(other.breakpoints, time)
 
     def _drift(self, course: _Course, start: fmpq, limit: fmpq, spread: fmpq) -> fmpq:
         """Over a short stretch, on which it is left open what some contacts do; its end."""
@@ -534,10 +533,6 @@ def _not_negative(size: arb) -> arb:
     if size >= 0:
         return size
     return arb(0).union(size.upper().max(arb(0)))
-
-
-def _most_first(numbers: Sequence[int]) -> Iterator[Closed]:
-    return map(frozenset, chain.from_iterable(combinations(numbers, k) for k in range(len(numbers), -1, -1)))
 
 
 def _starts_well(moved: Moved, n: int, gap: _Gap) -> bool:

@@ -13,21 +13,27 @@ and displacements are continuous, no force can have been the first to pass it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain, combinations
 from math import log2
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Closed, Cluster, Touch, parted
-from wavesym.exact.joints.exact_joint import exact_motion
-from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw, JointMotion
-from wavesym.exact.joints.joint_onset import onsets
+from wavesym.exact.contacts.cluster import Closed, Cluster, Touch, parted, subsets
+from wavesym.exact.joints.enclosed import (
+    STILL,
+    Enclosed,
+    Onset,
+    Terms,
+    collected,
+    one_at_each_instant,
+    scaled,
+    together,
+    with_bounds,
+)
+from wavesym.exact.joints.exact_motion import exact_motion, onsets
+from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, scattered, sent_back
 from wavesym.exact.joints.network_waves import Acting
-from wavesym.exact.joints.node_rules import joint_rule
-from wavesym.exact.joints.onset import Onset
-from wavesym.exact.joints.sums import Terms, collected, one_at_each_instant, scaled, together, told
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 
@@ -99,14 +105,9 @@ class TouchingJoint:
         }
         self._clusters: dict[tuple[Closed, Closed], list[Cluster]] = {}
         self._loads = [Acting(network, point, loads) for point in joint.points]
-        rule = joint_rule()
-        bars = [network.bars[end.bar] for end, _ in joint.ends]
-        self._ends = [
-            (place[point], bar.ratios[end.side], rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance)
-            for bar, (end, point) in zip(bars, joint.ends, strict=True)
-        ]
+        self._ends = joint_ends(network, joint)
         touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
-        self._bare = {n for n, (k, _, _) in enumerate(self._ends) if k in touched and self.law.mass[k] == 0}
+        self._bare = {n for n, end in enumerate(self._ends) if end.place in touched and self.law.mass[end.place] == 0}
         self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
         # sets of points that have energy: mass or springs
         self._sets = [
@@ -133,7 +134,7 @@ class TouchingJoint:
         SwingError where a series would have to bear more than exp(`bear`).
         """
         acting = [load.on(start) for load in self._loads]
-        forces = self._forces(arriving, acting)
+        forces = forces_on(self._ends, arriving, acting)
         result = Moved(length, closed, vague, {})
         for cluster in self._parted(closed, vague):
             if any(self.touches[n].left in cluster.points for n in vague):
@@ -151,13 +152,13 @@ class TouchingJoint:
         return result
 
     def _sent(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
-        k, ratio, _ = self._ends[number]
-        return together([*scaled(velocities[k], ratio), (fmpq(-1), wave)])
+        end = self._ends[number]
+        return together(sent_back(end, velocities[end.place], wave))
 
     def _strained(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Terms:
         """What is sent less what arrives: up to a factor, what acts on the end."""
-        k, ratio, _ = self._ends[number]
-        return [*scaled(velocities[k], ratio), (fmpq(-2), wave)]
+        end = self._ends[number]
+        return [*sent_back(end, velocities[end.place], wave), (fmpq(-1), wave)]
 
     def _parted(self, closed: Closed, vague: Closed) -> list[Cluster]:
         if (closed, vague) not in self._clusters:
@@ -378,14 +379,14 @@ class TouchingJoint:
             free = scattered(law, [[(_ONE, each)] for each in pushed], {})
             moves = dict(zip(points, law.moves, strict=True))
             gained = [self._gained(n, moves, law) for n in vague]
-            for n, (k, factor, _) in enumerate(self._ends):
-                if k in moves and result.sends[n].exact is None:
+            for n, end in enumerate(self._ends):
+                if (k := end.place) in moves and result.sends[n].exact is None:
                     group, ratio = moves[k]
                     exact = self._sent(n, {k: scaled(free[group], ratio)}, arriving[n]).exact
-                    signs = [factor * ratio * gains[group] for gains in gained]
+                    signs = [end.ratio * ratio * gains[group] for gains in gained]
                     least = exact if all(sign >= 0 for sign in signs) else None
                     most = exact if all(sign <= 0 for sign in signs) else None
-                    result.sends[n] = told(result.sends[n], None, least, most)
+                    result.sends[n] = with_bounds(result.sends[n], None, least, most)
 
     def _gained(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> list[fmpq]:
         """The velocities that groups without mass gain where a contact pushes with 1."""
@@ -408,10 +409,10 @@ class TouchingJoint:
     ) -> Moved:
         """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points."""
         velocities: dict[int, list[Enclosed]] = {k: [] for k in points}
-        sends: dict[int, list[Enclosed]] = {n: [] for n, (k, _, _) in enumerate(self._ends) if k in points}
+        sends: dict[int, list[Enclosed]] = {n: [] for n, end in enumerate(self._ends) if end.place in points}
         rates: dict[int, list[Enclosed]] = {}
         pushes: dict[int, list[Enclosed]] = {}
-        for chosen in _subsets(vague):
+        for chosen in subsets(vague):
             cluster = Cluster.of(self.law, points, self.touches, closed | chosen)
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
             q = scattered(cluster.law, grouped(cluster, pulls), rigid)
@@ -444,13 +445,6 @@ class TouchingJoint:
             result[self.touches[n].left] = [*result[self.touches[n].left], (-self.touches[n].ratio, between)]
         return result
 
-    def _forces(self, arriving: Sequence[Enclosed], acting: Sequence[fmpq_poly]) -> list[Terms]:
-        """What acts on each point: loads, and waves that arrive."""
-        terms: list[Terms] = [[(joint_rule().load, Enclosed.of(p))] for p in acting]
-        for (k, _, factor), wave in zip(self._ends, arriving, strict=True):
-            terms[k].append((factor, wave))
-        return terms
-
 
 def grouped(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
     """What acts on the groups of a cluster."""
@@ -460,29 +454,12 @@ def grouped(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
     return terms
 
 
-def scattered(law: JointLaw, forces: Sequence[Terms], known: Mapping[int, Terms]) -> list[Terms]:
-    """The velocities of groups: of those without mass they follow from what acts and from the others, `known`."""
-    q = [known.get(a, []) for a in range(len(law.mass))]
-    for row, a in enumerate(law.light):
-        for column, b in enumerate(law.light):
-            share = law.inverse[row, column]
-            q[a] = [*q[a], *scaled(forces[b], share)]
-            for c, velocity in known.items():
-                q[a] += scaled(velocity, -share * law.damping[b][c])
-    return q
-
-
 def _given(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:
     return {a: [(_ONE, Enclosed.of(p))] for a, p in enumerate(prescribed) if law.given[a] is not None}
 
 
 def _rate(touch: Touch, velocities: Mapping[int, Terms]) -> Terms:
     return [*velocities[touch.right], *scaled(velocities[touch.left], -touch.ratio)]
-
-
-def _subsets(numbers: Iterable[int]) -> Iterator[Closed]:
-    every = sorted(numbers)
-    return map(frozenset, chain.from_iterable(combinations(every, k) for k in range(len(every) + 1)))
 
 
 def _terms(swing: fmpq, least: int) -> int:

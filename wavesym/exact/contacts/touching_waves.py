@@ -13,9 +13,8 @@ from flint import fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed
 from wavesym.exact.contacts.touching_joint import Moved, TouchingJoint
-from wavesym.exact.joints.joint import Enclosed
+from wavesym.exact.joints.enclosed import Enclosed, together
 from wavesym.exact.joints.network_waves import SentWave, Waves
-from wavesym.exact.joints.sums import together
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End, Network
 

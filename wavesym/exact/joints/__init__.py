@@ -1,1 +1,1 @@
-"""Joints: their laws in numbers, their motion from knot to knot in balls or exactly, and the waves that they send."""
+"""Joints: their laws in numbers, their motion on stretches in balls or exactly, and the waves that they send."""

@@ -22,16 +22,28 @@ and what is not known goes on unchanged where a contact opens or closes, as no m
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import count, islice
 from math import isqrt
+from typing import NamedTuple, Protocol, TypeVar
 
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
-from wavesym.exact.joints.node_rules import joint_rule
-from wavesym.exact.joints.onset import Onset
-from wavesym.mechanics.network import Joint, Network
+from wavesym.derivation.exact_rule import joint_rule
+from wavesym.exact.joints.enclosed import Enclosed, Terms, scaled
+from wavesym.mechanics.network import End, Joint, Network
+
+Number = TypeVar("Number", fmpq, arb)
+Coefficient = TypeVar("Coefficient", covariant=True)
+
+
+class Powers(Protocol[Coefficient]):
+    """The coefficients of a function, by powers: as many as are read."""
+
+    def __getitem__(self, power: int, /) -> Coefficient: ...
+
 
 # a series is begun anew where it would have to bear more than exp(this)
 SWING = 24
@@ -173,55 +185,52 @@ class JointLaw:
         return fmpq_mat(size, size, [self.damping[a][b] for a in self.light for b in self.light]).inv()
 
 
-@dataclass(frozen=True)
-class Enclosed:
-    """A function on a stretch: |function - polynomial| <= error.
+class JointEnd(NamedTuple):
+    """The end of a bar at a joint, and the place of its point there.
 
-    `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
-    of these. `onset` tells how it begins, where that is known. `least` and `most` are exact polynomials that it is
-    never below, or above, where such are known.
+    The end moves `ratio` n times as fast as the point; on that acts the `force` 2 n Z of a wave 1 that arrives.
     """
 
-    polynomial: arb_poly
-    error: arb
-    exact: fmpq_poly | None = None
-    choices: tuple[Enclosed, ...] = ()
-    onset: Onset | None = None
-    least: fmpq_poly | None = None
-    most: fmpq_poly | None = None
-
-    @property
-    def bounded(self) -> bool:
-        """Whether such bounds are known."""
-        return self.least is not None or self.most is not None
-
-    @property
-    def bounds(self) -> tuple[fmpq_poly | None, fmpq_poly | None]:
-        """Exact bounds, of a polynomial too."""
-        return (self.least, self.most) if self.exact is None else (self.exact, self.exact)
-
-    @property
-    def begins(self) -> Onset | None:
-        """How it begins, of a polynomial too."""
-        return self.onset if self.exact is None else Onset.of(self.exact)
-
-    @classmethod
-    def of(cls, exact: fmpq_poly) -> Enclosed:
-        """A polynomial that is known."""
-        below = arb(exact.denom())  # fractions would be reduced one by one, which takes long where they are long
-        return cls(arb_poly([arb(c) / below for c in exact.numer().coeffs()]), arb(0), exact)
-
-    def at(self, w: fmpq) -> arb:
-        """An enclosure of its value."""
-        value = self.polynomial(arb(w))
-        return value + arb(0, self.error) if self.error != 0 else value
-
-    def over(self, span: arb) -> arb:
-        """An enclosure of all values on a part of the stretch."""
-        return self.polynomial(span) + arb(0, self.error)
+    end: End
+    place: int
+    ratio: fmpq
+    force: fmpq
 
 
-STILL = Enclosed(arb_poly(), arb(0), fmpq_poly())
+def joint_ends(network: Network, joint: Joint) -> tuple[JointEnd, ...]:
+    """The ends of bars at a joint, in its order."""
+    rule, place = joint_rule(), {point: k for k, point in enumerate(joint.points)}
+    found = []
+    for end, point in joint.ends:
+        bar, ratio = network.bars[end.bar], network.bars[end.bar].ratios[end.side]
+        found.append(JointEnd(end, place[point], ratio, rule.arrives[1 - end.side] * ratio * bar.impedance))
+    return tuple(found)
+
+
+def forces_on(ends: Sequence[JointEnd], arriving: Sequence[Enclosed], loads: Sequence[fmpq_poly]) -> list[Terms]:
+    """What acts on each point of a joint: loads, and the waves that arrive."""
+    load = joint_rule().load
+    forces: list[Terms] = [[(load, Enclosed.of(each))] if each.length() else [] for each in loads]
+    for each, wave in zip(ends, arriving, strict=True):
+        forces[each.place].append((each.force, wave))
+    return forces
+
+
+def sent_back(end: JointEnd, velocity: Terms, wave: Enclosed) -> Terms:
+    """What an end sends when a wave arrives: n q - a."""
+    return [*scaled(velocity, end.ratio), (fmpq(-1), wave)]
+
+
+def scattered(law: JointLaw, forces: Sequence[Terms], known: Mapping[int, Terms]) -> list[Terms]:
+    """The velocities of groups: of those without mass they follow from what acts and from the others, `known`."""
+    q = [known.get(a, []) for a in range(len(law.mass))]
+    for row, a in enumerate(law.light):
+        for column, b in enumerate(law.light):
+            share = law.inverse[row, column]
+            q[a] = [*q[a], *scaled(forces[b], share)]
+            for c, velocity in known.items():
+                q[a] += scaled(velocity, -share * law.damping[b][c])
+    return q
 
 
 @dataclass
@@ -273,39 +282,11 @@ class JointMotion:
         self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
     ) -> tuple[list[list[arb]], list[list[arb]]]:
         """The coefficients of q and u: middles, whatever rounding made of them."""
-        law = self.law
-        size = range(len(law.mass))
-        s = [_padded(force.polynomial, terms) for force in forces]
-        q: list[list[arb]] = [[] for _ in size]
-        u = [[value] for value in self.displacement]
-        given = [
-            (q[k], [arb(c) for c in prescribed[k].coeffs()] + [arb(0)] * terms)
-            for k in size
-            if law.given[k] is not None
-        ]
-
-        def pulls(k: int, without: Collection[int] = ()) -> list[tuple[arb, list[arb]]]:
-            """What else acts on a point: factors of velocities, but of some, and of displacements."""
-            slow = [(arb(c), q[b]) for b, c in enumerate(law.damping[k]) if c != 0 and b not in without]
-            return slow + [(arb(c), u[b]) for b, c in enumerate(law.stiffness[k]) if c != 0]
-
-        light = [(s[k], pulls(k, law.light)) for k in law.light]
-        found = [(q[k], [arb(law.inverse[row, b]) for b in range(len(light))]) for row, k in enumerate(law.light)]
-        heavy = [(k, q[k], s[k], pulls(k), arb(law.mass[k])) for k in law.heavy]
-        last = {k: self.velocity[k] for k in law.heavy}
-        moves = [(u[k], q[group], arb(ratio)) for k, (group, ratio) in enumerate(law.moves)] if law.springs else []
-        for n in range(terms):
-            for series, known in given:
-                series.append(known[n])
-            for k, series, *_ in heavy:
-                series.append(last[k])
-            right = [_less(force[n], pulled, n) for force, pulled in light]
-            for series, shares in found:
-                series.append(_dot(shares, right).mid())
-            for k, _, force, pulled, mass in heavy:
-                last[k] = (_less(force[n], pulled, n) / (mass * (n + 1))).mid()
-            for places, series, ratio in moves:
-                places.append((ratio * series[n] / (n + 1)).mid())
+        acting = [_padded(force.polynomial, terms) for force in forces]
+        given = [[arb(c) for c in each.coeffs()] + [arb(0)] * terms for each in prescribed]
+        *_, (q, u, _) = islice(
+            motion_series(self.law, self.velocity, self.displacement, acting, given, arb, arb.mid), terms + 1
+        )
         return q, u
 
     def _errors(self, forces: Sequence[Enclosed], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
@@ -326,7 +307,7 @@ class JointMotion:
         for k in law.heavy:
             more = sum((abs(arb(law.damping[k][b])) * t for b, t in zip(law.light, through, strict=True)), arb(0))
             delta += (defect[k] + more) ** 2 / arb(law.mass[k])
-        rho = _dot(light, through) / 4
+        rho = _dot(light, through) / 4 if light else arb(0)
         before = (2 * self.unknown / arb(law.mass[law.heavy[0]])).sqrt() if law.heavy else arb(0)
         kappa = sum(
             (
@@ -360,6 +341,60 @@ class JointMotion:
         return [errors.get(k, arb(0)) for k in range(len(law.mass))]
 
 
+def motion_series(
+    law: JointLaw,
+    velocity: Sequence[Number],
+    displacement: Sequence[Number],
+    forces: Sequence[Powers[Number]],
+    prescribed: Sequence[Powers[Number]],
+    number: Callable[[fmpq], Number],
+    kept: Callable[[Number], Number],
+) -> Iterator[tuple[list[list[Number]], list[list[Number]], Mapping[int, Number]]]:
+    """The motion of a joint in powers of the time since some instant, from M q' + C q + K u = s and u' = q.
+
+    Args:
+        law: M, C and K.
+        velocity: of groups, at that instant.
+        displacement: of points, at that instant.
+        forces: s on groups, by powers.
+        prescribed: velocities of the groups whose motion is given, by powers.
+        number: makes one of the arithmetic: exact, or a ball.
+        kept: what is kept of a coefficient: all of it, or its middle.
+
+    Yields:
+        For n = 0, 1, ... the first n coefficients of q and, where there are springs, n + 1 of u; of groups with mass
+        the next one of q. Lists are those of before, and longer.
+    """
+    size = range(len(law.mass))
+    q: list[list[Number]] = [[] for _ in size]
+    u = [[value] for value in displacement]
+
+    def pulls(k: int, without: Collection[int] = ()) -> list[tuple[Number, list[Number]]]:
+        """What else acts on a point: factors of velocities, but of some, and of displacements."""
+        slow = [(number(c), q[b]) for b, c in enumerate(law.damping[k]) if c != 0 and b not in without]
+        return slow + [(number(c), u[b]) for b, c in enumerate(law.stiffness[k]) if c != 0]
+
+    given = [(q[k], prescribed[k]) for k in size if law.given[k] is not None]
+    light = [(forces[k], pulls(k, law.light)) for k in law.light]
+    found = [(q[k], [number(law.inverse[row, b]) for b in range(len(light))]) for row, k in enumerate(law.light)]
+    heavy = [(k, q[k], forces[k], pulls(k), number(law.mass[k])) for k in law.heavy]
+    last = {k: velocity[k] for k in law.heavy}
+    moves = [(u[k], q[group], number(ratio)) for k, (group, ratio) in enumerate(law.moves)] if law.springs else []
+    for n in count():
+        yield q, u, last
+        for series, known in given:
+            series.append(known[n])
+        for k, series, *_ in heavy:
+            series.append(last[k])
+        right = [_less(force[n], pulled, n) for force, pulled in light]
+        for series, shares in found:
+            series.append(kept(_dot(shares, right)))
+        for k, _, force, pulled, mass in heavy:
+            last[k] = kept(_less(force[n], pulled, n) / (mass * (n + 1)))
+        for places, series, ratio in moves:
+            places.append(kept(ratio * series[n] / (n + 1)))
+
+
 def _padded(polynomial: arb_poly, terms: int) -> list[arb]:
     coefficients = [c.mid() for c in polynomial.coeffs()[:terms]]
     return coefficients + [arb(0)] * (terms - len(coefficients))
@@ -374,13 +409,15 @@ def _size(polynomial: arb_poly, h: arb) -> arb:
     return total.upper()
 
 
-def _dot(one: Sequence[arb], other: Sequence[arb]) -> arb:
-    if len(one) == 1:
-        return one[0] * other[0]
-    return sum((a * b for a, b in zip(one, other, strict=True)), arb(0))
+def _dot(one: Sequence[Number], other: Sequence[Number]) -> Number:
+    """A sum of products of at least one pair."""
+    total = one[0] * other[0]
+    for a, b in zip(one[1:], other[1:], strict=True):
+        total += a * b
+    return total
 
 
-def _less(value: arb, pulls: Sequence[tuple[arb, Sequence[arb]]], n: int) -> arb:
+def _less(value: Number, pulls: Sequence[tuple[Number, Sequence[Number]]], n: int) -> Number:
     """A power of a force without what pulls."""
     for factor, series in pulls:
         value -= factor * series[n]

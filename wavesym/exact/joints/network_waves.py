@@ -1,22 +1,21 @@
-"""The waves of a network: joints moved from knot to knot, in the order in which their stretches start."""
+"""The waves of a network: joints moved from breakpoint to breakpoint, in the order in which their stretches start."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
-from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
+from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw, JointMotion
-from wavesym.exact.joints.node_rules import joint_rule
+from wavesym.exact.joints.enclosed import STILL, Enclosed, briefly, collected, later, rounded, shortened, weighted
+from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, scattered, sent_back
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End, Joint, Network
 
 # on a stretch that is shorter a few powers are enough
 _BRIEF = fmpq(1, 2**64)
-_COARSE, _FIRST = 32, 8
 
 
 @dataclass
@@ -44,7 +43,7 @@ class SentWave:
         ends = [*self.starts[1:], last]
         return SentWave(
             self.starts,
-            [_rounded(known, end - start) for start, end, known in zip(self.starts, ends, self.stretches, strict=True)],
+            [rounded(known, end - start) for start, end, known in zip(self.starts, ends, self.stretches, strict=True)],
         )
 
 
@@ -80,28 +79,28 @@ class Waves:
             elif length < _BRIEF:
                 waves.append(briefly(known, offset, length))
             else:
-                waves.append(_shortened(later(known, offset), length))
+                waves.append(shortened(later(known, offset), length))
         return waves
 
 
 class NetworkWaves(Waves):
-    """The waves of the joints whose knots are given, at the working precision."""
+    """The waves of the joints whose breakpoints are given, at the working precision."""
 
     def __init__(
-        self, network: Network, knots: Mapping[int, Sequence[fmpq]], loads: Sequence[Applied], terms: int
+        self, network: Network, breakpoints: Mapping[int, Sequence[fmpq]], loads: Sequence[Applied], terms: int
     ) -> None:
         super().__init__(network)
-        self._knots = knots
+        self._breakpoints = breakpoints
         self._terms = terms
-        self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in knots}
+        self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in breakpoints}
         self._march()
 
     def _march(self) -> None:
-        coming = [(times[0], number, 0) for number, times in self._knots.items() if times]
+        coming = [(times[0], number, 0) for number, times in self._breakpoints.items() if times]
         heapify(coming)
         while coming:
             start, number, place = heappop(coming)
-            times = self._knots[number]
+            times = self._breakpoints[number]
             if place + 1 < len(times):
                 heappush(coming, (times[place + 1], number, place + 1))
                 self._move(number, start, times[place + 1] - start)
@@ -122,8 +121,7 @@ class NetworkWaves(Waves):
 
 class _MovingJoint:
     def __init__(self, network: Network, joint: Joint, loads: Sequence[Applied]) -> None:
-        self._network, self._joint = network, joint
-        self._place = {point: k for k, point in enumerate(joint.points)}
+        self._ends = joint_ends(network, joint)
         self._motion = JointMotion(
             JointLaw.of(network, joint),
             [arb(network.points[point].velocity) for point in joint.points],
@@ -134,46 +132,22 @@ class _MovingJoint:
         self._scatters = not (law.heavy or law.springs) and len(law.light) == len(joint.points)
 
     def sends(self, arriving: Sequence[Enclosed], start: fmpq, length: fmpq, terms: int) -> list[Enclosed]:
-        """What goes back into the ends on a stretch."""
-        acting = [load.on(start) for load in self._loads]
-        rule = joint_rule()
-        forces = [Enclosed(arb_poly([arb(rule.load * c) for c in p.coeffs()]), arb(0)) for p in acting]
-        bars = [self._network.bars[end.bar] for end, _ in self._joint.ends]
-        factors = [
-            rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
-            for bar, (end, _) in zip(bars, self._joint.ends, strict=True)
-        ]
-        if self._scatters:
-            return self._scattered(arriving, forces, factors)
-        for (_, point), wave, factor in zip(self._joint.ends, arriving, map(arb, factors), strict=True):
-            k = self._place[point]
-            forces[k] = Enclosed(
-                forces[k].polynomial + factor * wave.polynomial, forces[k].error + abs(factor) * wave.error
-            )
-        self.velocities = velocities = self._motion.moved(forces, acting, length, terms)
-        result = []
-        for (end, point), wave in zip(self._joint.ends, arriving, strict=True):
-            ratio = arb(self._network.bars[end.bar].ratios[end.side])
-            q = velocities[self._place[point]]
-            result.append(Enclosed(ratio * q.polynomial - wave.polynomial, (abs(ratio) * q.error + wave.error).upper()))
-        return result
+        """What goes back into the ends on a stretch.
 
-    def _scattered(
-        self, arriving: Sequence[Enclosed], forces: Sequence[Enclosed], factors: Sequence[fmpq]
-    ) -> list[Enclosed]:
-        """Where nothing has mass or springs: sums with exact factors, so that an absorbing end sends back exactly 0."""
-        inverse, points = self._motion.law.inverse, range(len(self._joint.points))
-        places = [self._place[point] for _, point in self._joint.ends]
-        arrived = list(zip(places, factors, arriving, strict=True))
-        felt = [[(factor * inverse[k, here], wave) for here, factor, wave in arrived] for k in points]
-        pushed = [[(inverse[k, j], forces[j]) for j in points] for k in points]
-        self.velocities = [weighted([*felt[k], *pushed[k]]) for k in points]
-        result = []
-        for number, ((end, _), k) in enumerate(zip(self._joint.ends, places, strict=True)):
-            ratio = self._network.bars[end.bar].ratios[end.side]
-            sent = [(ratio * factor - (n == number), wave) for n, (factor, wave) in enumerate(felt[k])]
-            result.append(weighted([*sent, *((ratio * factor, force) for factor, force in pushed[k])]))
-        return result
+        Where nothing has mass or springs factors are exact, so that an absorbing end sends back exactly 0.
+        """
+        acting = [load.on(start) for load in self._loads]
+        forces = forces_on(self._ends, arriving, acting)
+        if self._scatters:
+            moving = scattered(self._motion.law, forces, {})
+            self.velocities = [weighted(collected(each)) for each in moving]
+        else:
+            self.velocities = self._motion.moved([weighted(each) for each in forces], acting, length, terms)
+            moving = [[(fmpq(1), each)] for each in self.velocities]
+        return [
+            weighted(collected(sent_back(end, moving[end.place], wave)))
+            for end, wave in zip(self._ends, arriving, strict=True)
+        ]
 
 
 class Acting:
@@ -200,74 +174,3 @@ class Acting:
             time, polynomial = self._coming.pop()
             self._total += polynomial(fmpq_poly([start - time, 1]))
         return self._total
-
-
-def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
-    """A sum with exact factors; what has the factor 0 is not in it."""
-    polynomial, error = arb_poly(), arb(0)
-    for factor, known in terms:
-        if factor == 1:
-            polynomial += known.polynomial
-            error += known.error
-        elif factor == -1:
-            polynomial -= known.polynomial
-            error += known.error
-        elif factor != 0:
-            size = arb(factor)
-            polynomial += size * known.polynomial
-            error += abs(size) * known.error
-    return Enclosed(polynomial, error.upper())
-
-
-def later(known: Enclosed, by: fmpq) -> Enclosed:
-    """The same function in the time since an instant that is `by` later."""
-    if by == 0 or (known.polynomial.length() <= 1 and not known.choices and not known.bounded):
-        return known
-    if known.exact is not None:
-        return Enclosed.of(known.exact(fmpq_poly([by, 1])))
-    choices = tuple(later(each, by) for each in known.choices)
-    least, most = _bounds_later(known, by)
-    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices, None, least, most)
-
-
-def _bounds_later(known: Enclosed, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
-    least, most = (None if p is None else p(fmpq_poly([by, 1])) for p in (known.least, known.most))
-    return least, most
-
-
-def _rounded(known: Enclosed, length: fmpq) -> Enclosed:
-    return _shortened(Enclosed(known.polynomial * arb(1), known.error, known.exact), length)
-
-
-def _shortened(known: Enclosed, length: fmpq) -> Enclosed:
-    """Without the highest powers, as far as they count for less on a stretch than the last bit of the first ones."""
-    powers = known.polynomial.coeffs()
-    if known.exact is not None or len(powers) < 2:
-        return known
-    bits, count, rest = ctx.prec, len(powers), arb(0)
-    with ctx.workprec(_COARSE):
-        h = arb(length)
-        size = max((abs(c) * h**k).upper() for k, c in enumerate(powers[:_FIRST]))
-        least = size * arb(2) ** (-bits - 4)
-        while count and (more := (rest + abs(powers[count - 1]) * h ** (count - 1)).upper()) <= least:
-            rest = more
-            count -= 1
-    if count == len(powers):
-        return known
-    return replace(known, polynomial=arb_poly(powers[:count]), error=(known.error + rest).upper())
-
-
-def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
-    """The same as `later` on a short stretch: Taylor's first powers, and what the others can add."""
-    terms = 2 + ctx.prec // 64
-    if known.exact is not None or known.polynomial.length() <= terms:
-        return later(known, by)
-    choices = tuple(briefly(each, by, length) for each in known.choices)
-    here, derivative, powers, share = arb(by), known.polynomial, [], arb(1)
-    for n in range(1, terms):
-        powers.append(derivative(here) * share)
-        derivative, share = derivative.derivative(), share / n
-    span = here.union(arb(by + length))
-    rest = abs(derivative(span) * share) * arb(length) ** (terms - 1)
-    least, most = _bounds_later(known, by)
-    return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices, None, least, most)

@@ -102,8 +102,4 @@ def _shapes(stiffness: Stiffness, law: HarmonicLaw, w: arb, aside: arb, count: i
         scale = column[row].rsqrt()
         shapes.append([q * scale for q in column])
         left = [each - q * q for each, q in zip(left, shapes[-1], strict=True)]
-    points = [[arb(0)] * len(stiffness.network.points) for _ in shapes]
-    for shape, moved in zip(shapes, points, strict=True):
-        for row, point in enumerate(stiffness.points):
-            moved[point] = shape[row]
-    return points
+    return [stiffness.placed(shape) for shape in shapes]

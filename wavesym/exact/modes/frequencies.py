@@ -203,10 +203,7 @@ def _bisected(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, shar
 def _normal(stiffness: Stiffness, found: Trial) -> list[arb]:
     """The points of a shape, of mass 1."""
     scale = found.mass.rsqrt()
-    points = [arb(0)] * len(stiffness.network.points)
-    for row, point in enumerate(stiffness.points):
-        points[point] = found.rows[row] * scale
-    return points
+    return stiffness.placed([row * scale for row in found.rows])
 
 
 def _still(stiffness: Stiffness, free: tuple[fmpq, ...]) -> Mode:

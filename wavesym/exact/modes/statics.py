@@ -103,21 +103,8 @@ class Statics:
         Where nothing holds the chain the forces are in balance, and its root does not move.
         """
         _, pivots, up = self._springs
-        points, parents = self.stiffness.points, self.stiffness.parents
-        carried = [forces[point] for point in points]
-        for row, parent in enumerate(parents):
-            if parent is not None:
-                carried[parent] = carried[parent] - up[row] * carried[row] / pivots[row]
-        found = [arb(0)] * len(points)
-        moved = [arb(0)] * len(self.stiffness.network.points)
-        for row in reversed(range(len(points))):
-            parent = parents[row]
-            if parent is None:
-                found[row] = arb(0) if self.free is not None else carried[row] / pivots[row]
-            else:
-                found[row] = (carried[row] - up[row] * found[parent]) / pivots[row]
-            moved[points[row]] = found[row]
-        return moved
+        acting = [forces[point] for point in self.stiffness.points]
+        return self.stiffness.placed(self.stiffness.substituted(pivots, up, acting, free=self.free is not None))
 
     def inertia(self, points: Sequence[arb]) -> list[arb]:
         """The forces on points that accelerate everything as points move, and what is between them linearly."""

@@ -196,15 +196,30 @@ class Stiffness:
 
     def solved(self, diagonal: list[Quantity], up: Sequence[Quantity], forces: Sequence[Quantity]) -> list[Quantity]:
         """How far rows move under forces on them, `diagonal` eliminated in place."""
-        pivots, moved = self.pivots(diagonal, up), list(forces)
+        return self.substituted(self.pivots(diagonal, up), up, forces)
+
+    def substituted(
+        self, pivots: Sequence[Quantity], up: Sequence[Quantity], forces: Sequence[Quantity], *, free: bool = False
+    ) -> list[Quantity]:
+        """The same once K is eliminated. Where nothing holds the chain (`free`) forces balance, and the root rests."""
+        moved = list(forces)
         for row, parent in enumerate(self.parents):
             if parent is not None:
                 moved[parent] = moved[parent] - up[row] * moved[row] / pivots[row]
         for row in reversed(range(len(pivots))):
             parent = self.parents[row]
-            beyond = moved[row] if parent is None else moved[row] - up[row] * moved[parent]
-            moved[row] = beyond / pivots[row]
+            if parent is not None:
+                moved[row] = (moved[row] - up[row] * moved[parent]) / pivots[row]
+            else:
+                moved[row] = moved[row] * 0 if free else moved[row] / pivots[row]
         return moved
+
+    def placed(self, moved: Sequence[Quantity]) -> list[Quantity]:
+        """How far points move where rows move so far; those that are not free do not."""
+        points = [moved[0] * 0] * len(self.network.points)
+        for point, each in zip(self.points, moved, strict=True):
+            points[point] = each
+        return points
 
     @cached_property
     def doubles(self) -> HarmonicLaw:

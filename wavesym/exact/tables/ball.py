@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 from flint import arb, arb_poly, ctx, fmpq
 
-from wavesym.exact.tables.increments import Increment
 from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.balls import FIRST_BITS, precise
 from wavesym.numbers.doubles import midpoint, rational, rounded
@@ -81,9 +80,9 @@ def _segments(signal: Signal) -> Iterator[Segment]:
         yield Segment(last, dict(zip(places, families, strict=True)))
 
 
-def polynomials(increment: Increment) -> dict[fmpq, arb_poly]:
-    """An increment as one polynomial in balls per rate."""
-    return {rate: arb_poly([arb(value) for value in powers]) for rate, powers in increment.items()}
+def is_zero(segments: Sequence[Segment]) -> bool:
+    """Whether an output is 0 throughout."""
+    return all(polynomial.length() == 0 for segment in segments for polynomial in segment.families.values())
 
 
 class Balls:
@@ -91,7 +90,7 @@ class Balls:
 
     def __init__(self, segments: Sequence[Segment]) -> None:
         self.segments = segments
-        self.zero = all(p.length() == 0 for segment in segments for p in segment.families.values())
+        self.zero = is_zero(segments)
         self._starts = [segment.start for segment in self.segments]
 
     def largest(self, until: fmpq) -> arb:

@@ -14,11 +14,10 @@ from math import inf
 
 from flint import fmpq
 
+from wavesym.derivation.table_size import MOST_WORK, Size, mean_bits, response_size
 from wavesym.errors import CostError
-from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.exact.tables.fronts import departures, reachable
 from wavesym.exact.tables.network_joints import START, NetworkJoints, unit_at
-from wavesym.exact.tables.table_size import MOST_WORK, Size, mean_bits, response_size
 from wavesym.mechanics.network import End
 
 MOST_FRONTS = 20_000
@@ -102,14 +101,12 @@ class Foreseen:
     def _passes(self, number: int) -> Mapping[End, frozenset[End]]:
         """Of what arrives at an end of a joint, which ends get something: none where it is absorbed."""
         law, response, ends = self._joints.law(number), self._joints.response(number), self._joints.ends(number)
-        bars, rule = self._joints.network.bars, joint_rule()
-        found: dict[End, set[End]] = {end: set() for end, _ in ends}
-        for (end, j), (other, i) in product(ends, repeat=2):
+        found: dict[End, set[End]] = {each.end: set() for each in ends}
+        for (end, j, _, force), (other, i, ratio, _) in product(ends, repeat=2):
             if law.given[j] is not None:
                 goes = end == other
             else:
-                arrives = rule.arrives[1 - end.side] * bars[end.bar].ratios[end.side] * bars[end.bar].impedance
-                at_once = bars[other.bar].ratios[other.side] * response.direct.get((i, j), fmpq(0)) * arrives
+                at_once = ratio * response.direct.get((i, j), fmpq(0)) * force
                 goes = (i, j) in response.later or at_once != int(end == other)
             if goes:
                 found[end].add(other)
@@ -119,7 +116,7 @@ class Foreseen:
         """The ends of a joint into which a source sends something at 0."""
         joints, ends = self._joints, self._joints.ends(number)
         if source == START:
-            return {end for end, _ in ends}
+            return {each.end for each in ends}
         law, points = joints.law(number), joints.network.joints[number].points
         acted = {k for k, point in enumerate(points) if unit_at(joints.network.points[point], source)}
         moved = {k for k in acted if law.given[k] is not None}
@@ -128,7 +125,7 @@ class Foreseen:
         )
         pushed = (acted - moved).union(held)
         moved |= {i for i, j in joints.response(number).entries if j in pushed}
-        return {end for end, k in ends if k in moved}
+        return {each.end for each in ends if each.place in moved}
 
 
 def _fewer(asked: str) -> str:

@@ -17,10 +17,9 @@ from itertools import product
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from wavesym.derivation.exact_rule import Weights
+from wavesym.derivation.exact_rule import Weights, factor_weights
+from wavesym.derivation.increments import Increment, add, solve, trimmed
 from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.joints.node_rules import factor_weights
-from wavesym.exact.tables.increments import Increment, add, solve, trimmed
 
 Matrix = Mapping[tuple[int, int], fmpq]
 """Entries by (moved point, pushed point); those that are 0 are left out."""

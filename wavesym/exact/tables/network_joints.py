@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cache, cached_property
 
 from flint import fmpq
 
+from wavesym.derivation.increments import Increment, add, integrated
 from wavesym.errors import UnservedError
-from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.tables.increments import Increment, add, integrated
+from wavesym.exact.joints.joint import JointEnd, JointLaw, joint_ends
 from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, rates, written
-from wavesym.mechanics.network import End, Network, Point
+from wavesym.mechanics.network import Network, Point
 
 START = "start"
 """The source of what moves at tau = 0."""
@@ -36,6 +36,7 @@ class NetworkJoints:
         self.network = network
         self._responses: dict[int, JointResponse] = {}
 
+    @cache  # noqa: B019 - as long as this object
     def law(self, number: int) -> JointLaw:
         """M, C and K."""
         return JointLaw.of(self.network, self.network.joints[number])
@@ -67,10 +68,10 @@ class NetworkJoints:
         names = [point.name or f"x = {point.place}" for point in points]
         return ", ".join(names[:MOST_NAMES]) + (f" and {left} more" if (left := len(names) - MOST_NAMES) > 0 else "")
 
-    def ends(self, number: int) -> list[tuple[End, int]]:
-        """The ends of bars at a joint, each with the place of its point in the joint."""
-        joint = self.network.joints[number]
-        return [(end, joint.points.index(point)) for end, point in joint.ends]
+    @cache  # noqa: B019 - as long as this object
+    def ends(self, number: int) -> tuple[JointEnd, ...]:
+        """The ends of bars at a joint."""
+        return joint_ends(self.network, self.network.joints[number])
 
     @cached_property
     def sources(self) -> tuple[str, ...]:

@@ -13,12 +13,12 @@ from math import inf
 
 from flint import fmpq
 
+from wavesym.derivation.increments import Increment, combined, integrated
+from wavesym.derivation.increments import start as start_of
+from wavesym.derivation.table import Function
 from wavesym.errors import CostError
-from wavesym.exact.tables.increments import Increment, combined, integrated
-from wavesym.exact.tables.increments import start as start_of
 from wavesym.exact.tables.network_joints import unit_at
-from wavesym.exact.tables.network_response import RuledNetwork
-from wavesym.exact.tables.table import Function
+from wavesym.exact.tables.network_table import RuledNetwork
 from wavesym.mechanics.gauge import readings
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from fractions import Fraction
 
-from wavesym.exact.knots import Knots
+from wavesym.exact.breakpoints import Breakpoints
 from wavesym.lab.atlas.attempts import attempt, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import chain
@@ -49,7 +49,7 @@ def family(progress: Progress, gaps: Sequence[Fraction] = GAPS) -> CurveFamily:
 
 def most_knots(model: Model) -> int:
     """How many knots the joint with most of them has by the horizon."""
-    joints = Knots(model, rational(model.horizon())).joints
+    joints = Breakpoints(model, rational(model.horizon())).joints
     return max(sum(knot <= model.until for knot in times) for times in joints.values())
 
 

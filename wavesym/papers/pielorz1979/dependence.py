@@ -9,7 +9,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.exact.tables.table import Function, Rules, unit_response
+from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.mechanics.chain import Chain
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.exact_tables import INTERVALS, Exact, building, collision, drive

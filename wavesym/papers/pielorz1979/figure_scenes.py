@@ -18,7 +18,7 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import SceneError
-from wavesym.exact.contacts.opening import contact_ends
+from wavesym.exact.contacts.events import contact_ends
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters

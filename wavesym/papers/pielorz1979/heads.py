@@ -9,7 +9,7 @@ from itertools import product
 
 from flint import fmpq
 
-from wavesym.exact.tables.table import Function
+from wavesym.derivation.table import Function
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, places
 from wavesym.papers.exact_tables import Exact

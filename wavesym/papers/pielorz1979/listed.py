@@ -8,7 +8,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.exact.tables.table import Function, Rules
+from wavesym.derivation.table import Function, Rules
 from wavesym.mechanics.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.exact_tables import building, collision, drive, with_parameters

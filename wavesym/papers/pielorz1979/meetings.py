@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 
-from wavesym.exact.tables.walks import units
+from wavesym.derivation.walks import units
 from wavesym.papers.exact_tables import Exact
 
 NEVER = -(10**6)

@@ -13,8 +13,8 @@ from pathlib import Path
 from flint import arb, fmpq
 
 from wavesym.derivation.delay import delay_equations
-from wavesym.exact.contacts.opening import contact_ends
-from wavesym.exact.tables.table import Function
+from wavesym.derivation.table import Function
+from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Labels, Model

@@ -13,8 +13,8 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.exact.tables.increments import Increment, combined, integrated, start
-from wavesym.exact.tables.table import Function
+from wavesym.derivation.increments import Increment, combined, integrated, start
+from wavesym.derivation.table import Function
 from wavesym.mechanics.node import System
 from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.exact_tables import Exact, collision, drive, uneven_building

@@ -9,13 +9,13 @@ from itertools import pairwise
 import numpy as np
 
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.opening import ContactEnd, contact_ends
-from wavesym.exact.field import Field
+from wavesym.exact.contacts.events import ContactEnd, contact_ends
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.along import limit
+from wavesym.pictures.field import Field
 from wavesym.pictures.histories import Points
 from wavesym.pictures.page.frame import Frame, PlotAxis
 from wavesym.pictures.page.places import colour_bar

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from wavesym.documents.advice import WAVES, Advice, Candidate
 from wavesym.documents.summary import number
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.opening import contact_ends
+from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.methods.advice import advise
 from wavesym.pictures.timescale import Timescale

@@ -32,8 +32,8 @@ import numpy as np
 from flint import fmpq, fmpq_mat
 from numpy.typing import NDArray
 
+from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.silence import silent
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.block import NEGLIGIBLE
@@ -162,7 +162,7 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
         errors.append(MARGIN * float(error))
     # what rounding could have made may be nothing at all: programs then return exactly 0
     if any(size <= error for size, error in zip(largest, errors, strict=True)):
-        for o, nothing in enumerate(silent(plan.model, rational(plan.tau_max))):
+        for o, nothing in enumerate(identically_zero(plan.model, rational(plan.tau_max))):
             if nothing:
                 errors[o] = largest[o] = height[o] = slope[o] = 0.0
     sizes, heights, slopes = (tuple(of.tolist()) for of in (largest, height, slope))

@@ -18,8 +18,8 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
+from wavesym.derivation.exact_rule import joint_rule
 from wavesym.errors import CostError, SpacingError
-from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model

@@ -21,8 +21,8 @@ import numpy as np
 from flint import fmpq, fmpq_mat
 from numpy.typing import NDArray
 
+from wavesym.derivation.exact_rule import joint_rule
 from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.mechanics.network import Joint, Network
 from wavesym.numbers.doubles import nearest
 

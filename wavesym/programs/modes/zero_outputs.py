@@ -2,7 +2,7 @@
 
 They cancel if what all loads together do to the output at a frequency w is 0 at every w: then each mode's part is 0,
 damped or not. It is a rational function of w and of E = exp(-i w h), all delays being multiples of h. As in
-exact/silence.py it is computed modulo a prime, one in which i is a number; at a random w and E what is not 0 is taken
+exact/arrivals.py it is computed modulo a prime, one in which i is a number; at a random w and E what is not 0 is taken
 for 0 with a chance of less than one in 2**70.
 """
 

@@ -8,7 +8,7 @@ from hashlib import sha256
 
 from flint import fmpq
 
-from wavesym.exact.silence import silent
+from wavesym.exact.arrivals import identically_zero
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
@@ -31,7 +31,7 @@ def quiet(model: Model, loads: Sequence[Applied], real: Real) -> list[bool]:
     for change in (change for load in loads for change in load.changes if change.time <= until):
         first[change.source] = min(change.time, first.get(change.source, until))
     acting = (Applied(source, time, _number(source)) for source, time in first.items())
-    return silent(replace(model, loads=tuple(sorted(acting, key=lambda load: load.time))), until)
+    return identically_zero(replace(model, loads=tuple(sorted(acting, key=lambda load: load.time))), until)
 
 
 def _number(label: str) -> fmpq:

@@ -1,12 +1,13 @@
-"""Knots: the instants at which something not smooth arrives at a joint.
+"""Breakpoints: the instants at which something not smooth arrives at a joint.
 
-A knot t of one joint is a knot t + T of the next, T being the delay of the bar between them: exact rationals. Between
-two knots a joint's motion is one smooth function, and it rests only on stretches that start earlier. Where all delays
-are equal, knots are those of a common window: every delay, and the parts of it at which loads act.
+A breakpoint t of one joint is a breakpoint t + T of the next, T being the delay of the bar between them: exact
+rationals. Between two of them a joint's motion is one smooth function, and it rests only on stretches that start
+earlier. Where all delays are equal, breakpoints are those of a common window: every delay, and the parts of it at which
+loads act.
 
-What stiff springs do between two knots is smooth, but no series of moderate length. There stretches are cut, and as the
-waves that are sent begin anew then, a cut travels as a knot does. Cuts are as far apart as a part or a multiple of the
-common measure of all delays, so that most of those that come back meet others.
+What stiff springs do between two breakpoints is smooth, but no series of moderate length. There stretches are cut, and
+as the waves that are sent begin anew then, a cut travels as a breakpoint does. Cuts are as far apart as a part or a
+multiple of the common measure of all delays, so that most of those that come back meet others.
 """
 
 from __future__ import annotations
@@ -29,10 +30,10 @@ from wavesym.mechanics.model import Model
 if TYPE_CHECKING:
     from wavesym.exact.contacts.schedule import Schedule
 
-MOST_KNOTS = 20_000
+MOST_BREAKPOINTS = 20_000
 
 
-class Knots:
+class Breakpoints:
     """The stretches of every joint that can be felt, until tau = `until`.
 
     `joints` has, for each of them, the starts of its stretches and the end of the last one.
@@ -72,7 +73,7 @@ class Knots:
         return int(self.stretches * ends * terms * (48 + bits // 8))
 
     @property
-    def told(self) -> str:
+    def label(self) -> str:
         """What is counted, in a few words."""
         return f"{len(self._last)} nodes times {float(self._until):g} units of tau"
 
@@ -121,7 +122,7 @@ class Knots:
         joint = self._network.joints[number]
         return self._network.at_rest(joint) and all(load.time > 0 for at, load in self._loaded() if at == number)
 
-    def breakpoints(self, terms: Sum) -> Sequence[fmpq]:
+    def of_output(self, terms: Sum) -> Sequence[fmpq]:
         """Where a sum of readings may jump or bend, and 0; in order."""
         found = [self._read(reading) for _, reading in terms]
         return found[0] if len(found) == 1 else _in_order(fmpq(0), *found)
@@ -142,7 +143,7 @@ class Knots:
             return list(self._in_windows(place))
         found = []
         for point, way in ((bar.left, place * bar.delay), (bar.right, (1 - place) * bar.delay)):
-            times = (knot + way for knot in self.joints[self._network.joint_of[point]][:-1])
+            times = (breakpoint + way for breakpoint in self.joints[self._network.joint_of[point]][:-1])
             found.append([time for time in times if 0 <= time <= self._until])
         return _in_order(fmpq(0), *found)
 
@@ -167,7 +168,7 @@ class Knots:
         return CostError(
             f"output.until: springs make {len(self._last)} nodes swing at a rate of up to "
             f"{float(SWING / min(self._bearable.values())):.3g}, which are {count} stretches by tau = "
-            f"{float(self._until):g}, at most {MOST_KNOTS} expected (softer springs, heavier bodies or a shorter "
+            f"{float(self._until):g}, at most {MOST_BREAKPOINTS} expected (softer springs, heavier bodies or a shorter "
             "horizon help)"
         )
 
@@ -189,7 +190,7 @@ class Knots:
         gaps = [high - low for low, high in pairwise([*natural, self._span])]
         longest = min(self._bearable.values())
         cuts = [max(1, int((gap / longest).ceil())) for gap in gaps]
-        if len(cuts) < sum(cuts) and (count := len(self._last) * self._count * sum(cuts)) > MOST_KNOTS:
+        if len(cuts) < sum(cuts) and (count := len(self._last) * self._count * sum(cuts)) > MOST_BREAKPOINTS:
             raise self._too_stiff(str(count))
         return [part + gap * k / n for part, gap, n in zip(natural, gaps, cuts, strict=True) for k in range(n)]
 
@@ -262,12 +263,12 @@ class Knots:
             found[number].add(time)
             latest[number] = time
             count += 1
-            if count > MOST_KNOTS:
+            if count > MOST_BREAKPOINTS:
                 if cutting:
-                    raise self._too_stiff(f"more than {MOST_KNOTS}")
+                    raise self._too_stiff(f"more than {MOST_BREAKPOINTS}")
                 raise CostError(
-                    f"output.until: fronts meet joints more than {MOST_KNOTS} times by tau = {float(time):g}, at most "
-                    f"{MOST_KNOTS} expected (a shorter horizon or lengths with a larger common measure help)"
+                    f"output.until: fronts meet joints more than {MOST_BREAKPOINTS} times by tau = {float(time):g}, at "
+                    f"most {MOST_BREAKPOINTS} expected (a shorter horizon or lengths with a larger common measure help)"
                 )
             if cutting and number in self._bearable:
                 heappush(coming, (time + self._reach(number), number, True))

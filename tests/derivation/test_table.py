@@ -6,8 +6,8 @@ from flint import fmpq
 from sympy import Integer
 
 from wavesym.derivation import recurrence as derivation
+from wavesym.derivation.table import Function, Rules, full_table, needed, unit_response
 from wavesym.documents.derivation.document import derivation as written
-from wavesym.exact.tables.table import Function, Rules, full_table, needed, unit_response
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.systems.drive import DRIVE

@@ -22,8 +22,8 @@ from typing import Any, NamedTuple
 
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 
+from wavesym.derivation.table import Function
 from wavesym.errors import WavesymError
-from wavesym.exact.tables.table import Function
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Node, Quantity
 

@@ -5,8 +5,8 @@ from fractions import Fraction
 import pytest
 
 from tests.support.truth import Truth
-from wavesym.exact import silence
-from wavesym.exact.silence import silent
+from wavesym.exact import arrivals
+from wavesym.exact.arrivals import identically_zero
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 
@@ -23,7 +23,7 @@ def step(body, *times, weight=1):
 
 def found(made):
     model = lower(made)
-    return silent(model, rational(model.horizon()))
+    return identically_zero(model, rational(model.horizon()))
 
 
 def scene(system, load, until, **outputs):
@@ -104,5 +104,5 @@ def test_an_instant_is_not_missed_by_the_number_that_is_drawn(monkeypatch):
     made = scene(SHAFT, [step(1, 0), step(2, "1/3")], 2, velocity=["2/3"], strain=["2/3"])
     answers = found(made)
     for drawn in (3, 10**30 + 7):
-        monkeypatch.setattr(silence, "_T", drawn)
+        monkeypatch.setattr(arrivals, "_T", drawn)
         assert found(made) == answers

@@ -6,10 +6,10 @@ import pytest
 from flint import fmpq
 
 import wavesym
+from wavesym.derivation import table_size as room
+from wavesym.derivation.table import full_table
+from wavesym.derivation.table_size import LARGEST, table_size
 from wavesym.errors import CostError
-from wavesym.exact.tables import table_size as room
-from wavesym.exact.tables.table import full_table
-from wavesym.exact.tables.table_size import LARGEST, table_size
 
 EQUAL, UNEQUAL = lambda i: "1", lambda i: f"{(37 * i) % 101 + 1}/{i % 7 + 3}"
 LOADS = {"drive": [{"body": 1, "times": [0], "steps": [1]}], "building": [{"times": [0], "a": [1], "b": [0]}]}
@@ -69,7 +69,7 @@ def test_an_absurd_table_is_refused_before_it_is_made(kind, m, intervals, monkey
     def made(*_):
         raise AssertionError("the table was begun")
 
-    monkeypatch.setattr("wavesym.exact.tables.table.unit_response", made)
+    monkeypatch.setattr("wavesym.derivation.table.unit_response", made)
     with pytest.raises(CostError, match=r"^--intervals: the tables of coefficients would take"):
         full_table(system(kind, m, EQUAL), intervals, fmpq(0))
 

@@ -1,4 +1,5 @@
-"""Which outputs are 0 throughout, though waves arrive: at a free end, or in the middle of what is symmetric.
+"""When each output first differs from 0, exactly, and which never do though waves arrive: at a free end, or in
+the middle of what is symmetric.
 
 Rounding hides it, exact tables are too long; but a network moves as well in Laplace transforms, one number for what
 each front carries and every fixed s. With all of them times s, and t = 1/s, a joint obeys
@@ -10,52 +11,55 @@ Computed modulo a prime at a random t, a sum that is not 0 is taken for 0 with a
 rational function of t its numerator has a degree below 2**50, and t is one of 2**127 numbers.
 
 Of what arrives at the end of the horizon only the jump is seen, and that is the sum at t = 0.
+
+Where contacts open and close no transform tells; there it is the start of the first piece that, in balls, certainly is
+not 0. What is at rest until loads that do not jump act on it needs no transform: the light cone tells, but for outputs
+that are 0 throughout.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from heapq import heappop, heappush
 from math import factorial
 
 from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
 
-from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.joints.node_rules import joint_rule
+from wavesym.derivation.exact_rule import joint_rule
+from wavesym.exact.joints.joint import JointLaw, joint_ends
+from wavesym.exact.tables.ball import Segment
 from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
+from wavesym.numbers.doubles import rational
 
 _PRIME = 2**127 - 1
 _FIELD = fmpz_mod_ctx(_PRIME)
+_MOST = 200_000  # fronts that are followed: some seconds
 _T = 0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357 % _PRIME  # drawn once, so that the same scene makes the same files
 
 
-def silent(model: Model, until: fmpq) -> list[bool]:
-    """Whether each output is 0 on [0, until]. False where contacts open and close: no transform tells then."""
+def identically_zero(model: Model, until: fmpq) -> list[bool]:
+    """Whether each output is 0 on all of [0, until]. False where contacts open and close: no transform tells then."""
     if model.network.contacts:
         return [False] * len(model.probes)
-    arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
-    return [
-        not any(sums[time] for time in sums if time < until) and not jumps[until]
-        for sums, jumps in zip(arriving, jumping, strict=True)
-    ]
+    return [first is None for first in arrivals(model, until)]
 
 
 def smooth_starts(model: Model, until: fmpq) -> list[fmpq | None]:
-    """When each output, 0 until then, begins to differ from 0 without a jump; None where it jumps, or is 0 throughout.
+    """When each output, 0 until then, begins to differ from 0 without a jump.
 
-    None, too, where contacts open and close.
+    None where it jumps, or is identically zero, or where contacts open and close.
     """
     if model.network.contacts:
         return [None] * len(model.probes)
-    arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
-    return [
-        first if first is not None and not jumps[first] else None
-        for sums, jumps in zip(arriving, jumping, strict=True)
-        for first in [min((time for time in sums if sums[time]), default=None)]
-    ]
+    found: list[fmpq | None] = []
+    for sums, jumps in _gains(model, until):
+        first = min((time for time in sums if sums[time]), default=None)
+        found.append(first if first is not None and not jumps[first] else None)
+    return found
 
 
 def arrivals(model: Model, until: fmpq) -> list[fmpq | None]:
@@ -63,11 +67,73 @@ def arrivals(model: Model, until: fmpq) -> list[fmpq | None]:
 
     Not where contacts open and close.
     """
-    arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
     return [
         min((time for time in sums if sums[time] and (time < until or jumps[until])), default=None)
-        for sums, jumps in zip(arriving, jumping, strict=True)
+        for sums, jumps in _gains(model, until)
     ]
+
+
+_Sums = Mapping[fmpq, int]
+
+
+def _gains(model: Model, until: fmpq) -> Iterator[tuple[_Sums, _Sums]]:
+    """What each output gains at each instant, and by how much it jumps there; both in transforms."""
+    return zip(_Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums(), strict=True)
+
+
+def first_arrivals(model: Model) -> list[fmpq | None]:
+    """The tau of each output; None where nothing arrives on the horizon (or within the first _MOST fronts).
+
+    CostError where contacts open and close too often.
+    """
+    until = rational(model.horizon())
+    if model.network.contacts:
+        from wavesym.exact.motion import Motion  # which asks here when outputs begin
+
+        motion = Motion(model, until)
+        return [_begins(motion.segments(probe, motion.first_bits), until) for probe in model.probes]
+    found: list[fmpq | None] = [None] * len(model.probes)
+    shortest = min(bar.delay for bar in model.network.bars)
+    early, left = shortest, list(range(len(found)))
+    while left:
+        early = min(2 * early, until)
+        beginning = replace(model.watching(model.probes[k] for k in left), loads=model.acting(early))
+        for k, time in zip(left, arrivals(beginning, early), strict=True):
+            found[k] = time
+        left = [k for k in left if found[k] is None]
+        fronts = len(model.network.joints) * (1 + len(beginning.loads)) * early / shortest
+        if early == until or fronts > _MOST:
+            break
+    return found
+
+
+def light_arrivals(model: Model) -> list[fmpq | None]:
+    """When the first load can be felt by each output of a chain that rests until then; None: not on the horizon."""
+    network, last = model.network, rational(model.horizon())
+    begun: dict[int, fmpq] = {}
+    for number, point in enumerate(network.points):
+        sources = {unit.source for unit in point.loads}
+        times = [load.time for load in model.loads if load.source in sources]
+        if times:
+            joint = network.joint_of[number]
+            begun[joint] = min([begun[joint], *times] if joint in begun else times)
+    found: list[fmpq | None] = []
+    for probe in model.probes:
+        readings = [reading for _, reading in model.sums[probe]]
+        places = [(reading.rod - 1, reading.place) for reading in readings if reading.point is None]
+        points = [reading.point for reading in readings if reading.point is not None]
+        distances = network.distances(places, points)
+        times = [time + distances[joint] for joint, time in begun.items() if joint in distances]
+        found.append(min((time for time in times if time <= last), default=None))
+    return found
+
+
+def _begins(segments: Sequence[Segment], until: fmpq) -> fmpq | None:
+    ends = [*(segment.start for segment in segments[1:]), until]
+    for segment, end in zip(segments, ends, strict=True):
+        if any(segment.at((end - segment.start) * fmpq(k, 3)) != 0 for k in range(4)):
+            return segment.start
+    return None
 
 
 class _Fronts:
@@ -161,6 +227,7 @@ class _Answer:
         self._t = t
         law = JointLaw.of(network, joint)
         self._law = law
+        self._ends = joint_ends(network, joint)
         self._free = [k for k, given in enumerate(law.given) if given is None]
         rows = [[self._factor(k, b) for b in self._free] for k in self._free]
         self._inverse = fmpz_mod_mat(rows, _FIELD).inv() if rows else None
@@ -205,11 +272,9 @@ class _Answer:
         loads = self._loads.get(time, {})
         begins = time == 0
         push = {k: _modular(rule.load) * loads.get(k, 0) for k in range(len(law.mass))}
-        for end, point in self._joint.ends:
-            if value := came.get(end, 0):
-                bar = network.bars[end.bar]
-                factor = rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
-                push[self._place[point]] += _modular(factor) * value
+        for each in self._ends:
+            if value := came.get(each.end, 0):
+                push[each.place] += _modular(each.force) * value
         q = {}
         for k, given in enumerate(law.given):
             if given is not None:
@@ -226,10 +291,9 @@ class _Answer:
             found = self._inverse * fmpz_mod_mat(right, _FIELD)
             q |= {a: int(found[n, 0]) for n, a in enumerate(self._free)}
         sent = {}
-        for end, point in self._joint.ends:
-            bar = network.bars[end.bar]
-            value = _modular(bar.ratios[end.side]) * q[self._place[point]] - came.get(end, 0)
-            sent[end] = (value - (_modular(bar.held(end.side)) if begins else 0)) % _PRIME
+        for end, k, ratio, _ in self._ends:
+            value = _modular(ratio) * q[k] - came.get(end, 0)
+            sent[end] = (value - (_modular(network.bars[end.bar].held(end.side)) if begins else 0)) % _PRIME
         return sent, {point: q[k] for point, k in self._place.items()}
 
 

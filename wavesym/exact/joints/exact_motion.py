@@ -1,6 +1,9 @@
-"""How the motion of a joint begins whose state is known exactly: its first powers, and bounds of what follows.
+"""The motion of a joint in rational powers: all of them where it is a polynomial, the first where its state is exact.
 
-Derivatives of the velocities come one after another from M q' + C q + K u = s, and so do their bounds.
+Rational data in free flight, or at rest, stay exact. The powers come one after another as in `joint`, in rational
+numbers. Once nothing acts any more and the state's next powers are all 0, so are all that follow, and the series is the
+motion itself. Otherwise it has no end; then the first powers tell how the motion begins, and derivatives of the
+velocities, which come one after another from M q' + C q + K u = s as do their bounds, what follows.
 """
 
 from __future__ import annotations
@@ -11,9 +14,34 @@ from math import factorial
 
 from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.joints.exact_joint import powers
-from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.joints.onset import ORDER, Onset
+from wavesym.exact.joints.enclosed import ORDER, Onset
+from wavesym.exact.joints.joint import JointLaw, motion_series
+
+# powers beyond those of what acts, in which a motion that is a polynomial must have come to its end
+_MORE = 5
+
+
+def exact_motion(
+    law: JointLaw,
+    velocity: Sequence[fmpq],
+    displacement: Sequence[fmpq],
+    forces: Sequence[fmpq_poly],
+    prescribed: Sequence[fmpq_poly],
+) -> list[fmpq_poly] | None:
+    """The velocities of a law's groups of points, whose velocities are given (points' displacements too).
+
+    None where they are no polynomials.
+    """
+    end = max([p.length() for p in (*forces, *prescribed)], default=0)
+    series = motion_series(law, velocity, displacement, forces, prescribed, fmpq, _all)
+    for n, (q, u, last) in zip(range(end + _MORE), series, strict=False):
+        if n >= end and not any(last.values()) and not (law.springs and any(places[n] for places in u)):
+            return [fmpq_poly(c) for c in q]
+    return None
+
+
+def _all(value: fmpq) -> fmpq:
+    return value
 
 
 def onsets(
@@ -30,7 +58,7 @@ def onsets(
     """
     velocity, displacement = state
     acting, given = [each.powers for each in forces], [each.powers for each in prescribed]
-    *_, (q, _) = islice(powers(law, velocity, displacement, acting, given), ORDER + 1)
+    *_, (q, _, _) = islice(motion_series(law, velocity, displacement, acting, given, fmpq, _all), ORDER + 1)
     beyond = _derivatives(
         law,
         [each.derivatives(length) for each in forces],

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from sympy import Rational, Symbol, exp, expand
 
 from wavesym.derivation.exact_rule import DERIVATIVE, Linear, Weights
-from wavesym.exact.tables.increments import add, apply, combined, integrated, solve, start
+from wavesym.derivation.increments import add, apply, combined, integrated, solve, start
 
 W = Symbol("w")
 ONE, ZERO = fmpq(1), fmpq(0)

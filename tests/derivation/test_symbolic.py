@@ -8,9 +8,9 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from wavesym.derivation.rate_letters import in_rates
+from wavesym.derivation.table import full_table
 from wavesym.errors import SceneError
-from wavesym.exact.tables.rate_letters import in_rates
-from wavesym.exact.tables.table import full_table
 from wavesym.mechanics import symbolic as symbolic_module
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters

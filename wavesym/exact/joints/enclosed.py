@@ -1,0 +1,279 @@
+"""Functions of time on a stretch, as polynomials in balls, and all that is known of them beyond that.
+
+Balls cannot tell how a function leaves 0. But what is at rest, or moves as is known exactly, begins with powers that
+are rational, whatever comes later: f(w) = c_0 + c_1 w + ... + c_(n-1) w^(n-1) + r, |r| <= beyond w^n. For small w the
+first of these that is not 0 has the last word, and coarse bounds of derivatives tell how small (`exact_motion`).
+
+Sums with exact factors keep what is known: that they are exact, begin as an exact function does, lie on one side of
+one, or are one of a few functions at each instant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from math import perm, prod
+
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
+
+ORDER = 6  # powers that are known of how a function begins
+_CHOICES = 8  # of functions, that are told apart
+# of what is shortened: bits that bounds are computed with, and how many of the first powers tell its size
+_COARSE, _FIRST = 32, 8
+
+
+@dataclass(frozen=True)
+class Onset:
+    """Up to ORDER powers; the rest is at most `beyond` times the next one."""
+
+    powers: fmpq_poly
+    beyond: arb
+
+    @classmethod
+    def of(cls, exact: fmpq_poly) -> Onset | None:
+        """Of a polynomial; None where it has more powers."""
+        return cls(exact, arb(0)) if exact.length() <= ORDER else None
+
+    def sign(self) -> int:
+        """Just after the start; 0 where these powers do not tell."""
+        first = next((c for c in self.powers.coeffs() if c != 0), fmpq(0))
+        return (first > 0) - (first < 0)
+
+    def positive_until(self, length: fmpq) -> fmpq:
+        """How long it is certainly positive, about; 0 where it does not begin so."""
+        if self.sign() <= 0:
+            return fmpq(0)
+        c = self.powers.coeffs()
+        first = next(n for n, value in enumerate(c) if value != 0)
+        w = length
+        while True:
+            rest = sum((abs(arb(value)) * arb(w) ** (n - first) for n, value in enumerate(c) if n > first), arb(0))
+            if arb(c[first]) > rest + self.beyond * arb(w) ** (ORDER - first):
+                return w
+            w /= 2
+
+    def derivatives(self, length: fmpq) -> list[arb]:
+        """Bounds of the function and its derivatives, up to that of ORDER."""
+        h, c = arb(length), [*map(abs, self.powers.coeffs())]
+        return [
+            sum((arb(value * perm(n, j)) * h ** (n - j) for n, value in enumerate(c) if n >= j), arb(0)).upper()
+            + (self.beyond * perm(ORDER, j) * h ** (ORDER - j)).upper()
+            for j in range(ORDER + 1)
+        ]
+
+
+@dataclass(frozen=True)
+class Enclosed:
+    """A function on a stretch: |function - polynomial| <= error.
+
+    `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
+    of these. `onset` tells how it begins, where that is known. `least` and `most` are exact polynomials that it is
+    never below, or above, where such are known.
+    """
+
+    polynomial: arb_poly
+    error: arb
+    exact: fmpq_poly | None = None
+    choices: tuple[Enclosed, ...] = ()
+    onset: Onset | None = None
+    least: fmpq_poly | None = None
+    most: fmpq_poly | None = None
+
+    @property
+    def bounded(self) -> bool:
+        """Whether such bounds are known."""
+        return self.least is not None or self.most is not None
+
+    @property
+    def bounds(self) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+        """Exact bounds, of a polynomial too."""
+        return (self.least, self.most) if self.exact is None else (self.exact, self.exact)
+
+    @property
+    def begins(self) -> Onset | None:
+        """How it begins, of a polynomial too."""
+        return self.onset if self.exact is None else Onset.of(self.exact)
+
+    @classmethod
+    def of(cls, exact: fmpq_poly) -> Enclosed:
+        """A polynomial that is known."""
+        below = arb(exact.denom())  # fractions would be reduced one by one, which takes long where they are long
+        return cls(arb_poly([arb(c) / below for c in exact.numer().coeffs()]), arb(0), exact)
+
+    def at(self, w: fmpq) -> arb:
+        """An enclosure of its value."""
+        value = self.polynomial(arb(w))
+        return value + arb(0, self.error) if self.error != 0 else value
+
+    def over(self, span: arb) -> arb:
+        """An enclosure of all values on a part of the stretch."""
+        return self.polynomial(span) + arb(0, self.error)
+
+
+STILL = Enclosed(arb_poly(), arb(0), fmpq_poly())
+
+Terms = list[tuple[fmpq, Enclosed]]
+"""A sum with exact factors."""
+
+
+def combined(terms: Sequence[tuple[fmpq, Onset]]) -> Onset:
+    """A sum with exact factors."""
+    total, beyond = fmpq_poly(), arb(0)
+    for factor, onset in terms:
+        total += factor * onset.powers
+        beyond += abs(arb(factor)) * onset.beyond
+    return Onset(total, beyond.upper())
+
+
+def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
+    """A sum with exact factors; what has the factor 0 is not in it."""
+    polynomial, error = arb_poly(), arb(0)
+    for factor, known in terms:
+        if factor == 1:
+            polynomial += known.polynomial
+            error += known.error
+        elif factor == -1:
+            polynomial -= known.polynomial
+            error += known.error
+        elif factor != 0:
+            size = arb(factor)
+            polynomial += size * known.polynomial
+            error += abs(size) * known.error
+    return Enclosed(polynomial, error.upper())
+
+
+def scaled(terms: Terms, factor: fmpq) -> Terms:
+    """Each times a factor."""
+    return [(factor * each, known) for each, known in terms] if factor != 0 else []
+
+
+def together(terms: Terms) -> Enclosed:
+    """A sum with exact factors; exact where all of it is. What is in it twice is one."""
+    counted = collected(terms)
+    number = prod(len(known.choices) or 1 for _, known in counted)
+    if number == 1:
+        return _added(counted)
+    if number > _CHOICES:
+        return weighted(counted)
+    ways = product(*(known.choices or (known,) for _, known in counted))
+    factored = [factor for factor, _ in counted]
+    hull = with_bounds(weighted(counted), None, *_bounds(counted))
+    return _one_of(hull, [_added(list(zip(factored, way, strict=True))) for way in ways])
+
+
+def collected(terms: Terms) -> Terms:
+    """Each known function once, and none whose factors cancel."""
+    factors: dict[int, fmpq] = {}
+    parts: dict[int, Enclosed] = {}
+    for factor, known in terms:
+        parts[id(known)] = known
+        factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
+    return [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
+
+
+def _added(terms: Terms) -> Enclosed:
+    exact = fmpq_poly()
+    for factor, known in terms:
+        if known.exact is None:
+            if not any(other.onset or other.bounded for _, other in terms):
+                return weighted(terms)
+            begin = [(factor, begins) for factor, known in terms if (begins := known.begins) is not None]
+            onset = combined(begin) if len(begin) == len(terms) else None
+            return with_bounds(weighted(terms), onset, *_bounds(terms))
+        exact += factor * known.exact
+    return Enclosed.of(exact)
+
+
+def _bounds(terms: Terms) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+    """What a sum is not below, and not above, as far as that is known exactly."""
+    found: list[fmpq_poly | None] = []
+    for side in (0, 1):
+        parts = [(factor, known.bounds[side if factor > 0 else 1 - side]) for factor, known in terms]
+        bounds = [factor * p for factor, p in parts if p is not None]
+        found.append(sum(bounds, fmpq_poly()) if len(bounds) == len(terms) else None)
+    return found[0], found[1]
+
+
+def with_bounds(hull: Enclosed, onset: Onset | None, least: fmpq_poly | None, most: fmpq_poly | None) -> Enclosed:
+    """What is within a hull, with what else is known of it."""
+    if onset is None and least is None and most is None:
+        return hull
+    return replace(hull, onset=onset, least=least, most=most)
+
+
+def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
+    """What is within a hull and, at each instant, one of some functions; those that are known count once."""
+    different: list[Enclosed] = []
+    for each in functions:
+        if each.exact is None or all(each.exact != other.exact for other in different):
+            different.append(each)
+    if len(different) == 1:
+        return different[0]
+    return replace(hull, choices=tuple(different) if len(different) <= _CHOICES else ())
+
+
+def one_at_each_instant(functions: Sequence[Enclosed], span: arb) -> Enclosed:
+    """One of these at each instant: all their values on a stretch."""
+    hull = functions[0].over(span)
+    for known in functions[1:]:
+        hull = hull.union(known.over(span))
+    return _one_of(
+        Enclosed(arb_poly([hull.mid()]), hull.rad()),
+        [each for known in functions for each in known.choices or (known,)],
+    )
+
+
+def later(known: Enclosed, by: fmpq) -> Enclosed:
+    """The same function in the time since an instant that is `by` later."""
+    if by == 0 or (known.polynomial.length() <= 1 and not known.choices and not known.bounded):
+        return known
+    if known.exact is not None:
+        return Enclosed.of(known.exact(fmpq_poly([by, 1])))
+    choices = tuple(later(each, by) for each in known.choices)
+    least, most = _bounds_later(known, by)
+    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices, None, least, most)
+
+
+def _bounds_later(known: Enclosed, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+    least, most = (None if p is None else p(fmpq_poly([by, 1])) for p in (known.least, known.most))
+    return least, most
+
+
+def rounded(known: Enclosed, length: fmpq) -> Enclosed:
+    """The same at the working precision, without powers that count for nothing on a stretch."""
+    return shortened(Enclosed(known.polynomial * arb(1), known.error, known.exact), length)
+
+
+def shortened(known: Enclosed, length: fmpq) -> Enclosed:
+    """Without the highest powers, as far as they count for less on a stretch than the last bit of the first ones."""
+    powers = known.polynomial.coeffs()
+    if known.exact is not None or len(powers) < 2:
+        return known
+    bits, count, rest = ctx.prec, len(powers), arb(0)
+    with ctx.workprec(_COARSE):
+        h = arb(length)
+        size = max((abs(c) * h**k).upper() for k, c in enumerate(powers[:_FIRST]))
+        least = size * arb(2) ** (-bits - 4)
+        while count and (more := (rest + abs(powers[count - 1]) * h ** (count - 1)).upper()) <= least:
+            rest = more
+            count -= 1
+    if count == len(powers):
+        return known
+    return replace(known, polynomial=arb_poly(powers[:count]), error=(known.error + rest).upper())
+
+
+def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
+    """The same as `later` on a short stretch: Taylor's first powers, and what the others can add."""
+    terms = 2 + ctx.prec // 64
+    if known.exact is not None or known.polynomial.length() <= terms:
+        return later(known, by)
+    choices = tuple(briefly(each, by, length) for each in known.choices)
+    here, derivative, powers, share = arb(by), known.polynomial, [], arb(1)
+    for n in range(1, terms):
+        powers.append(derivative(here) * share)
+        derivative, share = derivative.derivative(), share / n
+    span = here.union(arb(by + length))
+    rest = abs(derivative(span) * share) * arb(length) ** (terms - 1)
+    least, most = _bounds_later(known, by)
+    return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices, None, least, most)
