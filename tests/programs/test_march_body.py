@@ -13,10 +13,9 @@ from tests.support.marches import all_windows, scheme_of
 from tests.support.rounded import Rounded
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.march.block import block_response
-from wavesym.programs.march.body import BodyOperator, _norm, body_operator, body_roundings
 from wavesym.programs.march.bound import _LOADED, Losses
 from wavesym.programs.march.plan import march_plan
+from wavesym.programs.march.responses import BodyOperator, _norm, block_response, body_operator, body_roundings
 from wavesym.programs.march.space import BODY
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.schemes.march import Bodies, Marching, RunningLoads

@@ -23,10 +23,10 @@ from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march import bound as bounds
-from wavesym.programs.march.block import block_response
 from wavesym.programs.march.bound import Verdict, judge, largest_wave, reading_weights, size_of, smoothness
 from wavesym.programs.march.evaluator import march
 from wavesym.programs.march.plan import MarchPlan, largest_number, march_plan, power_of_two
+from wavesym.programs.march.responses import block_response
 from wavesym.programs.march.space import JointSpace, joint_space
 from wavesym.programs.march.tail import Tail
 from wavesym.programs.schemes.march import _series

@@ -8,8 +8,7 @@ import pytest
 from flint import fmpq
 
 from wavesym.numbers.doubles import rational
-from wavesym.programs.march.load_events import LoadEvent
-from wavesym.programs.march.plan import MarchOutput, OutputTerm, Panel, Stretch, largest_number, march_plan
+from wavesym.programs.march.plan import LoadEvent, MarchOutput, OutputTerm, Panel, Stretch, largest_number, march_plan
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER
 from wavesym.scene import Scene, lower
 

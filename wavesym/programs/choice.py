@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf, log10
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
-
-from flint import fmpq
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from wavesym.errors import CostError, RangeError, SpacingError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.tables.signal import refuse_many, signals
@@ -16,7 +14,6 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form
 from wavesym.programs.pieces import Pieces, pieces
-from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.request import unmet
 
 if TYPE_CHECKING:
@@ -32,38 +29,6 @@ _WORTH_TRYING = 50_000
 _LAST = ("modes", "march")
 # seconds for pieces where another program serves
 _OF_MANY = 3
-
-
-class Evaluator(Protocol):
-    """What computes the outputs of a scene on [0, tau_max]."""
-
-    @property
-    def real(self) -> Real: ...
-
-    @property
-    def tau_max(self) -> float: ...
-
-    @property
-    def outputs(self) -> tuple[ProgramOutput, ...]: ...
-
-    @property
-    def error_bound(self) -> float: ...
-
-    @property
-    def work(self) -> float: ...
-
-    @property
-    def bytes(self) -> int: ...
-
-    @property
-    def summary(self) -> str: ...
-
-    @property
-    def check_points(self) -> list[float]: ...
-
-    def shortfall(self, tolerance: fmpq) -> str: ...
-
-    def program(self, provenance: Provenance) -> Program: ...
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.program import Program, ProgramOutput, Provenance
+from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
@@ -66,17 +66,12 @@ class ClosedOutput(ProgramOutput):
 
 
 @dataclass(frozen=True)
-class ClosedForm:
+class ClosedForm(Bounded):
     """The closed form of a scene's outputs on [0, tau_max]."""
 
     outputs: tuple[ClosedOutput, ...]
     tau_max: float
     real: Real
-
-    @cached_property
-    def error_bound(self) -> float:
-        """The largest error of any output relative to its largest value; proved."""
-        return max(output.bound for output in self.outputs)
 
     @cached_property
     def work(self) -> float:
@@ -99,16 +94,15 @@ class ClosedForm:
 
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance: how many digits are lost, from which tau on."""
-        worst = max(self.outputs, key=lambda output: output.bound)
         since = min(
             pulse.start
             for output in self.outputs
             for pulse, reached in zip(output.pulses, output.reached, strict=True)
             if not (math.isfinite(reached) and rational(reached) <= tolerance)
         )
-        lost = math.log10(worst.bound / float(self.real.roundoff))
-        digits = "all" if worst.bound >= 1 else str(math.ceil(lost))
-        return f"closed: loses {digits} digits after tau = {since:g} (bound {worst.bound:g} for {worst.name})"
+        lost = math.log10(self.worst.bound / float(self.real.roundoff))
+        digits = "all" if self.worst.bound >= 1 else str(math.ceil(lost))
+        return f"closed: loses {digits} digits after tau = {since:g} (bound {self.worst.bound:g} for {self.worst.name})"
 
     @cached_property
     def check_points(self) -> list[float]:

@@ -35,4 +35,11 @@ def program(model: Model, form: Made, *, tested: bool = False) -> Program:
 
 def _made(model: Model, form: Made, provenance: Provenance, tested: bool) -> Program:
     made = form.program(provenance)
-    return replace(made, reference=reference_values(model, form)) if tested else made
+    if not tested:
+        return made
+    if made.has_equal_steps:
+        from wavesym.programs.modes.evaluator import ModesEvaluator  # there already, as the form is one
+
+        assert isinstance(form, ModesEvaluator)
+        return replace(made, reference=form.streamed())
+    return replace(made, reference=reference_values(model, form.real, form.check_points))

@@ -36,7 +36,7 @@ from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.program import Program, ProgramOutput, Provenance
+from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
@@ -82,7 +82,7 @@ class PieceGrid:
 
 
 @dataclass(frozen=True)
-class Pieces:
+class Pieces(Bounded):
     """Polynomial pieces for the outputs of a scene on [0, tau_max]."""
 
     outputs: tuple[ProgramOutput, ...]
@@ -90,11 +90,6 @@ class Pieces:
     real: Real
     grids: tuple[PieceGrid, ...]
     per_unit: int
-
-    @property
-    def error_bound(self) -> float:
-        """The largest error of any output relative to its largest value; proved."""
-        return max(output.bound for output in self.outputs)
 
     @cached_property
     def degrees(self) -> tuple[int, int]:
@@ -135,8 +130,7 @@ class Pieces:
 
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance."""
-        worst = max(self.outputs, key=lambda output: output.bound)
-        return f"pieces: rounding leaves a bound of {worst.bound:g} for {worst.name}"
+        return f"pieces: rounding leaves a bound of {self.worst.bound:g} for {self.worst.name}"
 
     @cached_property
     def check_points(self) -> list[float]:

@@ -33,6 +33,22 @@ class ProgramOutput:
     largest: float
 
 
+class Bounded:
+    """What has outputs, each with a bound of its error."""
+
+    outputs: tuple[ProgramOutput, ...]
+
+    @property
+    def worst(self) -> ProgramOutput:
+        """The output with the largest bound."""
+        return max(self.outputs, key=lambda output: output.bound)
+
+    @property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value."""
+        return self.worst.bound
+
+
 @dataclass(frozen=True)
 class Provenance:
     """What a program was made from, and how: `options` are those of `generate` that it depends on.
@@ -82,7 +98,7 @@ class SteppedValues:
 
 
 @dataclass(frozen=True)
-class Program:
+class Program(Bounded):
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
     `kernel` names what runs its tables, in C and in NumPy: "closed", "pieces", "march", "hats" (one hat of each record,
@@ -130,11 +146,6 @@ class Program:
         from wavesym.programs.hats.split import rest_of
 
         return rest_of(model) if self.hats else model
-
-    @property
-    def error_bound(self) -> float:
-        """The largest error of any output relative to its largest value; proved."""
-        return max(output.bound for output in self.outputs)
 
     def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
         """All outputs at tau, of shape (outputs, *tau.shape), in the type of the format; NaN where tau is out of range.

@@ -3,45 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, runtime_checkable
+
+from flint import fmpq
 
 from wavesym.exact.reference import Reference, beginning
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
-from wavesym.programs.program import ProgramOutput, ReferenceValues, StreamedValues
+from wavesym.programs.program import ReferenceValues
 
 _MOST_POINTS = 2000
 _MOST_VALUES = 40_000
 
 
-class Checked(Protocol):
-    """What has outputs to check, in numbers of a format, at some tau."""
+def reference_values(model: Model, real: Real, check_points: Sequence[float]) -> ReferenceValues:
+    """The outputs of a model at some of its check points.
 
-    @property
-    def real(self) -> Real: ...
-
-    @property
-    def outputs(self) -> tuple[ProgramOutput, ...]: ...
-
-    @property
-    def check_points(self) -> list[float]: ...
-
-
-@runtime_checkable
-class Streamed(Protocol):
-    """What is checked as a stream, from its own exact steps."""
-
-    def streamed(self) -> StreamedValues: ...
-
-
-def reference_values(model: Model, evaluator: Checked) -> ReferenceValues | StreamedValues:
-    """At the points that an evaluator wants checked. On very long horizons they cover only the beginning."""
-    if isinstance(evaluator, Streamed):
-        return evaluator.streamed()
-    reference = Reference(beginning(model), evaluator.real)
-    most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(evaluator.outputs)))
-    taus = _thinned([tau for tau in evaluator.check_points if tau <= reference.tau_max], most)
+    Args:
+        model: with the loads and parameters that are tested.
+        real: the numbers of the program.
+        check_points: tau, ascending. On very long horizons they cover only the beginning.
+    """
+    reference = Reference(beginning(model), real)
+    most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(model.probes)))
+    taus = _thinned([tau for tau in check_points if tau <= reference.tau_max], most)
     return ReferenceValues(tuple(taus), tuple(map(tuple, reference.values(taus))))
+
+
+def leap(k: int, j: int) -> fmpq:
+    """Numbers from -1 to 1 that differ much from one sample k to the next, and from load j to load."""
+    return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)
 
 
 def _thinned(points: Sequence[float], most: int) -> Sequence[float]:

@@ -21,7 +21,7 @@ from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.hats.split import RecordLoad, split, still
 from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judged
-from wavesym.programs.program import Program, ProgramOutput, Provenance
+from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
 
@@ -33,7 +33,7 @@ _MARGIN = 1.01  # what is of second order in the roundoff
 
 
 @dataclass(frozen=True)
-class HatMarch:
+class HatMarch(Bounded):
     """`marches` of the rest, where there is `rest` (1, else 0), and of one hat of each of the `records`.
 
     `refusal` says why the loads are not marched as they are.
@@ -59,11 +59,6 @@ class HatMarch:
     def degree(self) -> int:
         """The largest of its polynomials."""
         return max(march.degree for march in self.marches)
-
-    @cached_property
-    def error_bound(self) -> float:
-        """The largest error of any output relative to its largest value; proved."""
-        return max(output.bound for output in self.outputs)
 
     @cached_property
     def tables(self) -> dict[str, tuple[float, ...]]:
@@ -114,10 +109,10 @@ class HatMarch:
 
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance."""
-        worst = max(self.outputs, key=lambda output: output.bound)
-        if not worst.bound < 1:
-            return f"march: its error may be as large as {worst.name} itself"
-        return f"march: hats added up leave a bound of {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
+        name, bound = self.worst.name, self.worst.bound
+        if not bound < 1:
+            return f"march: its error may be as large as {name} itself"
+        return f"march: hats added up leave a bound of {bound:g} to tau = {self.tau_max:g} for {name}"
 
     @property
     def check_points(self) -> list[float]:

@@ -36,9 +36,8 @@ from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.joints.joint import JointLaw
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.block import NEGLIGIBLE
-from wavesym.programs.march.body import body_roundings
 from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, Panel, largest_number, power_of_two
+from wavesym.programs.march.responses import NEGLIGIBLE, body_roundings
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.march.tail import Tail, tail_of
 from wavesym.programs.schemes.march import (

@@ -21,7 +21,7 @@ from wavesym.programs.march.bound import Verdict, judge
 from wavesym.programs.march.plan import HIGHEST_DEGREE, MarchPlan, least_numbers, march_plan
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
 from wavesym.programs.march.tables import MarchTables, state_bytes, table_bytes
-from wavesym.programs.program import Program, ProgramOutput, Provenance
+from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
 
 _MOST_BYTES = 1 << 22  # of tables, and of the state, which programs keep on the stack
 _MOST_WORK = 2e10  # multiplications of trying all degrees, half a minute or so
@@ -31,7 +31,7 @@ _LEAST_DEGREE = 4
 
 
 @dataclass(frozen=True)
-class March:
+class March(Bounded):
     """A march over [0, tau_max] with polynomials of `degree` in `real` numbers."""
 
     plan: MarchPlan
@@ -43,11 +43,6 @@ class March:
     def tau_max(self) -> float:
         """The last tau."""
         return self.plan.tau_max
-
-    @cached_property
-    def error_bound(self) -> float:
-        """The largest error of any output relative to its largest value; proved."""
-        return max(output.bound for output in self.outputs)
 
     @cached_property
     def tables(self) -> dict[str, tuple[float, ...]]:
@@ -88,10 +83,9 @@ class March:
 
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance."""
-        worst = max(self.outputs, key=lambda output: output.bound)
-        if not worst.bound < 1:
-            return f"march: its error may be as large as {worst.name} itself"
-        return f"march: rounding leaves a bound of {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
+        if not self.worst.bound < 1:
+            return f"march: its error may be as large as {self.worst.name} itself"
+        return f"march: rounding leaves a bound of {self.worst.bound:g} to tau = {self.tau_max:g} for {self.worst.name}"
 
     @cached_property
     def check_points(self) -> list[float]:

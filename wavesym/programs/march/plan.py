@@ -8,7 +8,7 @@ cut into the same panels everywhere, at what load times leave over of h, so that
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, reduce
@@ -27,7 +27,6 @@ from wavesym.mechanics.network import End, Joint, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.load_events import LoadEvent, load_changes, load_events
 from wavesym.programs.march.space import SHOWN, JointSpace, Port, joint_space
 
 FINEST = 64
@@ -39,6 +38,25 @@ HELPS = "fewer samples, modes, or for what does not jump NumPy or run"
 
 _LONG = 30  # characters of a number that nobody reads
 _ZERO, _ONE = fmpq(0), fmpq(1)
+
+
+@dataclass(frozen=True)
+class LoadEvent:
+    """From panel `panel` of window `window` on, load `force` is a polynomial in the time since then."""
+
+    window: int
+    panel: int
+    force: int
+    powers: tuple[fmpq, fmpq, fmpq]
+
+    def times(self, factor: fmpq) -> LoadEvent:
+        """The same of a load that is `factor` times as large."""
+        return LoadEvent(self.window, self.panel, self.force, _three(factor * self.load))
+
+    @property
+    def load(self) -> fmpq_poly:
+        """The polynomial."""
+        return fmpq_poly(list(self.powers))
 
 
 @dataclass(frozen=True)
@@ -349,3 +367,38 @@ def least_numbers(plan: MarchPlan) -> Iterator[fmpq]:
     yield from (track.held for track in plan.tracks)
     yield from (heard.gain for output in plan.outputs for heard in output.heard)
     yield plan.step
+
+
+def load_events(gains: Mapping[tuple[fmpq, int], fmpq_poly], starts: Iterable[fmpq], step: fmpq) -> Iterator[LoadEvent]:
+    """What forces are from each of their changes on, in order; `gains` has the changes by time and force.
+
+    A window is a `step` long, and its panels have these `starts`, at which all changes are.
+    """
+    places = {start: number for number, start in enumerate(starts)}
+    known: dict[int, tuple[fmpq, fmpq_poly]] = {}
+    for (time, force), change in sorted(gains.items(), key=lambda item: item[0]):
+        total = _later(known, force, time) + change
+        known[force] = time, total
+        window = int((time / step).floor())
+        yield LoadEvent(window, places[time - window * step], force, _three(total))
+
+
+def load_changes(
+    events: Iterable[LoadEvent], starts: Sequence[fmpq], step: fmpq
+) -> Iterator[tuple[LoadEvent, tuple[fmpq, fmpq, fmpq]]]:
+    """Each event with the powers of what is new with it."""
+    known: dict[int, tuple[fmpq, fmpq_poly]] = {}
+    for event in events:
+        time = event.window * step + starts[event.panel]
+        yield event, _three(event.load - _later(known, event.force, time))
+        known[event.force] = time, event.load
+
+
+def _later(known: Mapping[int, tuple[fmpq, fmpq_poly]], force: int, time: fmpq) -> fmpq_poly:
+    """What a force goes on as, in the time since `time`."""
+    since, load = known.get(force, (time, fmpq_poly()))
+    return load(fmpq_poly([time - since, 1]))
+
+
+def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
+    return load[0], load[1], load[2]

@@ -18,7 +18,8 @@ from wavesym.programs.modes.modal_system import ModalSystem, Stepper, padded, sc
 from wavesym.programs.modes.rounding import Rounded, rounded
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncated
 from wavesym.programs.modes.undamped import UndampedModes
-from wavesym.programs.program import Program, ProgramOutput, Provenance, StreamedValues
+from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance, StreamedValues
+from wavesym.programs.reference_values import leap
 from wavesym.programs.schemes.modes import ModesScheme
 
 _CHECKED = 40  # samples of a self-test
@@ -26,7 +27,7 @@ _ULPS = 8  # by which a step may differ from the spacing
 
 
 @dataclass(frozen=True)
-class ModesEvaluator:
+class ModesEvaluator(Bounded):
     """A modal system under loads, stepped exactly in `real` numbers; a stream takes steps of `spacing`.
 
     `sources` are the names of the loads; a stream takes them in units of their own, one of which is `inputs` and its
@@ -42,11 +43,6 @@ class ModesEvaluator:
     inputs: tuple[tuple[fmpq, str], ...]
     outputs: tuple[ProgramOutput, ...] = ()
     proved: bool = True
-
-    @cached_property
-    def error_bound(self) -> float:
-        """The largest error of any output relative to its largest value."""
-        return max(output.bound for output in self.outputs)
 
     @cached_property
     def scheme(self) -> ModesScheme:
@@ -111,9 +107,8 @@ class ModesEvaluator:
 
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance."""
-        worst = max(self.outputs, key=lambda output: output.bound)
         said = "a bound" if self.proved else "an estimated error"
-        return f"modes: {len(self.system.frequency)} modes leave {said} of {worst.bound:g} for {worst.name}"
+        return f"modes: {len(self.system.frequency)} modes leave {said} of {self.worst.bound:g} for {self.worst.name}"
 
     @property
     def check_points(self) -> list[float]:
@@ -140,7 +135,7 @@ class ModesEvaluator:
         """For the self-test: loads up to the largest of the scene's that leap, and what comes of them."""
         largest = self.loads.largest or fmpq(1)
         given = [
-            tuple(self.real.nearest(size * largest * _leap(k, j)) for j, (size, _) in enumerate(self.inputs))
+            tuple(self.real.nearest(size * largest * leap(k, j)) for j, (size, _) in enumerate(self.inputs))
             for k in range(1, _CHECKED + 1)
         ]
         exact = [tuple(map(rational, row)) for row in given]
@@ -155,11 +150,6 @@ class ModesEvaluator:
             tuple(tuple(map(midpoint, row)) for row in values),
             tuple(same.rounding.errors.tolist()),
         )
-
-
-def _leap(k: int, j: int) -> fmpq:
-    """Numbers from -1 to 1 that differ much from one sample to the next, and from load to load."""
-    return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)
 
 
 _PLAIN = fmpq(1), ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from flint import fmpq, fmpq_mat
@@ -16,7 +16,7 @@ from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.flat import firsts
 from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.march.space import JointRows
-from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
@@ -279,30 +279,11 @@ def _masses(made: RuntimePlan) -> Iterator[int]:
             yield from (int(n < rows.masses) for n in range(len(rows.weights)))
 
 
-@dataclass(frozen=True)
-class _Built:
-    """What reference values are asked for: the program with the scene's own parameters."""
-
-    program: Program
-
-    @property
-    def real(self) -> Real:
-        return self.program.real
-
-    @property
-    def outputs(self) -> tuple[ProgramOutput, ...]:
-        return self.program.outputs
-
-    @property
-    def check_points(self) -> list[float]:
-        until = self.program.tau_max
-        return sorted({k / 8 for k in range(int(min(8 * until, 160)) + 1)} | {until})
-
-
 def _with_reference(program: Program) -> Program:
     """With values of the scene's own parameters, for a self-test, and the largest of each output."""
-    found = reference_values(program.provenance.model, _Built(program))
-    assert isinstance(found, ReferenceValues)
+    until = program.tau_max
+    check_points = sorted({k / 8 for k in range(int(min(8 * until, 160)) + 1)} | {until})
+    found = reference_values(program.provenance.model, program.real, check_points)
     sizes = (max(map(abs, row)) for row in found.values)
     outputs = tuple(replace(output, largest=size) for output, size in zip(program.outputs, sizes, strict=True))
     return replace(program, outputs=outputs, reference=found)

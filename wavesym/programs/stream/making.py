@@ -8,7 +8,7 @@ Any loads that are straight on every panel are sums of such steps, earlier or la
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, isfinite
 
 from flint import arb, fmpq
@@ -24,11 +24,10 @@ from wavesym.programs.program import (
     Program,
     ProgramOutput,
     Provenance,
-    ReferenceValues,
     SteppedRow,
     SteppedValues,
 )
-from wavesym.programs.reference_values import reference_values
+from wavesym.programs.reference_values import leap, reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.stream.free import FreeStream, free_stream
 from wavesym.programs.stream.made import MADE, laws_of, places, sizes
@@ -161,15 +160,6 @@ def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
         degree += 1
 
 
-@dataclass(frozen=True)
-class _Driven:
-    """What reference values are asked for: at these tau."""
-
-    real: Real
-    outputs: tuple[ProgramOutput, ...]
-    check_points: list[float]
-
-
 _CHECKED = 8  # longest steps of the march, at most
 _PLACES = (fmpq(3, 16), fmpq(9, 16), fmpq(15, 16))  # of a panel, where values are looked at
 _INSIDE = fmpq(1, 4)  # of a panel, where loads jump
@@ -180,15 +170,13 @@ def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValue
     panel, last = plan.panel, min(model.until, _CHECKED * max(plan.rings.step, _ONE))
     count = int((last / panel).floor())
     late = _INSIDE * panel if plan.breakpoints >= len(plan.rings.panels) else fmpq(0)
-    jumps = [(k, j, _leap(k, j)) for k in range(count) for j in range(len(plan.inputs)) if k % 5 == (2 * j) % 5]
+    jumps = [(k, j, leap(k, j)) for k in range(count) for j in range(len(plan.inputs)) if k % 5 == (2 * j) % 5]
     applied = [Applied(plan.inputs[j].source, k * panel + late, rise / plan.inputs[j].size) for k, j, rise in jumps]
     looked = [(k + _PLACES[k % len(_PLACES)]) * panel for k in range(count)]
     taus = [nearest(tau) for tau in looked]
     own = merged(applied) if plan.inputs else model.loads
-    found = reference_values(
-        replace(model.shortened(last), loads=own, endless=False), _Driven(program.real, program.outputs, taus)
-    )
-    assert isinstance(found, ReferenceValues)
+    tested = replace(model.shortened(last), loads=own, endless=False)
+    found = reference_values(tested, program.real, taus)
     columns = dict(zip(found.taus, zip(*found.values, strict=True), strict=True))
     rows, now, time = [], [fmpq(0)] * len(plan.inputs), fmpq(0)
     for k, (instant, tau) in enumerate(zip(looked, taus, strict=True)):
@@ -205,8 +193,3 @@ def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValue
 
 def _row(real: Real, dtau: fmpq, loads: Sequence[fmpq]) -> SteppedRow:
     return SteppedRow(real.nearest(dtau), real.table(loads))
-
-
-def _leap(k: int, j: int) -> fmpq:
-    """Numbers from -1 to 1 that differ much from one to the next."""
-    return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)
