@@ -7,12 +7,12 @@ from dataclasses import replace
 import pytest
 from flint import fmpq
 
+from tests.support.physical_time import differences
 from wavesym.derivation.delay import delay_equations
 from wavesym.derivation.table import full_table
 from wavesym.errors import WavesymError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Rod, System, UnitLoad, single
-from wavesym.verification.node_law import differences
 
 LOAD = UnitLoad("F", None, (1,))
 

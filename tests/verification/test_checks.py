@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import pytest
 from flint import fmpq
 
+from tests.support.physical_time import differences
 from wavesym.derivation import table as tables
 from wavesym.derivation.increments import combined
 from wavesym.derivation.table import Function, full_table
@@ -30,7 +31,6 @@ from wavesym.targets import files as written
 from wavesym.targets.c import kernel
 from wavesym.verification import checks, integrations, programs
 from wavesym.verification.independent import independent_model
-from wavesym.verification.node_law import differences
 from wavesym.verification.programs import compare_programs
 from wavesym.verification.reference import known
 

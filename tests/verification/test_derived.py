@@ -15,7 +15,6 @@ THEOREMS = (
     "The delay equations are the node law, for all i and m.",
     "The recurrences solve the delay equations, for all i, m, n and k.",
     "No power is higher than is stated, for all i, m, n, l and s.",
-    "Tables are what the node law gives in physical time.",
     "Tables are what walk polynomials give.",
 )
 

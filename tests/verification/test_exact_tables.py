@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from flint import fmpq
 
+from tests.support.physical_time import differences, unit_waves
 from wavesym.derivation import table as tables
 from wavesym.derivation.table import Function, full_table
 from wavesym.mechanics.chain import Chain
@@ -13,7 +14,6 @@ from wavesym.mechanics.node import Parameters
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
-from wavesym.verification.node_law import differences, unit_waves
 
 KAPPAS = {
     "different": [fmpq(1, 3), fmpq(2, 5), fmpq(7, 4), fmpq(1, 2), fmpq(3, 7), fmpq(5, 6), fmpq(2, 3)],

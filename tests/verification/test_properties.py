@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.drawn import loads, ratios, scenes, systems
+from tests.support.physical_time import differences
 from wavesym.derivation.table import full_table
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.ball import segments, values
@@ -21,7 +22,6 @@ from wavesym.exact.tables.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
-from wavesym.verification.node_law import differences
 from wavesym.verification.programs import compare_programs
 from wavesym.verification.reference import known
 

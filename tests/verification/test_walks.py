@@ -14,7 +14,7 @@ from wavesym.mechanics.node import Parameters
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
-from wavesym.verification.derived import by_walks
+from wavesym.verification.walks import by_walks
 
 NUMBERS = st.builds(fmpq, st.integers(1, 9), st.integers(1, 5)) | st.just(fmpq(1, 2)) | st.just(fmpq(1001, 2000))
 

@@ -87,14 +87,6 @@ POWERS = Theorem(
     "them.",
     "inequalities",
 )
-PHYSICAL_TIME = Theorem(
-    "Tables are what the node law gives in physical time.",
-    "For small chains, in exact numbers. The law of every node is solved anew for its velocity q, step by step in "
-    "physical time: inertia q' + (damping + (alpha + beta)/2) q = alpha a + beta b + load, where a and b are the "
-    "waves that arrive, and q - a and q - b leave. No clocks, delay equations or recurrences are used; every "
-    "increment is the same.",
-    "increments",
-)
 WALKS = Theorem(
     "Tables are what walk polynomials give.",
     "For small chains, in exact numbers. A wave goes from node to node, and each visit to a body is a factor T = "

@@ -1,16 +1,48 @@
-"""Walk polynomials -> increments: partial fractions of products of T = q/(s + q), by Taylor series at the poles."""
+"""Exact tables by another route: walk polynomials, by partial fractions of products of T = q/(s + q).
+
+No delay equations, recurrences or clocks are used.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import factorial
 
 from flint import fmpq, fmpq_poly, fmpz_mpoly
 
-from wavesym.derivation.increments import Increment, trimmed
-from wavesym.derivation.walks import Letters, Unit
+from wavesym.derivation.increments import Increment, add, trimmed
+from wavesym.derivation.table import Function, Table
+from wavesym.derivation.walks import Letters, Unit, departures, function_walks, letters, units, walks_until
+from wavesym.mechanics.chain import Chain
 
 
-def expanded(polynomial: fmpz_mpoly, unit: Unit, letters: Letters) -> Increment:
+def differences(chain: Chain, table: Table) -> Iterator[Function]:
+    """A function for each interval in which its increment is not that of its walk polynomial; all equally far."""
+    intervals = max(len(gains) for response in table.responses.values() for gains in response.values())
+    for source, response in by_walks(chain, table, intervals, letters(chain)).items():
+        for function, gains in response.items():
+            for ours, theirs in zip(gains, table.responses[source][function], strict=True):
+                if ours != theirs:
+                    yield function
+
+
+def by_walks(chain: Chain, made: Table, intervals: int, names: Letters) -> dict[str, dict[Function, list[Increment]]]:
+    """The responses of a table from walk polynomials in the letters `names`, the contacts of an impact summed."""
+    responses: dict[str, dict[Function, list[Increment]]] = {
+        source: {function: [{} for _ in gains] for function, gains in response.items()}
+        for source, response in made.responses.items()
+    }
+    for unit in units(chain):
+        sent = walks_until(chain, unit, departures(chain, made.interval, intervals), names, names.symbols)
+        response = responses["impact" if unit.name.startswith("impact") else unit.name]
+        for function, gains in response.items():
+            for n, gain in enumerate(gains, 1):
+                polynomial = function_walks(chain, sent, function, n, made.interval)
+                add(gain, _expanded(polynomial, unit, names))
+    return {source: {f: list(map(trimmed, gains)) for f, gains in r.items()} for source, r in responses.items()}
+
+
+def _expanded(polynomial: fmpz_mpoly, unit: Unit, letters: Letters) -> Increment:
     """The increment whose transform is unit.value/s**(unit.power + 1) times the polynomial; the chain in numbers.
 
     With u = s + q, the coefficient of u**(-k - 1) over k! is that of exp(-q w) w**k; that of s is rate 0.

@@ -13,15 +13,13 @@ No clocks, no lags, no recurrences, no coefficients one by one: nothing here is 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from flint import fmpq, fmpq_poly
 
+from wavesym.derivation.table import Function, Table
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Node
-
-if TYPE_CHECKING:  # tables are what is checked, not what is used
-    from wavesym.derivation.table import Function, Table
 
 Change = dict[fmpq, fmpq_poly]
 """sum over rates g of exp(-g w) * polynomial(w); what is 0 is left out."""
