@@ -25,8 +25,9 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from wavesym.mechanics.probe import Probe
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
-from wavesym.verification.problem import Array, Change, Problem
+from wavesym.verification.problem import Change, ContactProblem
 
 # where contacts open and close, instants closer than this part of the longest delay are one, and so are fronts, and
 # forces and gaps smaller than this part of the largest are 0
@@ -58,7 +59,7 @@ class Motion:
     a contact's opening or closing made, which are known to rounding only.
     """
 
-    problem: Problem
+    problem: ContactProblem
     points: int
     until: float
     starts: list[Fraction] = field(default_factory=list)
@@ -139,7 +140,7 @@ class Motion:
         near = (np.abs(times - beside[panel]) < close) | (np.abs(beside[panel + 1] - times) < close)
         for k in np.flatnonzero(near).tolist():
             panel[k] = bisect_right(self.starts, Fraction(taus[k]) - late) - 1
-        before = self.problem.start_waves[side, number] if number < len(self.problem.delays) else 0.0
+        before = self.problem.start_waves[number, side] if number < len(self.problem.delays) else 0.0
         x = np.clip(2 * (times - self._starts[panel]) / self._widths[panel] - 1, -1, 1)
         series = self._coefficients[panel, side, number]
         if not integral:
@@ -175,7 +176,7 @@ def gauss(points: int) -> Gauss:
     return Gauss((nodes + 1) / 2, weights / 2, np.stack(integrals, axis=1) @ series / 2, series)
 
 
-def integrate(problem: Problem, until: float, points: int, most: int = 100_000) -> Motion:
+def integrate(problem: ContactProblem, until: float, points: int, most: int = 100_000) -> Motion:
     """Integrate a motion from tau = 0.
 
     Args:
@@ -193,7 +194,7 @@ def integrate(problem: Problem, until: float, points: int, most: int = 100_000) 
 class _Integration:
     """The displacements and velocities of points now, and which contacts are open."""
 
-    def __init__(self, problem: Problem, found: Motion, most: int) -> None:
+    def __init__(self, problem: ContactProblem, found: Motion, most: int) -> None:
         self._problem, self._found, self._most = problem, found, most
         self._rule = gauss(found.points)
         self._looked = self._rule.interpolation(_LOOKED)
@@ -257,7 +258,7 @@ class _Integration:
         """Move all points through a panel; which part of it that holds for, by group with contacts."""
         problem = self._problem
         times = float(now) + float(width) * self._rule.nodes
-        self._arriving = np.stack([self._wave(end, now, width, times) for end in range(len(problem.ends))])
+        self._arriving = np.stack([self._wave(end, now, width, times) for end in range(len(problem.end_points))])
         acting = problem.load_integral(times, 0)
         acting[problem.is_free] += (self._arriving_force @ self._arriving)[problem.is_free]
         self._velocities, self._states = np.zeros((len(self._q), self._found.points)), self._open.copy()
@@ -269,7 +270,7 @@ class _Integration:
         sent = now - self._problem.delays[bar]
         if (sent, width) in self._panels:
             return np.asarray(found.waves[self._panels[sent, width]][1 - side, bar])
-        values = np.full(len(times), self._problem.start_waves[1 - side, bar])
+        values = np.full(len(times), self._problem.start_waves[bar, 1 - side])
         if sent + width > 0:
             times = times - float(self._problem.delays[bar])
             first = max(bisect_right(found.starts, sent) - 1, 0)
@@ -286,7 +287,7 @@ class _Integration:
         for contact in np.flatnonzero(self._states != self._open).tolist():
             found.changes.append(Change(contact, "opens" if self._states[contact] else "closes", float(now)))
         self._open = self._states
-        sent = problem.ratios[:, np.newaxis] * velocities[problem.ends] - self._arriving
+        sent = problem.end_ratios[:, np.newaxis] * velocities[problem.end_points] - self._arriving
         bars = len(problem.delays)
         waves = np.zeros((2, bars + problem.points, found.points))
         waves[0, :bars], waves[1, :bars], waves[0, bars:] = sent[0::2], sent[1::2], velocities

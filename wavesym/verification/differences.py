@@ -30,8 +30,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.mechanics.probe import Probe
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
-from wavesym.verification.problem import Array, Change, Problem, Struck, alike
+from wavesym.verification.problem import Change, ContactProblem, Struck, alike
 
 Instants = NDArray[np.int_]
 
@@ -77,7 +78,7 @@ class Displaced:
 class SpaceTimeGrid:
     """A network whose bars have cells of a step of tau. An instant k is tau = k * step."""
 
-    problem: Problem
+    problem: ContactProblem
     readings: tuple[Probe, ...]
     step: Fraction
 
@@ -237,7 +238,7 @@ class SpaceTimeGrid:
             yield from ((later, first + k, weight * factor) for later, k, factor in terms)
 
 
-def coarsest_grid(problem: Problem, readings: tuple[Probe, ...], until: Fraction) -> SpaceTimeGrid:
+def coarsest_grid(problem: ContactProblem, readings: tuple[Probe, ...], until: Fraction) -> SpaceTimeGrid:
     """The coarsest grid: loads and readings are on it where their denominators are small."""
     measure, common = problem.measure, 1
     offsets = [
@@ -269,7 +270,7 @@ class _Motion:
         radiated = np.diag(problem.onto**2 @ impedance)
         mass = np.diag(problem.mass)
         self._momentum = 2 * mass / h @ problem.velocity
-        self._momentum += 2 * problem.onto @ (impedance * problem.start_waves[::-1].T.ravel())
+        self._momentum += 2 * problem.onto @ (impedance * problem.start_waves[:, ::-1].ravel())
         self._start = 2 * mass / h + problem.damping + radiated + h / 2 * problem.stiffness
         mass = mass / h**2 + radiated / (2 * h)
         self._ahead = mass + problem.damping / (2 * h) + problem.stiffness / 4
@@ -314,7 +315,7 @@ class _Motion:
         bars = self._first.copy()
         if step > 0:
             bars[1:-1] = self._bars[2:] + self._bars[:-2] - self._bars_before[1:-1]
-        bars[self._ends] = self._problem.ratios * self._now[self._problem.ends]
+        bars[self._ends] = self._problem.end_ratios * self._now[self._problem.end_points]
         self._bars_before, self._bars = self._bars, bars
 
     def _kept_apart(self, after: Array, inverse: Array) -> Array:

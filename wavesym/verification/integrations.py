@@ -18,13 +18,14 @@ from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
+from wavesym.methods.problem import Array
 from wavesym.methods.problem import problem_of as damped_problem
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, Undecided, integrate
 from wavesym.verification.differences import LATE, Instants, SpaceTimeGrid, coarsest_grid
 from wavesym.verification.observed import Term, observed, read_by
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, refused, shown
-from wavesym.verification.problem import Array, Change, Struck, alike, problem_of
+from wavesym.verification.problem import Change, Struck, alike, problem_of
 from wavesym.verification.reference import Known, spread
 
 # Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them

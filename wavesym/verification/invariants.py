@@ -30,9 +30,10 @@ from flint import fmpq
 from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
 from wavesym.verification.collocation import gauss
-from wavesym.verification.problem import Array, Problem, problem_of
+from wavesym.verification.problem import ContactProblem, problem_of
 
 Evaluate = Callable[[Array], Array]
 """tau, shape (n,), to the outputs, shape (outputs, n)."""
@@ -99,9 +100,11 @@ class Balancing:
         problem = self.problem = problem_of(model)
         at = [_end_at(problem, point) for point in range(problem.points)]
         seen = [Probe(f"{q}@{k}", q, *here) for q in ("velocity", "displacement") for k, here in enumerate(at)]
-        seen += [Probe(f"strain@{k}", "strain", *_end(k)) for k in range(len(problem.ends))]
+        seen += [Probe(f"strain@{k}", "strain", *_end(k)) for k in range(len(problem.end_points))]
         # what is watched is so many times the velocity of its point, and c U_x
-        self.scales = np.array([1 / problem.ratios[2 * rod - 2 + int(place)] if rod else 1.0 for rod, place, _ in at])
+        self.scales = np.array(
+            [1 / problem.end_ratios[2 * rod - 2 + int(place)] if rod else 1.0 for rod, place, _ in at]
+        )
         limit, until = most // ((_POINTS + _FEWER) * len(seen)), fraction(model.until)
         fronts, last = self._fronts(model.watching(seen), until, limit)
         self.struck: list[Fraction] = []
@@ -166,9 +169,9 @@ def _end(end: int) -> tuple[int, fmpq, None]:
     return end // 2 + 1, fmpq(end % 2), None
 
 
-def _end_at(problem: Problem, point: int) -> tuple[int, fmpq, int | None]:
+def _end_at(problem: ContactProblem, point: int) -> tuple[int, fmpq, int | None]:
     """Where a point is watched: at the end of a bar there, or by itself."""
-    ends = np.flatnonzero(problem.ends == point)
+    ends = np.flatnonzero(problem.end_points == point)
     return _end(int(ends[0])) if len(ends) else (0, fmpq(0), point)
 
 
@@ -184,7 +187,7 @@ class _Books:
         self._struck = np.array([float(time) for time in balancing.struck])
         low, width, rule = balancing.cuts[:-1, np.newaxis], np.diff(balancing.cuts)[:, np.newaxis], gauss(points)
         self._times, self._weights = (low + width * rule.nodes).ravel(), (width * rule.weights).ravel()
-        size, ends = problem.points, len(problem.ends)
+        size, ends = problem.points, len(problem.end_points)
         scales = np.concatenate([balancing.scales, balancing.scales, np.repeat(problem.speed, 2)])[:, np.newaxis]
 
         def at(times: Array) -> Within:
@@ -215,7 +218,7 @@ class _Books:
             rows = self._coming[2 * bar : 2 * bar + 2]
             came = self._all.form(rows.T @ rows) if power == 2 else self._all.sums(np.sum(rows, axis=0))
             left = np.maximum(delay - self._struck, 0.0)  # of this length there is still what was there at the start
-            held = np.sum(problem.start_waves[:, bar] ** power)
+            held = np.sum(problem.start_waves[bar] ** power)
             part = came.integrals(inside) + left * held
             total += Within(weights[bar] * part.value, abs(weights[bar]) * part.error)
         return total
@@ -239,7 +242,7 @@ class _Books:
     def started(self) -> float:
         """The energy at tau = 0."""
         problem = self._problem
-        waves = np.sum(problem.start_waves**2, axis=0)
+        waves = np.sum(problem.start_waves**2, axis=1)
         return float(problem.mass @ problem.velocity**2 / 2 + (problem.impedance * self._delays) @ waves)
 
     @property

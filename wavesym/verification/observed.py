@@ -17,8 +17,9 @@ from flint import fmpq
 
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import nearest
-from wavesym.verification.problem import Array, Problem, problem_of
+from wavesym.verification.problem import ContactProblem, problem_of
 
 Term = tuple[float, Probe]
 """So many times a strain, a velocity, a displacement, or the load on a point."""
@@ -28,7 +29,7 @@ Term = tuple[float, Probe]
 class Observed:
     """An output: `terms` of what integrators have, and times the loads on points."""
 
-    problem: Problem
+    problem: ContactProblem
     terms: tuple[Term, ...]
     loads: tuple[Term, ...]
 
@@ -68,7 +69,7 @@ def read_by(model: Model) -> tuple[Probe, ...]:
     return tuple(dict.fromkeys(reading for each in observed(model) for _, reading in each.terms))
 
 
-def _terms(model: Model, problem: Problem, probe: Probe) -> Iterator[Term]:
+def _terms(model: Model, problem: ContactProblem, probe: Probe) -> Iterator[Term]:
     bar, here = probe.rod - 1, Probe("", probe.quantity, probe.rod, probe.place, probe.point)
     match probe.quantity:
         case "acceleration":
@@ -86,17 +87,17 @@ def _terms(model: Model, problem: Problem, probe: Probe) -> Iterator[Term]:
             yield 1.0, here
 
 
-def _acceleration(problem: Problem, probe: Probe) -> Iterator[Term]:
+def _acceleration(problem: ContactProblem, probe: Probe) -> Iterator[Term]:
     """All that acts on a mass, and on what touches it, but loads and pushes as they work where points are so fast."""
     point, ratio = probe.point, 1.0
     if point is None:
         end = 2 * (probe.rod - 1) + int(probe.place)
-        point, ratio = int(problem.ends[end]), float(problem.ratios[end])
+        point, ratio = int(problem.end_points[end]), float(problem.end_ratios[end])
     speeds = problem.carried(point)[0] * (ratio / float(problem.mass[point]))
     unit = np.eye(problem.points)
     stiffness = np.repeat(problem.impedance * problem.speed, 2) * np.tile([1.0, -1.0], len(problem.speed))
     for end, force in enumerate((speeds @ problem.onto * stiffness).tolist()):
-        if speeds[problem.ends[end]]:
+        if speeds[problem.end_points[end]]:
             yield force, _on("strain", end // 2 + 1, fmpq(end % 2))
     for matrix, quantity in ((-problem.damping, "velocity"), (-problem.stiffness, "displacement"), (unit, "load")):
         held = speeds @ matrix

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from wavesym.verification.problem import Array
+from wavesym.methods.problem import Array
 from wavesym.verification.reference import Known
 
 FINE = 1e-6

@@ -14,32 +14,21 @@ their laws. Everything is dimensionless.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields, replace
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
-from math import gcd, lcm, prod
+from math import prod
 
 import numpy as np
-from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import fraction, nearest
+from wavesym.methods.problem import LOAD_TERMS, Array, Problem, undamped_problem
+from wavesym.numbers.doubles import nearest
 
-Array = NDArray[np.float64]
-
-# loads are polynomials of so many terms at most; and so many values of them are made at once
-_LOAD_TERMS, _AT_ONCE = 3, 1_000_000
-
-
-@dataclass(frozen=True)
-class LoadEvent:
-    """From `time` on, the load on a point, or its velocity, has sum_k coefficients[k] (tau - time)^k more."""
-
-    time: Fraction
-    point: int
-    coefficients: tuple[float, ...]
+# so many values of loads are made at once
+_AT_ONCE = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -67,70 +56,41 @@ def alike(finer: Sequence[Change], coarser: Sequence[Change]) -> Struck | None:
 
 
 @dataclass(frozen=True)
-class Problem:
-    """Points, and bars with two ends each: end 2 b is the left one of bar b, end 2 b + 1 the right one.
+class ContactProblem(Problem):
+    """A network in which contacts may open and close; its outputs are for others (observed.py).
 
-    `mass` and `velocity` have shape (points,), `damping` and `stiffness`, in which bars have no part, (points, points).
-    The velocity of a point whose motion is `prescribed` is its load. `ends` has the points of each bar's ends, `ratios`
-    their ratios, both (2 bars,); `speed`, `impedance`, `start_velocity` and `start_strain` have shape (bars,). The gaps
-    of contacts are `gaps` + `parting` @ displacements, (contacts,); their pushes act on points by `parting` transposed.
+    The gaps of contacts are `gaps` + `parting` @ displacements, (contacts,); their pushes act on points by `parting`
+    transposed. End 2 b is the left one of bar b, end 2 b + 1 the right one.
     """
 
-    mass: Array
-    damping: Array
-    stiffness: Array
-    velocity: Array
-    prescribed: tuple[int, ...]
-    ends: NDArray[np.int_]
-    ratios: Array
-    delays: tuple[Fraction, ...]
-    speed: Array
-    impedance: Array
-    start_velocity: Array
-    start_strain: Array
-    gaps: Array
-    parting: Array
-    events: tuple[LoadEvent, ...]
+    gaps: Array = field(default_factory=lambda: np.zeros(0))
+    parting: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
-    def points(self) -> int:
-        """The number of points."""
-        return len(self.mass)
+    def end_points(self) -> NDArray[np.int_]:
+        """The point of each end: (2 bars,)."""
+        return self.ends.ravel()
+
+    @property
+    def end_ratios(self) -> Array:
+        """The ratio of each end: (2 bars,)."""
+        return self.ratios.ravel()
 
     @cached_property
     def is_free(self) -> NDArray[np.bool_]:
         """Which points are free to move: (points,)."""
         return np.asarray(~np.isin(np.arange(self.points), self.prescribed))
 
-    @cached_property
-    def measure(self) -> Fraction:
-        """The largest time that all delays are multiples of."""
-        common = lcm(*(delay.denominator for delay in self.delays))
-        return Fraction(gcd(*(int(delay * common) for delay in self.delays)), common)
-
-    @cached_property
-    def onto(self) -> Array:
-        """What a force of 1 at each end of a bar is at the points: (points, 2 bars)."""
-        matrix = np.zeros((self.points, len(self.ends)))
-        matrix[self.ends, np.arange(len(self.ends))] = self.ratios
-        return matrix
-
-    @cached_property
-    def start_waves(self) -> Array:
-        """The waves in each bar at tau = 0 that were sent from its left and from its right end: (2, bars)."""
-        turned = self.speed * self.start_strain
-        return np.stack([self.start_velocity - turned, self.start_velocity + turned]) / 2
-
     def load_integral(self, times: Array, order: int) -> Array:
         """The loads integrated `order` times from tau = 0 on: shape (points, times)."""
         starts = np.array([[float(event.time)] for event in self.events]).reshape(-1, 1)
-        terms = [np.array([[*event.coefficients, *[0.0] * _LOAD_TERMS][:_LOAD_TERMS] for event in self.events])]
+        coefficients = np.array([event.coefficients for event in self.events]).reshape(-1, LOAD_TERMS)
         onto = np.arange(self.points)[:, np.newaxis] == [event.point for event in self.events]
         found = []
         for some in np.array_split(times, 1 + len(times) * len(starts) // _AT_ONCE):
             since = some - starts
             values = np.zeros(since.shape)
-            for k, c in enumerate(np.reshape(terms, (-1, _LOAD_TERMS)).T):
+            for k, c in enumerate(coefficients.T):
                 divided = prod(range(k + 1, k + order + 1))
                 values += c[:, np.newaxis] / divided * np.maximum(since, 0.0) ** (k + order)
             found.append(onto @ np.where(since >= 0, values, 0.0))
@@ -187,9 +147,9 @@ class Problem:
 
     def sent_on(self, now: Fraction, groups: set[int]) -> Iterator[tuple[Fraction, int]]:
         """When what sets out from groups now comes to others."""
-        for end, point in enumerate(self.ends.tolist()):
+        for end, point in enumerate(self.end_points.tolist()):
             if self.group_of[point] in groups:
-                yield now + self.delays[end // 2], self.group_of[int(self.ends[end ^ 1])]
+                yield now + self.delays[end // 2], self.group_of[int(self.end_points[end ^ 1])]
 
     def carried(self, point: int, *, bars: bool = False, springs: bool = False) -> tuple[Array, Array]:
         """How fast points (points,) and bars (bars,) move with a point of velocity 1, all contacts closed.
@@ -208,9 +168,9 @@ class Problem:
                 if row[here] != 0
             ]
             if bars:
-                for end in np.flatnonzero(self.ends == here).tolist():
-                    rods[end // 2] = self.ratios[end] * points[here]
-                    found.append((int(self.ends[end ^ 1]), rods[end // 2] / self.ratios[end ^ 1]))
+                for end in np.flatnonzero(self.end_points == here).tolist():
+                    rods[end // 2] = self.end_ratios[end] * points[here]
+                    found.append((int(self.end_points[end ^ 1]), rods[end // 2] / self.end_ratios[end ^ 1]))
             if springs:
                 found += [(int(other), points[here]) for other in np.flatnonzero(held[here])]
             for other, speed in found:
@@ -220,54 +180,14 @@ class Problem:
         return points, rods
 
 
-def problem_of(model: Model) -> Problem:
+def problem_of(model: Model) -> ContactProblem:
     """State the network of a model with its loads. UnservedError where modes are damped."""
-    model.refuse_damping()
     network = model.network
-    points, bars = network.points, network.bars
-    damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
-    parting = []
-    for link in network.links:
-        pair = np.zeros(len(points))
+    contacts = [link for link in network.links if link.contact]
+    parting = np.zeros((len(contacts), len(network.points)))
+    for pair, link in zip(parting, contacts, strict=True):
         pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
-        if link.contact:
-            parting.append(pair)
-            continue
-        damping = damping + nearest(link.damping) * np.outer(pair, pair)
-        stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
-    return Problem(
-        mass=_numbers(points, "mass"),
-        damping=damping,
-        stiffness=stiffness,
-        velocity=_numbers(points, "velocity"),
-        prescribed=tuple(number for number, point in enumerate(points) if point.motion),
-        ends=np.array([(bar.left, bar.right) for bar in bars]).ravel(),
-        ratios=np.array([nearest(ratio) for bar in bars for ratio in bar.ratios]),
-        delays=tuple(fraction(bar.length) / fraction(bar.speed) for bar in bars),
-        speed=_numbers(bars, "speed"),
-        impedance=_numbers(bars, "impedance"),
-        start_velocity=_numbers(bars, "velocity"),
-        start_strain=_numbers(bars, "strain"),
-        gaps=np.array([nearest(link.gap) for link in network.links if link.contact]),
-        parting=np.array(parting).reshape(-1, len(points)),
-        events=tuple(_load_events(model)),
-    )
-
-
-def _load_events(model: Model) -> Iterator[LoadEvent]:
-    """The loads; for a prescribed motion its velocity, which begins as the point's own."""
-    units = {}
-    for number, point in enumerate(model.network.points):
-        if point.motion and point.velocity != 0:
-            yield LoadEvent(Fraction(0), number, (nearest(point.velocity),))
-        for unit in point.loads:
-            integrated = (fmpq(0), *(fmpq(c) / (k + 1) for k, c in enumerate(unit.coefficients)))
-            units[unit.source] = number, integrated if point.motion == "acceleration" else unit.coefficients
-    for load in model.loads:
-        if load.source in units:  # an impact is in the velocities
-            number, coefficients = units[load.source]
-            yield LoadEvent(fraction(load.time), number, tuple(nearest(load.weight * fmpq(c)) for c in coefficients))
-
-
-def _numbers(parts: Sequence[object], name: str) -> Array:
-    return np.array([nearest(getattr(part, name)) for part in parts])
+    held = replace(network, links=tuple(link for link in network.links if not link.contact))
+    stated = undamped_problem(replace(model, network=held))
+    same = {each.name: getattr(stated, each.name) for each in fields(stated)}
+    return ContactProblem(**same, gaps=np.array([nearest(link.gap) for link in contacts]), parting=parting)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, RangeError, ToleranceError, UnservedError
 from wavesym.mechanics.model import Model
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import SINGLE
 from wavesym.programs.making import make
@@ -35,7 +36,6 @@ from wavesym.targets.files import files
 from wavesym.verification.integrations import collocated
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
 from wavesym.verification.outcome import IntegratedOutput, Outcome, shown
-from wavesym.verification.problem import Array
 from wavesym.verification.reference import Known
 from wavesym.verification.streams import step_modes, step_stream
 

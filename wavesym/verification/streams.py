@@ -11,12 +11,12 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.mechanics.model import Model
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.programs.program import Program
 from wavesym.running.compiled import Compiled
 from wavesym.scene import Scene
 from wavesym.verification.independent import changes
-from wavesym.verification.problem import Array
 from wavesym.verification.reference import Known
 
 _CLEAR = 1e-6  # outputs are looked at so far from fronts and from changes of loads, and no closer together
