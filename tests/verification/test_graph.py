@@ -80,8 +80,8 @@ def test_a_grid_has_every_front_load_and_output_on_it() -> None:
     coarsest = _grid(model())
     assert coarsest.problem.measure == Fraction(1, 2)
     assert coarsest.aligned
-    assert [delay / coarsest.step for delay in coarsest.problem.delays] == list(coarsest.counts)
-    assert min(coarsest.counts) >= 16
+    assert [delay / coarsest.step for delay in coarsest.problem.delays] == list(coarsest.field.cells)
+    assert min(coarsest.field.cells) >= 16
 
 
 def balances(right: Model, wrong: Model | None = None) -> tuple[Balance, Balance]:

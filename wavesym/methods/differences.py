@@ -4,7 +4,7 @@ A step h divides all delays, so that a rod has as many cells as a wave takes ste
 of each of its bars along; with U the displacement beside it, and sums over the ends of bars at it,
 
     (mass + sum of ratio^2 impedance h/2) (u+ - 2 u + u-)/h^2 + damping (u+ - u-)/(2 h) + stiffness (u+ + 2 u + u-)/4
-        = sum of ratio impedance (U - ratio u)/h + loads,
+        = sum of ratio impedance (U - ratio u)/h + the loads' mean from t - h to t + h,
 
 which is of order 2, and where two equal bars meet the same as inside a rod.
 """
@@ -72,24 +72,29 @@ class Grid:
 
 
 @dataclass(frozen=True)
-class _PointSteps:
+class PointSteps:
     """The next displacements of points: `near` times what is beside ends and at points, less `past` times those a step
-    earlier, and `loads[step]`; `first` are those after the first step."""
+    earlier, and `loads[step]`; `first` are those after the first step. `yields` and `first_yields` are what forces at
+    the points, (points, points), add to them."""
 
     near: Array
     past: Array
     loads: Array
     first: Array
+    yields: Array
+    first_yields: Array
 
 
-def _point_steps(problem: Problem, h: float, steps: int) -> _PointSteps:
+def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
+    """How points move in `steps` steps of length h."""
     impedance, onto = np.repeat(problem.impedance, 2), problem.onto
     radiated = np.diag(onto**2 @ impedance)
     mass = np.diag(problem.mass)
     prescribed = list(problem.prescribed)
     unit = np.eye(problem.points)
     times: Array = h * np.arange(steps + 2, dtype=np.float64)
-    loads = problem.load_means(np.maximum(times - h / 2, 0.0), times + h / 2)
+    # over the step before and after: what a jump or a kink adds is the same then on odd and on even points
+    loads = problem.load_means(np.maximum(times - h, 0.0), times + h)
     moved = problem.load_means(np.zeros(steps + 1), times[1:]) * times[1:, np.newaxis]
 
     def solve(matrix: Array, right: Array, motion: Array) -> Array:
@@ -107,11 +112,13 @@ def _point_steps(problem: Problem, h: float, steps: int) -> _PointSteps:
     # the field does not have the strain at the start
     turns = np.tile([1.0, -1.0], len(problem.speed))
     strained = onto @ (np.repeat(problem.impedance * problem.speed * problem.start_strain, 2) * turns)
-    return _PointSteps(
+    return PointSteps(
         near=solve(ahead, near, np.zeros_like(near)),
         past=solve(ahead, inertia - damping + stiffness, still),
         loads=solve(ahead, (loads[:-1] + strained).T, moved.T).T,
         first=solve(begin, h * force, moved[0]),
+        yields=solve(ahead, unit, still),
+        first_yields=solve(begin, h * unit, still),
     )
 
 
@@ -121,7 +128,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
     h = float(problem.measure) / parts
     grid = Grid(problem, np.array([int(delay / problem.measure) * parts for delay in problem.delays]), h)
     steps = int(np.ceil(problem.until / h)) + 1
-    points = _point_steps(problem, h, steps)
+    points = point_steps(problem, h, steps)
     stencils = [grid.stencil(reading) for reading in problem.readings]
     kept = np.unique(np.concatenate([places for places, _ in stencils]))
     stencils = [(np.searchsorted(kept, places), weights) for places, weights in stencils]

@@ -1,18 +1,7 @@
 """Central differences at Courant number 1 over any network of bars, straight from the wave equation: no waves.
 
-A bar is delay/h cells, each of which a wave crosses in a step h of tau, for an h that all delays are multiples of.
-Inside a bar
-
-    U(j, t + h) = U(j + 1, t) + U(j - 1, t) - U(j, t - h),
-
-which is no approximation: fronts stay as sharp as they are. A point carries half a cell of each of its bars, so that
-
-    mass (u+ - 2 u + u-)/h^2 + damping (u+ - u-)/(2 h) + stiffness (u+ + 2 u + u-)/4
-        = sum over ends of ratio * impedance * ((U_beside - ratio u)/h - ratio h/2 (u+ - 2 u + u-)/h^2)
-        + the loads' mean from t - h to t + h,
-
-of order 2, and stable for any springs and dashpots. The first step is the balance of momentum from 0 to h, in which
-nothing but what was in the bars at the start acts on the bars' ends: a mass may be faster than its bars.
+`wavesym/methods/differences.py` has the steps. Fronts stay as sharp as they are, so that outputs are read where none is
+within a cell: errors are a series in h^2 there.
 
 Contacts push in the mean from t - h to t + h what keeps gaps at t + h from being negative, and only where they are 0:
 what opens inside a step is late by a part of it, which counts among what may be wrong.
@@ -30,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.mechanics.probe import Probe
+from wavesym.methods.differences import Grid, point_steps
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
 from wavesym.verification.problem import Change, ContactProblem, Struck, alike
@@ -153,8 +143,8 @@ class SpaceTimeGrid:
         motion, row, largest = _Motion(self, int(instants[-1]) + 3), 0, 0.0
         for step in range(int(instants[-1]) + 2):
             if step == kept[row]:
-                history[row] = motion.displacements(places)
-                largest = max(largest, motion.largest)
+                history[row] = motion.now[places]
+                largest = max(largest, float(np.max(np.abs(motion.now))))
                 row += 1
             motion.advance()
         values = np.zeros((len(self.readings), len(instants)))
@@ -201,14 +191,10 @@ class SpaceTimeGrid:
         return _ROUNDINGS * float(UNIT_ROUNDOFF) * np.array(found)
 
     @cached_property
-    def counts(self) -> NDArray[np.int_]:
-        """How many cells each bar has."""
-        return np.array([int(delay / self.step) for delay in self.problem.delays])
-
-    @cached_property
-    def firsts(self) -> NDArray[np.int_]:
-        """Where each bar begins in the field of all bars, one after the other; and the end of the last one."""
-        return np.append(0, np.cumsum(self.counts + 1))
+    def field(self) -> Grid:
+        """The field of all bars and points."""
+        counts = np.array([int(delay / self.step) for delay in self.problem.delays])
+        return Grid(self.problem, counts, float(self.step))
 
     def _place(self, reading: Probe) -> float:
         """Where a reading is, in cells from the left end of its bar."""
@@ -220,9 +206,9 @@ class SpaceTimeGrid:
         """What a reading is the sum of, but the strain at the start."""
         half = 1 / (2 * float(self.step))
         bar, place = reading.rod - 1, self._place(reading)
-        cells, first = int(self.counts[bar]), int(self.firsts[bar])
+        cells, first = int(self.field.cells[bar]), int(self.field.ends[2 * bar])
         if reading.point is not None:
-            cells, first = 1, int(self.firsts[-1]) + reading.point
+            cells, first = 1, int(self.field.points[reading.point])
         slope = half / self.problem.speed[bar]
         for j, weight in _between(place, cells):
             match reading.quantity:
@@ -252,93 +238,57 @@ def coarsest_grid(problem: ContactProblem, readings: tuple[Probe, ...], until: F
 
 
 class _Motion:
-    """The displacements of all bars, one after the other, and of all points, now and a step before."""
+    """The displacements of all bars, one after the other, and of all points after these, now and a step before."""
 
     def __init__(self, grid: SpaceTimeGrid, steps: int) -> None:
         problem = self._problem = grid.problem
-        h = self._h = float(grid.step)
-        self._first = h * np.repeat(problem.start_velocity, grid.counts + 1)
-        starts = grid.firsts[:-1]
-        self._ends = np.stack([starts, starts + grid.counts], axis=1).ravel()
-        self._beside = self._ends + np.tile([1, -1], len(starts))
-        self._free = np.flatnonzero(problem.is_free)
-        self._bars, self._bars_before = np.zeros(len(self._first)), np.zeros(0)
-        self._now = self._before = np.zeros(problem.points)
-        # of free points the impulse of their loads, of others the displacement
-        self._moved = problem.load_integral(h * np.arange(steps, dtype=np.float64), 1).T
-        impedance = np.repeat(problem.impedance, 2)
-        radiated = np.diag(problem.onto**2 @ impedance)
-        mass = np.diag(problem.mass)
-        self._momentum = 2 * mass / h @ problem.velocity
-        self._momentum += 2 * problem.onto @ (impedance * problem.start_waves[:, ::-1].ravel())
-        self._start = 2 * mass / h + problem.damping + radiated + h / 2 * problem.stiffness
-        mass = mass / h**2 + radiated / (2 * h)
-        self._ahead = mass + problem.damping / (2 * h) + problem.stiffness / 4
-        self._here = 2 * mass - radiated / h - problem.stiffness / 2
-        self._behind = mass - problem.damping / (2 * h) + problem.stiffness / 4
-        strained = np.repeat(problem.speed * problem.start_strain, 2) * np.tile([1.0, -1.0], len(starts))
-        self._strained = problem.onto @ (impedance * strained)
-        self._pulls = problem.onto * impedance / h
-        free = np.ix_(self._free, self._free)
-        self._inverse, self._inverse_start = np.linalg.inv(self._ahead[free]), np.linalg.inv(self._start[free])
+        self._h, self._step = float(grid.step), 0
+        self._grid, self._points = grid.field, point_steps(problem, self._h, steps)
+        self._placed = np.append(self._grid.ends, self._grid.points)
+        self._beside = np.append(self._grid.ends + np.tile([1, -1], len(problem.delays)), self._grid.points)
+        self.now = np.zeros_like(self._grid.start_velocity)
+        self._past, self._before = self.now, np.zeros(problem.points)
         self._open = problem.gaps > 0
         self._pushed = np.zeros((LATE, len(problem.gaps)))
-        self._steps = 0
         self.changes: list[tuple[int, str, int]] = []
         self.missed = 0.0
 
-    def displacements(self, places: NDArray[np.int_]) -> Array:
-        """Those of some places in all bars and, after these, all points."""
-        return np.asarray(np.append(self._bars, self._now)[places])
-
-    @property
-    def largest(self) -> float:
-        """The largest displacement."""
-        return max(float(np.max(np.abs(self._now))), float(np.max(np.abs(self._bars))))
-
     def advance(self) -> None:
-        """One step: points, then bars."""
-        h, free, step = self._h, self._free, self._steps
-        after = self._moved[step + 1].copy()
-        held = np.where(self._problem.is_free, 0.0, after)
-        if step == 0:  # mean velocities that balance momentum from 0 to h
-            inverse = np.asarray(h * self._inverse_start)
-            right = self._momentum + self._moved[1] / h - self._start @ held / h
+        """One step."""
+        points = self._points
+        if self._step == 0:
+            after, yields = points.first.copy(), points.first_yields
+            self.now = self._h * self._grid.start_velocity
         else:
-            inverse = np.asarray(self._inverse)
-            right = self._pulls @ self._bars[self._beside] + self._strained
-            right += (self._moved[step + 1] - self._moved[step - 1]) / (2 * h)
-            right += self._here @ self._now - self._behind @ self._before - self._ahead @ held
-        self._steps += 1
-        after[free] = inverse @ right[free]
-        self._before, self._now = self._now, self._kept_apart(after, inverse)
-        bars = self._first.copy()
-        if step > 0:
-            bars[1:-1] = self._bars[2:] + self._bars[:-2] - self._bars_before[1:-1]
-        bars[self._ends] = self._problem.end_ratios * self._now[self._problem.end_points]
-        self._bars_before, self._bars = self._bars, bars
+            after, yields = points.near @ self.now[self._beside] - points.past @ self._before, points.yields
+            after += points.loads[self._step]
+            self._before = self.now[self._grid.points]
+            following = np.append(self.now[1:], 0.0) + np.append(0.0, self.now[:-1]) - self._past
+            self._past, self.now = self.now, following
+        self._step += 1
+        self.now[self._placed] = self._grid.spread @ self._kept_apart(after, yields)
 
-    def _kept_apart(self, after: Array, inverse: Array) -> Array:
+    def _kept_apart(self, after: Array, moved: Array) -> Array:
         """Displacements with what contacts push: as little as keeps every gap from being negative."""
-        problem, parting = self._problem, self._problem.parting[:, self._free]
+        problem, parting = self._problem, self._problem.parting
         if not len(problem.gaps):
             return after
-        gaps = problem.gaps + problem.parting @ after
+        gaps = problem.gaps + parting @ after
         length, force = problem.worth
         pushes = np.zeros(len(gaps))
-        yields = parting @ inverse @ parting.T
+        yields = parting @ moved @ parting.T
         pushing = np.zeros(len(gaps), dtype=bool)
         while len(wrong := np.flatnonzero(np.where(pushing, pushes < 0, gaps + yields @ pushes < -_ROUNDED * length))):
             pushing[wrong[0]] ^= True  # the first of all: this comes to an end
             pushes = np.zeros(len(gaps))
             pushes[pushing] = np.linalg.solve(yields[np.ix_(pushing, pushing)], -gaps[pushing])
-        after[self._free] += inverse @ parting.T @ pushes
+        after += moved @ parting.T @ pushes
         gaps += yields @ pushes
         for contact in np.flatnonzero(np.where(self._open, pushes > _TOLD * force, gaps > _TOLD * length)).tolist():
             self._open[contact] ^= True
             self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
-            self.changes.append((contact, "opens" if self._open[contact] else "closes", self._steps))
-        self._pushed[self._steps % LATE] = pushes
+            self.changes.append((contact, "opens" if self._open[contact] else "closes", self._step))
+        self._pushed[self._step % LATE] = pushes
         return after
 
 
