@@ -32,7 +32,7 @@ class _SceneOrId(SceneParameter):
 @click.option(
     "--published", is_flag=True, is_eager=True, help="A verdict on every formula of the paper, or on each ID, instead."
 )
-@click.option("--derived", is_flag=True, help="The derivation proved, and its tables by other routes, instead.")
+@click.option("--derived", is_flag=True, help="The derivation proved, and its tables by another route, instead.")
 @click.option("--format", type=click.Choice(FORMATS), help="With --published.  [default: text]")
 @click.option("--reproduce", is_flag=True, help="With --published: a scene that shows each counterexample.")
 @click.option("--evaluator", type=click.Choice(EVALUATORS), help="This program alone.  [default: all programs]")
