@@ -43,7 +43,9 @@ EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "example
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "exact", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
-LONG = re.compile(r"wavesym (chart|verify|plot --published|generate \S+ --target)\b")  # seconds and more
+LONG = re.compile(
+    r"(sed \S+1e4\S+ .*)?wavesym (chart|verify|plot --published|plot \S+ --kind xt|generate \S+ --target|inspect -)"
+)  # seconds and more; what is only inspected on standard input is far too long a scene
 ELSEWHERE = re.compile(r"wavesym stability\b")  # minutes: slow tests in tests/lab draw the same curves
 COMPILED = "wavesym.model("  # of a block of Python: it waits for a compiler
 SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with, but for these two endings
@@ -149,7 +151,8 @@ class Reader:
             assert_made(words[1:])
             return None
         if ELSEWHERE.match(line) or (LONG.match(line) and not self.patience):
-            assert_spelt(words[: words.index("|")] if "|" in words else words)
+            ours = words[words.index("wavesym") :]
+            assert_spelt(ours[: ours.index("|")] if "|" in ours else ours)
             self.unread = True
             return UNREAD
         told = words[-3:] == TELLING

@@ -312,6 +312,7 @@ output = { until = 7500, tolerance = "1e-4", strain = [0], displacement = [2] }
 """
 
 
+@pytest.mark.slow
 def test_run_says_that_values_are_of_modes_and_how_good(tmp_path, capsys):
     record = tmp_path / "record.csv"
     record.write_text("a\n" + "".join(f"{float(a)}\n" for a in oscillators.el_centro()[1:]))

@@ -154,6 +154,7 @@ def chain_of(m):
     return wavesym.Scene(name="cone", system=system, output={"until": 10, "strain": ["3+", 4, "5-"]})
 
 
+@pytest.mark.slow
 def test_what_is_outside_the_light_cone_is_not_modelled():
     """1000 rods, watched near one end until tau = 10, make the same files as 16."""
     for kind in ("auto", "closed"):

@@ -72,6 +72,7 @@ def test_all_is_well(scene):
     assert all(compared(scene, truth))
 
 
+@pytest.mark.slow
 def test_of_a_long_horizon_the_beginning_is_compared(monkeypatch):
     """The code is that of the whole horizon; and the displacement goes on to grow, so that its bound is large here."""
     monkeypatch.setattr(reference, "_QUICK", 200_000)
@@ -89,6 +90,7 @@ def test_of_a_long_horizon_the_beginning_is_compared(monkeypatch):
     assert not all(compared(scene, replace(truth, outputs=(halved, *truth.outputs[1:]))))
 
 
+@pytest.mark.slow
 def test_beyond_that_an_integration_looks(monkeypatch):
     """A program that is wrong after the beginning only."""
     monkeypatch.setattr(reference, "_QUICK", 200_000)
@@ -117,10 +119,12 @@ def changed_files(monkeypatch, change):
 @pytest.mark.parametrize(
     ("file", "right", "wrong"),
     [
-        ("closed.c", "sum += polynomial", "sum -= polynomial"),
+        pytest.param("closed.c", "sum += polynomial", "sum -= polynomial", marks=pytest.mark.slow),
         ("closed.py", "row[late] += polynomial", "row[late] -= polynomial"),
         ("pieces.c", "tau - centre[piece]", "tau + centre[piece]"),
-        ("pieces.py", "powers[:, 1:] + powers[:, :1]", "powers[:, 1:] - powers[:, :1]"),
+        pytest.param(
+            "pieces.py", "powers[:, 1:] + powers[:, :1]", "powers[:, 1:] - powers[:, :1]", marks=pytest.mark.slow
+        ),
         pytest.param("march.c", "sum += gain[k] * arrived", "sum -= gain[k] * arrived", marks=pytest.mark.slow),
         pytest.param("march.py", "total += self.gain[k]", "total -= self.gain[k]", marks=pytest.mark.slow),
     ],

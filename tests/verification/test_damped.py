@@ -43,7 +43,7 @@ def test_damped_scenes_are_verified():
     assert "finite elements" in text
 
 
-@pytest.mark.parametrize("language", ["py", "c"])
+@pytest.mark.parametrize("language", [pytest.param("py", marks=pytest.mark.slow), "c"])
 def test_other_damping_is_seen(language, monkeypatch):
     """In C and in NumPy, each alone."""
     right, make = programs.files, programs.make

@@ -115,6 +115,7 @@ def softened(network: Network) -> Network:
     return replace(network, links=tuple(replace(link, damping=fmpq(0)) for link in network.links))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "fault", [squared, pytest.param(swapped, marks=pytest.mark.slow), pytest.param(softened, marks=pytest.mark.slow)]
 )

@@ -206,6 +206,7 @@ def sticking(network: Network) -> Network:
 SLOW = [pytest.param(fault, marks=pytest.mark.slow) for fault in (swapped, wider, sticking)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", [squared, *SLOW])
 def test_faults_of_a_network_with_contacts_are_found(
     fault: Callable[[Network], Network], monkeypatch: pytest.MonkeyPatch

@@ -80,6 +80,7 @@ def test_an_output_that_is_0_throughout():
     assert float(integration[1]["at 4N"]) > 0
 
 
+@pytest.mark.slow
 def test_where_all_programs_refuse_run_is_verified():
     text, passed = verify(drive(tolerance="1e-17"))
     assert passed

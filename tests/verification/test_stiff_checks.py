@@ -28,6 +28,7 @@ def test_balances_of_a_stiff_spring_are_sharp() -> None:
         assert float(outcome.cells["allowed"]) < 1e-11
 
 
+@pytest.mark.slow
 def test_panels_on_which_springs_swing_far_tell_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(balances, "_SWING", 1e9)
     assert any(float(outcome.cells["allowed"]) > 1e-7 for outcome in invariants(made(10**5)))
