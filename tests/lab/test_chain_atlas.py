@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import expm
 
 from wavesym.exact.contacts.events import events
-from wavesym.lab.atlas import contacts, dashpots, lengths, refusals, stiffness
+from wavesym.lab.atlas import chains, evaluators
 from wavesym.lab.atlas.attempts import ROUNDED
 from wavesym.lab.atlas.scenes import TOLERANCE
 from wavesym.programs.making import make
@@ -31,17 +31,19 @@ def served(family, curve="pieces"):
 def test_knots_are_the_ways_back_and_forth(gap):
     """The middle mass is met at 0, when all begins, and at 1 + 2 i + 2 j (1 + gap)."""
     ways = {1 + 2 * i + 2 * j * (1 + gap) for i in range(10) for j in range(10)}
-    model = lower(lengths.scene(gap))
-    assert lengths.most_knots(model) == 1 + sum(way <= lengths.UNTIL for way in ways)
+    model = lower(evaluators.nearly_equal(gap))
+    assert evaluators.most_knots(model) == 1 + sum(way <= evaluators.LENGTHS_UNTIL for way in ways)
 
 
 def test_steps_of_a_common_grid():
-    counts = [lengths.steps(lower(lengths.scene(Fraction(gap)))) for gap in ("1", "1/2", "1/1000", "0")]
+    counts = [
+        evaluators.common_steps(lower(evaluators.nearly_equal(Fraction(gap)))) for gap in ("1", "1/2", "1/1000", "0")
+    ]
     assert counts == [20, 40, 20_000, 20]
 
 
 def test_lengths():
-    family = lengths.family(quietly, gaps=[Fraction(1, 2), Fraction(0)])
+    family = evaluators.lengths(quietly, gaps=[Fraction(1, 2), Fraction(0)])
     assert len(served(family)) == 2
 
 
@@ -56,12 +58,12 @@ def test_a_spring_swings_as_it_should(ratio):
     taus = np.linspace(0.1, 1.9, 7)
     begin = np.array([0, 0, 0, 0, 1.0])
     truth = np.array([(expm(matrix * tau) @ begin)[:2] for tau in taus]).T
-    program = make(lower(stiffness.scene(ratio)), Request(evaluator="pieces"))
+    program = make(lower(evaluators.sprung(ratio)), Request(evaluator="pieces"))
     np.testing.assert_allclose(program.evaluate(taus)[1:], truth, rtol=0, atol=3e-10)
 
 
 def test_stiffness():
-    family = stiffness.family(quietly, exponents=(-6, 0, 3))
+    family = evaluators.stiffness(quietly, exponents=(-6, 0, 3))
     assert len(served(family)) == 3
 
 
@@ -69,43 +71,43 @@ def test_stiffness():
 def test_echoes_are_powers_of_the_reflection(gap):
     """Each to a bit or two of its own size, however small it is beside the pulse."""
     rho = gap / (2 + gap)
-    for echo, power in zip(dashpots.echoes(1 + gap), (1, 2), strict=True):
+    for echo, power in zip(evaluators.echoes(1 + gap), (1, 2), strict=True):
         assert echo == pytest.approx(float(abs(rho) ** power), rel=2.0**-51, abs=0)
 
 
 def test_dashpots():
-    family = dashpots.family(quietly, gaps=[Fraction(1, 10**6), Fraction(0)])
+    family = evaluators.dashpots(quietly, gaps=[Fraction(1, 10**6), Fraction(0)])
     assert len(served(family)) == 4
     assert [point.error for point in family.points if "echo" in point.curve and point.x == 0] == [0] * 4
 
 
 def test_a_dropped_bar_meets_the_ground_when_it_should():
     """In its own frame: gap 1/2, acceleration 1/9, so 3; a wave there and back, 2; free, a whole period is 16."""
-    found = events(lower(contacts.dropped(40)))
+    found = events(lower(chains.dropped(40)))
     instants = [3, 5, 11, 13]
     assert [event.double for event in found] == [at + 16 * k for k in range(3) for at in instants if at + 16 * k <= 40]
-    assert contacts.widths(found) == [0.0] * len(found)
+    assert chains.widths(found) == [0.0] * len(found)
 
 
 def test_contacts():
-    family = contacts.family(quietly, {"wagons": contacts.wagons(12)})
-    widths, radii = (family.curve("wagons", name) for name in (contacts.WIDTH, contacts.RADIUS))
+    family = chains.contacts(quietly, {"wagons": chains.wagons(12)})
+    widths, radii = (family.curve("wagons", name) for name in (chains.WIDTH, chains.RADIUS))
     assert [point.error for point in widths[:2]] == [0, pytest.approx(2.0**-254)]
     assert max(point.error for point in widths) < 2.0**-220
     assert 0 < radii[1].error < 2.0**-370 < radii[-1].error < 2.0**-220
-    kept = served(family, contacts.PIECES)
+    kept = served(family, chains.PIECES)
     assert len(kept) == len(widths) > 8
     assert [point.error for point in kept] == sorted(point.error for point in kept)
 
 
 def test_every_refusal_has_its_reason():
-    panels = {name: (scene, places[:2]) for name, (scene, places) in refusals.PANELS.items()}
-    family = refusals.family(quietly, panels)
+    panels = {name: (scene, places[:2]) for name, (scene, places) in chains.REFUSALS.items()}
+    family = chains.refusals(quietly, panels)
     assert len(served(family)) == 8
     assert all(math.isnan(point.error) <= bool(point.refused) for point in family.points)
 
 
 def test_knots_without_end_are_refused_in_no_time():
-    scene, places = refusals.PANELS["horizon, lengths 1, 1.414213562 and 1.732050808"]
-    family = refusals.family(quietly, {"horizon": (scene, places[-1:])})
+    scene, places = chains.REFUSALS["horizon, lengths 1, 1.414213562 and 1.732050808"]
+    family = chains.refusals(quietly, {"horizon": (scene, places[-1:])})
     assert "fronts meet joints" in family.curve("horizon", "pieces")[0].refused

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from wavesym.exact.reference import Reference
-from wavesym.lab.atlas import damping, mode_counts, shaken, spacings
+from wavesym.lab.atlas import modal
 from wavesym.lab.atlas.attempts import ROUNDED
 from wavesym.lab.stability import FAMILIES
 from wavesym.scene import lower
@@ -41,23 +41,23 @@ def check_counts(family, within):
 
 
 def test_the_number_of_modes():
-    check_counts(mode_counts.family(quietly, spacings=[Fraction(5, 2)], digits=(1, 3, 4, 5)), within=0.1)
+    check_counts(modal.mode_counts(quietly, spacings=[Fraction(5, 2)], digits=(1, 3, 4, 5)), within=0.1)
 
 
 @pytest.mark.slow
 def test_the_number_of_modes_as_drawn():
-    check_counts(mode_counts.family(quietly), within=0.1)
+    check_counts(modal.mode_counts(quietly), within=0.1)
 
 
 def test_a_bound_that_is_too_small_is_seen(monkeypatch):
-    honest = shaken.of_modes
+    honest = modal.by_modes
 
     def boasting(model, taus):
         form, values = honest(model, taus)
         return replace(form, outputs=tuple(replace(one, bound=one.bound / 10**4) for one in form.outputs)), values
 
-    monkeypatch.setattr(shaken, "of_modes", boasting)
-    family = mode_counts.family(quietly, spacings=[Fraction(5, 2)], digits=(1, 3))
+    monkeypatch.setattr(modal, "by_modes", boasting)
+    family = modal.mode_counts(quietly, spacings=[Fraction(5, 2)], digits=(1, 3))
     assert broken_promises(family) == list(family.points)
 
 
@@ -66,9 +66,7 @@ def test_a_bound_that_is_too_small_is_seen(monkeypatch):
 
 def check_damping(family):
     for panel in family.panels:
-        modes, elements, doubt = (
-            family.curve(panel, name) for name in (damping.MODES, damping.ELEMENTS, damping.DOUBT)
-        )
+        modes, elements, doubt = (family.curve(panel, name) for name in (modal.MODES, modal.ELEMENTS, modal.DOUBT))
         for ours, theirs, unsure in zip(modes, elements, doubt, strict=True):
             assert ours.error <= ours.bound + unsure.error
             assert unsure.error < theirs.error
@@ -77,14 +75,14 @@ def check_damping(family):
 
 @pytest.mark.slow
 def test_damping_as_drawn():
-    check_damping(damping.family(quietly))
+    check_damping(modal.damping(quietly))
 
 
-def of_elements(ratio, panel=damping.ALL):
-    scene = shaken.scene(
-        damping.SPACING, damping.SAMPLES, damping.TOLERANCE, damping.damping(panel, ratio), drift=[1], relative=[2]
+def of_elements(ratio, panel=modal.ALL):
+    scene = modal.shaken(
+        modal.SPACING, modal.SAMPLES, modal.TOLERANCE, modal.damping_of(panel, ratio), drift=[1], relative=[2]
     )
-    return lower(scene), damping.extrapolated(lower(scene))
+    return lower(scene), modal.extrapolated(lower(scene))
 
 
 def test_what_is_extrapolated_is_right_within_its_own_curve():
@@ -92,16 +90,16 @@ def test_what_is_extrapolated_is_right_within_its_own_curve():
     model, found = of_elements(Fraction(0))
     right = np.array(Reference(model).values(found.taus.tolist()))
     sizes = np.abs(right).max(axis=1)
-    assert shaken.worst(found.limit, right, sizes) <= shaken.worst(found.coarser, found.limit, sizes)
+    assert modal.largest_error(found.limit, right, sizes) <= modal.largest_error(found.coarser, found.limit, sizes)
 
 
-@pytest.mark.parametrize("panel", damping.PANELS)
+@pytest.mark.parametrize("panel", modal.PANELS)
 def test_a_ratio_that_is_off_is_seen(panel):
     """By one part in 1000, far above what modes and elements differ by."""
     _, found = of_elements(Fraction(1, 20), panel)
     model, _ = of_elements(Fraction(1001, 20_000), panel)
-    form, values = shaken.of_modes(model, found.taus)
-    assert shaken.worst(values, found.limit, np.abs(found.limit).max(axis=1)) > 20 * form.error_bound
+    form, values = modal.by_modes(model, found.taus)
+    assert modal.largest_error(values, found.limit, np.abs(found.limit).max(axis=1)) > 20 * form.error_bound
 
 
 # against the spacing of a record
@@ -118,14 +116,14 @@ def check_spacings(family):
 
 @pytest.mark.slow
 def test_spacings_as_drawn():
-    family = spacings.family(quietly)
+    family = modal.spacings(quietly)
     check_spacings(family)
     assert "fractional parts" in family.curve("", "march")[-1].refused
 
 
 def test_so_many_samples_are_a_whole_number_of_rods():
-    parts = [spacings.spacing(q) for q in spacings.PARTS]
-    assert [spacing.denominator for spacing in parts] == list(spacings.PARTS)
+    parts = [modal.spacing(q) for q in modal.PARTS]
+    assert [spacing.denominator for spacing in parts] == list(modal.PARTS)
     assert Fraction("4.995") in parts
 
 

@@ -54,9 +54,9 @@ SCENES = {
 @cache
 def truth(name):
     """Samples away from fronts, and the outputs there as parts of their largest value."""
-    armethods = np.array(Reference(lower(SCENES[name])).breakpoints())
+    arrivals = np.array(Reference(lower(SCENES[name])).breakpoints())
     taus = np.linspace(0, 5.9, 591)  # at 6 a wave may arrive
-    taus = taus[np.min(np.abs(taus[:, np.newaxis] - armethods), axis=1) > 0.08]
+    taus = taus[np.min(np.abs(taus[:, np.newaxis] - arrivals), axis=1) > 0.08]
     values = evaluator(SCENES[name])(taus)
     return taus, values, np.max(np.abs(values), axis=1, keepdims=True)
 

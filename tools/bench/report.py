@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 
 from tools.bench import many_sets, panels, parameters, recorded, streamed, swept
+from tools.bench.commands import ran
 from tools.bench.equal_degree import Fitted, at_degree, fitted, ratios
 from tools.bench.harness import CALLS, EVERY, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.floor import floor
-from wavesym.lab.timing import least, medians, ran
+from wavesym.lab.timing import least, medians
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import choose
 from wavesym.programs.making import make

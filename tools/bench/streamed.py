@@ -10,9 +10,10 @@ from time import perf_counter
 
 import numpy as np
 
+from tools.bench.commands import ran
 from tools.bench.harness import EVERY, chosen_compiler, compilers
 from wavesym.lab.stream import stream
-from wavesym.lab.timing import medians, ran
+from wavesym.lab.timing import medians
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program

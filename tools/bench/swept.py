@@ -20,8 +20,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tools.bench.commands import ran
 from tools.bench.many_sets import FIRST, LAST, MANY, SETS
-from wavesym.lab.timing import medians, ran
+from wavesym.lab.timing import medians
 from wavesym.scene import Scene
 from wavesym.sweeps import recorded
 from wavesym.sweeps.batches import batches

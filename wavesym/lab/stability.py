@@ -6,47 +6,30 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
-from wavesym.lab.atlas import (
-    contacts,
-    damping,
-    dashpots,
-    endurance,
-    extremes,
-    fronts,
-    gaps,
-    lengths,
-    limits,
-    mode_counts,
-    reflections,
-    refusals,
-    runtime,
-    spacings,
-    stiffness,
-)
+from wavesym.lab.atlas import chains, evaluators, modal, other_methods, runtime
 from wavesym.lab.atlas.drawing import draw
 from wavesym.lab.atlas.family import CurveFamily, Progress, to_csv
 from wavesym.pictures.saving import save
 from wavesym.writing import write_whole
 
 FAMILIES: Mapping[str, Callable[[Progress], CurveFamily]] = {
-    "reflections": reflections.family,
-    "gaps": gaps.family,
-    "kappa": extremes.family,
-    "springs": limits.family,
-    "fronts": fronts.family,
-    "lengths": lengths.family,
-    "stiffness": stiffness.family,
-    "dashpots": dashpots.family,
-    "contacts": contacts.family,
-    "refusals": refusals.family,
-    "modes": mode_counts.family,
-    "damping": damping.family,
-    "spacings": spacings.family,
+    "reflections": evaluators.reflections,
+    "gaps": evaluators.gaps,
+    "kappa": evaluators.kappa,
+    "springs": other_methods.springs,
+    "fronts": other_methods.fronts,
+    "lengths": evaluators.lengths,
+    "stiffness": evaluators.stiffness,
+    "dashpots": evaluators.dashpots,
+    "contacts": chains.contacts,
+    "refusals": chains.refusals,
+    "modes": modal.mode_counts,
+    "damping": modal.damping,
+    "spacings": modal.spacings,
     "runtime_kappa": runtime.by_kappa,
     "runtime_reflections": runtime.by_reflections,
-    "march": endurance.family,
 }
-"""By name, the one that takes longest last."""
+"""The families by name."""
 
 
 def atlas(directory: Path, progress: Progress = lambda _: None) -> list[Path]:
@@ -56,7 +39,7 @@ def atlas(directory: Path, progress: Progress = lambda _: None) -> list[Path]:
     """
     written = []
     for number, (name, make) in enumerate(FAMILIES.items(), 1):
-        family = make(partial(_told, progress, number))
+        family = make(partial(_report, progress, number))
         picture, table = directory / f"{name}.svg", directory / f"{name}.csv"
         write_whole({table: to_csv(family)})
         save(draw(family), picture)
@@ -64,5 +47,5 @@ def atlas(directory: Path, progress: Progress = lambda _: None) -> list[Path]:
     return written
 
 
-def _told(progress: Progress, number: int, step: str) -> None:
+def _report(progress: Progress, number: int, step: str) -> None:
     progress(f"{step}, family {number} of {len(FAMILIES)}")

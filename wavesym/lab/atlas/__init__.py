@@ -1,1 +1,1 @@
-"""The atlas of where methods fail: each family of curves in a file of its own, what they share in the others."""
+"""The atlas of where methods fail: families of curves, and what they share."""

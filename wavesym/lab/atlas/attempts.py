@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,11 +68,6 @@ def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:
     where = sorted(tau for tau in taus if 0.0 <= tau <= until)
     sizes = [midpoint(size) or 1.0 for size in reference.largest()]
     return Truth(model, np.array(where), np.array(reference.values(where)), np.array(sizes), np.array(arrivals))
-
-
-def attempts(known: Truth, names: Sequence[str] = EVALUATORS) -> Iterator[Attempt]:
-    """Each evaluator at the truth's taus."""
-    return (attempt(known, name) for name in names)
 
 
 def attempt(known: Truth, name: str) -> Attempt:

@@ -22,17 +22,17 @@ def drive(kappa: Sequence[Fraction], inertia: Sequence[Fraction | int], until: i
     """A drive that a unit moment on its first body sets in motion; the strain in the middle of shaft 1 is watched."""
     system = {"type": "drive", "m": len(kappa), "kappa": list(kappa), "inertia": list(inertia)}
     load = [{"body": 1, "times": [0], "steps": [1]}]
-    return made(system, load, until, **(outputs or {"strain": ["1/2"]}))
+    return atlas_scene(system, load, until, **(outputs or {"strain": ["1/2"]}))
 
 
 def chain(parts: Sequence[Any], until: Fraction | int, **outputs: Any) -> Scene:
     """A chain on whose first part, a node with the name "first", a unit force acts from tau = 0 on."""
-    return made(
+    return atlas_scene(
         {"type": "chain", "parts": list(parts)}, [{"at": "first", "times": [0], "steps": [1]}], until, **outputs
     )
 
 
-def made(system: dict[str, Any], load: Sequence[dict[str, Any]], until: Fraction | int, **outputs: Any) -> Scene:
+def atlas_scene(system: dict[str, Any], load: Sequence[dict[str, Any]], until: Fraction | int, **outputs: Any) -> Scene:
     """A scene with the atlas's tolerance."""
     output = {"until": until, "tolerance": TOLERANCE, **outputs}
     return Scene.model_validate({"name": "atlas", "system": system, "load": list(load), "output": output})

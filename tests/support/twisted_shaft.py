@@ -18,7 +18,6 @@ import numpy as np
 from flint import arb, ctx
 from numpy.typing import NDArray
 
-from wavesym.lab.atlas.scenes import made
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.scene import Scene
 
@@ -34,11 +33,12 @@ _NEWTON = 40
 _BITS = 192
 
 
-def scene(kappa: Fraction, until: int) -> Scene:
+def twisted(kappa: Fraction, until: int) -> Scene:
     """The drive, with the strain at 1/4 and the velocity of the first disc as outputs."""
     system = {"type": "drive", "m": 1, "kappa": [kappa], "inertia": [1, 1]}
     moments = [{"body": body, "times": [0, LASTS], "steps": [1, -1]} for body in (1, 2)]
-    return made(system, moments, until, strain=[STRAIN_AT], velocity=[0])
+    output = {"until": until, "tolerance": Fraction(1, 10**10), "strain": [STRAIN_AT], "velocity": [0]}
+    return Scene.model_validate({"name": "twisted", "system": system, "load": moments, "output": output})
 
 
 def calm(windows: Sequence[int]) -> Array:
@@ -46,7 +46,7 @@ def calm(windows: Sequence[int]) -> Array:
     return np.array([n + (2 * j + 1) / 16 for n in windows for j in range(8)])
 
 
-def truth(kappa: Fraction, taus: Array) -> Array:
+def modal_sum(kappa: Fraction, taus: Array) -> Array:
     """Both outputs at multiples of 1/32 later than 1/2: shape (2, n)."""
     return _first(kappa, taus) + _others(float(kappa), taus)
 

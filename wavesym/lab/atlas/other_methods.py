@@ -1,6 +1,7 @@
-"""The limit kappa -> 0 against the chain of masses and springs: how fast the waves die out, if they do.
+"""Families of curves: other methods at fronts, and the chain of masses and springs that waves become.
 
-Seen at fixed sqrt(kappa) tau, the slow time of the springs. The march computes the waves.
+Most methods converge away from fronts and never at one. As kappa goes to 0 waves die out, if they do: seen at fixed
+sqrt(kappa) tau, the slow time of the springs. The march computes the waves.
 """
 
 from __future__ import annotations
@@ -13,12 +14,67 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from wavesym.lab.atlas.attempts import Truth, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
-from wavesym.lab.atlas.scenes import made
-from wavesym.methods.advice import springs
+from wavesym.lab.atlas.scenes import atlas_scene
+from wavesym.methods.advice import springs as solve_springs
+from wavesym.methods.every import METHODS
+from wavesym.methods.problem import Method
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import march
 from wavesym.scene import Scene, lower
+
+AT = "at fronts: within 1/50 of an arrival"
+AWAY = "away from fronts: 1/10 or more from any arrival"
+
+_SAME, _NEAR, _FAR = 1e-6, 0.0201, 0.0999
+# so near that no grid or series here resolves it, and farther
+_DISTANCES = (1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 2e-2)
+AROUND = (*_DISTANCES, *(-distance for distance in _DISTANCES))
+# of the largest value: who is wrong by more however fine it is does not converge
+_WRONG = 0.01
+
+
+def jumping() -> Scene:
+    """A building of two storeys under a step of the base acceleration, by base force: its fronts are jumps."""
+    system = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
+    load = [{"times": [0], "a": [1], "b": [0]}]
+    return atlas_scene(system, load, 10, strain=[Fraction(1, 2), Fraction(3, 2)])
+
+
+def fronts(progress: Progress) -> CurveFamily:
+    """A curve for each method, at fronts and away from them."""
+    known = truth(jumping(), per_unit=40, around=AROUND)
+    points: list[AtlasPoint] = []
+    least: dict[str, float] = {}
+    for method in METHODS:
+        for resolution in method.resolutions:
+            progress(f"{method.name}, {resolution:g} {method.unit}")
+            at, away = errors(method, resolution, known)
+            finer = resolution / method.resolutions[0]
+            points += [AtlasPoint(AT, method.name, finer, at), AtlasPoint(AWAY, method.name, finer, away)]
+            least[method.name] = min(at, least.get(method.name, at))
+    astray = sum(error > _WRONG for error in least.values())
+    return CurveFamily(
+        "fronts",
+        f"Other methods at a front: {astray} of {len(least)} stay wrong by over {_WRONG:.0%} there, however fine",
+        Axis("how many times finer than the coarsest grid, series or steps"),
+        "largest error / largest value",
+        tuple(sorted(points, key=lambda point: point.panel != AT)),
+        least=1e-14,
+        most=1e1,
+    )
+
+
+def errors(method: Method, resolution: float, known: Truth) -> tuple[float, float]:
+    """The largest error at fronts, and away from them."""
+    found = method.prepare(method.state(known.model), resolution)(known.taus)
+    wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
+    distance = np.min(np.abs(known.taus[:, np.newaxis] - known.arrivals), axis=1)
+    # at an arrival itself either side of the jump will do
+    near = (distance > _SAME) & (distance <= _NEAR)
+    return float(np.max(wrong[near])), float(np.max(wrong[distance >= _FAR]))
+
 
 KAPPAS = tuple(Fraction(1, 10**k) for k in range(1, 6))
 # sqrt(kappa) tau at the end: about a period of the springs
@@ -60,7 +116,7 @@ SYSTEMS = (
 )
 
 
-def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS) -> CurveFamily:
+def springs(progress: Progress, kappas: Sequence[Fraction] = KAPPAS) -> CurveFamily:
     """A curve for each system, its order in its name."""
     points = []
     for system in SYSTEMS:
@@ -83,14 +139,14 @@ def difference(system: Lumped, kappa: Fraction) -> float:
     until = math.ceil(SLOW_TIME / math.sqrt(kappa))
     model = lower(_scene(system, kappa, until))
     waves = program(model, march(model))
-    taus, strains = springs(model, 0.0, until / SAMPLES)
+    taus, strains = solve_springs(model, 0.0, until / SAMPLES)
     taus, strains = taus[:-1], strains[:, :-1]  # a front may arrive at the end
     return float(np.max(np.abs(waves.evaluate(taus) - strains)) / np.max(np.abs(strains)))
 
 
 def _scene(system: Lumped, kappa: Fraction, until: int) -> Scene:
     fields = {**system.fields, "kappa": [part * kappa for part in system.proportions]}
-    return made(fields, system.load, until, strain=[Fraction(2 * rod - 1, 2) for rod in system.rods])
+    return atlas_scene(fields, system.load, until, strain=[Fraction(2 * rod - 1, 2) for rod in system.rods])
 
 
 def orders(points: Sequence[AtlasPoint]) -> dict[str, float]:
