@@ -834,6 +834,7 @@ def published(
     names: Sequence[str] = (),
     reproduce: bool = False,
     watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter,
+    only: str = "",
 ) -> tuple[str, bool]:
     """A verdict on every formula of the paper, or on some.
 
@@ -842,16 +843,17 @@ def published(
         names: ids of formulas, tables or sections; empty for all.
         reproduce: whether each counterexample comes with a scene that shows it.
         watch: goes through the records as they are judged.
+        only: a verdict ("misprint"): no other records are shown.
 
     Returns:
         The text, and whether all could be tested.
 
     Raises:
-        WavesymError: for a name that the paper does not have.
+        WavesymError: for a name that the paper does not have, and a verdict that there is not.
     """
     from wavesym.papers.published import published as report
 
-    return report(names, format, reproduce, watch)
+    return report(names, format, reproduce, watch, only)
 
 
 def advise(scene: Scene, tolerance: float = 0.01) -> Advice:

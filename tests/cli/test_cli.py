@@ -18,7 +18,7 @@ from flint import fmpq
 
 import wavesym
 from wavesym import api
-from wavesym.cli import COMMANDS, main
+from wavesym.cli import COMMANDS, GROUPS, main
 from wavesym.errors import CostError, ToleranceError
 from wavesym.programs.request import Request
 from wavesym.scene import builtin_names
@@ -105,6 +105,13 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     text = capsys.readouterr().out
     assert all(f"  {command} " in text for command in COMMANDS)
+    assert all(f"\n{group}:\n" in text for group in GROUPS)
+    assert max(map(len, text.splitlines())) <= 80
+    assert "..." not in text.partition("Commands")[2]
+    for same in ([], ["-h"]):
+        assert main(same) == 0
+        assert capsys.readouterr().out == text
+    assert main(["run", "-h"]) == 0
 
 
 def example(command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
@@ -128,7 +135,6 @@ def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> No
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        ([], "wavesym: Missing command."),
         (["bogus"], "wavesym: No such command 'bogus'."),
         (["--bogus"], "wavesym: No such option '--bogus'."),
         (["run"], "wavesym run: Missing argument 'SCENE'."),

@@ -122,3 +122,18 @@ def test_scenes_are_verified_as_ever(monkeypatch: pytest.MonkeyPatch, capsys: py
     monkeypatch.setattr("wavesym.api.verify", verify)
     assert answer(capsys, "drive_m1", "building_m2") == "errors\n"
     assert asked == ["drive_m1", "building_m2"]
+
+
+def test_only_one_verdict_is_shown_after_counts_of_all(capsys: pytest.CaptureFixture[str], judged: list[str]) -> None:
+    every = json.loads(answer(capsys, "--published", "--format", "json"))
+    wrong = [record["id"] for record in every if record["verdict"] == "misprint"]
+    right = [record["id"] for record in every if record["verdict"] == "holds"]
+    assert wrong
+    text = answer(capsys, "--published", "--only", "misprint")
+    assert text.startswith(f"{len(right):4} holds: right as printed\n{len(wrong):4} misprint: ")
+    assert all(f"\n{id}: misprint" in text for id in wrong)
+    assert not any(f"\n{id} " in text for id in right)
+    listed = json.loads(answer(capsys, "--published", "--only", "misprint", "--format", "json"))
+    assert [record["id"] for record in listed] == wrong
+    assert answer(capsys, "--published", "--only", "wrong", status=2).startswith("--only: wrong given, ")
+    assert "--only given without --published" in answer(capsys, "--only", "holds", status=2)

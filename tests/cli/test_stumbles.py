@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import wavesym
@@ -14,6 +15,7 @@ from wavesym import api
 from wavesym.cli import main
 from wavesym.results import rows
 from wavesym.scene import builtin_names, lower
+from wavesym.scene.first_scene import IN_UNITS, KINDS
 
 __all__ = ["folder"]
 
@@ -135,15 +137,31 @@ def test_a_scene_that_is_not_built_in(capsys: pytest.CaptureFixture[str]) -> Non
     assert refused(capsys, "scenes", "drive_m2").endswith('Did you mean "drive_m1"?')
 
 
-@pytest.mark.parametrize("system", ["building", "drive", "collision"])
-def test_a_scene_to_start_from_works_and_explains_every_key(system: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["init", system]) == 0
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_scene_to_start_from_works_and_is_explained(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", kind]) == 0
     text = capsys.readouterr().out
-    bare = [line.partition(" ")[0] for line in text.splitlines() if line and "#" not in line]
-    assert set(bare) <= {"[system]", "[output]", "velocity", "displacement"}  # as `strain`, which says where
+    assert all(len(line) <= 130 for line in text.splitlines())
+    assert text.startswith("# ")
+    assert text.count(" # ") >= 7
     Path("first.toml").write_text(text, encoding="utf-8")
-    assert wavesym.Scene.from_toml("first.toml").system.type == system
-    assert main(["generate", "first.toml", "--check"]) == 1  # all of it is missing, so all of it was made
+    scene = wavesym.Scene.from_toml("first.toml")
+    assert (scene.units is not None) == (kind in IN_UNITS)
+    assert np.all(np.isfinite(scene.run(samples=3).values))
+
+
+def test_a_scene_to_start_from_takes_a_record(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("quake.csv").write_text("time,acc\n0,0\n0.5,0.1\n1,-0.2\n")
+    for kind, unit in (("frame", "g"), ("wall", "g"), ("soil", "g"), ("drive", "N*m")):
+        assert main(["init", kind, "--record", "quake.csv"]) == 0
+        text = capsys.readouterr().out
+        assert f'unit = "{unit}"' in text
+        Path("first.toml").write_text(text, encoding="utf-8")
+        scene = wavesym.Scene.from_toml("first.toml")
+        assert [len(load.record.samples) for load in scene.load] == [3]
+        assert float(wavesym.evaluator(scene).tau_max * wavesym.evaluator(scene).seconds_per_tau) == pytest.approx(1)
+    assert refused(capsys, "init", "impact", "--record", "quake.csv").startswith("--record: a scene of impact takes no")
+    assert refused(capsys, "init", "frame", "--record", "none.csv").startswith("none.csv: No such file or directory")
 
 
 def test_from_python_what_is_wrong_is_told() -> None:

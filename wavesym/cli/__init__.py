@@ -18,25 +18,16 @@ import click
 from wavesym import __version__
 from wavesym.errors import WavesymError, did_you_mean, printable
 
-COMMANDS = (
-    "scenes",
-    "init",
-    "record",
-    "inspect",
-    "advise",
-    "derive",
-    "tables",
-    "generate",
-    "run",
-    "summary",
-    "spectrum",
-    "verify",
-    "plot",
-    "report",
-    "sweep",
-    "chart",
-    "stability",
-)
+GROUPS = {
+    "Start": ("init", "scenes", "record"),
+    "Compute": ("run", "summary", "spectrum", "sweep"),
+    "Show": ("plot", "report"),
+    "Generate": ("generate",),
+    "Understand": ("inspect", "advise", "derive", "tables", "verify"),
+    "Measure": ("chart", "stability"),
+}
+"""The commands as people meet them."""
+COMMANDS = tuple(command for commands in GROUPS.values() for command in commands)
 
 # matrices are small here: threads that share one wait for each other, and a command takes twice as long; and what a
 # chart compares has one thread each. NumPy reads this when it is first imported
@@ -59,6 +50,14 @@ atexit.register(gc.freeze)
 class _Commands(click.Group):
     """The commands in the order in which one meets them; NAME is the function NAME in `wavesym.cli.NAME`."""
 
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        width = max(map(len, COMMANDS))
+        for group, names in GROUPS.items():
+            commands = [(name, self.get_command(ctx, name)) for name in names]
+            with formatter.section(group):
+                rows = [(name.ljust(width), command.get_short_help_str(80)) for name, command in commands if command]
+                formatter.write_dl(rows)
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
 
@@ -78,9 +77,10 @@ class _Commands(click.Group):
             raise click.UsageError(f"{error.message} {meant}".rstrip(), ctx) from None
 
 
-@click.command(cls=_Commands, no_args_is_help=False)
+@click.command(cls=_Commands, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="wavesym", message="%(prog)s %(version)s")
-def cli() -> None:
+@click.pass_context
+def cli(context: click.Context) -> None:
     """Waves in chains of rods and rigid bodies: from a scene to exact tables, NumPy and C.
 
     SCENE is a path, - for standard input, or the name of a built-in scene.
@@ -93,6 +93,8 @@ def cli() -> None:
     Completion in bash; in zsh and fish with their names:
       eval "$(_WAVESYM_COMPLETE=bash_source wavesym)"
     """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

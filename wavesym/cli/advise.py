@@ -29,7 +29,9 @@ if TYPE_CHECKING:
     "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
 )
 def advise(scene: Scene, tolerance: float, format: str) -> None:
-    """Say which model is enough: masses on springs, rods with consistent mass, or waves.
+    """Say which model is enough: springs or waves.
+
+    Say which model is enough: masses on springs, rods with consistent mass, or waves.
 
     All three are computed over the scene's own horizon, and their outputs compared.
 

@@ -29,7 +29,9 @@ SAMPLES = 10001
     help="How many values of each output are timed.",
 )
 def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
-    """Draw speed against accuracy: every evaluator of a scene, and other methods.
+    """Draw speed against accuracy of all methods.
+
+    Draw speed against accuracy: every evaluator of a scene, and other methods.
 
     Takes some tens of seconds, and a C api. Methods that do not take the scene are left out, and said to be.
 

@@ -61,7 +61,9 @@ def system_names() -> tuple[str, ...]:
 @click.option("--walks", is_flag=True, help="Walk polynomials instead, which say why powers are as high as they are.")
 @click.option("--intervals", type=click.IntRange(1), help="With --walks: how many of every function.  [default: 4]")
 def derive(source: str | Scene, m: int | None, format: str, walks: bool, intervals: int | None) -> None:
-    """Derive boundary conditions, delay equations and coefficient recurrences.
+    """Derive the equations and their coefficients.
+
+    Derive boundary conditions, delay equations and coefficient recurrences.
 
     Of a SYSTEM (collision, drive or building) for any number m of elastic elements, with the coefficients for common
     patterns of equal parameters; of a SCENE with those for its own.

@@ -111,7 +111,9 @@ def generate(
     force: bool,
     only_check: bool,
 ) -> int:
-    """Write source files that evaluate a scene; print their paths, and on standard error why this evaluator.
+    """Write C, NumPy or an FMU that evaluates a scene.
+
+    Write source files that evaluate a scene; print their paths, and on standard error why this evaluator.
 
     \b
     Example:

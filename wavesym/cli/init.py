@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
-SYSTEMS = ["building", "drive", "collision"]
+from wavesym.cli.parameters import PATH
+
+KINDS = ("frame", "wall", "soil", "drive", "impact", "pile", "building", "collision")
+USUAL = "building"
 
 
 @click.command()
-@click.argument("system", type=click.Choice(SYSTEMS), default=SYSTEMS[0])
-def init(system: str) -> None:
-    """Print a scene to start from, with a comment on every line; building if nothing is said.
+@click.argument("kind", type=click.Choice(KINDS), default=USUAL, metavar=f"[{'|'.join(KINDS)}]")
+@click.option("--record", type=PATH, metavar="FILE", help="An AT2 or CSV file that is its load.")
+def init(kind: str, record: Path | None) -> None:
+    """Print a scene to start from, with comments.
+
+    A frame, a wall, a column of soil, a drive, an impact of bars or a pile, in SI units; or the paper's building or
+    collision, whose numbers have no units.
 
     \b
     Example:
-      wavesym init drive
+      wavesym init frame > frame.toml
     """
-    from wavesym.scene import first_text
+    from wavesym.scene.first_scene import first_text
 
-    click.echo(first_text(system), nl=False)
+    click.echo(first_text(kind, record), nl=False)

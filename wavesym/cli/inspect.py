@@ -22,7 +22,9 @@ STAGES = ["scene", "model", "laws", "table", "program"]
     "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
 )
 def inspect(scene: Scene, stage: str | None, format: str) -> None:
-    """Show what the compiler makes of a scene, stage by stage; what would be refused too, and why.
+    """Show what each stage makes of a scene.
+
+    Show what the compiler makes of a scene, stage by stage; what would be refused too, and why.
 
     \b
     Example:

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 )
 @click.option("-o", "out", type=PATH, metavar="FILE|DIR", required=True, help="The picture: .svg, .png or .pdf.")
 def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
-    """Draw the histories of a scene's outputs: what jumps is drawn as a jump. Or all of its chain.
+    """Draw the histories of a scene, or all of its chain.
+
+    Draw the histories of a scene's outputs: what jumps is drawn as a jump. Or all of its chain.
 
     A place x time diagram (xt) is for horizons in which waves can be told apart, a storey x time map for long records.
 

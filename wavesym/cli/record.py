@@ -17,7 +17,9 @@ from wavesym.cli.progress import progress
 @click.option("--column", metavar="NAME", help="Which column of a CSV, where it has more than one besides time.")
 @click.option("-o", "out", type=PATH, metavar="FILE", help="A picture of it: .svg, .png or .pdf.")
 def record(file: Path, unit: str | None, column: str | None, out: Path | None) -> None:
-    """Say what a file of a record holds, AT2 or CSV: samples, spacing, duration, peak and when, unit; and draw it.
+    """Say what a record of AT2 or CSV holds, and draw it.
+
+    Say what a file of a record holds, AT2 or CSV: samples, spacing, duration, peak and when, unit; and draw it.
 
     \b
     Example:

@@ -31,7 +31,9 @@ class _Source(click.ParamType[Any]):
 @click.argument("scene", type=_Source())
 @click.option("-o", "out", type=PATH, metavar="FILE.html", required=True, help="The page.")
 def report(scene: Scene | Path, out: Path) -> None:
-    """Write one page of HTML about a scene: the structure, histories, extremes, and how well all of it is known.
+    """Write one page of HTML about a scene or a sweep.
+
+    Write one page of HTML about a scene: the structure, histories, extremes, and how well all of it is known.
 
     Of the folder of a sweep it has the worst cases and their scenes, a map, and a table. It needs no network, and is
     complete without script.

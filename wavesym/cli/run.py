@@ -36,7 +36,9 @@ _DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
 )
 @click.option("-o", "out", type=PATH, metavar="OUT.csv", help="Where the values go.  [default: standard output]")
 def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) -> None:
-    """Print the outputs of a scene as CSV, right to the last bit where that takes no minutes.
+    """Print the histories of the outputs as CSV.
+
+    Print the outputs of a scene as CSV, right to the last bit where that takes no minutes.
 
     Else they are those of a program, which standard error names with its bound. With [units] in the scene it speaks
     seconds.

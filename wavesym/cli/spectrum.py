@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 )
 @click.option("-o", "out", type=PATH, metavar="FILE", help="A picture, too: .svg, .png or .pdf.")
 def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
-    """Print the response spectra of the outputs of quantity acceleration, as CSV: pseudo-accelerations over the period.
+    """Print response spectra of accelerations as CSV.
+
+    Print the response spectra of the outputs of quantity acceleration, as CSV: pseudo-accelerations over the period.
 
     \b
     Example:

@@ -14,7 +14,9 @@ from wavesym.cli.progress import progress
 @click.command()
 @click.option("-o", "directory", type=PATH, metavar="DIR", required=True, help="Where the pictures and tables go.")
 def stability(directory: Path) -> None:
-    """Run and draw where methods fail: error against reflections, gaps of rates, kappa, and at fronts.
+    """Draw where methods fail.
+
+    Error against reflections, gaps of rates, kappa, and at fronts.
 
     Of chains that are written out: lengths that are nearly equal, springs from soft to stiff, dashpots near the
     impedance, contacts after many events, and where each program refuses.

@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
 )
 def summary(scene: Scene, at_samples: bool, format: str) -> None:
-    """Tell of each output the least and the greatest value and when it has them, and when it first moves.
+    """Print the extremes of each output, and when.
+
+    Tell of each output the least and the greatest value and when it has them, and when it first moves.
 
     \b
     Example:

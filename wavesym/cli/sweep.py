@@ -30,7 +30,9 @@ def sweep(
     format: str,
     table: Path | None,
 ) -> int:
-    """Compute many scenes that differ in a few fields or in their record.
+    """Compute many scenes that differ in some fields.
+
+    Compute many scenes that differ in a few fields or in their record.
 
     SWEEP is a file that says which, or with --status and --table the folder of its results. What is done stays done:
     the same command goes on where it was, whatever ended it.

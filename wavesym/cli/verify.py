@@ -35,6 +35,7 @@ class _SceneOrId(SceneParameter):
 @click.option("--derived", is_flag=True, help="The derivation proved, and its tables by another route, instead.")
 @click.option("--format", type=click.Choice(FORMATS), help="With --published.  [default: text]")
 @click.option("--reproduce", is_flag=True, help="With --published: a scene that shows each counterexample.")
+@click.option("--only", metavar="VERDICT", help="With --published: records of this verdict, after counts of all.")
 @click.option("--evaluator", type=click.Choice(EVALUATORS), help="This program alone.  [default: all programs]")
 @click.option("--precision", type=click.Choice(PRECISIONS), help="Programs of this precision alone.")
 @click.option("--runtime", metavar="LIST", help="The program that takes these parameters when it runs, alone.")
@@ -45,12 +46,15 @@ def verify(
     derived: bool,
     format: str | None,
     reproduce: bool,
+    only: str | None,
     evaluator: str | None,
     precision: str | None,
     runtime: str | None,
     stream: bool,
 ) -> int:
-    """Check programs against integration and invariants; exit 1 where one is wrong, or an output is not seen.
+    """Check programs, or the paper's formulas.
+
+    Check programs against integration and invariants; exit 1 where one is wrong, or an output is not seen.
 
     Without SCENE, all built-in scenes; without options every program that serves a scene. With --published, exit 1 only
     where a formula could not be tested. ID is a formula, a table or a section: 4.12, T3, III.14, text.22, "section 2".
@@ -61,7 +65,7 @@ def verify(
     """
     if published + derived + (bool(asked) and not published) > 1:
         raise click.UsageError("more than one of SCENE, --published and --derived given, at most one expected")
-    for option in ("--format" if format else "", "--reproduce" if reproduce else ""):
+    for option in ("--format" if format else "", "--reproduce" if reproduce else "", "--only" if only else ""):
         if option and not published:
             raise click.UsageError(f"{option} given without --published; it is for --published only")
     options = {"evaluator": evaluator, "precision": precision, "runtime": runtime, "stream": stream or None}
@@ -74,7 +78,7 @@ def verify(
         if published:
             names = [name for name in asked if isinstance(name, str)]
             text, passed = api.published(
-                format or "text", names, reproduce, lambda entries: line.each(entries, attrgetter("id"))
+                format or "text", names, reproduce, lambda entries: line.each(entries, attrgetter("id")), only or ""
             )
         elif derived:
             text, passed = api.derived(lambda systems: line.each(systems, attrgetter("name")))

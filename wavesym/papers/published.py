@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from wavesym.papers.asked import asked
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.pages import as_json, html, latex, markdown, text
 from wavesym.papers.pages.findings import Findings
 from wavesym.papers.pielorz1979 import paper, particulars
+from wavesym.papers.record import VERDICTS
+from wavesym.programs.request import refuse_unknown
 
 _PAGES: Mapping[str, Callable[[Findings], str]] = {
     "text": text.page,
@@ -25,13 +28,24 @@ def published(
     format: str,
     reproduce: bool = False,
     watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter,
+    only: str = "",
 ) -> tuple[str, bool]:
     """The verdicts as a page, and whether everything could be tested.
 
-    `names` are ids of records or groups, none for the whole paper; WavesymError for one that there is not. `watch`
-    goes through the records as they are judged.
+    Args:
+        names: ids of records or groups, none for the whole paper.
+        format: one of FORMATS.
+        reproduce: whether counterexamples come with a scene.
+        watch: goes through the records as they are judged.
+        only: a verdict: no other records are shown; as text after the counts of all.
+
+    Raises:
+        WavesymError: for a name, or a verdict, that there is not.
     """
+    if only:
+        refuse_unknown("--only", only, VERDICTS)
     wanted = asked(paper.paper().entries(), names) if names else None
-    passages = () if names else paper.paper().passages
-    findings = Findings(particulars.about(), paper.records(wanted, watch), passages, reproduce)
-    return _PAGES[format](findings), findings.passed
+    passages = () if names or only else paper.paper().passages
+    findings = Findings(particulars.about(), paper.records(wanted, watch), passages, reproduce, only)
+    page = findings if format == "text" else replace(findings, records=findings.shown)
+    return _PAGES[format](page), findings.passed

@@ -4,7 +4,7 @@ from wavesym.errors import SceneError
 from wavesym.scene.lowering import lower
 from wavesym.scene.outputs import Observable, Output
 from wavesym.scene.scene import Scene
-from wavesym.scene.scene_file import builtin_names, builtin_text, first_text
+from wavesym.scene.scene_file import builtin_names, builtin_text
 
 __all__ = [
     "Observable",
@@ -13,6 +13,5 @@ __all__ = [
     "SceneError",
     "builtin_names",
     "builtin_text",
-    "first_text",
     "lower",
 ]

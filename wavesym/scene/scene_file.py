@@ -15,7 +15,7 @@ from wavesym.errors import SceneError, did_you_mean
 from wavesym.fields.table import Written
 from wavesym.reading import read_text
 
-_BUILTIN, _FIRST = (files("wavesym.scene") / folder for folder in ("builtin", "first"))
+_BUILTIN = files("wavesym.scene") / "builtin"
 
 
 def builtin_names() -> dict[str, str]:
@@ -26,11 +26,6 @@ def builtin_names() -> dict[str, str]:
 
 def _builtin(name: str) -> bytes:
     return (_BUILTIN / f"{name}.toml").read_bytes()
-
-
-def first_text(system: str) -> str:
-    """A commented scene to start from: of a "building", "drive" or "collision"."""
-    return (_FIRST / f"{system}.toml").read_bytes().decode()
 
 
 def read_toml(source: str | PathLike[str]) -> tuple[str, str, dict[str, Any]]:

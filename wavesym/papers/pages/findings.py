@@ -51,13 +51,20 @@ class ScanEdit:
 class Findings:
     """The verdicts on a paper, or on the records of it that were asked for; `reproduce`: with their examples.
 
-    `passages` are empty where only some records were asked for.
+    `passages` are empty where only some records were asked for; `only` is the verdict of those that are shown, empty
+    for all of them.
     """
 
     about: About
     records: tuple[Record, ...]
     passages: tuple[Passage, ...] = ()
     reproduce: bool = False
+    only: str = ""
+
+    @property
+    def shown(self) -> tuple[Record, ...]:
+        """The records that are shown, of which the others are counted alone."""
+        return tuple(record for record in self.records if self.only in ("", record.verdict))
 
     @property
     def whole(self) -> bool:

@@ -13,12 +13,14 @@ WIDTH = 120
 
 
 def page(findings: Findings) -> str:
-    """A line for each record, what does not hold in full, counts, and of the whole paper what was not judged.
+    """Counts, a line for each record, what does not hold in full, and of the whole paper what was not judged.
 
     Of records that were asked for by name, all in full.
     """
     records = findings.records
-    parts = [_overview(records)] if findings.whole or len(records) > 1 else []
+    parts = ["\n".join(_counts(findings))] if findings.whole or len(records) > 1 or findings.only else []
+    records = findings.shown
+    parts += [_overview(records)] if findings.whole or len(records) > 1 else []
     full = [record for record in records if record.verdict != "holds" or not findings.whole]
     parts += ["\n".join(_record(record, findings.reproduce)) for record in full]
     if findings.whole:
@@ -27,8 +29,6 @@ def page(findings: Findings) -> str:
             for part in (_statistics(findings), _edits(findings), _unjudged(findings), _survivors(findings))
             if part
         ]
-    if len(records) > 1:
-        parts.append("\n".join(_counts(findings)))
     return "\n\n".join(parts) + "\n"
 
 
