@@ -260,6 +260,7 @@ def test_other_formats_and_what_is_none(drawn, tmp_path):
         save(drawn[0], tmp_path / "chart.txt")
 
 
+@pytest.mark.slow
 def test_measured_through(monkeypatch):
     """All of it, with few methods: curves, times, errors, set-up."""
     monkeypatch.setattr(

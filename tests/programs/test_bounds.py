@@ -15,13 +15,13 @@ def check(scene, precision):
     assert not missed, "\n".join([*missed, as_toml(scene)])
 
 
-@settings(max_examples=5, **DRAWN)
+@settings(max_examples=3, **DRAWN)
 @given(scenes("double", longest=False))
 def test_doubles_hold_their_bounds(scene):
     check(scene, "double")
 
 
-@settings(max_examples=5, **DRAWN)
+@settings(max_examples=3, **DRAWN)
 @given(scenes("single", longest=False))
 def test_floats_hold_their_bounds(scene):
     check(scene, "single")

@@ -77,7 +77,7 @@ def test_every_kind_of_joint(real) -> None:
     assert np.all(missed(model, made, 12 if real is DOUBLE else 5) <= 1)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(bodies())
 def test_bodies_beside_each_other_and_beside_other_joints(table) -> None:
     """In both precisions."""

@@ -9,6 +9,7 @@ from itertools import cycle, islice, product
 import pytest
 
 from tests.support.builds import LANGUAGES, SOURCES, STRICT, built, needs_binutils, sections, source
+from tests.support.patience import first_always
 from wavesym.running.compiled import FLAGS
 from wavesym.running.toolchain import CompilerError, at_hand, compiler
 
@@ -123,7 +124,7 @@ int main(void)
 """
 
 
-@pytest.mark.parametrize("language", ["c99", "c++17"])
+@pytest.mark.parametrize("language", first_always(["c++17", "c99"]))
 def test_several_scenes_are_one_program(language, tmp_path):
     """No two of them share a name, and headers do not mind each other."""
     made = [source(*of) for of in SOURCES]
