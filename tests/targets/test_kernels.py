@@ -10,9 +10,11 @@ import pytest
 from tests.support.builds import LANGUAGES, SOURCES, STRICT, scene, source
 from tests.support.generated import assemble
 from wavesym.programs.choice import choose
+from wavesym.programs.making import program
+from wavesym.programs.schemes import SCHEMES
 from wavesym.running.toolchain import CompilerError, at_hand, compiler
-from wavesym.scene import lower
-from wavesym.targets.c.tables import tables_text
+from wavesym.scene import Scene, lower
+from wavesym.targets.c.tables import declared, tables_text
 
 C = Path(__file__).parents[2] / "templates" / "c"
 KERNELS = sorted(path.relative_to(C).as_posix() for path in C.rglob("*.c"))
@@ -34,6 +36,23 @@ def complaint(file, folder, *flags):
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_a_kernel_is_c_as_it_stands(kernel, precision):
     assert complaint(kernel, C, *FORMATS[precision]) == ""
+
+
+@pytest.mark.parametrize(
+    ("kernel", "name"), [("closed", "building_m2"), ("pieces", "building_m2"), ("march", "damped_building")]
+)
+def test_tables_are_what_their_header_declares(kernel, name):
+    """No table more, none less, each of its type; what NumPy reads is among them, in their order."""
+    items = [item for paragraph in declared(f"{kernel}/tables.h") for item in paragraph if isinstance(item, tuple)]
+    types = {table: type for type, table in items}
+    model = lower(Scene.from_toml(name))
+    made = program(model, choose(model, kernel).evaluator).tables
+    assert len(items) == len(types) > 0
+    assert made.keys() == types.keys()
+    for table, values in made.items():
+        assert {isinstance(value, int) for value in values} <= {types[table] == "int"}, table
+    read = SCHEMES[kernel].TABLES
+    assert [table for table in types if table in read] == sorted(read, key=list(types).index)
 
 
 HEAD = re.compile(r"^static (?:inline )?(\w[\w ]*? \*?)(?:OF\()?\w+\)?\(([^{;]*)\)\n\{", re.MULTILINE)

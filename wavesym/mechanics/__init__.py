@@ -1,1 +1,1 @@
-"""Scene -> Model: rods, nodes and loads, every number exact; a short file for each system of the paper."""
+"""What engines take: a network, the loads on it, its outputs, its numbers by name; every number exact."""

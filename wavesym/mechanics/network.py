@@ -257,9 +257,15 @@ def parted(network: Network, contacts: Collection[int]) -> Network:
 
 
 def network_of(chain: Chain) -> Network:
-    """A named chain as a network: rod i is bar i - 1, node x is point x.
+    """A chain of the paper as a network: rod i is bar i - 1, node x is point x.
 
     Each node's condition is multiplied by what makes the impedances at both ends of a rod one.
+
+    Args:
+        chain: with exact numbers, or functions of parameters.
+
+    Returns:
+        The network in units of the chain: lengths and delays of a rod are 1.
     """
     points: list[Point] = []
     bars: list[Bar] = []

@@ -1,1 +1,1 @@
-"""Model -> program: the closed form, pieces or a march, with proved bounds, and the choice between them."""
+"""Model -> Program: closed form, pieces, modes or a march, with proved bounds, and the choice between them."""

@@ -67,10 +67,20 @@ def choose(
 ) -> Choice:
     """The evaluator `name` of a model, or with "auto" the best that meets its tolerance.
 
-    Best is what takes least work or, where it is to `optimize` "size", has the least tables. Pieces in single precision
-    have small tables unless "speed" is asked for. More may be spent on an evaluator that is `asked` for by its name.
-    ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
-    cost too much or need numbers beyond those of its format.
+    Args:
+        model: dimensionless, with its tolerance, relative to each output's largest value.
+        name: "auto", "closed", "pieces", "modes" or "march".
+        precision: "double" or "single".
+        optimize: "speed" for the least work, "size" for the least tables; None for what is usual: in single precision
+            pieces have small tables.
+        asked: whether more may be spent on an evaluator that is requested by its name.
+
+    Returns:
+        The evaluator, and in a line why it was taken.
+
+    Raises:
+        ToleranceError: where none meets the tolerance; it says what is met.
+        CostError, RangeError: where the one that is requested would cost too much or need numbers beyond its format.
     """
     if name == "auto":
         return best(model, attempts(model, precision, optimize), optimize)
@@ -81,10 +91,13 @@ def choose(
 
 
 def attempts(model: Model, precision: str = "double", optimize: str | None = None) -> tuple[Tried, ...]:
-    """All kinds of programs tried for a model; modes, and then a march, only where no other kind does.
+    """All evaluators tried for a model; modes, and then a march, only where no other meets the tolerance.
 
     (A single value of these takes as long as all steps or windows before it, and so does trying one.) With damping
     there are only modes.
+
+    Args:
+        model, precision, optimize: as of `choose`.
     """
     tried: list[Tried] = []
     for kind in ("modes",) if model.damping else MAKERS:
@@ -104,7 +117,14 @@ def attempt(
     asked: bool = False,
     served: bool = False,
 ) -> Tried:
-    """One kind of program tried; more may be spent on one that is `asked` for by its name, less where one `served`."""
+    """One evaluator tried; what it is refused for is part of the answer.
+
+    Args:
+        model, precision, optimize: as of `choose`.
+        kind: "closed", "pieces", "modes" or "march".
+        asked: whether it is requested by its name, so that more may be spent on it.
+        served: whether another one meets the tolerance, so that less is.
+    """
     try:
         form = MAKERS[kind](model, REALS[precision], asked, optimize or _USUAL_TABLES[precision], served)
     except (CostError, UnservedError) as refusal:

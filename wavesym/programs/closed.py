@@ -134,7 +134,13 @@ class ClosedForm(Bounded):
 
 
 def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:
-    """The closed form of signals, with its bounds, whatever they are."""
+    """The closed form of signals, with its bounds, whatever they are.
+
+    Args:
+        signals: what arrives at each output, exact.
+        tau_max: the last tau, a number of the format.
+        real: the numbers of the program.
+    """
     return ClosedForm(tuple(_closed_output(signal, tau_max, real) for signal in signals), tau_max, real)
 
 

@@ -1,4 +1,4 @@
-"""Model -> Program: the evaluator that is asked for, or the best that will do, with all that is said of it."""
+"""Model -> Program: the evaluator that is requested, or the best, with its reason, contacts and reference values."""
 
 from __future__ import annotations
 
@@ -15,12 +15,17 @@ _USUAL = Request()
 
 
 def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked: bool = True) -> Program:
-    """The program of a model, as `choose` takes it; where it is to be `tested`, with reference values.
+    """The program of a model by the evaluator that `choose` takes.
 
-    More may be spent on a kind that is `asked` for by its name.
+    Args:
+        model: dimensionless, with its tolerance.
+        request: the evaluator, precision and aim.
+        tested: whether it has reference values, for a self-test.
+        asked: whether more may be spent on an evaluator that is requested by its name.
 
-    ToleranceError where no evaluator, or not the one asked for, meets the model's tolerance; CostError where the one
-    asked for would cost too much.
+    Raises:
+        ToleranceError: where no evaluator, or not the one requested, meets the tolerance.
+        CostError: where the one requested would cost too much.
     """
     _, form, why = choose(model, request.evaluator, request.precision, request.optimize, asked=asked)
     happening = events(model, form.real) if model.network.contacts else None

@@ -171,9 +171,17 @@ class Pieces(Bounded):
 def pieces(
     model: Model, real: Real, tolerance: fmpq, optimize: str = "speed", most_seconds: float = math.inf
 ) -> Pieces:
-    """The pieces of a model in `real` numbers, with degrees for `tolerance`, met or not: see `error_bound`.
+    """The pieces of a model, with degrees for a tolerance, met or not: see `error_bound`.
 
-    CostError where the tables would be larger than `MOST_BYTES`, or take long to fit, or waves longer than that.
+    Args:
+        model: dimensionless.
+        real: the numbers of the program.
+        tolerance: relative to each output's largest value.
+        optimize: "speed" for pieces on which many samples take least time, "size" for the least tables.
+        most_seconds: what computing the waves may take.
+
+    Raises:
+        CostError: where tables would be larger than `MOST_BYTES`, or take long to fit, or waves longer than that.
     """
     # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
     fits = _Fits(model, real, max(tolerance, real.roundoff / 8), most_seconds)

@@ -138,7 +138,13 @@ class HatMarch(Bounded):
 def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     """The march of one hat of each record; None where no load is a record, or the rest fits into no window either.
 
-    SpacingError for a record of too many samples; UnservedError, CostError as of a march.
+    Args:
+        model: dimensionless, its records at any spacing.
+        refusal: why the loads are not marched as they are.
+
+    Raises:
+        SpacingError: for a record of too many samples.
+        UnservedError, CostError: as of a march.
     """
     parts = split(model)
     if not parts.records:

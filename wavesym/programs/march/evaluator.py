@@ -103,10 +103,17 @@ class March(Bounded):
 
 
 def march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> March:
-    """The march of a model in `real` numbers, whatever its bound: of the least sufficient degree, or of the one given.
+    """The march of a model, whatever its bound.
 
-    UnservedError where the model has contacts, CostError where it would be long or large. OverflowError where numbers
-    would be beyond those of the format.
+    Args:
+        model: dimensionless, at rest or moving at tau = 0.
+        real: the numbers of the program.
+        degree: of the polynomials on a panel; the least sufficient one where it is None.
+
+    Raises:
+        UnservedError: where the model has contacts that open, or damping of modes.
+        CostError: where it would be long or large.
+        OverflowError: where numbers would be beyond those of the format.
     """
     return judged(model, real, degree)[0]
 

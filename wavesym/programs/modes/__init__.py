@@ -1,1 +1,1 @@
-"""The fourth program: a chain as its own modes of vibration, each stepped exactly."""
+"""A network as its own modes of vibration, undamped or complex, each stepped exactly."""

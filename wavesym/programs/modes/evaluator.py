@@ -167,10 +167,16 @@ def modal_system(model: Model) -> ModalModes:
 
 
 def modes(model: Model, real: Real) -> ModesEvaluator:
-    """The modes of a model in `real` numbers, whatever rounding does to them.
+    """The modes of a model, whatever rounding does to them.
 
-    UnservedError for what has no modes, or loads that jump; ToleranceError where too many would be needed.
-    OverflowError where numbers would be beyond those of the format.
+    Args:
+        model: dimensionless, at rest at tau = 0, with its tolerance.
+        real: the numbers of the program.
+
+    Raises:
+        UnservedError: for what has no modes, and for loads that jump.
+        ToleranceError: where too many modes would be needed.
+        OverflowError: where numbers would be beyond those of the format.
     """
     made = modal_system(model.to_horizon(real))
     sources = tuple(step.removesuffix(":step") or ramp.removesuffix(":ramp") for step, ramp in made.sources)
