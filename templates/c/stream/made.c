@@ -3,134 +3,7 @@
  * the first empty line. */
 #define NAME_RUNTIME
 #include "stream.c"
-
-enum { SQUARE = MOST_MOVED * MOST_MOVED };
-
-/* A joint on a panel, x' = rates x + f as series: x_k = y_k - down_k x_(k-1), y_k = solve_k r_k + down_k y_(k+1) with
- * r_k = f_(k-1) - f_(k+1), where x_0 and f_0 count twice; and 2 x_0 = start (x at the start - what the rest makes there).
- * Matrices have MOST_MOVED rows, those that a joint does not need of 0. */
-typedef struct {
-    real solve[SIZE][SQUARE];
-    real down[SIZE + 1][SQUARE];
-    real start[SQUARE];
-} elimination;
-
-typedef real motion[MOST_MOVED];
-
-/* b = a^-1 b; a is lost. Where there is no such b it is no number. */
-static void divide(real *b, real *a)
-{
-    enum { N = MOST_MOVED };
-    for (int k = 0; k < N; ++k) {
-        int best = k;
-        for (int i = k + 1; i < N; ++i) {
-            best = absolute(a[i * N + k]) > absolute(a[best * N + k]) ? i : best;
-        }
-        for (int j = 0; j < N; ++j) {
-            const real of_a = a[k * N + j], of_b = b[k * N + j];
-            a[k * N + j] = a[best * N + j];
-            b[k * N + j] = b[best * N + j];
-            a[best * N + j] = of_a;
-            b[best * N + j] = of_b;
-        }
-        for (int i = 0; i < N; ++i) {
-            const real factor = i == k ? (real)0 : a[i * N + k] / a[k * N + k];
-            add(a + i * N, -factor, a + k * N, N);
-            add(b + i * N, -factor, b + k * N, N);
-        }
-    }
-    for (int k = 0; k < SQUARE; ++k) {
-        b[k] /= a[k / N * (N + 1)];
-    }
-}
-
-/* c += factor a b */
-static void add_product(real *c, real factor, const real *a, const real *b)
-{
-    for (int k = 0; k < SQUARE; ++k) {
-        add(c + k / MOST_MOVED * MOST_MOVED, factor * a[k], b + k % MOST_MOVED * MOST_MOVED, MOST_MOVED);
-    }
-}
-
-static void set_square(real *a, real diagonal)
-{
-    for (int k = 0; k < SQUARE; ++k) {
-        a[k] = k % (MOST_MOVED + 1) == 0 ? diagonal : (real)0;
-    }
-}
-
-static void eliminate(elimination *by, const real *rates)
-{
-    real follows[SQUARE];
-    real turned[SQUARE];
-    set_square(by->down[SIZE], 0);
-    for (int k = DEGREE; k > 0; --k) {
-        const real step = panel / (real)(4 * k);
-        real left[SQUARE];
-        set_square(left, 1);
-        add_product(left, -step, rates, by->down[k + 1]);
-        set_square(follows, 0);
-        add(follows, 1, left, SQUARE);
-        set_square(by->solve[k], step);
-        divide(by->solve[k], left);
-        set_square(by->down[k], 0);
-        add(by->down[k], -step, rates, SQUARE);
-        divide(by->down[k], follows);
-    }
-    /* x_k follows from 2 x_0 alone by so much */
-    set_square(follows, 1);
-    set_square(turned, (real)0.5);
-    for (int k = 1; k < SIZE; ++k) {
-        real next[SQUARE];
-        set_square(next, 0);
-        add_product(next, -1, by->down[k], follows);
-        set_square(follows, 0);
-        add(follows, 1, next, SQUARE);
-        add(turned, k % 2 ? (real)-1 : (real)1, next, SQUARE);
-    }
-    set_square(by->start, 1);
-    divide(by->start, turned);
-}
-
-/* The series of the states of a joint that are `begun` at the start, under f = pushed T_power. */
-static void solve_panel(const elimination *by, const real *begun_at, const real *pushed, int power, motion *x)
-{
-    motion y[SIZE + 1] = {{0}};
-    motion start;
-    motion before;
-    motion twice = {0};
-    for (int k = DEGREE; k > 0; --k) {
-        const real factor = power == k - 1 ? (k == 1 ? (real)2 : (real)1) : power == k + 1 ? (real)-1 : (real)0;
-        for (int a = 0; a < MOST_MOVED; ++a) {
-            before[a] = factor * pushed[a];
-        }
-        multiply(y[k], by->solve[k], before, MOST_MOVED, MOST_MOVED);
-        multiply(y[k], by->down[k], y[k + 1], MOST_MOVED, MOST_MOVED);
-    }
-    for (int a = 0; a < MOST_MOVED; ++a) {
-        start[a] = begun_at[a];
-    }
-    /* first with nothing for x_0, to see what is left for it; then with it */
-    for (int turn = 0; turn < 2; ++turn) {
-        for (int a = 0; a < MOST_MOVED; ++a) {
-            x[0][a] = twice[a] / 2;
-            before[a] = -twice[a];
-        }
-        for (int k = 1; k < SIZE; ++k) {
-            for (int a = 0; a < MOST_MOVED; ++a) {
-                x[k][a] = y[k][a];
-            }
-            multiply(x[k], by->down[k], before, MOST_MOVED, MOST_MOVED);
-            for (int a = 0; a < MOST_MOVED; ++a) {
-                before[a] = -x[k][a];
-                start[a] += k % 2 ? x[k][a] : -x[k][a];
-            }
-        }
-        if (turn == 0) {
-            multiply(twice, by->start, start, MOST_MOVED, MOST_MOVED);
-        }
-    }
-}
+#include "../elimination.c"
 
 /* How fast anything in a joint is, at most: the norm of its rates, scaled so that energy is |x|^2 / 2; or `turning`, of
  * what springs make of it alone. No number where that is beyond all bounds. */
@@ -160,56 +33,53 @@ static real speed_of(const name_made *made, int joint, int turning)
     return rows > 0 && is_number(rows) ? root(rows) : rows;
 }
 
-/* A block: a column of its matrix, and of what its polynomials miss, for each number that it is given: the
- * coefficients of what acts on its points, then x at the start. What is missed is the root of an energy. */
-static void tabulate_block(stream *state, int joint)
+/* A block: a column of its matrix, and of what its polynomials miss, for each number that it is given: the coefficients of
+ * what acts on its points, then x at the start. What is missed is the root of an energy. */
+static void tabulate_matrix(stream *state, int joint)
 {
+    enum { SQUARE = MOST_STATES * MOST_STATES };
+    const name_made *const made = &state->made;
     const int points = first_point[joint + 1] - first_point[joint];
     const int states = first_state[joint + 1] - first_state[joint];
     const int width = points * SIZE + states;
-    const name_made *const made = &state->made;
     const real *const own = made->rates + at_rates[joint];
-    const real *const pushed = made->pushed + at_pushed[joint];
-    const real *const shown = made->shown + at_shown[joint];
-    const real *const passed = made->passed + at_passed[joint];
     const real turned = speed_of(made, joint, 0) * panel;
     const real energy = 2 * (root(turned) + (1 + turned) * (real)0.70711) * (panel / (real)(4 * SIZE));
-    real rates[SQUARE] = {0};
-    elimination by;
-    for (int k = 0; k < states * states; ++k) {
-        rates[k / states * MOST_MOVED + k % states] = own[k];
-    }
-    eliminate(&by, rates);
+    real tables[4][(SIZE + 1) * SQUARE];
+    real edges[2][SQUARE];
+    const block_tables m = {states,    (size_t)(states * states), tables[0], tables[1],
+                            tables[2], tables[3],                 edges[0],  edges[1]};
+    tabulate_block(&m, own, panel / 2, DEGREE);
     for (int column = 0; column < width; ++column) {
         const int point = column < points * SIZE ? column / SIZE : -1;
         const int power = column % SIZE;
         real *const to = matrix + answer[joint] + column * width;
-        motion x[SIZE];
-        motion begun_at = {0};
-        motion acting = {0};
-        motion left = {0};
+        real f[MOST_STATES][ROW] = {{0}};
+        real x[MOST_STATES][ROW];
+        real at_end[MOST_STATES] = {0};
         for (int a = 0; a < states; ++a) {
-            begun_at[a] = column == points * SIZE + a ? (real)1 : (real)0;
-            acting[a] = point >= 0 ? pushed[a * points + point] : (real)0;
+            at_end[a] = column == points * SIZE + a ? (real)1 : (real)0;
+            f[a][power] = point >= 0 ? made->pushed[at_pushed[joint] + a * points + point] : (real)0;
         }
-        solve_panel(&by, begun_at, acting, point >= 0 ? power : -2, x);
-        for (int p = 0; p < points; ++p) {
-            for (int k = 0; k < SIZE; ++k) {
-                to[p * SIZE + k] = point >= 0 && k == power ? passed[p * points + point] : (real)0;
-                multiply(to + p * SIZE + k, shown + p * states, x[k], 1, states);
+        solve_block(&m, panel / 2, DEGREE, f, at_end, x);
+        for (int k = 0; k < points * SIZE; ++k) {
+            const int other = k / SIZE;
+            to[k] = point >= 0 && power == k % SIZE ? made->passed[at_passed[joint] + other * points + point] : (real)0;
+            for (int a = 0; a < states; ++a) {
+                to[k] += made->shown[at_shown[joint] + other * states + a] * x[a][k % SIZE];
             }
         }
-        /* of a polynomial the end less the start is in what is odd: nothing large is lost */
         for (int a = 0; a < states; ++a) {
+            real left = f[a][DEGREE];
+            for (int b = 0; b < states; ++b) {
+                left += own[a * states + b] * x[b][DEGREE];
+            }
+            slip[first_slip[joint] + a * width + column] = energy * root(made->weight[first_state[joint] + a]) * left;
+            /* of a polynomial the end less the start is in what is odd: nothing large is lost */
             to[points * SIZE + a] = 0;
             for (int k = 1; k < SIZE; k += 2) {
-                to[points * SIZE + a] += 2 * x[k][a];
+                to[points * SIZE + a] += 2 * x[a][k];
             }
-            left[a] = point >= 0 && power == DEGREE ? acting[a] : (real)0;
-        }
-        multiply(left, rates, x[DEGREE], MOST_MOVED, MOST_MOVED);
-        for (int a = 0; a < states; ++a) {
-            slip[first_slip[joint] + a * width + column] = energy * root(made->weight[first_state[joint] + a]) * left[a];
         }
     }
 }
@@ -349,7 +219,7 @@ static int made_of(stream *state, const name_parameters *parameters)
         if (law[joint] == BODY) {
             tabulate_body(state, joint);
         } else if (law[joint] == BLOCK) {
-            tabulate_block(state, joint);
+            tabulate_matrix(state, joint);
             fine &= speed_of(&state->made, joint, 1) * panel <= (real)CALM;
         } else {
             tabulate_scatterer(state, joint);

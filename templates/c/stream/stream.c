@@ -77,7 +77,7 @@ static real root(real square)
 }
 
 /* y += M a, M by rows */
-static void multiply(real *y, const real *rows, const real *a, int height, int width)
+static void add_rows(real *y, const real *rows, const real *a, int height, int width)
 {
     for (int k = 0; k < height; ++k) {
         for (int j = 0; j < width; ++j) {
@@ -164,7 +164,7 @@ static void lose_missed(stream *state, int joint, const real *given, const real 
     if (BODIES > 0 && law[joint] == BODY) {
         missed[0] = factors[0] * (given[DEGREE] - velocities[DEGREE]);
     } else if (BLOCKS > 0) {
-        multiply(missed, factors, given, states, (first_point[joint + 1] - first_point[joint]) * SIZE + states);
+        add_rows(missed, factors, given, states, (first_point[joint + 1] - first_point[joint]) * SIZE + states);
     }
     for (int k = 0; k < states; ++k) {
         sum += absolute(missed[k]);
@@ -384,7 +384,7 @@ static void interpolate(real *instead, const real *wave, real delay)
         at[k] = instant[k] >= delay ? series(wave, (instant[k] - delay) * scale - 1) : (real)0;
         instead[k] = 0;
     }
-    multiply(instead, transform, at, SIZE, SIZE);
+    add_rows(instead, transform, at, SIZE, SIZE);
 }
 
 /* The jump, kink and bend with which a wave begins, and how much it bends elsewhere at most. */

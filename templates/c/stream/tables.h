@@ -142,7 +142,7 @@ extern const int at_passed[];
 extern const int is_mass[];
 
 #ifdef NAME_RUNTIME
-enum { MOST_MOVED = 2, HEARD = NAME_HEARD, CALM = 4 };
+enum { HEARD = NAME_HEARD, CALM = 4, ROW = SIZE + 1 };
 
 extern const name_parameters name_defaults;
 extern const real largest_number;

@@ -63,7 +63,6 @@ def sizes(plan: StreamPlan, degree: int) -> dict[str, float]:
         "slips": sum(_slip_size(joint, degree) for joint in joints),
         "calm": CALM,
         "tracks": len(plan.rings.tracks),
-        "most_moved": max(1, *(joint.space.states for joint in joints)),
     }
 
 

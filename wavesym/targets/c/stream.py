@@ -41,6 +41,7 @@ class CStream:
     heard: str
     largest: str
     least: str
+    elimination: str
     made: str
 
 
@@ -89,6 +90,7 @@ def source(scene: Description, program: Program) -> str:
         heard=str(len(laws.functions["gain"])) if laws else "",
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",
+        elimination=kernel("elimination.c", scene) if laws else "",
         made=kernel("stream/made.c", scene) if laws else "",
     )
     return render("c/stream/stream.c.j2", context)
