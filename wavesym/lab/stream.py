@@ -44,11 +44,11 @@ def stream(
     steps = library(made[f"{name}.c"] + harness, flags, (f"{name}.h", made[f"{name}.h"])).steps
     steps.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p]
     steps.restype = None
-    given = np.ascontiguousarray(samples)
-    out = np.empty((len(given), outputs), dtype=samples.dtype)
+    inputs = np.ascontiguousarray(samples)
+    out = np.empty((len(inputs), outputs), dtype=samples.dtype)
 
     def call() -> Values:
-        steps(address(given), len(given), address(out))
+        steps(address(inputs), len(inputs), address(out))
         return out.T
 
     return call

@@ -15,6 +15,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
@@ -57,6 +58,26 @@ def unlinked_problem(model: Model) -> Problem:
 
 def _solve(order: int, problem: Problem, resolution: float) -> Evaluate:
     compiled = library(_SOURCE.read_text(encoding="utf-8"), (*FAST, f"-DPOINTS={order}"))
+    sizes, tables = _tables(order, problem, resolution)
+    grid = _Grid(
+        *(sizes[name] for name in _COUNTS), float(problem.measure), *(address(tables[name]) for name in _TABLES)
+    )
+    waves = sizes["ends"] + sizes["points"]
+    work = np.empty(sizes["samples"] * (waves * (sizes["depth"] + 1) + 1) + 4 * sizes["points"] + sizes["terms"])
+
+    def evaluate(taus: Array) -> Array:
+        _ = tables  # C reads them, so that they must live as long as this
+        out = np.empty((sizes["outputs"], len(taus)))
+        count = ctypes.c_size_t(len(taus))
+        where = [ctypes.c_void_p(address(array)) for array in (taus, out, work)]
+        compiled.sample(ctypes.byref(grid), where[0], count, *where[1:])
+        return out
+
+    return evaluate
+
+
+def _tables(order: int, problem: Problem, resolution: float) -> tuple[dict[str, int], dict[str, NDArray[np.generic]]]:
+    """The sizes and tables of `struct grid`, `resolution` steps in a unit of tau or more."""
     measure = float(problem.measure)
     cuts = sorted({0, 1} | {event.time / problem.measure % 1 for event in problem.events})
     lengths = measure * np.diff(np.array([float(cut) for cut in cuts]))
@@ -118,21 +139,11 @@ def _solve(order: int, problem: Problem, resolution: float) -> Evaluate:
         "term_integral": np.array([integral for _, _, integral, *_ in terms]),
         "term_first": np.diff([-1, *(output for output, *_ in terms)]),
     }
-    tables = {name: np.ascontiguousarray(table, dtype=np.float64) for name, table in doubles.items()}
+    tables: dict[str, NDArray[np.generic]] = {
+        name: np.ascontiguousarray(table, dtype=np.float64) for name, table in doubles.items()
+    }
     tables |= {name: np.ascontiguousarray(table, dtype=np.uintp) for name, table in integers.items()}
-    grid = _Grid(*sizes.values(), measure, *(address(tables[name]) for name in _TABLES))
-    waves = len(ends) + problem.points
-    work = np.empty(sizes["samples"] * (waves * (depth + 1) + 1) + 4 * problem.points + len(terms))
-
-    def evaluate(taus: Array) -> Array:
-        _ = tables  # C reads them, so that they must live as long as this
-        out = np.empty((sizes["outputs"], len(taus)))
-        count = ctypes.c_size_t(len(taus))
-        where = [ctypes.c_void_p(address(array)) for array in (taus, out, work)]
-        compiled.sample(ctypes.byref(grid), where[0], count, *where[1:])
-        return out
-
-    return evaluate
+    return sizes, tables
 
 
 def _terms(problem: Problem) -> list[tuple[int, int, bool, float, float]]:

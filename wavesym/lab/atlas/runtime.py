@@ -68,11 +68,11 @@ def _points(panel: str, kappa: Sequence[Fraction], until: int, x: float) -> list
     known = truth(drive(list(kappa), [1] * (len(kappa) + 1), until), per_unit=8)
     own = drive([Fraction(1)] * len(kappa), [1] * (len(kappa) + 1), until).with_({"output.tolerance": _TOLERANCE})
     model = RuntimeModel(sets_program(lower(own), ["kappa"]))
-    given = np.array([float(value) for value in kappa])
-    checks = model.check(kappa=given)
+    values = np.array([float(value) for value in kappa])
+    checks = model.check(kappa=values)
     (why,), (estimate,) = checks.why, checks.estimate
-    wrong = np.abs(model.run(known.taus, kappa=given)[0] - known.values) / known.sizes[:, np.newaxis]
-    bound = float(np.nan_to_num(np.max(model.bounds(kappa=given)), nan=np.inf))
+    wrong = np.abs(model.run(known.taus, kappa=values)[0] - known.values) / known.sizes[:, np.newaxis]
+    bound = float(np.nan_to_num(np.max(model.bounds(kappa=values)), nan=np.inf))
     return [
         AtlasPoint(panel, "error", x, float(np.max(wrong)), bound, why),
         AtlasPoint(panel, "estimate", x, float(estimate), refused=why),

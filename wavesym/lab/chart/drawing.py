@@ -127,10 +127,10 @@ def _panel(
     named = [floor]
     for style, rows in curves:
         # a stream says nothing at fronts; what has no digit right has no place
-        told = [(getattr(row, error), row.ns_per_value) for row in rows if not isnan(getattr(row, error))]
-        if not told:
+        places = [(getattr(row, error), row.ns_per_value) for row in rows if not isnan(getattr(row, error))]
+        if not places:
             continue
-        points = np.array([(np.clip(wrong, _LEAST_ERROR, _LARGEST_ERROR), time) for wrong, time in told])
+        points = np.array([(np.clip(wrong, _LEAST_ERROR, _LARGEST_ERROR), time) for wrong, time in places])
         axes.plot(
             points[:, 0],
             points[:, 1],

@@ -120,13 +120,13 @@ def to_csv(measured: Measured) -> str:
     writer.writerow(line | {"ns_per_value": f"{measured.floor:.3g}"})
     if measured.new_parameters is not None:
         again = {"name": "kappa at run time", "kind": "set-up", "language": "C", "precision": "double"}
-        writer.writerow(again | {"setup_seconds": _told(measured.new_parameters)})
+        writer.writerow(again | {"setup_seconds": _cell(measured.new_parameters)})
     for row in measured.rows:
-        writer.writerow({name: _told(value) for name, value in asdict(row).items()})
+        writer.writerow({name: _cell(value) for name, value in asdict(row).items()})
     return text.getvalue()
 
 
-def _told(value: object) -> object:
+def _cell(value: object) -> object:
     if not isinstance(value, float):
         return value
     return "" if isnan(value) else f"{value:.3g}"

@@ -55,7 +55,7 @@ def _exact(reference: Reference) -> Standard:
 
 
 def _modal(program: Program) -> Standard:
-    """Nothing jumps: no arrival is told from others."""
+    """Nothing jumps, so that there are no arrivals."""
     sizes = np.array([output.largest or 1.0 for output in program.outputs])
     return Standard(program.tau_max, sizes, np.empty(0), program.error_bound, program.evaluate)
 

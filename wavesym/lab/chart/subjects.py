@@ -42,7 +42,7 @@ _PATIENCE = 1.5
 class Subject:
     """Something that computes the outputs of a scene.
 
-    `sample` makes the values at `instants`; `at` makes them at any ascending tau, where that can be asked for. Both
+    `sample` makes the values at `instants`; `at` makes them at any ascending tau, where there are such values. Both
     give (outputs, n). `setup` is what a new parameter set costs, in seconds; `bound` the proved error relative to an
     output's largest value, if any.
     """
@@ -176,12 +176,12 @@ class _Made(NamedTuple):
 
 def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> _Made | None:
     """A program and its C by file name, None where it cannot meet the tolerance or would cost too much."""
-    asked = lower(scene).tolerating(rational(tolerance))
+    model = lower(scene).tolerating(rational(tolerance))
     try:
-        form = choose(asked, evaluator, precision).evaluator
+        form = choose(model, evaluator, precision).evaluator
     except WavesymError:
         return None
-    made = program(asked, form)
+    made = program(model, form)
     return _Made(form, made, sources(made, "c"))
 
 
@@ -216,8 +216,8 @@ def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
 def _stream(scene: Scene, made: _Made, *_: object) -> Loaded:
     """It goes from sample to sample of the scene's loads, and says nothing of what is between."""
     assert isinstance(made.form, ModesEvaluator)
-    instants, given = own_samples(made.form)
-    return instants, stream(scene.name, made.c, given, len(scene.outputs)), None
+    instants, samples = own_samples(made.form)
+    return instants, stream(scene.name, made.c, samples, len(scene.outputs)), None
 
 
 def _numpy(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
