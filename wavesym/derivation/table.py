@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from graphlib import TopologicalSorter
@@ -79,14 +79,28 @@ class Table:
 
     def rows(self) -> Iterator[Row]:
         """Every coefficient that is not 0, in the order function, rod, source, interval, rate, power."""
-        functions = sorted({function for response in self.responses.values() for function in response})
-        for function in functions:
-            for source, response in self.responses.items():
-                for n, increment in enumerate(response.get(function, ()), 1):
-                    for rate in sorted(increment):
-                        for power, value in enumerate(increment[rate]):
-                            if value != 0:
-                                yield Row(*function, source, n, rate, power, value)
+        numbered = {
+            source: {function: list(enumerate(increments, 1)) for function, increments in response.items()}
+            for source, response in self.responses.items()
+        }
+        return table_rows(numbered, lambda function: function.rod)
+
+
+def table_rows(
+    responses: Mapping[str, Mapping[Function, Iterable[tuple[int | fmpq, Increment]]]],
+    rod: Callable[[Function], int | str],
+) -> Iterator[Row]:
+    """Every coefficient that is not 0 of increments, each with its interval, by source and function.
+
+    They come in the order function, rod, source, interval, rate, power; `rod` names that of a function.
+    """
+    for function in sorted({function for response in responses.values() for function in response}):
+        for source, response in responses.items():
+            for interval, increment in response.get(function, ()):
+                for rate in sorted(increment):
+                    for power, value in enumerate(increment[rate]):
+                        if value != 0:
+                            yield Row(function.function, rod(function), source, interval, rate, power, value)
 
 
 def needed(rules: Rules, wanted: Mapping[Function, int]) -> dict[Function, int]:

@@ -169,22 +169,27 @@ class Network:
 
         Points are places too.
         """
-        nearest: dict[int, fmpq] = {}
         coming = [(fmpq(0), self.joint_of[point]) for point in points]
         for number, place in places:
             bar = self.bars[number]
             coming.append((place * bar.delay, self.joint_of[bar.left]))
             coming.append(((1 - place) * bar.delay, self.joint_of[bar.right]))
+        return self.first_times(coming)
+
+    def first_times(self, starts: Iterable[tuple[fmpq, int]], latest: fmpq | None = None) -> dict[int, fmpq]:
+        """When a wave that starts at these (times, joints) first comes to each joint, until `latest` where given."""
+        coming = list(starts)
         heapify(coming)
+        first: dict[int, fmpq] = {}
         while coming:
             time, joint = heappop(coming)
-            if joint in nearest:
+            if joint in first or (latest is not None and time > latest):
                 continue
-            nearest[joint] = time
+            first[joint] = time
             for end, _ in self.joints[joint].ends:
                 other = self.joint_of[self.point_at(self.beyond(end))]
                 heappush(coming, (time + self.bars[end.bar].delay, other))
-        return nearest
+        return first
 
     def at_rest(self, joint: Joint) -> bool:
         """Whether a joint goes on as it is at tau = 0, as far as no load acts on it and nothing else arrives."""

@@ -62,16 +62,13 @@ class TouchingWaves(Waves):
 
         How joints move is no longer told.
         """
-        same = copy(self)
-        joint_of, point_at = self.network.joint_of, self.network.point_at
-        same.sent = {
-            end: wave.rounded(ends[joint_of[point_at(end)]]) if joint_of[point_at(end)] in ends else wave
-            for end, wave in self.sent.items()
-        }
-        same.velocities = {
-            point: wave.rounded(ends[joint_of[point]]) if joint_of[point] in ends else wave
-            for point, wave in self.velocities.items()
-        }
+        same, joint_of, point_at = copy(self), self.network.joint_of, self.network.point_at
+
+        def anew(wave: SentWave, joint: int) -> SentWave:
+            return wave.rounded(ends[joint]) if joint in ends else wave
+
+        same.sent = {end: anew(wave, joint_of[point_at(end)]) for end, wave in self.sent.items()}
+        same.velocities = {point: anew(wave, joint_of[point]) for point, wave in self.velocities.items()}
         return same
 
     @staticmethod

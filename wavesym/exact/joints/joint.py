@@ -282,8 +282,8 @@ class JointMotion:
         self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
     ) -> tuple[list[list[arb]], list[list[arb]]]:
         """The coefficients of q and u: middles, whatever rounding made of them."""
-        acting = [_padded(force.polynomial, terms) for force in forces]
-        given = [[arb(c) for c in each.coeffs()] + [arb(0)] * terms for each in prescribed]
+        acting = [arb_poly([c.mid() for c in force.polynomial.coeffs()[:terms]]) for force in forces]
+        given = [arb_poly([arb(c) for c in each.coeffs()]) for each in prescribed]
         *_, (q, u, _) = islice(
             motion_series(self.law, self.velocity, self.displacement, acting, given, arb, arb.mid), terms + 1
         )
@@ -393,11 +393,6 @@ def motion_series(
             last[k] = kept(_less(force[n], pulled, n) / (mass * (n + 1)))
         for places, series, ratio in moves:
             places.append(kept(ratio * series[n] / (n + 1)))
-
-
-def _padded(polynomial: arb_poly, terms: int) -> list[arb]:
-    coefficients = [c.mid() for c in polynomial.coeffs()[:terms]]
-    return coefficients + [arb(0)] * (terms - len(coefficients))
 
 
 def _size(polynomial: arb_poly, h: arb) -> arb:

@@ -50,21 +50,3 @@ def reachable(network: Network, begun: Iterable[End], passes: Callable[[int], Ma
             there = network.beyond(end)
             coming += passes(network.joint_of[network.point_at(there)])[there]
     return found
-
-
-def needed(network: Network, wanted: Mapping[int, fmpq]) -> dict[int, fmpq]:
-    """Until when what happens at each joint can matter to the `wanted` ones until theirs."""
-    last: dict[int, fmpq] = {}
-    coming = [(-time, number) for number, time in wanted.items() if time >= 0]
-    heapify(coming)
-    while coming:
-        time, number = heappop(coming)
-        if number in last:
-            continue
-        last[number] = -time
-        for end, _ in network.joints[number].ends:
-            other = network.joint_of[network.point_at(network.beyond(end))]
-            late = time + network.bars[end.bar].delay
-            if other not in last and late <= 0:
-                heappush(coming, (late, other))
-    return last

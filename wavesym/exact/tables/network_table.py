@@ -16,10 +16,10 @@ from flint import fmpq
 
 from wavesym.derivation.exact_rule import joint_rule
 from wavesym.derivation.increments import Increment, add, combined, integrated, trimmed
-from wavesym.derivation.table import Function, Part, Row
+from wavesym.derivation.table import Function, Part, Row, table_rows
 from wavesym.derivation.table_size import refuse_size
 from wavesym.exact.tables.foreseen import Foreseen
-from wavesym.exact.tables.fronts import departures, needed
+from wavesym.exact.tables.fronts import departures
 from wavesym.exact.tables.network_joints import START, NetworkJoints, unit_at
 from wavesym.mechanics.gauge import Gauge, readings
 from wavesym.mechanics.loads import Applied
@@ -122,7 +122,9 @@ class RuledNetwork:
         for function, until in reach.items():
             number = self._joint(function)
             wanted[number] = max(until, wanted.get(number, fmpq(-1)))
-        return needed(self.network, wanted)
+        # backwards in time from there
+        cone = self.network.first_times(((-time, number) for number, time in wanted.items()), fmpq(0))
+        return {number: -time for number, time in cone.items()}
 
     def _joint(self, function: Function) -> int:
         if function.function == POINT:
@@ -182,14 +184,7 @@ class NetworkTable:
 
     def rows(self) -> Iterator[Row]:
         """Every coefficient that is not 0, in the order function, rod, source, interval, rate, power."""
-        functions = sorted({function for response in self.responses.values() for function in response})
-        for function in functions:
-            for source, response in self.responses.items():
-                for time, increment in response.get(function, ()):
-                    for rate in sorted(increment):
-                        for power, value in enumerate(increment[rate]):
-                            if value != 0:
-                                yield Row(function.function, self.rod(function), source, time, rate, power, value)
+        return table_rows(self.responses, self.rod)
 
 
 def network_table(network: Network, intervals: int | None, until: fmpq, most: float = inf) -> NetworkTable:
