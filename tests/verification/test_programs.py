@@ -37,15 +37,25 @@ FAULTS = {
     "closed.c": (DRIVE, "--evaluator closed", "sum += polynomial", "sum -= polynomial"),
     "closed form in NumPy": (DRIVE, "--evaluator closed", "row[late] += polynomial", "row[late] -= polynomial"),
     "pieces.c": (DRIVE, "--evaluator pieces", "tau - centre[piece]", "tau + centre[piece]"),
-    "march.c": (DRIVE, "--evaluator march", "sum += gain[k] * arrived", "sum -= gain[k] * arrived"),
-    "rings.c": (CHAIN, "--evaluator march", "out[output] += gain[k] * heard", "out[output] -= gain[k] * heard"),
+    "march.c": (DRIVE, "--evaluator march", "sum += gain[k] * gathered", "sum -= gain[k] * gathered"),
+    "outputs of march.c": (
+        CHAIN,
+        "--evaluator march",
+        "out[output] += gain[k] * heard",
+        "out[output] -= gain[k] * heard",
+    ),
     "modes.c": (DRIVE, "--evaluator modes", "v0[n] * before + v1[n] * now", "v0[n] * before - v1[n] * now"),
     "runtime.c": (DRIVE, "--runtime kappa,load", "c[k] += gain * w[k];", "c[k] -= gain * w[k];"),
-    "joints/march.c": (CHAIN, "--runtime mass,load", "s[k] += factor * a[k];", "s[k] -= factor * a[k];"),
-    "stream.c": (DRIVE, "--stream", "out[output] += gain[k] * now;", "out[output] -= gain[k] * now;"),
+    "runtime/march.c": (
+        CHAIN,
+        "--runtime mass,load",
+        "s[k] += m->force[panel][force][k];",
+        "s[k] -= m->force[panel][force][k];",
+    ),
+    "stream.c": (DRIVE, "--stream", "out[output] += gain[k] * value_now", "out[output] -= gain[k] * value_now"),
     "in single precision": (DRIVE, "--evaluator march --precision single", "sum += gain[k]", "sum -= gain[k]"),
 }
-QUICK = ("closed form in NumPy", "closed.c", "rings.c", "runtime.c")
+QUICK = ("closed form in NumPy", "closed.c", "outputs of march.c", "runtime.c")
 
 
 def changing(right: str, wrong: str) -> Callable[..., dict[str, str]]:

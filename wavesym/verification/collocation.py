@@ -56,7 +56,7 @@ class Motion:
     """A motion for 0 <= tau <= `until`: `waves[panel][side, bar]` is sent into a bar, known at Gauss's points.
 
     After the bars come the velocities of points (on side 0). A panel begins at one of `starts`; `vague` are those that
-    a contact's opening or closing made, which are known to rounding only.
+    a contact's opening or closing causes, which are known to rounding only.
     """
 
     problem: ContactProblem

@@ -45,18 +45,18 @@ _NUMBERS: dict[str, Callable[[int], fmpq]] = {
 
 
 class Proof(NamedTuple):
-    """A theorem for a system: of what of it, what the proof went through, how often it was asked, where it fails."""
+    """A theorem for a system: of what of it, what the proof went through, how many cases it has, where it fails."""
 
     theorem: Theorem
     of: str
     through: str
-    asked: int
+    cases: int
     failed: tuple[str, ...]
 
     @property
     def holds(self) -> bool:
-        """Whether it was asked, and held each time."""
-        return self.asked > 0 and not self.failed
+        """Whether there were cases, and it held in each."""
+        return self.cases > 0 and not self.failed
 
 
 def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
@@ -67,16 +67,16 @@ def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[s
     systems = [system for preset in presets().values() for system in (*preset.variants, *preset.beside)]
     proofs = [proof for system in watch(systems) for proof in (*_proofs(system), _walks(system))]
     theorems = dict.fromkeys(proof.theorem for proof in proofs)
-    lines = (line for theorem in theorems for line in _told(theorem, [p for p in proofs if p.theorem is theorem]))
+    lines = (line for theorem in theorems for line in _lines(theorem, [p for p in proofs if p.theorem is theorem]))
     return "\n".join(lines), all(proof.holds for proof in proofs)
 
 
-def _told(theorem: Theorem, proofs: Iterable[Proof]) -> Iterator[str]:
+def _lines(theorem: Theorem, proofs: Iterable[Proof]) -> Iterator[str]:
     yield theorem.claim
     yield from wrap(theorem.argument, _WIDTH, initial_indent="  ", subsequent_indent="  ")
     for proof in proofs:
-        held = proof.asked - len(proof.failed)
-        yield f"  {'PASS' if proof.holds else 'FAIL'}  {proof.of}: {held} of {proof.asked} {theorem.counted}"
+        held = proof.cases - len(proof.failed)
+        yield f"  {'PASS' if proof.holds else 'FAIL'}  {proof.of}: {held} of {proof.cases} {theorem.counted}"
         yield from wrap(proof.through, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT)
         yield from (f"{_INDENT}Not so: {where}" for where in proof.failed[:_SHOWN])
     yield ""
@@ -109,22 +109,26 @@ def _proofs(system: System) -> Iterator[Proof]:
         unsolved = tuple(f"the equation of {e.function} of rod {e.rod} leaves {rest}" for e, rest in left if rest != 0)
         yield Proof(RECURRENCES, f"{system.name}, {pattern.name}", rates_met(laws, known), len(left), unsolved)
     for family in FAMILIES.get(system.name, ()):
-        made = list(steps(system, family))
+        inequalities = list(steps(system, family))
         beyond = tuple(
             f"{step.of}, {step.because}, {step.where}: {step.slack} is not at least 0"
-            for step in made
+            for step in inequalities
             if not step.holds
         )
         of = f"{system.name}, {family.of.replace('$', '')}"
-        yield Proof(POWERS, of, arrangements(family, made), len(made), beyond)
+        yield Proof(POWERS, of, arrangements(family, inequalities), len(inequalities), beyond)
 
 
 def _walks(system: System) -> Proof:
     """The exact tables of small chains, from walk polynomials."""
     chains = [sample(system, m) for m in (system.smallest, system.smallest + system.step)]
     tables = [full_table(chain, INTERVALS, fmpq(0)) for chain in chains]
-    gains = sum(len(gained) for made in tables for response in made.responses.values() for gained in response.values())
+    gains = sum(
+        len(gained) for table in tables for response in table.responses.values() for gained in response.values()
+    )
     found = tuple(
-        f"m = {chain.m}: {one}" for chain, made in zip(chains, tables, strict=True) for one in differences(chain, made)
+        f"m = {chain.m}: {one}"
+        for chain, table in zip(chains, tables, strict=True)
+        for one in differences(chain, table)
     )
     return Proof(WALKS, f"{system.name}, m = {chains[0].m} and {chains[1].m}, {INTERVALS} intervals", "", gains, found)

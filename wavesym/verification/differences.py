@@ -41,14 +41,14 @@ _STENCIL = 6
 # a point rounds three sums, a node and what is read off a little more
 _ROUNDINGS = 8
 
-# points and instants are told apart in doubles
+# points and instants closer than this are the same, in doubles
 _SAME = 1e-6
 
 # what a step costs besides its points, in points
 _STEP = 5000
 
 # parts of what pushes and gaps are worth that tell whether a contact is closed, and gaps that are 0
-_TOLD, _ROUNDED = 1e-9, 1e-14
+_SIGN, _ROUNDED = 1e-9, 1e-14
 
 Term = tuple[int, int, float]
 """A displacement that a reading is the sum of: steps later (-1, 0, 1), the point, and its weight."""
@@ -284,7 +284,7 @@ class _Motion:
             pushes[pushing] = np.linalg.solve(yields[np.ix_(pushing, pushing)], -gaps[pushing])
         after += moved @ parting.T @ pushes
         gaps += yields @ pushes
-        for contact in np.flatnonzero(np.where(self._open, pushes > _TOLD * force, gaps > _TOLD * length)).tolist():
+        for contact in np.flatnonzero(np.where(self._open, pushes > _SIGN * force, gaps > _SIGN * length)).tolist():
             self._open[contact] ^= True
             self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
             self.changes.append((contact, "opens" if self._open[contact] else "closes", self._step))

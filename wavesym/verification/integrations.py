@@ -22,11 +22,11 @@ from wavesym.methods.problem import Array
 from wavesym.methods.problem import problem_of as damped_problem
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, Undecided, integrate
-from wavesym.verification.differences import LATE, Instants, SpaceTimeGrid, coarsest_grid
+from wavesym.verification.differences import LATE, SpaceTimeGrid, coarsest_grid
 from wavesym.verification.observed import Term, observed, read_by
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, refused, shown
 from wavesym.verification.problem import Change, Struck, alike, problem_of
-from wavesym.verification.reference import Known, spread
+from wavesym.verification.reference import Known, evenly, spread
 
 # Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them
 _POINTS, _POINTS_OF_CONTACTS = 6, (8, 12)
@@ -35,7 +35,7 @@ _MOST_POINTS = 96
 # integrations take no more doubles than that, and no more panels where contacts open and close
 _MOST_DOUBLES, _MOST_PANELS = 4_000_000, 400
 
-# solutions are not looked at where fronts that contacts make are as close as this, nor told apart in time
+# values are not compared where a front that a contact causes is as close as this; closer instants are the same
 _CLOSE = 1e-7
 
 # central differences move no more points than that
@@ -124,7 +124,7 @@ class _Solved:
         return self._motions[points]
 
     def clear(self, terms: Sequence[Term], taus: Array) -> Array:
-        """Which instants are as far from fronts that contacts made as these are known: (n,)."""
+        """Which instants are as far from fronts that contacts cause as these are known: (n,)."""
         motions = [self.motion(k * self.points) for k in (1, 2, 4)] if self.has_contacts else []
         far = [motion.distance(reading, taus) for motion in motions for _, reading in terms]
         return np.asarray(np.min(far, axis=0, initial=np.inf) > _CLOSE) if far else np.ones(len(taus), bool)
@@ -182,7 +182,7 @@ def differences(known: Known) -> list[Outcome]:
     if (swing := first.problem.swings * finest.tau(1) / 4) > _SWING:
         why = f"springs swing {swing:.2g} radians in the shortest step that central differences can take"
         return refused(known, "to", why)
-    instants = _some(first.instants(until, struck))
+    instants = evenly(first.instants(until, struck), _MOST_INSTANTS)
     if not len(instants):
         why = f"to step between the fronts, central differences would take too long (at {first.tau(1):.1g} a step)"
         return refused(known, "to", why)
@@ -209,12 +209,6 @@ def differences(known: Known) -> list[Outcome]:
 
 def _grid(model: Model) -> SpaceTimeGrid:
     return coarsest_grid(problem_of(model), read_by(model), fraction(model.until))
-
-
-def _some(instants: Instants) -> Instants:
-    """No more than are looked at, evenly spread."""
-    count = min(len(instants), _MOST_INSTANTS)
-    return np.asarray(instants[np.linspace(0, len(instants) - 1, count).round().astype(int)])
 
 
 # finite elements

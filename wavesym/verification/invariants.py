@@ -1,4 +1,4 @@
-"""Momentum and energy over any network: every right evaluator keeps them, and none is told of them.
+"""Momentum and energy over any network: every right evaluator keeps them, and none uses them.
 
 With M, C, K of the points (no part of the bars in them), impedances Z, delays T, speeds c and the forces
 s = Z c U_x of the bars' ends on their points,

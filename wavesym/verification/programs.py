@@ -36,7 +36,7 @@ from wavesym.targets.files import files
 from wavesym.verification.integrations import collocated
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
 from wavesym.verification.outcome import IntegratedOutput, Outcome, shown
-from wavesym.verification.reference import Known
+from wavesym.verification.reference import Known, evenly
 from wavesym.verification.streams import step_modes, step_stream
 
 FLAGS = ("-std=c99", "-O1")
@@ -101,7 +101,7 @@ def compare_programs(
             continue
         name = _name(request)
         try:
-            program = _made(scene, model, request, asked=requests is not None)
+            program = _made(scene, model, request, is_required=requests is not None)
         except (CostError, UnservedError, ToleranceError, RangeError) as error:
             refused.add(request.evaluator)
             reasons.setdefault(str(error), []).append(name)
@@ -136,7 +136,7 @@ def _name(request: Request) -> str:
     return ", ".join(filter(None, (kind, "stream" if request.stream else "", runtime, precision)))
 
 
-def _made(scene: Scene, model: Model, request: Request, *, asked: bool) -> Program:
+def _made(scene: Scene, model: Model, request: Request, *, is_required: bool) -> Program:
     """The program; in single precision for a larger tolerance, where it has to be."""
     if request.stream and request.evaluator != "modes":
         endless = replace(model, endless=True)
@@ -149,8 +149,8 @@ def _made(scene: Scene, model: Model, request: Request, *, asked: bool) -> Progr
         tolerances = [each for each in (model.tolerance, *LOOSENED) if each >= least]
     for tolerance in tolerances[:-1]:
         with suppress(CostError, UnservedError, ToleranceError):
-            return make(model.tolerating(tolerance), request, tested=True, asked=asked)
-    return make(model.tolerating(tolerances[-1]), request, tested=True, asked=asked)
+            return make(model.tolerating(tolerance), request, tested=True, asked=is_required)
+    return make(model.tolerating(tolerances[-1]), request, tested=True, asked=is_required)
 
 
 # running
@@ -195,7 +195,7 @@ def _run_c(scene: Scene, known: Known, integrals: Integrals, program: Program, n
         else:
             some = np.arange(len(taus))
             if program.evaluator == "march":
-                some = np.unique(np.linspace(0, len(taus) - 1, _MOST_MARCHED).round().astype(int))
+                some = evenly(some, _MOST_MARCHED)
             yield ProgramValues(f"{name}, C", taus[some], built(given[some].tolist()), sizes, bounds, late, note)
 
 

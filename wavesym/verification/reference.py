@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from numpy.typing import NDArray
 from wavesym.exact.reference import Reference, beginning
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+
+T = TypeVar("T", np.float64, np.int_)
 
 _SPREAD = 400
 _GOLDEN = (math.sqrt(5) - 1) / 2
@@ -99,6 +102,12 @@ def spread(until: float) -> list[float]:
     """Instants on [0, until], evenly and on no grid of any evaluator; single precision has them, too."""
     golden = np.array([math.fmod(k * _GOLDEN, 1) * until for k in range(1, _SPREAD + 1)], np.float32)
     return [tau for tau in golden.astype(np.float64).tolist() if tau <= until]
+
+
+def evenly(values: NDArray[T], most: int) -> NDArray[T]:
+    """As many of some values as are looked at, evenly spread over their places."""
+    count = min(len(values), most)
+    return np.asarray(values[np.linspace(0, len(values) - 1, count).round().astype(int)])
 
 
 def _taus(until: float, starts: Sequence[float]) -> Iterator[float]:

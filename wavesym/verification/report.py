@@ -34,7 +34,7 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
     notes: list[str] = []
     passed = True
 
-    def told(number: int, name: str, column: str, outcomes: Iterable[Outcome]) -> None:
+    def add_rows(number: int, name: str, column: str, outcomes: Iterable[Outcome]) -> None:
         nonlocal passed, notes
         for outcome in outcomes:
             verdict = "FAIL" if not outcome.passed else "-" if REFUSED in outcome.cells.values() else "PASS"
@@ -52,13 +52,13 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
                 requests is not None and len(found) == len(model.probes)
             ):
                 outcomes = check.run(truth)
-                told(number, model.name, "of", outcomes)
+                add_rows(number, model.name, "of", outcomes)
                 judges = ((each.subject, each.integral) for each in outcomes if each.integral)
                 found = {name: each for name, each in judges if _judges(each, truth)} | found
         integrals = [found.get(probe.name) for probe in model.probes]
         compared = compare_programs(scene, truth, integrals, requests)
-        told(0, model.name, "program", compared)
-        told(0, model.name, "program", _unseen(model, integrals, compared))
+        add_rows(0, model.name, "program", compared)
+        add_rows(0, model.name, "program", _unseen(model, integrals, compared))
     lines = [_LEGEND, _compiler(), *dict.fromkeys(notes), ""]
     for title, of_check in zip((_PROGRAMS, *(check.title for check in CHECKS)), rows, strict=True):
         if of_check:

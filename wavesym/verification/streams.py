@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.mechanics.model import Model
 from wavesym.methods.problem import Array
@@ -17,7 +15,7 @@ from wavesym.programs.program import Program
 from wavesym.running.compiled import Compiled
 from wavesym.scene import Scene
 from wavesym.verification.independent import changes
-from wavesym.verification.reference import Known
+from wavesym.verification.reference import Known, evenly
 
 _CLEAR = 1e-6  # outputs are looked at so far from fronts and from changes of loads, and no closer together
 _MOST_LOOKED = 300
@@ -36,14 +34,14 @@ def step_stream(
     feed = LoadFeed(scene, known.whole, program.sources)
     fronts = np.array([*known.starts, *map(float, feed.times)])
     apart = np.array([tau for tau in taus if np.min(np.abs(fronts - tau), initial=np.inf) > _CLEAR])
-    chosen = _some(apart[np.diff(apart, prepend=0.0) > _CLEAR])
+    chosen = evenly(apart[np.diff(apart, prepend=0.0) > _CLEAR], _MOST_LOOKED)
     stops = [Fraction(tau) for tau in chosen.tolist()]
-    looked, columns, told = set(stops), [], 0.0
+    looked, columns, before = set(stops), [], 0.0
     own = [nearest(value) for field in program.laws.fields for value in field.values] if program.laws else None
     stream = built.stream(own)
     for tau, loads, jumps in feed.through(stops, everywhere=True):
-        column = stream.step(0.0 if jumps else float(tau) - told, loads)
-        told = float(tau)
+        column = stream.step(0.0 if jumps else float(tau) - before, loads)
+        before = float(tau)
         if tau in looked:
             columns.append(column)
     return chosen, np.array(columns).T, stream.lost
@@ -53,21 +51,14 @@ def step_modes(scene: Scene, known: Known, program: Program, built: Compiled) ->
     """A stream of modes: some multiples of its spacing after the first change of a load, and the outputs there."""
     feed = LoadFeed(scene, known.whole, program.sources)
     step = Fraction(program.constants["spacing"])
-    if (told := known.whole.spacing) and abs(fraction(told) / step - 1) < _CLEAR:
-        step = fraction(told)  # as it is, and not as a double has it
+    if (spacing := known.whole.spacing) and abs(fraction(spacing) / step - 1) < _CLEAR:
+        step = fraction(spacing)  # as it is, and not as a double has it
     first = feed.times[0] % step if feed.times else Fraction(0)
     stops = [first + k * step for k in range(1, int((fraction(known.model.until) - first) / step) + 1)]
     stream = built.stream()
     columns = [stream.step(program.constants["spacing"], loads) for _, loads, _ in feed.through(stops)]
-    some = _some(np.arange(len(stops)))
+    some = evenly(np.arange(len(stops)), _MOST_LOOKED)
     return np.array([float(stop) for stop in stops])[some], np.array(columns).T[:, some]
-
-
-def _some(given: NDArray[Any]) -> NDArray[Any]:
-    """As many as are looked at, evenly."""
-    return np.asarray(
-        given[np.unique(np.linspace(0, len(given) - 1, min(len(given), _MOST_LOOKED)).round().astype(int))]
-    )
 
 
 class LoadFeed:
@@ -94,10 +85,10 @@ class LoadFeed:
     ) -> Iterator[tuple[Fraction, list[float], bool]]:
         """The loads at each stop, or wherever they change, too; after that as they are once they have jumped there."""
         now, loads, slopes = Fraction(0), [Fraction(0)] * self._rows, [Fraction(0)] * self._rows
-        wanted = set(stops)
+        required = set(stops)
         for then in sorted({*(time for time in self.times if stops and time <= stops[-1]), *stops}):
             loads, now = [load + (then - now) * slope for load, slope in zip(loads, slopes, strict=True)], then
-            if then in wanted or (everywhere and then > 0):
+            if then in required or (everywhere and then > 0):
                 yield then, [float(load) for load in loads], False
             here = self._changes.get(then, ())
             for row, jump, slope in here:

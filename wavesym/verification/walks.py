@@ -26,18 +26,18 @@ def differences(chain: Chain, table: Table) -> Iterator[Function]:
                     yield function
 
 
-def by_walks(chain: Chain, made: Table, intervals: int, names: Letters) -> dict[str, dict[Function, list[Increment]]]:
+def by_walks(chain: Chain, table: Table, intervals: int, names: Letters) -> dict[str, dict[Function, list[Increment]]]:
     """The responses of a table from walk polynomials in the letters `names`, the contacts of an impact summed."""
     responses: dict[str, dict[Function, list[Increment]]] = {
         source: {function: [{} for _ in gains] for function, gains in response.items()}
-        for source, response in made.responses.items()
+        for source, response in table.responses.items()
     }
     for unit in units(chain):
-        sent = walks_until(chain, unit, departures(chain, made.interval, intervals), names, names.symbols)
+        sent = walks_until(chain, unit, departures(chain, table.interval, intervals), names, names.symbols)
         response = responses["impact" if unit.name.startswith("impact") else unit.name]
         for function, gains in response.items():
             for n, gain in enumerate(gains, 1):
-                polynomial = function_walks(chain, sent, function, n, made.interval)
+                polynomial = function_walks(chain, sent, function, n, table.interval)
                 add(gain, _expanded(polynomial, unit, names))
     return {source: {f: list(map(trimmed, gains)) for f, gains in r.items()} for source, r in responses.items()}
 
@@ -65,12 +65,12 @@ def _at_pole(polynomial: fmpz_mpoly, pole: fmpq, depth: int, letters: Letters) -
     def factor(name: str, exponent: int) -> fmpq_poly:
         if (name, exponent) not in factors:
             if name in letters.shares:
-                made = fmpq_poly([letters.shares[name] ** exponent])
+                power = fmpq_poly([letters.shares[name] ** exponent])
             elif (rate := letters.rates[name]) == pole:
-                made = fmpq_poly([0] * (depth - exponent) + [rate**exponent])
+                power = fmpq_poly([0] * (depth - exponent) + [rate**exponent])
             else:
-                made = _power(rate, rate - pole, exponent, depth)
-            factors[name, exponent] = made
+                power = _power(rate, rate - pole, exponent, depth)
+            factors[name, exponent] = power
         return factors[name, exponent]
 
     # a polynomial without this pole's letter still stands over u**0, that is, times u**depth
