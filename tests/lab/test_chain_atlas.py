@@ -107,6 +107,7 @@ def test_every_refusal_has_its_reason():
     assert all(math.isnan(point.error) <= bool(point.refused) for point in family.points)
 
 
+@pytest.mark.slow
 def test_knots_without_end_are_refused_in_no_time():
     scene, places = chains.REFUSALS["horizon, lengths 1, 1.414213562 and 1.732050808"]
     family = chains.refusals(quietly, {"horizon": (scene, places[-1:])})

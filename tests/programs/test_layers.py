@@ -58,7 +58,7 @@ def truth(model: Model, taus: list[float], end: str = "free") -> np.ndarray[Any,
     ("specimen", "until", "end"),
     [
         (CUT, 5, "free"),
-        (OTHER, 5, "absorbing"),
+        pytest.param(OTHER, 5, "absorbing", marks=pytest.mark.slow),
         pytest.param(CUT, 26, "absorbing", marks=pytest.mark.slow),
         pytest.param(OTHER, 12, "free", marks=pytest.mark.slow),
     ],

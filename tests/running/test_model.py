@@ -170,6 +170,7 @@ def test_without_a_compiler_there_is_no_model():
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.slow
 def test_velocities_of_a_scene_that_does_not_move_may_come_later():
     scene = wavesym.Scene.from_toml("collision_m4").with_({"output.until": 4})
     still = wavesym.model(scene.with_({"system.velocity": [1, 1]}), runtime=["velocity"])

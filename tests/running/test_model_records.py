@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import wavesym
+from tests.support.patience import first_always
 from wavesym.errors import SpacingError, UnservedError
 from wavesym.programs.march import plan
 from wavesym.programs.request import Request
@@ -125,7 +126,7 @@ def test_a_record_within_bounds(scene, chosen):
     assert same < 1e-20 * np.sum(data**2) < other
 
 
-@pytest.mark.parametrize("scene", [SHAKEN, LINKED])
+@pytest.mark.parametrize("scene", first_always([SHAKEN, LINKED]))
 def test_samples_that_only_add_up_are_seen(scene):
     program = runtime_program(lower(scene), Request(runtime=("load",)), amplitudes(scene))
     added = replace(
