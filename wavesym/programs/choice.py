@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Made: TypeAlias = "ClosedForm | Pieces | ModesEvaluator | March | HatMarch"
 
 _USUAL_TABLES = {"double": "speed", "single": "size"}
-# Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
+# Closed forms with larger tables than this are not tried unless requested: they have lost their digits long before.
 _WORTH_TRYING = 50_000
 _LAST = ("modes", "march")
 # seconds for pieces where another program serves
@@ -35,7 +35,7 @@ _OF_MANY = 3
 class Tried:
     """What came of trying one kind of program: its `form`, where it could be made, and the `refusal`, a sentence.
 
-    The sentence is empty where the form meets the tolerance. `error` is for whoever asked for this kind by its name.
+    The sentence is empty where the form meets the tolerance. `error` is for whoever requested this kind by its name.
     """
 
     kind: str

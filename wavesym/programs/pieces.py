@@ -183,7 +183,7 @@ def pieces(
     Raises:
         CostError: where tables would be larger than `MOST_BYTES`, or take long to fit, or waves longer than that.
     """
-    # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
+    # no finer than rounding: a smaller tolerance is not met by more bits or more pieces
     fits = _Fits(model, real, max(tolerance, real.roundoff / 8), most_seconds)
     found = _smallest(fits, tolerance) if optimize == "size" else _fastest(fits, tolerance)
     for shorter in _SHORTER:
@@ -430,7 +430,7 @@ class _Cuts:
         kept = [k for k in range(len(exact) - 1) if seen[k] < seen[k + 1]]
         self.exact = [exact[k] for k in kept] + [last]
         self.starts = [seen[k] for k in kept] + [seen[-1]]
-        # as far as the output goes on without a breakpoint, and is asked for
+        # as far as the output goes on without a breakpoint, and within the horizon
         self.ends = [min(exact[k + 1], until) for k in kept]
         self.centres = [real.nearest((low + high) / 2) for low, high in pairwise(self.exact)]
         self.middles = [rational(centre) for centre in self.centres]

@@ -66,7 +66,7 @@ class March(Bounded):
 
     @property
     def work(self) -> float:
-        """About how many operations a window takes, and so a value that is asked for alone on one."""
+        """About how many operations a window takes, and so a single value on one."""
         return 2.0 * _multiplications(self.plan, self.degree)
 
     @property

@@ -112,7 +112,7 @@ class ModesEvaluator(Bounded):
 
     @property
     def check_points(self) -> list[float]:
-        """A stream is not asked at any tau: what its self-test compares is `streamed`."""
+        """None: a self-test of a stream compares what is `streamed`."""
         return []
 
     def program(self, provenance: Provenance) -> Program:
