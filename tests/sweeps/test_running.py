@@ -16,7 +16,7 @@ import pytest
 pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
 from tests.sweeps.test_cluster import files
-from wavesym import Scene, compiler
+from wavesym import Scene, api
 from wavesym.cli import main
 from wavesym.errors import SceneError, WavesymError
 from wavesym.sweeps import running
@@ -96,7 +96,7 @@ def test_what_is_lost_or_damaged_is_made_again(tmp_path: Path, computed: list[in
         assert {**files(tmp_path), "done/stranger.json": b""} == {**before, "done/stranger.json": b""}
     shutil.rmtree(tmp_path / "results.zarr" / "max")
     with pytest.raises(DamagedError, match=r"max/\.zarray and 7 files more damaged; 6 of 6 cases"):
-        compiler.sweep_table(tmp_path, tmp_path / "t.csv")
+        api.sweep_table(tmp_path, tmp_path / "t.csv")
     assert run(SWEEP, tmp_path) == 0
     assert {**files(tmp_path), "done/stranger.json": b""} == {**before, "done/stranger.json": b""}
 
@@ -163,14 +163,14 @@ def test_commands_that_start_at_once_do_not_disturb_each_other(tmp_path: Path) -
 @pytest.mark.slow
 def test_labelled_arrays_are_the_summaries_of_their_scenes(tmp_path: Path) -> None:
     keep = {"summary": ["min", "max", "tau_max", "arrival"], "histories": 11}
-    found = compiler.sweep({**SWEEP, "keep": keep}, tmp_path)
+    found = api.sweep({**SWEEP, "keep": keep}, tmp_path)
     assert dict(found.sizes) == {"output.until": 2, "system.kappa[0]": 3, "output": 5, "sample": 11}
     for until in (4, 5):
         for kappa in (0.25, 0.625, 1.0):
             scene = Scene.from_toml("drive_m1").with_({"output.until": until, "system.kappa[0]": kappa})
             case = found.sel({"output.until": until, "system.kappa[0]": kappa})
-            told = compiler.summary(scene)
-            values = compiler.evaluator(scene)(np.linspace(0, until, 11))
+            told = api.summary(scene)
+            values = api.evaluator(scene)(np.linspace(0, until, 11))
             np.testing.assert_allclose(case["history"], values, rtol=0, atol=1e-15 * np.abs(values).max())
             assert case["until"] == until
             for output in told.outputs:
@@ -215,24 +215,22 @@ def test_a_case_that_refuses_leaves_its_reason_and_the_others_go_on(tmp_path: Pa
     again = pandas.read_csv(tmp_path / "t.csv")
     assert list(table) == header.split(",")
     np.testing.assert_array_equal(table.to_numpy(), again.to_numpy())
-    strain = compiler.summary(Scene.from_toml("drive_m1")).outputs[0]
+    strain = api.summary(Scene.from_toml("drive_m1")).outputs[0]
     assert table["strain@0.max"][0] == strain.max.value
 
 
 @pytest.mark.slow
 def test_zipped_cases_have_one_dimension(tmp_path: Path) -> None:
-    found = compiler.sweep(
-        {**SWEEP, "zip": True, "vary": {"output.until": [4, 5], "system.kappa[0]": [1, 2]}}, tmp_path
-    )
+    found = api.sweep({**SWEEP, "zip": True, "vary": {"output.until": [4, 5], "system.kappa[0]": [1, 2]}}, tmp_path)
     assert found["max"].dims == ("case", "output")
     assert found["output.until"].values.tolist() == [4, 5]
-    compiler.sweep_table(tmp_path, tmp_path / "t.csv")
+    api.sweep_table(tmp_path, tmp_path / "t.csv")
     assert (tmp_path / "t.csv").read_text().startswith("output.until,system.kappa[0],strain@0.min,")
 
 
 @pytest.mark.slow
 def test_outputs_may_differ_from_case_to_case(tmp_path: Path) -> None:
-    found = compiler.sweep({"scene": "drive_m1", "vary": {"output.strain[0]": ["1/4", "3/4"]}}, tmp_path)
+    found = api.sweep({"scene": "drive_m1", "vary": {"output.strain[0]": ["1/4", "3/4"]}}, tmp_path)
     assert {"strain@1/4", "strain@3/4", "strain@1"} < set(found["output"].values.tolist())
     missing = np.isnan(found["max"].sel(output="strain@1/4"))
     assert missing.values.tolist() == [False, True]
