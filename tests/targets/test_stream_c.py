@@ -384,7 +384,7 @@ BREAKS = {
         "add(sent_wave(state, breakpoint, send[port]), 1, breakpoint == NONE ? instead : more[all], SIZE);",
         "",
     ),
-    "what follows": ("    follow(state);\n}", "}"),
+    "what follows": ("    continue_breakpoints(state);\n}", "}"),
     "a place": ("state->place[found] = state->time;", "state->place[found] = 0;"),
     "a jump": ("jump[j] = brief ? load[j] - straight : (real)0;", "jump[j] = 0;"),
     "a ring": ("state->at[k] + 1 : 0", "state->at[k] + 1 : 1"),

@@ -30,7 +30,7 @@ static const real *wave(const march *state, int number, int windows, int panel)
 }
 
 /* A track where it is heard, t after the start of the cycle. */
-static real heard(const march *state, int number, int late, real t)
+static real read_wave(const march *state, int number, int late, real t)
 {
     const int phase = state->window % CYCLE;
     int s = first_stretch[late];
@@ -42,7 +42,7 @@ static real heard(const march *state, int number, int late, real t)
 }
 
 /* Its integral from the start of the window to t, or over the `whole` of it. */
-static real gathered(const march *state, int number, int late, real t, int whole)
+static real integral_of_wave(const march *state, int number, int late, real t, int whole)
 {
     const int phase = state->window % CYCLE;
     const int first = first_stretch[late];
@@ -62,9 +62,9 @@ static real gathered(const march *state, int number, int late, real t, int whole
 static real integral(const march *state, int output, real t, int whole)
 {
     real sum = state->total[output];
-    for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+    for (int k = first_term[output]; k < first_term[output + 1]; ++k) {
         if (summed[k]) {
-            sum += gain[k] * gathered(state, track[k], delay[k], t, whole);
+            sum += gain[k] * integral_of_wave(state, track[k], delay[k], t, whole);
         }
     }
     return sum;
@@ -74,9 +74,9 @@ static void read_at(const march *state, real t, real out[OUTPUTS])
 {
     for (int output = 0; output < OUTPUTS; ++output) {
         out[output] = integral(state, output, t, 0);
-        for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+        for (int k = first_term[output]; k < first_term[output + 1]; ++k) {
             if (!summed[k]) {
-                out[output] += gain[k] * heard(state, track[k], delay[k], t);
+                out[output] += gain[k] * read_wave(state, track[k], delay[k], t);
             }
         }
     }
@@ -95,7 +95,7 @@ static void force_of(const march *state, int force, int panel, real *c)
 }
 
 /* The changes of the loads at the start of a panel. */
-static void change(march *state, int panel)
+static void change_loads(march *state, int panel)
 {
     while (state->event < EVENTS && event_window[state->event] == state->window &&
            event_panel[state->event] == panel) {
@@ -114,7 +114,7 @@ static void advance(march *state)
 {
     for (int panel = 0; panel < PANELS; ++panel) {
         real acting[(FORCES + 1) * POWERS] = {0};
-        change(state, panel);
+        change_loads(state, panel);
         for (int force = 0; force < FORCES; ++force) {
             force_of(state, force, panel, acting + force * POWERS);
         }
@@ -135,12 +135,12 @@ static void advance(march *state)
     }
 }
 
-static void begin_march(march *state)
+static void start_march(march *state)
 {
     state->window = 0;
     state->event = 0;
     for (int k = 0; k < STATES; ++k) {
-        state->x[k] = begun[k];
+        state->x[k] = initial_state[k];
     }
     for (int output = 0; output < OUTPUTS; ++output) {
         state->total[output] = 0;
@@ -204,7 +204,7 @@ int name_eval(real tau, real out[OUTPUTS])
     if (!(tau == tau && tau >= 0 && tau <= NAME_TAU_MAX)) {
         return refuse(out);
     }
-    begin_march(&state);
+    start_march(&state);
     outputs_at(&state, tau, out);
     return 0;
 }
@@ -213,7 +213,7 @@ int name_sample(real tau0, real dtau, size_t count, real *out)
 {
     march state;
     int outside = 0;
-    begin_march(&state);
+    start_march(&state);
     for (size_t i = 0; i < count; ++i) {
         /* towards later tau, whatever the sign of dtau */
         const size_t k = dtau < 0 ? count - 1 - i : i;

@@ -41,7 +41,7 @@ extern const int first_port[];
 extern const real drive[];
 extern const int answer[];
 extern const real matrix[];
-extern const real begun[];
+extern const real initial_state[];
 extern const int force_on[];
 /* ports: the point of the joint, factors, and tracks */
 extern const int point_of[];
@@ -58,7 +58,7 @@ extern const int event_panel[];
 extern const int event_force[];
 extern const real event_power[];
 /* Outputs: where their tracks start in the next tables; factors, whether the integral counts, and delays. */
-extern const int first_heard[];
+extern const int first_term[];
 extern const int track[];
 extern const real gain[];
 extern const int summed[];

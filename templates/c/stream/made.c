@@ -154,9 +154,9 @@ static real step_lost(const stream *state, int joint)
         }
     }
     for (int b = 0; b < states; ++b) {
-        energy += is_mass[first + b] ? state->made.weight[first + b] / 2 : (real)0;
+        energy += moves_with[first + b] >= 0 ? state->made.weight[first + b] / 2 : (real)0;
         for (int a = 0; law[joint] == BLOCK && a < states; ++a) {
-            sum += is_mass[first + b] ? absolute(missed[a * width + points * SIZE + b]) : (real)0;
+            sum += moves_with[first + b] >= 0 ? absolute(missed[a * width + points * SIZE + b]) : (real)0;
         }
     }
     if (law[joint] == BODY) {
@@ -227,7 +227,7 @@ static int made_of(stream *state, const name_parameters *parameters)
         fine &= step_lost(state, joint) <= tolerance;
         weigh_tracks(state, joint);
     }
-    for (int k = 0; k < HEARD; ++k) {
+    for (int k = 0; k < TERMS; ++k) {
         if (shown_force[k] >= 0) {
             root_impedance[track[k]] = 0;
         }
@@ -242,7 +242,7 @@ int name_build(stream *state, const name_parameters *parameters)
     const int status = made_of(state, parameters);
     if (status) {
         (void)made_of(state, &name_defaults);
-        for (int k = 0; k < HEARD; ++k) {
+        for (int k = 0; k < TERMS; ++k) {
             gain[k] = not_a_number();
         }
     }

@@ -18,7 +18,7 @@
     int spare;             /* the first that is no longer, */
     int first_breakpoint[NAME_PANELS];              /* the first one of a panel, */
     int next_breakpoint[NAME_BREAKPOINTS + 1];      /* the one after each, negative for none, */
-    int quiet[NAME_BREAKPOINTS + 1];                /* for how many windows nothing was sent after it, */
+    int silent[NAME_BREAKPOINTS + 1];               /* for how many windows nothing was sent after it, */
     name_real place[NAME_BREAKPOINTS + 1];          /* and how long after the start of its panel it is */
     name_real load[NAME_LOADS + 1];                 /* the loads now, */
     name_real slope[NAME_LOADS + 1];                /* and how fast they change */

@@ -155,7 +155,7 @@ static void lose(stream *state, real energy, real wave)
 }
 
 /* What the polynomials of a joint miss under what is given to it, of its states. */
-static void lose_missed(stream *state, int joint, const real *given, const real *velocities)
+static void lose_truncation(stream *state, int joint, const real *given, const real *velocities)
 {
     const int states = first_state[joint + 1] - first_state[joint];
     const real *const factors = slip + first_slip[joint];
@@ -175,7 +175,7 @@ static void lose_missed(stream *state, int joint, const real *given, const real 
 
 /* The state at the end of the panel gains what moves for so long, from rest: velocities, and by how much springs have
  * become longer. */
-static void gain_state(stream *state, int joint, const real *velocities, real span)
+static void add_gain(stream *state, int joint, const real *velocities, real span)
 {
     const int points = first_point[joint + 1] - first_point[joint];
     for (int a = first_state[joint]; a < first_state[joint + 1]; ++a) {
@@ -191,7 +191,7 @@ static void gain_state(stream *state, int joint, const real *velocities, real sp
 }
 
 /* A joint on the panel that begins; or from rest, for the last `span` of the panel. */
-static void respond(stream *state, int joint, joint_on_panel *on, const real *acting, int at_rest, real span)
+static void step_joint_of(stream *state, int joint, joint_on_panel *on, const real *acting, int at_rest, real span)
 {
     real given[WIDEST + 1];
     real velocities[WIDEST];
@@ -201,15 +201,15 @@ static void respond(stream *state, int joint, joint_on_panel *on, const real *ac
     on->driven = drive[joint];
     step_joint(joint, on, acting, at_rest ? x : state->x + first_state[joint], given, velocities);
     if (first_state[joint] < first_state[joint + 1]) {
-        lose_missed(state, joint, given, velocities);
+        lose_truncation(state, joint, given, velocities);
         if (at_rest) {
-            gain_state(state, joint, velocities, span);
+            add_gain(state, joint, velocities, span);
         }
     }
 }
 
 /* All joints on the panel that begins; or after a breakpoint of it, where anything arrives. */
-static void respond_all(stream *state, int breakpoint, const real *acting)
+static void step_joints(stream *state, int breakpoint, const real *acting)
 {
     for (int joint = 0; joint < JOINTS; ++joint) {
         const int ports = first_port[joint + 1] - first_port[joint];
@@ -221,7 +221,7 @@ static void respond_all(stream *state, int breakpoint, const real *acting)
             arrives += breakpoint < 0 ? (real)0 : size_of(on.arriving[k]);
         }
         if (!(arrives <= 0)) {
-            respond(state, joint, &on, acting, breakpoint >= 0, breakpoint < 0 ? panel : panel - state->place[breakpoint]);
+            step_joint_of(state, joint, &on, acting, breakpoint >= 0, breakpoint < 0 ? panel : panel - state->place[breakpoint]);
         } else {
             for (int k = 0; k < ports; ++k) {
                 for (int power = 0; power < SIZE; ++power) {
@@ -233,7 +233,7 @@ static void respond_all(stream *state, int breakpoint, const real *acting)
 }
 
 /* Waves of a breakpoint that are as small as rounding are left out. Whether there are others. */
-static int are_left(stream *state, int breakpoint)
+static int drop_small_waves(stream *state, int breakpoint)
 {
     int left = 0;
     for (int k = 0; k < TRACKS; ++k) {
@@ -253,14 +253,14 @@ static int are_left(stream *state, int breakpoint)
 }
 
 /* What has gone on from the breakpoints of this panel is at them again; where nothing is left of it, their place is free. */
-static void follow(stream *state)
+static void continue_breakpoints(stream *state)
 {
     int *place = state->first_breakpoint + state->phase;
     while (*place >= 0) {
         const int after = *place;
-        respond_all(state, after, NULL);
-        state->quiet[after] = are_left(state, after) ? 0 : state->quiet[after] + 1;
-        if (state->quiet[after] > DEEPEST) {
+        step_joints(state, after, NULL);
+        state->silent[after] = drop_small_waves(state, after) ? 0 : state->silent[after] + 1;
+        if (state->silent[after] > DEEPEST) {
             *place = state->next_breakpoint[after];
             state->next_breakpoint[after] = state->spare;
             state->spare = after;
@@ -271,7 +271,7 @@ static void follow(stream *state)
 }
 
 /* Forces as series on a panel, of loads that go straight from `load`; or what they change by where these change. */
-static void forces_of(const stream *state, real *acting, const real *load, const real *slope, int change)
+static void set_forces(const stream *state, real *acting, const real *load, const real *slope, int change)
 {
     const real half = panel / 2;
     for (int force = 0; force < FORCES; ++force) {
@@ -296,7 +296,7 @@ static void forces_of(const stream *state, real *acting, const real *load, const
 }
 
 /* A panel begins: all that arrives on it is known, and what joints make of that and of loads follows. */
-static void begin(stream *state)
+static void start_panel(stream *state)
 {
     real acting[(FORCES + 1) * POWERS] = {0};
     state->phase += 1;
@@ -307,16 +307,16 @@ static void begin(stream *state)
             state->turn[k] = state->turn[k] + 1 < entries[k] ? state->turn[k] + 1 : 0;
         }
     }
-    forces_of(state, acting, state->load, state->slope, 0);
-    respond_all(state, EDGE, acting);
-    follow(state);
+    set_forces(state, acting, state->load, state->slope, 0);
+    step_joints(state, EDGE, acting);
+    continue_breakpoints(state);
 }
 
 /* It is over, and what was sent is on its way. */
-static void finish(stream *state)
+static void end_panel(stream *state)
 {
     for (int output = 0; output < OUTPUTS; ++output) {
-        for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+        for (int k = first_term[output]; k < first_term[output + 1]; ++k) {
             if (summed[k]) {
                 state->total[output] += gain[k] * integral_since(state, k, panel);
             }
@@ -346,7 +346,7 @@ static int breakpoint_now(const stream *state)
 }
 
 /* By how much what happens now is moved, to a breakpoint or an edge that is near; and what rounding makes of instants. */
-static real moved_by(const stream *state, int breakpoint)
+static real time_moved(const stream *state, int breakpoint)
 {
     const real place = breakpoint >= 0 ? state->place[breakpoint] : breakpoint == EDGE ? (real)0 : state->time;
     return absolute(state->time - place) + rounding * panel;
@@ -365,7 +365,7 @@ static int new_breakpoint(stream *state)
         return NONE;
     }
     state->place[found] = state->time;
-    state->quiet[found] = 0;
+    state->silent[found] = 0;
     state->next_breakpoint[found] = state->first_breakpoint[state->phase];
     state->first_breakpoint[state->phase] = found;
     for (int slot = NAME_SLOTS + found * ENTRIES; slot < NAME_SLOTS + (found + 1) * ENTRIES; ++slot) {
@@ -388,7 +388,7 @@ static void interpolate(real *instead, const real *wave, real delay)
 }
 
 /* The jump, kink and bend with which a wave begins, and how much it bends elsewhere at most. */
-static void begin_of(const real *wave, real *known)
+static void derivatives_at_start(const real *wave, real *known)
 {
     for (int order = 0; order < 4; ++order) {
         known[order] = 0;
@@ -404,7 +404,7 @@ static void begin_of(const real *wave, real *known)
 }
 
 /* How wrong a polynomial is then, at most; and the root of the integral of the square. */
-static void miss(const real *known, real delay, real factor, real *wrong, real *square_root)
+static void interpolation_error(const real *known, real delay, real factor, real *wrong, real *square_root)
 {
     /* between an edge and the instant next to it nothing is wrong but there */
     const int at_edge = delay <= instant[0] || delay > instant[DEGREE];
@@ -429,11 +429,11 @@ static void change_loads(stream *state, const real *jump, const real *bend, real
     real acting[(FORCES + 1) * POWERS] = {0};
     real more[LOADED_PORTS + 1][SIZE];
     int breakpoint = breakpoint_now(state);
-    const real late_by = moved_by(state, breakpoint);
+    const real late_by = time_moved(state, breakpoint);
     real missed = 0;
     real energy = 0;
     int all = 0;
-    forces_of(state, acting, jump, bend, 1);
+    set_forces(state, acting, jump, bend, 1);
     for (int n = 0; n < LOADED; ++n) {
         const int first = first_port[loaded[n]];
         const int ports = first_port[loaded[n] + 1] - first;
@@ -442,16 +442,16 @@ static void change_loads(stream *state, const real *jump, const real *bend, real
             on.arriving[port] = nothing;
             on.sent[port] = more[all + port];
         }
-        respond(state, loaded[n], &on, acting, 1, breakpoint == EDGE ? panel : panel - state->time);
+        step_joint_of(state, loaded[n], &on, acting, 1, breakpoint == EDGE ? panel : panel - state->time);
         for (int port = 0; port < ports; ++port, ++all) {
             const real factor = root_impedance[send[first + port]];
             real known[4];
-            begin_of(more[all], known);
+            derivatives_at_start(more[all], known);
             state->rounded += rounding * factor * size_of(more[all]);
             state->rounded += late_by * factor * (absolute(known[0]) / panel + absolute(known[1]) + panel * absolute(known[2]));
             state->due += factor * (absolute(known[0]) + span * (absolute(known[1]) + panel * absolute(known[2])));
             if (breakpoint == NONE) {
-                miss(known, state->time, factor, &missed, &energy);
+                interpolation_error(known, state->time, factor, &missed, &energy);
             }
         }
     }
@@ -483,11 +483,11 @@ static real force_now(const stream *state, int force)
     return integrated[force] ? state->force[force] : sum;
 }
 
-static void read_now(stream *state, real *out)
+static void read_outputs(stream *state, real *out)
 {
     for (int output = 0; output < OUTPUTS; ++output) {
         out[output] = state->total[output];
-        for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+        for (int k = first_term[output]; k < first_term[output + 1]; ++k) {
             if (summed[k]) {
                 out[output] += gain[k] * integral_since(state, k, state->time);
             } else if (shown_force[k] >= 0) {
@@ -564,17 +564,17 @@ void name_init(stream *state)
         state->force[force] = base[force];
     }
     for (int k = 0; k < STATES; ++k) {
-        state->x[k] = begun[k];
+        state->x[k] = initial_state[k];
     }
     for (int output = 0; output < OUTPUTS; ++output) {
         state->total[output] = 0;
         state->largest[output] = 0;
     }
-    begin(state);
+    start_panel(state);
 }
 
 /* On by `span`, in which loads go straight to what they are when so much of a step is done that began at `before`. */
-static void go_on(stream *state, real span, real done, const real *before, const real *load)
+static void advance_loads(stream *state, real span, real done, const real *before, const real *load)
 {
     for (int j = 0; j < LOADS; ++j) {
         const real now = done < 1 ? before[j] + done * (load[j] - before[j]) : load[j];
@@ -600,20 +600,20 @@ static void advance(stream *state, real dtau, const real *load)
     state->age += dtau;
     while ((then.high - panel) + (then.low - panel_low) >= -nearness(state)) {
         past += panel - state->time;
-        go_on(state, panel - state->time, past / dtau, before, load);
-        finish(state);
+        advance_loads(state, panel - state->time, past / dtau, before, load);
+        end_panel(state);
         state->time = 0;
         state->time_low = 0;
-        begin(state);
+        start_panel(state);
         then = plus(then, -panel, -panel_low);
     }
-    go_on(state, then.high - state->time, 1, before, load);
+    advance_loads(state, then.high - state->time, 1, before, load);
     state->time = then.high;
     state->time_low = then.low;
 }
 
 /* A step, loads and time of which are numbers. */
-static void make_step(stream *state, real dtau, const real *load)
+static void step_loads(stream *state, real dtau, const real *load)
 {
     real jump[LOADS + 1];
     real bend[LOADS + 1];
@@ -650,7 +650,7 @@ static void make_step(stream *state, real dtau, const real *load)
 }
 
 /* The largest wave so far, or, before there is one, what the loads of this panel make within one. */
-static real against(const stream *state)
+static real reference_size(const stream *state)
 {
     return state->size > state->due ? state->size : state->due;
 }
@@ -658,7 +658,7 @@ static real against(const stream *state)
 /* More than the tolerance is lost, or numbers are beyond all bounds: for good, even where larger waves follow. */
 static void raise_alarm(stream *state, const real *out)
 {
-    const real all = against(state);
+    const real all = reference_size(state);
     const real energy = (state->lost_energy + root_panel * (real)1.5 * state->lost_wave) / all;
     const real slope = (state->lost_slope + growth * state->lost_energy) / all;
     const real left = tolerance - state->lost_wave / all;
@@ -683,8 +683,8 @@ int name_step(stream *state, real dtau, const real *load, real *out)
     if (wrong) {
         return 1;
     }
-    make_step(state, dtau, load);
-    read_now(state, out);
+    step_loads(state, dtau, load);
+    read_outputs(state, out);
     raise_alarm(state, out);
     return state->alarm ? 2 : 0;
 }
@@ -699,7 +699,7 @@ real name_lost(const stream *state)
     most = is_number(most) ? (real)0 : most;
     for (int output = 0; output < OUTPUTS; ++output) {
         real sum = 0;
-        for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+        for (int k = first_term[output]; k < first_term[output + 1]; ++k) {
             const real size = root_impedance[track[k]];
             const real of_state = state_gain[track[k]] * state->lost_energy * (summed[k] ? state->age : (real)1);
             sum += absolute(gain[k]) * (of_state + (size > 0 ? (summed[k] ? gathering : wave) / size : (real)0));

@@ -21,7 +21,7 @@ typedef struct {
     name_real kappa[3];
 } name_parameters;
 
-enum { NAME_LAW_COUNT = 16, NAME_PORTS = 4, NAME_ANSWERS = 1000, NAME_SLIPS = 100, NAME_HEARD = 4 };
+enum { NAME_LAW_COUNT = 16, NAME_PORTS = 4, NAME_ANSWERS = 1000, NAME_SLIPS = 100, NAME_TERMS = 4 };
 
 typedef struct {
     name_real rates[NAME_LAW_COUNT + 1];
@@ -29,13 +29,13 @@ typedef struct {
     name_real shown[NAME_LAW_COUNT + 1];
     name_real passed[NAME_LAW_COUNT + 1];
     name_real weight[NAME_STATES + 1];
-    name_real begun[NAME_STATES + 1];
+    name_real initial_state[NAME_STATES + 1];
     name_real push[NAME_PORTS + 1];
     name_real held[NAME_TRACKS + 1];
     name_real track_impedance[NAME_TRACKS + 1];
     name_real base[NAME_FORCES + 1];
     name_real strength[NAME_FORCES * NAME_LOADS + 1];
-    name_real gain[NAME_HEARD + 1];
+    name_real gain[NAME_TERMS + 1];
     name_real matrix[NAME_ANSWERS + 1];
     name_real drive[NAME_PORTS + 1];
     name_real slip[NAME_SLIPS + 1];
@@ -97,7 +97,7 @@ extern const int first_port[];
 extern const real drive[];
 extern const int answer[];
 extern const real matrix[];
-extern const real begun[];
+extern const real initial_state[];
 extern const int force_on[];
 /* the point with which a state moves; where there is none, what it gains by how far points have moved, by rows */
 extern const int moves_with[];
@@ -126,7 +126,7 @@ extern const real transform[];
 extern const real kink[];
 /* Outputs: where their tracks start in the next tables; factors, whether the integral counts, delays in panels and what
  * is left; and the force that is shown in place of a track, -1 for none. */
-extern const int first_heard[];
+extern const int first_term[];
 extern const int track[];
 extern const real gain[];
 extern const int summed[];
@@ -134,15 +134,14 @@ extern const int late[];
 extern const real rest[];
 extern const int shown_force[];
 
-/* where the laws of a joint begin; whether a state is a velocity */
+/* where the laws of a joint begin */
 extern const int at_rates[];
 extern const int at_pushed[];
 extern const int at_shown[];
 extern const int at_passed[];
-extern const int is_mass[];
 
 #ifdef NAME_RUNTIME
-enum { HEARD = NAME_HEARD, CALM = 4, ROW = SIZE + 1 };
+enum { TERMS = NAME_TERMS, CALM = 4, ROW = SIZE + 1 };
 
 extern const name_parameters name_defaults;
 extern const real largest_number;
@@ -158,7 +157,7 @@ int name_build(stream *state, const name_parameters *parameters);
 #define growth state->made.growth
 #define root_impedance state->made.root_impedance
 #define state_gain state->made.state_gain
-#define begun state->made.begun
+#define initial_state state->made.initial_state
 #define push state->made.push
 #define held state->made.held
 #define base state->made.base

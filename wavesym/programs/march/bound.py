@@ -298,7 +298,9 @@ class Losses:
                 if isinstance(group, Bodies):
                     self._bodies[number, place] = self._body_losses(plan, made, group, panel)
         delays = nearest(plan.step) * scheme.steps
-        self.begun = unit * sqrt(delays * self._impedance @ scheme.held**2 + self._weights @ scheme.begun**2 / 2)
+        self.begun = unit * sqrt(
+            delays * self._impedance @ scheme.held**2 + self._weights @ scheme.initial_state**2 / 2
+        )
         self.direct = np.zeros(len(scheme.held))
 
     def of(self, block: WindowBlock) -> tuple[float, float]:

@@ -76,7 +76,7 @@ class MarchTables:
             "event_panel": tuple(event.panel for event in plan.events),
             "event_force": tuple(event.force for event in plan.events),
             "event_power": reals(power for event in plan.events for power in event.powers),
-            "first_heard": firsts(map(len, heard)),
+            "first_term": firsts(map(len, heard)),
             "track": tuple(one.track for of in heard for one in of),
             "gain": reals(one.gain for of in heard for one in of),
             "summed": tuple(int(one.summed) for of in heard for one in of),
@@ -111,7 +111,7 @@ class MarchTables:
             "drive": reals(drives),
             "answer": where,
             "matrix": matrix,
-            "begun": reals(value for space in spaces for value in space.begun),
+            "initial_state": reals(value for space in spaces for value in space.begun),
             "force_on": tuple(force for joint in plan.joints for force in joint.forces),
             "point_of": tuple(port.point for port in ports),
             "push": reals(

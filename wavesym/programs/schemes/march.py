@@ -34,7 +34,7 @@ class MarchScheme:
         "drive",
         "answer",
         "matrix",
-        "begun",
+        "initial_state",
         "force_on",
         # ports: the point of the joint, factors, and tracks
         "point_of",
@@ -51,7 +51,7 @@ class MarchScheme:
         "event_force",
         "event_power",
         # outputs: where their tracks start in the next tables; factors, whether the integral counts, and delays
-        "first_heard",
+        "first_term",
         "track",
         "gain",
         "summed",
@@ -94,11 +94,11 @@ class MarchScheme:
         self.half_length = reals("half_length")
         self.panels = len(self.half_length)
         self.since = reals("since", self.panels, self.panels)
-        self.begun, self.force_on = reals("begun"), indices("force_on")
+        self.initial_state, self.force_on = reals("initial_state"), indices("force_on")
         self.event_window, self.event_panel = indices("event_window"), indices("event_panel")
         self.event_force, self.event_power = indices("event_force"), reals("event_power", -1, 3)
-        self.first_heard = indices("first_heard")
-        self.outputs = len(self.first_heard) - 1
+        self.first_term = indices("first_term")
+        self.outputs = len(self.first_term) - 1
         self.track, self.delay = indices("track"), indices("delay")
         self.gain, self.summed = reals("gain"), indices("summed") > 0
         self.begin = reals("begin")
@@ -202,7 +202,7 @@ class WindowBlock:
         return out
 
     def _heard(self, output: int) -> slice:
-        return slice(self._scheme.first_heard[output], self._scheme.first_heard[output + 1])
+        return slice(self._scheme.first_term[output], self._scheme.first_term[output + 1])
 
     def _tracks(self, output: int, *, summed: bool) -> list[tuple[int, float, int]]:
         """Tracks with gains and delays that an output hears, or whose integrals it hears."""
@@ -282,7 +282,7 @@ class Marching:
         self._scheme = scheme
         self._waves = np.zeros((scheme.deepest + self.most, tracks, scheme.panels, size), scheme.real)
         self._waves[..., 0] = scheme.held[:, None]
-        self._x = scheme.begun.copy()
+        self._x = scheme.initial_state.copy()
         self._loads = RunningLoads(scheme, scheme.event_power, scheme.since)
         self._totals = np.zeros(scheme.outputs, scheme.real)
 

@@ -1,7 +1,7 @@
 """Model -> Program, for loads that come sample by sample.
 
 The degree is that of the march of the same chain on the same panels under a step of every load at tau = 0, of which
-rings/bound.py proves a bound: the least whose polynomials lose no more than the tolerance, or no more than rounding.
+march/bound.py proves a bound: the least whose polynomials lose no more than the tolerance, or no more than rounding.
 Any loads that are straight on every panel are sums of such steps, earlier or later, and of their integrals.
 """
 
@@ -29,10 +29,9 @@ from wavesym.programs.program import (
 )
 from wavesym.programs.reference_values import leap, reference_values
 from wavesym.programs.request import Request
-from wavesym.programs.stream.free import FreeStream, free_stream
-from wavesym.programs.stream.made import MADE, laws_of, places, sizes
+from wavesym.programs.stream.free import free_stream
+from wavesym.programs.stream.parameters import quick_enough, refuse_stiff, with_parameters
 from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
-from wavesym.programs.stream.quick import quick_enough, refuse_stiff
 from wavesym.programs.stream.tables import StreamTables
 
 _ONE = fmpq(1)
@@ -80,7 +79,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
             )
     if free:
         refuse_stiff(plan)
-        degree, quicker = quick_enough(free, plan, degree, nearest(tolerance), real)
+        degree, quicker = quick_enough(plan, free.quicker, degree, nearest(tolerance), real)
     made = StreamTables(plan, degree, real)
     program = Program(
         "stream",
@@ -100,26 +99,8 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         step="panel",
     )
     if free:
-        program = _freed(program, free, plan, degree, quicker)
+        program = with_parameters(program, free, plan, degree, quicker)
     return replace(program, reference=_reference(model, plan, program)) if tested else program
-
-
-def _freed(program: Program, free: FreeStream, plan: StreamPlan, degree: int, quicker: fmpq) -> Program:
-    """With functions for the tables that parameters make, enough for joints so much `quicker` than the scene's."""
-    names, laws, more = ", ".join(field.name for field in free.fields), laws_of(free), sizes(plan, degree)
-    kept = sum(map(len, laws.functions.values())) + int(more["answers"] + more["slips"])
-    also = f" and for joints {quicker} times as fast" if quicker != 1 else ""
-    kib = -(-kept * program.real.bytes // 1024)
-    reason = f"{names} at run time, {kib} KiB more, enough for the scene's own{also}; errors are estimated"
-    tables = {name: table for name, table in program.tables.items() if name not in MADE} | places(free, plan, degree)
-    return replace(
-        program,
-        tables=tables,
-        constants=program.constants | more,
-        bytes=sum((4 if isinstance(v, int) else program.real.bytes) for row in tables.values() for v in row),
-        provenance=replace(program.provenance, reason=f"{program.provenance.reason}; {reason}"),
-        laws=laws,
-    )
 
 
 def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:

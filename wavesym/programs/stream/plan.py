@@ -1,4 +1,4 @@
-"""What is streamed: a chain as the march of chains has it (rings/plan.py), on equal panels, and its inputs; all exact.
+"""What is streamed: a chain as the march of chains has it (march/plan.py), on equal panels, and its inputs; all exact.
 
 Every joint that a wave can ever come from is part of it, as a stream has no end. A panel is a part of the march's step
 such that

@@ -15,7 +15,7 @@ from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.flat import firsts
 from wavesym.programs.march.evaluator import step_multiplications
 from wavesym.programs.march.plan import MarchedJoint
-from wavesym.programs.march.space import BLOCK, BODY, SHOWN
+from wavesym.programs.march.space import BLOCK, BODY, SHOWN, JointSpace
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.stream.interpolation import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
@@ -74,7 +74,7 @@ class StreamTables:
                 for order, errors in enumerate(kinks(self._degree))
                 for value, power in zip(errors, (0.0, 0.5), strict=True)
             ),
-            "first_heard": firsts(len(output.heard) for output in rings.outputs),
+            "first_term": firsts(len(output.heard) for output in rings.outputs),
             "track": tuple(one.track for one in heard),
             "gain": self._real.table(one.gain for one in heard),
             "summed": tuple(int(one.summed) for one in heard),
@@ -205,19 +205,27 @@ class StreamTables:
         rows = 2 * (sqrt(turned) + (1 + turned) / sqrt(2)) * rows
         return [float(f"{value * 1.01:.3g}") for value in rows.tolist()]
 
-    def jump_missed(self, joint: MarchedJoint, masses: int) -> float:
-        """What these are at most, added up, where waves that arrive, and the first `masses` states, jump to 1."""
-        space, slips = joint.space, np.array(self.slips(joint))
+    def jump_lost(self, joint: MarchedJoint) -> float:
+        """What part of the energy that comes polynomials lose at most where all waves and masses, at rest so far, jump
+        to 1; a root; as templates/c/stream/made.c has it.
+        """
+        space, size, slips = joint.space, self._degree + 1, np.array(self.slips(joint))
+        if not space.states:
+            return 0.0
+        masses = [point >= 0 for point in space.moves_with]
         pushes = [abs(nearest(port.push)) for port in space.ports]
         if space.law == BODY:
-            operator = self._rings.body(joint, self._plan.panel)
-            acting = nearest(space.drive) * sum(pushes)
-            return float(slips[0] * (abs(operator.highest(acting, 0.0)) + abs(operator.highest(0.0, 1.0))))
-        jumps = np.zeros(space.points * (self._degree + 1) + space.states)
-        for port, push in zip(space.ports, pushes, strict=True):
-            jumps[port.point * (self._degree + 1)] += push
-        jumps[len(jumps) - space.states :][:masses] = 1
-        return float(np.sum(np.abs(slips.reshape(space.states, -1)) @ jumps))
+            operator, acting = self._rings.body(joint, self._plan.panel), nearest(space.drive) * sum(pushes)
+            lost = slips[0] * (abs(operator.highest(acting, 0.0)) + abs(operator.highest(0.0, 1.0)))
+        else:
+            jumps = np.zeros(space.points * size + space.states)
+            for port, push in zip(space.ports, pushes, strict=True):
+                jumps[port.point * size] += push
+            jumps[space.points * size :] = masses
+            lost = np.sum(np.abs(slips.reshape(space.states, -1)) @ jumps)
+        energy = self._plan.panel * sum((port.impedance for port in space.ports), fmpq(0))
+        energy += sum((weight for weight, mass in zip(space.weights, masses, strict=True) if mass), fmpq(0)) / 2
+        return float(lost) / sqrt(nearest(energy)) if lost else 0.0
 
     def _rounded(self, values: Iterable[float]) -> tuple[float, ...]:
         return tuple(self._real.nearest(rational(value)) for value in values)
@@ -250,3 +258,8 @@ def _weight_at(joint: MarchedJoint, point: int) -> tuple[float, float]:
 def _moved(joint: MarchedJoint, point: int) -> Iterator[float]:
     for a, weight in enumerate(joint.space.weights):
         yield abs(nearest(joint.space.shown[point, a])) / sqrt(nearest(weight))
+
+
+def slip_size(space: JointSpace, degree: int) -> int:
+    """How many numbers say what the polynomials of a joint miss."""
+    return 1 if space.law == BODY else space.states * (space.points * (degree + 1) + space.states)

@@ -7,7 +7,7 @@ from itertools import accumulate
 
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.program import Program, SteppedValues
-from wavesym.programs.stream.made import MADE
+from wavesym.programs.stream.parameters import MADE
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, multiplied, parameter_fields
@@ -38,7 +38,7 @@ class CStream:
     made_tables: tuple[str, ...]
     products: Lines
     laws: tuple[tuple[str, str], ...]
-    heard: str
+    terms: str
     largest: str
     least: str
     elimination: str
@@ -87,7 +87,7 @@ def source(scene: Description, program: Program) -> str:
         made_tables=MADE if laws else (),
         products=multiplied(laws, laws.every, program.real) if laws else (),
         laws=tuple(assigned(laws, laws.functions, program.real)) if laws else (),
-        heard=str(len(laws.functions["gain"])) if laws else "",
+        terms=str(len(laws.functions["gain"])) if laws else "",
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",
         elimination=kernel("elimination.c", scene) if laws else "",
