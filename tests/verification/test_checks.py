@@ -125,8 +125,8 @@ def changed_files(monkeypatch, change):
         pytest.param(
             "pieces.py", "powers[:, 1:] + powers[:, :1]", "powers[:, 1:] - powers[:, :1]", marks=pytest.mark.slow
         ),
-        pytest.param("march.c", "sum += gain[k] * arrived", "sum -= gain[k] * arrived", marks=pytest.mark.slow),
-        pytest.param("march.py", "total += self.gain[k]", "total -= self.gain[k]", marks=pytest.mark.slow),
+        pytest.param("march.c", "sum += gain[k] * gathered", "sum -= gain[k] * gathered", marks=pytest.mark.slow),
+        pytest.param("march.py", "total += gain * _series", "total -= gain * _series", marks=pytest.mark.slow),
     ],
 )
 def test_a_sign_in_the_arithmetic_is_seen(file, right, wrong, monkeypatch, tmp_path):
@@ -153,11 +153,11 @@ def changed(scheme, right, wrong, monkeypatch, folder):
     return getattr(importlib.import_module("changed_scheme"), scheme.__name__)
 
 
-def a_digit_changed(text, file):
-    """The same program with another fifth digit in the last long decimal of its tables that is not tiny."""
+def a_digit_changed(text, file, which):
+    """The same program with another fifth digit in one of the long decimals of its tables that are not tiny."""
     numbers = list(re.finditer(r"(?<![\w.])\d\.\d{12,}(?![\de])", text))
     assert numbers, file
-    at = numbers[-1].start() + 5
+    at = numbers[which].start() + 5
     return f"{text[:at]}{(int(text[at]) + 5) % 10}{text[at + 1 :]}"
 
 
@@ -165,8 +165,10 @@ def a_digit_changed(text, file):
 @pytest.mark.parametrize("evaluator", ["closed", "pieces", pytest.param("march", marks=pytest.mark.slow)])
 def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
     truth = known(lower(BUILDING))
+    which = 0 if evaluator == "march" else -1  # the last of a march is of a high degree
     changed_files(
-        monkeypatch, lambda made: made | {name: a_digit_changed(made[name], name) for name in made if name == file}
+        monkeypatch,
+        lambda made: made | {name: a_digit_changed(made[name], name, which) for name in made if name == file},
     )
     assert compared(BUILDING, truth, evaluator) == [file == "small.c", file != "small.c"]  # NumPy, C
 

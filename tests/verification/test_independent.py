@@ -183,7 +183,7 @@ FAULTS = {
     "discs of a drive": (drive, DRIVE, "p.inertia[i] / p.inertia[i + 1]", "p.inertia[i + 1] / p.inertia[i]"),
     "its last moment": (drive, DRIVE, "sign=-1", "sign=1"),
     "bodies of a collision": (collision, COLLISION, "alpha=2 * p.kappa[i]", "alpha=p.kappa[i]"),
-    "its velocities": (collision, COLLISION, "velocity=p.velocity[i - 1]", "velocity=p.velocity[1]"),
+    "its velocities": (collision, COLLISION, "velocity=p.velocity[m - 1]", "velocity=p.velocity[1]"),
     "rods of a chain": (drawing, CHAIN, "rational(part.impedance),", "rational(part.impedance**2),"),
     "places on it": (chain_places, CHAIN, "Place(x, 0, line, rod + 1, (x -", "Place(x, 0, line, rod + 1, 1 - (x -"),
 }
