@@ -1,56 +1,84 @@
-/* batch.c: the march of a chain in lanes.
- * Plain C that stands below the text of march.c in generated files, which have what stands below the first
- * empty line. */
-#include "part.c"
-#include "march.c"
+/* batch.c: models of many sets of parameters at once.
+ * Plain C that stands below the text of build.c in lanes in generated files, which have what stands below the first empty
+ * line. */
+#include "lanes.c"
+#include "laws.h"
+#include "set.h"
+#include "build.c"
 
-#undef num
-#undef OF
-#undef PICK
-#undef SIZE
-#undef ZERO
-#undef FUSED
+/* Lanes of sets are where sets are, and as large; else this is no type. */
+typedef char as_large[sizeof(march_state_batch) == SETS * sizeof(name_march_state) ? 1 : -1];
 
-static void tabulate_parts(part_of *p, const laws_batch *law, int degree)
+/* A set's laws, and how its loads change, into its lane. */
+static void place_laws(march_state_batch *sets, laws_batch *all, int set, const laws *law)
 {
-    tabulate_batch(p, law, PARTS, degree);
-}
-
-static void march_parts(part_of *p, const laws_batch *law, int window, int degree, wide *size, wide *missed)
-{
-    march_batch(p, law, PARTS, window, degree, size, missed);
-}
-
-/* At rest, or as rods and masses move at first. */
-static void started_batch(part_of *b, const laws_batch *law)
-{
-    start_waves_batch(b->waves, law, LEAST + 1);
-    for (int k = 0; k < NAME_STATES; ++k) {
-        b->state[0][k] = law->begun[k];
+    spread(all + set / SETS, set % SETS, law);
+    for (int event = 0; event < NAME_EVENTS; ++event) {
+        AT(sets[set / SETS].change[event], set % SETS) = change_by(law, event, law->strength[event_strength[event]]);
     }
 }
 
-/* Series of another degree: what they had not is 0. */
-static void raise_batch(part_of *b, int degree, int higher)
+/* The laws of all sets; others go along as one that is good. How many are good. */
+static int check_batch(progress_batch *b, laws_batch *all, const name_parameters *parameters, size_t sets)
 {
-    for (int place = 0; place < NAME_SLOTS; ++place) {
-        for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            for (int k = degree + 1; k <= higher; ++k) {
-                b->waves[place][panel][k] = none;
-            }
+    laws law, other;
+    int good_ones = 0;
+    for (int set = 0; set < NAME_WIDTH; ++set) {
+        b->status[set] = (size_t)set < sets ? check_laws(parameters + set, &law) : 1;
+        if (b->status[set] == 0) {
+            place_laws(b->sets, all, set, &law);
+            other = law;
+            ++good_ones;
         }
     }
-}
-
-/* The next window begins as this one ends. */
-static void settle_batch(part_of *b)
-{
-    for (int k = 0; k < NAME_STATES; ++k) {
-        b->state[0][k] = b->state[1][k];
+    for (int set = 0; good_ones > 0 && set < NAME_WIDTH; ++set) {
+        if (b->status[set]) {
+            place_laws(b->sets, all, set, &other);
+        }
     }
+    return good_ones;
 }
 
-static const wide *sent_batch(part_of *b, int t, int window)
+int name_build_batch(name_batch *batch, const name_parameters *parameters, size_t sets)
 {
-    return b->waves[slot(term_track[t], window, term_back[t])][term_panel[t]];
+    laws_batch law[parts_batch];
+    progress_batch now;
+    int highest = 0;
+    now.sets = (march_state_batch *)(void *)batch->work;
+    now.tables = (march_tables_batch *)(void *)batch->tables;
+    now.law = law;
+    now.inverse = batch->inverse;
+    now.since = batch->since;
+    now.series = (wide *)(void *)batch->series;
+    now.degrees = batch->degree;
+    now.places = batch->place;
+    for (int set = 0; set < NAME_WIDTH; ++set) {
+        batch->estimate[set] = not_a_number();
+    }
+    if (check_batch(&now, law, parameters, sets) > 0) {
+        start_batch(&now);
+        march_all_batch(&now);
+        finish_batch(&now, parameters, batch->estimate);
+    }
+    for (int set = 0; set < NAME_WIDTH; ++set) {
+        batch->status[set] = now.status[set];
+        highest = (size_t)set < sets && now.status[set] > highest ? now.status[set] : highest;
+    }
+    return highest;
+}
+
+int name_batch_model(const name_batch *batch, int set, name_model *model)
+{
+    model->built = set >= 0 && set < NAME_WIDTH && batch->status[set] == 0;
+    model->estimate = model->built ? batch->estimate[set] : not_a_number();
+    for (int window = 0; window < NAME_WINDOWS && model->built; ++window) {
+        const size_t begin = batch->place[window];
+        const size_t size = (size_t)NAME_STRANDS * (size_t)(batch->degree[window] + 2);
+        model->degree[window] = batch->degree[window];
+        model->place[window] = begin;
+        for (size_t k = begin; k < begin + size; ++k) {
+            model->series[k] = batch->series[k][set];
+        }
+    }
+    return !model->built;
 }

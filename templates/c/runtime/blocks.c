@@ -3,7 +3,7 @@
 #include "read.c"
 
 /* A block of an output at t after the start of a window's cycle. */
-static void output_block(const model_of *m, const real *series, int window, int at, const real *t, real *out)
+static void output_block(const name_model *m, int window, int at, const real *t, real *out)
 {
     enum { WIDTH = BLOCK / LANES < ABREAST ? BLOCK / LANES : ABREAST };
     const size_t size = (size_t)m->degree[window] + 2;
@@ -20,7 +20,7 @@ static void output_block(const model_of *m, const real *series, int window, int 
             for (size_t j = 0; j < WIDTH; ++j) {
                 u[j] = ((*slice_at(t, first + j * LANES) - begin) + excess) * scale - 1;
             }
-            together(1, WIDTH, series + m->place[window] + (size_t)s * size, size, u, sum);
+            together(1, WIDTH, m->series + m->place[window] + (size_t)s * size, size, u, sum);
             UNROLLED
             for (size_t j = 0; j < WIDTH; ++j) {
                 *(slice *)(out + first + j * LANES) += sum[j];

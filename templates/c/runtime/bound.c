@@ -1,7 +1,6 @@
-/* bound.c: how wrong the waves of a model of a chain may be, from what it sends itself.
- * Plain C that stands below the text of runtime/wrong.c in generated files, which have what stands below the first empty
- * line. */
-#include "wrong.c"
+/* bound.c: a proved bound of the errors of a model, from what it sends itself.
+ * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty line. */
+#include "blocks.c"
 
 /* What may be wrong, at most; docs/march.md of wavesym has the proof. In short: let x be how the state of a joint moves.
  * How far x, and what its ends send, are from its law is computed here, rounding included. That starts an error on this
@@ -11,7 +10,7 @@ typedef struct {
     real instant;                      /* that of the waves on their way, at any one instant of a window */
     real wave[NAME_SLOTS];             /* the largest error of a wave, when it was sent and before */
     slice read[NAME_TRACKS];           /* what reading a wave loses, at most */
-    real held[NAME_TRACKS];            /* what it was at first */
+    real initial[NAME_TRACKS];         /* what it was at first */
     real end[NAME_STATES + 1];
     real weight[NAME_STATES + 1];      /* root of half a mass or stiffness, and what is no less than 1 over it */
     real reach[NAME_STATES + 1];
@@ -22,20 +21,114 @@ typedef struct {
     real beyond[NAME_PORTS];           /* what underflow in what acts adds to what is sent, for the least number */
     real steady;                       /* and the norm of that */
     real all;                          /* the energy of what underflows */
-    int track[NAME_HEARD + 1];         /* which wave is heard */
-    wrong_beside beside;
-} wrong;
+    int track[NAME_GAINS + 1];         /* which wave */
+    real force[NAME_PANELS][NAME_FORCES + 1]; /* of a load, on this window */
+    real load[NAME_FORCES + 1][3], roundings[NAME_FORCES + 1];
+    int since[NAME_FORCES + 1][2];
+    real reading[NAME_ROW + LANES]; /* of each coefficient of a wave, what it loses on the way to an output */
+    real least;                     /* what the first one loses at the lowest degree */
+    int degree;
+    real total[NAME_GAINS + 1];     /* of an integral, and how large that is */
+    real most[NAME_GAINS + 1];
+    real largest[NAME_OUTPUTS]; /* where the mean of an output was large */
+    int window[NAME_OUTPUTS];
+} errors;
+
+static const real alternating[17] = {1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1};
+
+static real total_of(const slice *x)
+{
+    slice sum = *x;
+    for (int half = LANES / 2; half > 0; half /= 2) {
+        for (int lane = 0; lane < half; ++lane) {
+            AT(sum, lane) += AT(sum, lane + half);
+        }
+    }
+    return AT(sum, 0);
+}
+
+/* No less than the root, and hardly more: half the sum of y and x/y is no less, whatever y is. */
+static real root(real x)
+{
+    real y = 1;
+    if (!(x > 0) || !finite_number(x)) {
+        return x > 0 ? infinity() : 0;
+    }
+    while (y < x / y) {
+        y *= 2;
+    }
+    while (y / 4 > x / y) {
+        y /= 2;
+    }
+    for (int k = 0; k < 3; ++k) {
+        y = (y + x / y) / 2;
+    }
+    return y * (1 + 4 * unit);
+}
+
+/* Nothing, at first. */
+static void start_loads(errors *w)
+{
+    w->degree = -1;
+    for (int k = 0; k <= NAME_GAINS; ++k) {
+        w->total[k] = w->most[k] = 0;
+    }
+    for (int f = 0; f <= NAME_FORCES; ++f) {
+        w->load[f][0] = w->load[f][1] = w->load[f][2] = 0;
+        w->roundings[f] = roundings + 8;
+        w->since[f][0] = w->since[f][1] = 0;
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            w->force[panel][f] = 0;
+        }
+    }
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        w->largest[output] = 0;
+        w->window[output] = 0;
+    }
+}
+
+/* A sum that is read loses 12 roundings of a coefficient times (k + 1)(k + 2) + degree; before, it is multiplied by what
+ * is rounded, too, and added to others. */
+static void start_reading(errors *w, int degree)
+{
+    if (degree > w->degree) {
+        for (int k = 0; k < NAME_ROW + LANES; ++k) {
+            w->reading[k] = unit * (roundings + (real)(NAME_GAINS + 4 + 12 * degree) + 12 * ((real)k + 1) * ((real)k + 2));
+        }
+        w->least = w->degree < 0 ? w->reading[0] : w->least;
+        w->degree = degree;
+    }
+}
+
+/* As apply_loads, with the absolute values of all that is added. */
+static void bound_loads(errors *w, const real *change, int window, int event)
+{
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        for (; is_event(event, window, panel); ++event) {
+            const int f = event_force[event];
+            change_load(w->load[f], magnitude(change[event]), event, time_since(w->since[f], window, panel));
+            w->roundings[f] = (event_power[event] >= 3 ? roundings + 8 : w->roundings[f]) + 8;
+            w->since[f][0] = window;
+            w->since[f][1] = panel;
+        }
+        for (int f = 0; f < NAME_FORCES; ++f) {
+            const real *const c = w->load[f];
+            const real time = time_since(w->since[f], window, panel) + 2 * half_length[panel];
+            w->force[panel][f] = (w->roundings[f] + 12) * unit * (c[0] + 2 * time * (c[1] + 2 * time * c[2]));
+        }
+    }
+}
 
 /* What the states of a joint are weighed by, and how fast they are where the energy is |x|^2 / 2. */
-static real begun_joint(const laws *law, wrong *w, int joint)
+static real start_joint(const laws *law, errors *w, int joint)
 {
     const int n = states_of(joint), first = first_state[joint];
     real most = 0;
     for (int i = first; i < first + n; ++i) {
         w->weight[i] = root(law->weight[i] / 2);
         w->reach[i] = w->weight[i] * (2 / law->weight[i]);
-        w->end[i] = law->begun[i];
-        w->energy += (roundings + 1) * unit * w->weight[i] * magnitude(law->begun[i]);
+        w->end[i] = law->initial[i];
+        w->energy += (roundings + 1) * unit * w->weight[i] * magnitude(law->initial[i]);
     }
     for (int i = 0; i < n; ++i) {
         real row = 0, column = 0;
@@ -49,11 +142,11 @@ static real begun_joint(const laws *law, wrong *w, int joint)
 }
 
 /* Nothing is wrong but what laws are rounded by. */
-static void begun_wrong(work_of *m, const laws *law, wrong *w)
+static void start_errors(march_state *m, const laws *law, errors *w)
 {
     const real rounded = roundings * unit;
     real steady = 0;
-    begun_beside(&w->beside);
+    start_loads(w);
     w->energy = w->instant = w->all = 0;
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         w->length[panel] = root(2 * half_length[panel]);
@@ -65,14 +158,14 @@ static void begun_wrong(work_of *m, const laws *law, wrong *w)
     }
     for (int track = 0; track < NAME_TRACKS; ++track) {
         w->read[track] = nothing;
-        w->held[track] = magnitude(law->held[track]);
+        w->initial[track] = magnitude(law->initial_wave[track]);
         for (int place = ring[track]; place <= ring[track] + steps[track]; ++place) {
-            w->wave[place] = rounded * w->held[track];
+            w->wave[place] = rounded * w->initial[track];
         }
     }
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
         const int n = states_of(joint), first = first_state[joint];
-        const real speed = begun_joint(law, w, joint);
+        const real speed = start_joint(law, w, joint);
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
             const real fast = speed * (2 * half_length[panel]);
             w->bent[panel][joint] = n > 0 ? root(1 + 2 * fast) + 1 + fast : 0;
@@ -85,7 +178,7 @@ static void begun_wrong(work_of *m, const laws *law, wrong *w)
             }
         }
         for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-            const real windows = (real)steps[arrive[port]], held = rounded * w->held[arrive[port]];
+            const real windows = (real)steps[arrive[port]], held = rounded * w->initial[arrive[port]];
             w->passes[port] = root(law->impedance[port]);
             w->beyond[port] = 1;
             for (int j = 0; j < points_of(joint); ++j) {
@@ -106,7 +199,7 @@ static void begun_wrong(work_of *m, const laws *law, wrong *w)
     }
     w->steady = root(steady);
     for (int t = 0; t < first_term[NAME_STRANDS]; ++t) {
-        w->track[term_heard[t]] = term_track[t];
+        w->track[term_gain[t]] = term_track[t];
     }
 }
 
@@ -120,7 +213,7 @@ static void add_slices(const real *numbers, const slice *series, const slice *si
 }
 
 /* What acts on the points of a joint, from a coefficient on, and what that is the sum of in absolute values. */
-static void acting_again(const work_of *m, const laws *law, int joint, int panel, int window, size_t k, slice *acting,
+static void acting_slices(const march_state *m, const laws *law, int joint, int panel, int window, size_t k, slice *acting,
                          slice *size)
 {
     const int first = first_point[joint];
@@ -142,24 +235,24 @@ static void acting_again(const work_of *m, const laws *law, int joint, int panel
 }
 
 /* What loads may be wrong by, on what rows of a law make of them. */
-static real forced(const wrong *w, const real *row, int joint, int panel)
+static real load_error(const errors *w, const real *row, int joint, int panel)
 {
     real sum = 0;
     for (int point = 0; point < points_of(joint); ++point) {
         const int force = force_on[first_point[joint] + point];
-        sum += force >= 0 ? magnitude(row[point]) * w->beside.force[panel][force] : (real)0;
+        sum += force >= 0 ? magnitude(row[point]) * w->force[panel][force] : (real)0;
     }
     return sum;
 }
 
 /* What a joint adds to the energy of errors on a panel. */
-static void defect(const work_of *m, const laws *law, wrong *w, int joint, int panel, int window, int degree,
+static void add_residual(const march_state *m, const real *inverse, const laws *law, errors *w, int joint, int panel, int window, int degree,
                    slice *energy, real *apart)
 {
     const int n = states_of(joint), points = points_of(joint), first = first_state[joint], ports = first_port[joint];
     const real half = half_length[panel], few = unit * ((real)(degree / LANES + 12) + 2 * w->bent[panel][joint]);
     const real exact = unit * ((real)(n + points + first_port[joint + 1] - ports + 10) + 3 * roundings);
-    real moved_by[NAME_WIDEST][NAME_ROW + LANES + 1];
+    real rate_of[NAME_WIDEST][NAME_ROW + LANES + 1];
     slice x[NAME_WIDEST], x_size[NAME_WIDEST], s[NAME_WIDEST], s_size[NAME_WIDEST];
     slice begins[NAME_WIDEST], ends[NAME_WIDEST], aparts[NAME_PORTS], reads[NAME_PORTS];
     for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
@@ -170,7 +263,7 @@ static void defect(const work_of *m, const laws *law, wrong *w, int joint, int p
     }
     size_t end = 0;
     for (; end <= (size_t)degree; end += LANES) {
-        acting_again(m, law, joint, panel, window, end, s, s_size);
+        acting_slices(m, law, joint, panel, window, end, s, s_size);
         for (int i = 0; i < n; ++i) {
             x[i] = *slice_at(m->path[panel][first + i], end);
             x_size[i] = MAGNITUDE(x[i]);
@@ -181,7 +274,7 @@ static void defect(const work_of *m, const laws *law, wrong *w, int joint, int p
             slice sum = nothing, size = nothing;
             add_slices(law->rates + at_rates[joint] + i * n, x, x_size, n, &sum, &size);
             add_slices(law->pushed + at_pushed[joint] + i * points, s, s_size, points, &sum, &size);
-            *(slice *)(moved_by[i] + end) = sum;
+            *(slice *)(rate_of[i] + end) = sum;
             *energy += w->weight[first + i] * (2 * half * exact * size + few * x_size[i]);
         }
         for (int port = ports; port < first_port[joint + 1]; ++port) {
@@ -194,29 +287,29 @@ static void defect(const work_of *m, const laws *law, wrong *w, int joint, int p
             add_slices(law->passed + at_passed[joint] + row * points, s, s_size, points, &sum, &size);
             const slice much = (out + a) - ratio[port] * sum;
             aparts[port] += MAGNITUDE(much) + magnitude(ratio[port]) * exact * size + unit * 4 * (out_size + MAGNITUDE(a));
-            reads[port] += *slice_at(w->beside.reading, end) * out_size;
+            reads[port] += *slice_at(w->reading, end) * out_size;
         }
     }
     for (int i = 0; i < n; ++i) {
-        real *const rate = moved_by[i];
+        real *const rate = rate_of[i];
         slice rest = nothing;
         rate[0] *= 2;
         for (size_t k = 0; k <= LANES; ++k) {
             rate[end + k] = 0;
         }
         for (size_t k = 1; k <= (size_t)degree + 1; k += LANES) {
-            const slice bent = half * *slice_at(m->inverse, k) * (*slice_at(rate, k - 1) - *slice_at(rate, k + 1));
+            const slice bent = half * *slice_at(inverse, k) * (*slice_at(rate, k - 1) - *slice_at(rate, k + 1));
             const slice missed = *slice_at(m->path[panel][first + i], k) - bent;
             rest += MAGNITUDE(missed) + 4 * unit * MAGNITUDE(bent);
         }
         *energy += w->weight[first + i] * w->bent[panel][joint] * rest;
         w->energy += w->weight[first + i] *
                      (magnitude(total_of(&begins[i]) - w->end[first + i]) +
-                      2 * half * forced(w, law->pushed + at_pushed[joint] + i * points, joint, panel));
+                      2 * half * load_error(w, law->pushed + at_pushed[joint] + i * points, joint, panel));
         w->end[first + i] = total_of(&ends[i]);
     }
     for (int port = ports; port < first_port[joint + 1]; ++port) {
-        const real beyond = forced(w, law->passed + at_passed[joint] + point_of[port] * points, joint, panel);
+        const real beyond = load_error(w, law->passed + at_passed[joint] + point_of[port] * points, joint, panel);
         const real here = total_of(&aparts[port]) + magnitude(ratio[port]) * beyond;
         w->energy += w->length[panel] * w->passes[port] * here;
         apart[port] = larger(apart[port], here);
@@ -226,7 +319,7 @@ static void defect(const work_of *m, const laws *law, wrong *w, int joint, int p
 }
 
 /* What a window adds to the errors, and how large those of its waves are. */
-static void worsen(const work_of *m, const laws *law, wrong *w, int window, int degree)
+static void add_window(const march_state *m, const real *inverse, const laws *law, errors *w, int window, int degree)
 {
     const real spare = (real)(256 * (degree + 4)) * least_number;
     slice energy = nothing;
@@ -236,7 +329,7 @@ static void worsen(const work_of *m, const laws *law, wrong *w, int window, int 
     }
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            defect(m, law, w, joint, panel, window, degree, &energy, apart);
+            add_residual(m, inverse, law, w, joint, panel, window, degree, &energy, apart);
         }
     }
     w->energy += total_of(&energy) + spare * w->all;
@@ -266,9 +359,123 @@ static void worsen(const work_of *m, const laws *law, wrong *w, int window, int 
 }
 
 /* Of a wave that is heard the largest error so far, and what reading it loses at most. */
-static void wrong_heard(const wrong *w, int k, int window, real *error, real *read)
+static void gain_error(const errors *w, int k, int window, real *error, real *read)
 {
     const int track = w->track[k];
     *error = w->wave[slot(track, window, 0)];
-    *read = total_of(&w->read[track]) + w->beside.reading[0] * w->held[track];
+    *read = total_of(&w->read[track]) + w->reading[0] * w->initial[track];
+}
+
+/* What integrals may be wrong by after a window. */
+static void add_integrals(const march_state *m, errors *w, const int *summed, int window, int degree)
+{
+    const real spare = (real)(64 * (degree + 4) * (NAME_PANELS + 1)) * least_number;
+    for (int k = 0; k < NAME_GAINS; ++k) {
+        if (summed[k]) {
+            real error, read;
+            gain_error(w, k, window, &error, &read);
+            const real size = window_length * (read / w->least);
+            const real total = magnitude(m->total[k]) + size;
+            w->most[k] = larger(w->most[k], total);
+            w->total[k] += window_length * error + spare +
+                                  unit * (2 * (real)(degree + 16) * size + (real)(2 * NAME_PANELS + 2) * total);
+        }
+    }
+}
+
+/* What an output may be wrong by. Nothing that is added up has been larger before the last window than on it. */
+static real output_error(const laws *law, const errors *w, const int *summed, int output, int degree)
+{
+    const real spare = (real)(64 * (degree + 4) * (NAME_PANELS + 1)) * least_number;
+    real sum = 0;
+    for (int k = 0; k < NAME_GAINS; ++k) {
+        if (gain_output[k] == output) {
+            real error, read;
+            gain_error(w, k, NAME_WINDOWS - 1, &error, &read);
+            if (summed[k]) {
+                error = w->total[k] + w->reading[0] * w->most[k];
+                read = 2 * window_length * read;
+            }
+            sum += (magnitude(law->gain[k]) + faint) * (error + read) + spare;
+        }
+    }
+    return sum;
+}
+
+/* Where an output is larger than before, on a window that ends before TAU_MAX. */
+static void note_largest(const march_state *m, errors *w, int window)
+{
+    const int last = in_cycle(window, 0) + SECTIONS;
+    for (int output = 0; output < NAME_OUTPUTS && cycle_begin(window) + from[last] <= NAME_TAU_MAX; ++output) {
+        if (m->extremes.largest[output] > w->largest[output]) {
+            w->largest[output] = m->extremes.largest[output];
+            w->window[output] = window;
+        }
+    }
+}
+
+/* The largest value found of an output, on the section with its largest mean, too. */
+static real largest_found(const march_state *m, const name_model *model, const errors *w, int output)
+{
+    const int window = w->window[output];
+    const real *const all = model->series + model->place[window];
+    const real begin = cycle_begin(window);
+    int section = 0;
+    real largest = 0, most = m->extremes.largest[output];
+    real t[BLOCK], values[BLOCK];
+    for (int of = 0; of < SECTIONS && begin + from[in_cycle(window, of) + 1] <= NAME_TAU_MAX; ++of) {
+        const real mean = mean_of(all, model->degree[window], of * NAME_OUTPUTS + output);
+        if (magnitude(mean) > largest) {
+            largest = magnitude(mean);
+            section = of;
+        }
+    }
+    const int here = in_cycle(window, section);
+    for (int j = 0; j < BLOCK; ++j) {
+        t[j] = from[here] + (from[here + 1] - from[here]) * (offset[j] / (real)BLOCK);
+    }
+    output_block(model, window, section * NAME_OUTPUTS + output, t, values);
+    for (int j = 0; j < BLOCK && begin + t[j] <= NAME_TAU_MAX; ++j) {
+        most = larger(most, values[j]);
+    }
+    return most;
+}
+
+int name_error_bound_with(
+    name_work *work, name_model *model, const name_parameters *parameters, name_real *bound)
+{
+    march_state *const m = &work->set;
+    laws law;
+    errors w;
+    progress now;
+    int summed[NAME_GAINS + 1] = {0};
+    int status = start_model(&now, work, model, parameters, &law);
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        bound[output] = not_a_number();
+    }
+    if (status) {
+        return status;
+    }
+    start_errors(m, &law, &w);
+    for (int t = 0; t < first_term[NAME_STRANDS]; ++t) {
+        summed[term_gain[t]] = term_summed[t];
+    }
+    for (int window = 0, event = 0; window < NAME_WINDOWS && next_window(&now); ++window) {
+        keep_window(&now);
+        bound_loads(&w, m->change, window, event);
+        start_reading(&w, now.degree);
+        add_window(m, work->inverse, &law, &w, window, now.degree);
+        add_integrals(m, &w, summed, window, now.degree);
+        note_largest(m, &w, window);
+        event = now.event;
+    }
+    status = finish_model(&now, model, parameters);
+    for (int output = 0; output < NAME_OUTPUTS && status == 0; ++output) {
+        /* a hundredth for what is of second order in a rounding, and for the roundings of this here */
+        const real error = output_error(&law, &w, summed, output, now.degree) * (real)1.01;
+        const real size = largest_found(m, model, &w, output);
+        const real known = error < size && finite_number(w.energy) ? error / (size - error) * (1 + 4 * unit) : infinity();
+        bound[output] = is_zero[output] ? 0 : known;
+    }
+    return status;
 }

@@ -1,182 +1,248 @@
-/* build.c: models of a chain, and their derivatives.
- * Plain C that stands below the text of march.c in generated files, which have what stands below the first
- * empty line. */
-#include "march.c"
+/* build.c: models, window by window: of one set of parameters, and of many in lanes. All sets have one degree, the highest
+ * that one of them needs; one that is refused goes along, and what it would need is not asked of others.
+ * Plain C that stands below the text of outputs.c in generated files, which have what stands below the first empty line. */
+#include "outputs.c"
+
+/* How far a build has come. `status` is what `build` returns; of all windows so far truncation errors, the largest velocity
+ * or mean of a wave, and what outputs stay below; of the current one `leak` and `seen`. */
+typedef struct {
+    OF(march_state) *sets;
+    OF(march_tables) *tables;
+    const OF(laws) *law;
+    real *inverse;
+    int (*since)[2];
+    num *series;
+    int *degrees;
+    size_t *places;
+    int window, degree, event, status[OF(lanes_in_all)];
+    size_t place;
+    num missed[OF(parts)], size[OF(parts)], weight[OF(parts)], leak[OF(parts)], seen[OF(parts)];
+} OF(progress);
+
+static void OF(clear)(num *x, size_t count)
+{
+    for (size_t k = 0; k < count; ++k) {
+        x[k] = ZERO;
+    }
+}
+
+/* Nothing gathered, no load; waves as they are at first, as series of so many numbers, and states. */
+static void OF(start_set)(OF(march_state) *m, const OF(laws) *law, int count)
+{
+    OF(clear)(m->total, NAME_GAINS);
+    OF(clear)((num *)m->load, sizeof m->load / sizeof(num));
+    OF(clear)((num *)m->force, sizeof m->force / sizeof(num));
+    OF(clear)((num *)&m->extremes, sizeof m->extremes / sizeof(num));
+    for (int track = 0; track < NAME_TRACKS; ++track) {
+        for (int place = ring[track]; place <= ring[track] + steps[track]; ++place) {
+            for (int panel = 0; panel < NAME_PANELS; ++panel) {
+                OF(clear)(m->waves[place][panel], (size_t)count);
+                m->waves[place][panel][0] = law->initial_wave[track];
+            }
+        }
+    }
+    for (int k = 0; k < NAME_STATES; ++k) {
+        m->state[0][k] = law->initial[k];
+    }
+}
+
+/* Tables for a degree; 1 / (2 k). */
+static void OF(tabulate_degree)(OF(progress) *b, int degree)
+{
+    b->degree = degree;
+    for (int k = 1; k <= degree + SPARE; ++k) {
+        b->inverse[k] = 1 / (real)(2 * k);
+    }
+    OF(tabulate)(b->tables, b->law, OF(parts), degree);
+}
+
+/* The start of a build, for which memory and laws are known. */
+static void OF(start)(OF(progress) *b)
+{
+    b->window = b->event = 0;
+    b->place = 0;
+    for (int f = 0; f <= NAME_FORCES; ++f) {
+        b->since[f][0] = b->since[f][1] = 0;
+    }
+    for (int side = 0; side < OF(parts); ++side) {
+        b->missed[side] = b->size[side] = b->weight[side] = b->leak[side] = b->seen[side] = ZERO;
+        OF(start_set)(b->sets + side, b->law + side, LEAST + SPARE);
+    }
+    OF(tabulate_degree)(b, LEAST);
+}
+
+/* A load, as powers of the time since it changed, takes an event. */
+static void OF(change_load)(num *c, num change, int event, real time)
+{
+    c[0] += time * (c[1] + time * c[2]);
+    c[1] += 2 * time * c[2];
+    for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+        c[k] = ZERO; /* it starts again */
+    }
+    c[event_power[event] % 3] += change;
+}
+
+/* The loads of some sets on the panels of a window, as series, after their changes there, the first of which is `event`. The
+ * first one of the next window. */
+static int OF(apply_loads)(OF(march_state) *all, int sets, int (*since)[2], int window, int event)
+{
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        const real half = half_length[panel];
+        for (; is_event(event, window, panel); ++event) {
+            int *const then = since[event_force[event]];
+            for (int set = 0; set < sets; ++set) {
+                OF(march_state) *const m = all + set;
+                OF(change_load)(m->load[event_force[event]], m->change[event], event, time_since(then, window, panel));
+            }
+            then[0] = window;
+            then[1] = panel;
+        }
+        for (int f = 0; f < NAME_FORCES; ++f) {
+            const real middle = time_since(since[f], window, panel) + half;
+            for (int set = 0; set < sets; ++set) {
+                const num *const c = all[set].load[f];
+                num *const force = all[set].force[panel][f];
+                force[0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
+                force[1] = half * (c[1] + 2 * middle * c[2]);
+                force[2] = half * half / 2 * c[2];
+            }
+        }
+    }
+    return event;
+}
+
+/* Series of a set become longer: what they had not is 0. */
+static void OF(lengthen)(OF(march_state) *m, int degree, int higher)
+{
+    for (int place = 0; place < NAME_SLOTS; ++place) {
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            OF(clear)(m->waves[place][panel] + degree + 1, (size_t)(higher - degree + SPARE - 1));
+        }
+    }
+}
+
+/* The current window at the current degree. */
+static void OF(march_window)(OF(progress) *b)
+{
+    for (int side = 0; side < OF(parts); ++side) {
+        b->seen[side] = b->size[side];
+        b->leak[side] = ZERO;
+    }
+    OF(march)(b->sets, b->tables, b->law, OF(parts), b->window, b->degree, NULL, b->seen, b->leak);
+}
+
+/* The same at another degree. */
+static void OF(march_again)(OF(progress) *b, int degree)
+{
+    for (int side = 0; side < OF(parts) && degree > b->degree; ++side) {
+        OF(lengthen)(b->sets + side, b->degree, degree);
+    }
+    OF(tabulate_degree)(b, degree);
+    OF(march_window)(b);
+}
+
+/* Whether some set that is not refused misses more than its share; at the highest degree it is refused. */
+static int OF(misses)(OF(progress) *b)
+{
+    int found = 0;
+    for (int set = 0; set < OF(lanes_in_all); ++set) {
+        const real missed = LANE(b->leak, set), seen = LANE(b->seen, set);
+        if (b->status[set] == 0 && !(missed <= share * seen)) {
+            found = 1;
+            if (b->degree == NAME_DEGREE) {
+                b->status[set] = finite_number(missed) && finite_number(seen) ? 2 : 1;
+            }
+        }
+    }
+    return found;
+}
+
+/* The next window, at the lowest degree, raised by quarters, that is enough. Whether it is for some set. */
+static int OF(next_window)(OF(progress) *b)
+{
+    const int before = b->degree;
+    int left = 0;
+    b->event = OF(apply_loads)(b->sets, OF(parts), b->since, b->window, b->event);
+    OF(march_window)(b);
+    while (OF(misses)(b)) {
+        const int next = b->degree == NAME_DEGREE ? before : higher_than(b->degree);
+        OF(march_again)(b, next);
+    }
+    for (int set = 0; set < OF(lanes_in_all); ++set) {
+        left |= b->status[set] == 0;
+    }
+    return left;
+}
+
+/* A window that has been marched is good: its outputs; then the next one is due. */
+static void OF(keep_window)(OF(progress) *b)
+{
+    num *const all = b->series + b->place * OF(parts);
+    b->degrees[b->window] = b->degree;
+    b->places[b->window] = b->place;
+    OF(accumulate)(b->sets, b->inverse, b->law, b->window, b->degree, 0, all, b->weight);
+    for (int side = 0; side < OF(parts); ++side) {
+        OF(march_state) *const m = b->sets + side;
+        OF(find_largest)(&m->extremes, all + side, b->window, b->degree);
+        b->missed[side] += b->leak[side];
+        b->size[side] = b->seen[side];
+        for (int k = 0; k < NAME_STATES; ++k) {
+            m->state[0][k] = m->state[1][k];
+        }
+    }
+    b->place += (size_t)NAME_STRANDS * (size_t)(b->degree + 2);
+    b->window += 1;
+}
+
+/* How an output weighs waves, added up. */
+static num OF(weight_of)(const OF(laws) *law, int output)
+{
+    num weight = ZERO + faint; /* gains may underflow */
+    for (int k = 0; k < NAME_GAINS; ++k) {
+        weight += gain_output[k] == output ? SIZE(law->gain[k]) : ZERO;
+    }
+    return weight;
+}
+
+/* The estimates after the last window; what overflows is refused. */
+static void OF(finish)(OF(progress) *b, const name_parameters *parameters, real *estimate)
+{
+    for (int set = 0; set < OF(lanes_in_all); ++set) {
+        const int finite = finite_number(LANE(b->size, set)) && finite_number(LANE(b->weight, set)) &&
+                           finite_number(velocity_error(LANE(b->missed, set), LANE(b->size, set), b->degree));
+        b->status[set] = b->status[set] == 0 && !finite ? 1 : b->status[set];
+        estimate[set] = b->status[set] == 0 ? 0 : not_a_number();
+    }
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        num error[OF(parts)], largest[OF(parts)];
+        for (int side = 0; side < OF(parts); ++side) {
+            largest[side] = b->sets[side].extremes.largest[output];
+            error[side] = OF(weight_of)(b->law + side, output);
+        }
+        for (int set = 0; set < OF(lanes_in_all); ++set) {
+            if (b->status[set] == 0) {
+                const real own = LANE(largest, set);
+                const real missed = velocity_error(LANE(b->missed, set), LANE(b->size, set), b->degree);
+                const real wrong = LANE(error, set) * missed + read_by(b->degree) * own;
+                estimate[set] = larger(estimate[set], relative(parameters + set, output, wrong, own));
+            }
+        }
+    }
+}
+
+/* All windows of a build that has started, as long as some set is good. */
+static void OF(march_all)(OF(progress) *b)
+{
+    while (b->window < NAME_WINDOWS && OF(next_window)(b)) {
+        OF(keep_window)(b);
+    }
+}
 
 #undef num
 #undef OF
 #undef PICK
 #undef SIZE
 #undef ZERO
-#undef FUSED
-
-/* How an output weighs waves, added up. */
-static real weight_of(const laws *law, int output)
-{
-    real weight = faint; /* gains may underflow */
-    for (int k = 0; k < NAME_HEARD; ++k) {
-        weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
-    }
-    return weight;
-}
-
-/* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
-static real relative(const laws *law, const laws *slope, int lane, int output, real error, real largest)
-{
-    if (silent[output]) {
-        return 0;
-    }
-    if (error < largest) {
-        return error / (largest - error);
-    }
-    return !(error <= 0) && (largest > 0 || reached(law, slope, lane, output)) ? infinity() : (real)0;
-}
-
-/* How often a velocity of size 1 is rounded, about: the sums of a body, of so many coefficients, lose up to a sixteenth of
- * the degree squared. So does what is read, of its own size. */
-static real read_by(int degree)
-{
-    return unit * (real)(degree * degree) / 16;
-}
-
-static real rounded_by(int degree)
-{
-    return unit * (real)(degree + NAME_WINDOWS) + (NAME_BODIES > 0 ? read_by(degree) : (real)0);
-}
-
-/* Of the largest value of an output, about what `missed`, as a velocity, and reading at a degree make of it, at worst. */
-static real estimated(const work_of *m, const laws *law, real missed, int degree)
-{
-    real worst = 0;
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        const real largest = m->largest[output];
-        const real error = weight_of(law, output) * missed + read_by(degree) * largest;
-        worst = larger(worst, relative(law, law, OF_VALUES, output, error, largest));
-    }
-    return worst;
-}
-
-/* How far a build has come. */
-typedef struct {
-    int window, degree, event;
-    size_t place;
-    real missed, size, heard;
-    real leak, seen; /* what the window of now misses, and `size` with it */
-} progress;
-
-/* A derivative may miss so much more of itself than a value. */
-enum { LENIENT = 64 };
-
-static int higher_than(int degree)
-{
-    const int higher = degree + degree / 4;
-    return higher < NAME_DEGREE ? higher : NAME_DEGREE;
-}
-
-/* About what velocities are wrong by, at worst. Errors were up to five times what polynomials miss; docs/march.md of
- * wavesym has what was measured. */
-static real wrong_by(real missed, real size, int degree)
-{
-    return 6 * missed + rounded_by(degree) * size;
-}
-
-static int ended(const work_of *m, model_of *made, const laws *law, const progress *now)
-{
-    const real missed = wrong_by(now->missed, now->size, now->degree);
-    made->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
-    made->estimate = made->built ? estimated(m, law, missed, now->degree) : not_a_number();
-    return !made->built;
-}
-
-/* Add to all strands of a window what is heard of waves: each times its gain, or their integrals from tau = 0 on, of
- * which `total` is what windows before have brought. */
-static void listen(const work_of *m, track_of *waves, const real *gains, real *total, int window, int degree, real *all)
-{
-    real sum[NAME_DEGREE + 2];
-    for (int s = 0; s < NAME_STRANDS; ++s) {
-        real *const c = all + (size_t)s * (size_t)(degree + 2);
-        for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
-            const real *const w = waves[slot(term_track[t], window, term_back[t])][term_panel[t]];
-            const int heard = term_heard[t];
-            const real gain = gains[heard];
-            if (term_summed[t]) {
-                const real length = half_length[term_panel[t]];
-                integrate(m, w, degree, sum);
-                const real low = length * end_value(sum, degree + 1, term_low[t]);
-                c[0] += gain * (total[heard] - low);
-                for (int k = 1; k <= degree + 1; ++k) {
-                    c[k] += gain * length * sum[k];
-                }
-                total[heard] += length * end_value(sum, degree + 1, term_high[t]) - low;
-            } else {
-                for (int k = 0; k <= degree; ++k) {
-                    c[k] += gain * w[k];
-                }
-            }
-        }
-    }
-}
-
-/* 0, 1 for a bad number, or 2 for bodies so light, or springs so stiff, that a rounding of how they move on a panel is as
- * much as they move: no degree is enough then, but by chance. */
-static int refused(const laws *law)
-{
-    real fastest = 0;
-    if (!laws_within_reach(law)) {
-        return 1;
-    }
-    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
-        const real *const rates = law->rates + at_rates[joint];
-        const int n = states_of(joint);
-        for (int i = 0; i < n; ++i) {
-            for (int j = 0; j <= i; ++j) {
-                fastest = larger(fastest, (unit * rates[i * n + j]) * (unit * rates[j * n + i]));
-            }
-        }
-    }
-    return window_length * window_length * fastest < 1 ? 0 : 2;
-}
-
-/* What begins a march. */
-static void started(work_of *m, const laws *law)
-{
-    start_waves(m->waves, law, LEAST + SPARE);
-    for (int k = 0; k < NAME_STATES; ++k) {
-        m->state[0][k] = law->begun[k];
-    }
-    tell_inverses(m->inverse, LEAST + SPARE);
-    tabulate(m, law, 1, LEAST);
-}
-
-/* The next window begins as this one ends. */
-static void settle(work_of *m)
-{
-    for (int k = 0; k < NAME_STATES; ++k) {
-        m->state[0][k] = m->state[1][k];
-    }
-}
-
-/* The window of now at the degree of now. */
-static void march_window(work_of *m, const laws *law, progress *now)
-{
-    now->seen = now->size;
-    now->leak = 0;
-    march(m, law, 1, now->window, now->degree, &now->seen, &now->leak);
-}
-
-/* The same at a higher degree. */
-static void heighten(work_of *m, const laws *law, progress *now)
-{
-    const int before = now->degree;
-    now->degree = higher_than(before);
-    for (int place = 0; place < NAME_SLOTS; ++place) {
-        for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            for (int k = before + 1; k < now->degree + SPARE; ++k) {
-                m->waves[place][panel][k] = 0; /* what series had not */
-            }
-        }
-    }
-    tell_inverses(m->inverse, now->degree + SPARE);
-    tabulate(m, law, 1, now->degree);
-    march_window(m, law, now);
-}
+#undef TEST
+#undef SOME
+#undef LANE

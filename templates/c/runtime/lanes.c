@@ -1,11 +1,13 @@
-/* lanes.c: numbers of many sets of parameters, a set in each lane of a vector.
- * Stands above the text of a march in lanes in generated files, which
- * have what stands below the first empty line. */
-#include "bounds.c"
+/* lanes.c: the march that follows is of many sets of parameters, a set in each lane of a vector.
+ * Plain C of a program of a scene called `name`; what stands below the first empty line. */
+#include "model.c"
 
-/* All sets have one degree, the highest that one of them needs. A set that is refused goes along as another, or runs
- * wild in its own lane. A part is as many sets as a vector of WIDE bytes holds. */
-typedef name_batch batch_of;
+/* Bytes of vectors: clang keeps several registers side by side in one, which hides what joints wait for. */
+#if defined(__clang__) && VECTOR
+#define WIDE 64
+#else
+#define WIDE VECTOR
+#endif
 
 #if VECTOR
 typedef real wide __attribute__((vector_size(WIDE), aligned(sizeof(real)), may_alias));
@@ -21,11 +23,7 @@ typedef int mask;
 #define CHOSEN(test, one, other) ((test) ? (one) : (other))
 #endif
 
-enum { SETS = sizeof(wide) / sizeof(real), PARTS = NAME_WIDTH / SETS };
-
-#define NOWHERE (none < none)
-/* a number of a set, of those of all parts */
-#define OF_SET(x, set) AT((x)[(set) / SETS], (set) % SETS)
+enum { SETS = sizeof(wide) / sizeof(real), parts_batch = NAME_WIDTH / SETS, lanes_in_all_batch = NAME_WIDTH };
 
 /* `most` grows to the magnitude of x */
 static void enlarge_batch(wide *most, const wide *x)
@@ -33,6 +31,11 @@ static void enlarge_batch(wide *most, const wide *x)
     const wide size = MAGNITUDES(*x);
     const mask more = size > *most;
     *most = CHOSEN(more, size, *most);
+}
+
+static void add_magnitude_batch(wide *sum, const wide *x)
+{
+    *sum += MAGNITUDES(*x);
 }
 
 /* Whether a test holds in some set. */
@@ -45,3 +48,12 @@ static int in_some(const mask *test)
     }
     return found;
 }
+
+#define num wide
+#define OF(name) name##_batch
+#define PICK CHOSEN
+#define SIZE(x) MAGNITUDES(x)
+#define ZERO none
+#define TEST mask
+#define SOME(test) in_some(&(test))
+#define LANE(x, set) AT((x)[(set) / SETS], (set) % SETS)

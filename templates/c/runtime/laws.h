@@ -5,8 +5,8 @@ typedef struct {
     wide shown[5 + 1];
     wide passed[5 + 1];
     wide push[4 + 1];
-    wide held[4 + 1];
-    wide begun[3 + 1];
+    wide initial_wave[4 + 1];
+    wide initial[3 + 1];
     wide weight[3 + 1];
     wide impedance[4 + 1];
     wide strength[1 + 1];

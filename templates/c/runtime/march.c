@@ -1,11 +1,37 @@
-/* march.c: joints on a window: their matrices, how they move, what they send. It stands in generated files
- * twice, for one set of parameters and for many in lanes: `num` is a number of each set, OF(name) what is called name.
+/* march.c: joints on a window: their tables, how they move, what they send. Generated files have it twice, for one set of
+ * parameters and for a set in each lane of a vector: `num` is a number of each set, OF(name) what is called name.
  * Plain C of a program of a scene called `name`; what stands below the first empty line. */
 #ifndef num
-#include "joints.c"
+#include "one.c"
 #endif
 
-typedef num OF(track_of)[NAME_PANELS][NAME_ROW];
+#ifndef STEPS
+#define STEPS
+/* The numbers of a body for each degree, k > 0: y_k = RATIO (s_(k-1) - s_(k+1) + y_(k+1)), with s_0 twice, q_k = y_k -
+ * RATIO q_(k-1); FIRST and LAST sum to the velocity at both ends. At k = 0 what q_0 has less, what the end has, the rate. */
+enum { RATIO = 0, SUM_FIRST = 1, SUM_LAST = 2, SLACK = 0, LOSS = 1, RATE = 2 };
+
+/* Bodies are stepped side by side: each step of a recurrence waits for the one before. */
+enum { ABREAST_BODIES = 2 };
+
+/* The matrices of a block for each degree, and two more: x_k = SOLVE r_k + DOWN y_(k+1) - DOWN x_(k-1), FIRST and LAST sum
+ * to the state at both ends; START and END belong to x_0. */
+enum { SOLVE = 0, DOWN = 1, FIRST = 2, LAST = 3, START = 0, END = 1 };
+
+/* Where each track has what is sent into it on a window, and what arrives from it: the oldest that it has. */
+typedef struct {
+    int sent[NAME_TRACKS], arrived[NAME_TRACKS];
+} places;
+
+static void locate(int window, places *now)
+{
+    for (int track = 0; track < NAME_TRACKS; ++track) {
+        const int sent = slot(track, window, 0);
+        now->sent[track] = sent;
+        now->arrived[track] = sent < ring[track] + steps[track] ? sent + 1 : ring[track];
+    }
+}
+#endif
 
 /* c = a b, of n rows and columns */
 static void OF(multiply)(const num *a, const num *b, int n, num *c)
@@ -18,6 +44,14 @@ static void OF(multiply)(const num *a, const num *b, int n, num *c)
             }
             c[i * n + j] = sum;
         }
+    }
+}
+
+/* y += factor a, of series to a degree */
+static void OF(add)(num *y, num factor, const num *a, int degree)
+{
+    for (int k = 0; k <= degree; ++k) {
+        y[k] += factor * a[k];
     }
 }
 
@@ -34,8 +68,7 @@ WITHIN void OF(add_product)(const num *a, const num *x, int n, real factor, num 
 /* Put the larger of two first numbers of rows where it is divided by. */
 static void OF(exchange)(num *a, num *b, int n, int one, int other)
 {
-    const num x = a[one * n + one], y = a[other * n + one];
-    const num first = SIZE(x), second = SIZE(y);
+    const num first = SIZE(a[one * n + one]), second = SIZE(a[other * n + one]);
     for (int j = 0; j < n; ++j) {
         const num u = a[one * n + j], v = b[one * n + j], w = a[other * n + j], z = b[other * n + j];
         a[one * n + j] = PICK(second > first, w, u);
@@ -72,10 +105,10 @@ static void OF(invert)(num *a, int n, num *b)
 
 /* With x' = rates x + f on a panel, x and f series, 2 k x_k + G (x_(k-1) - x_(k+1)) = r_k, G = -half the length times
  * rates: eliminated from the highest k down, where x_0 counts twice. */
-static void OF(tabulate_joint)(OF(work_of) *m, const OF(laws) *law, int joint, int panel, int degree)
+static void OF(tabulate_block)(OF(march_tables) *m, const OF(laws) *law, int joint, int panel, int degree)
 {
     const int n = states_of(joint);
-    num g[NAME_WIDEST * NAME_WIDEST], d[NAME_WIDEST * NAME_WIDEST], found[NAME_WIDEST * NAME_WIDEST];
+    num g[NAME_WIDEST * NAME_WIDEST], d[NAME_WIDEST * NAME_WIDEST];
     for (int i = 0; i < n * n; ++i) {
         g[i] = -half_length[panel] * law->rates[at_rates[joint] + i];
         for (int kind = SOLVE; kind <= LAST; ++kind) {
@@ -93,193 +126,301 @@ static void OF(tabulate_joint)(OF(work_of) *m, const OF(laws) *law, int joint, i
                 now[i] = one - (real)(k == 0 ? 2 : 1) * now[i];
             }
         }
-        if (k == 0) {
-            for (int i = 0; i < n * n; ++i) {
-                d[i] = m->solver[panel][FIRST][here + (size_t)i];
-                m->edge[panel][END][at_square[joint] + i] = m->solver[panel][LAST][here + (size_t)i];
+        if (k > 0) {
+            OF(multiply)(g, down, n, d);
+            for (int i = 0; i < n; ++i) {
+                d[i * n + i] += (real)(2 * k);
             }
-            OF(invert)(d, n, m->edge[panel][START] + at_square[joint]);
-            continue;
-        }
-        OF(multiply)(g, down, n, d);
-        for (int i = 0; i < n; ++i) {
-            d[i * n + i] += (real)(2 * k);
-        }
-        OF(invert)(d, n, found);
-        OF(multiply)(found, g, n, m->solver[panel][DOWN] + here);
-        for (int i = 0; i < n * n; ++i) {
-            m->solver[panel][SOLVE][here + (size_t)i] = found[i];
+            OF(invert)(d, n, m->solver[panel][SOLVE] + here);
+            OF(multiply)(m->solver[panel][SOLVE] + here, g, n, m->solver[panel][DOWN] + here);
         }
     }
+    for (int i = 0; i < n * n; ++i) {
+        d[i] = m->solver[panel][FIRST][square_at(joint, 0) + (size_t)i];
+        m->edge[panel][END][at_square[joint] + i] = m->solver[panel][LAST][square_at(joint, 0) + (size_t)i];
+    }
+    OF(invert)(d, n, m->edge[panel][START] + at_square[joint]);
 }
 
-/* Tables of bodies, at most BODIES_AT_ONCE of them: rates and drives, which table[0] has, and lengths of panels. */
-typedef struct {
-    int count;
-    real length[BODIES_AT_ONCE];
-    num (*table[BODIES_AT_ONCE])[4];
-} OF(bodies);
-
-/* With q' = -g q + pushed s on a panel, x_k = g length / (4 k) and drive = pushed / g, the elimination of
- * q_k + x_k (q_(k-1) - q_(k+1)) = x_k drive (s_(k-1) - s_(k+1)) from the highest k down. One alone is done twice. */
-static void OF(tabulate_bodies)(OF(bodies) *b, int degree)
+/* Tables of `count` bodies: with q' = -g q + g s on panels of some lengths, and x_k = g length / (4 k), the elimination of
+ * q_k + x_k (q_(k-1) - q_(k+1)) = x_k (s_(k-1) - s_(k+1)) from the highest k down. One alone is done twice. */
+static void OF(tabulate_bodies)(num (**tables)[3], const real *lengths, int count, int degree)
 {
-    num step[BODIES_AT_ONCE], drive[BODIES_AT_ONCE];
-    num own[BODIES_AT_ONCE], first_own[BODIES_AT_ONCE], last_own[BODIES_AT_ONCE];
-    num(*table[BODIES_AT_ONCE])[4];
+    num step[ABREAST_BODIES], own[ABREAST_BODIES], first_own[ABREAST_BODIES], last_own[ABREAST_BODIES];
+    num(*table[ABREAST_BODIES])[3];
     UNROLLED
-    for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-        const int of = j < b->count ? j : 0;
-        table[j] = b->table[of];
-        step[j] = table[j][0][RATE] * b->length[of];
-        drive[j] = table[j][0][DRIVE];
+    for (int j = 0; j < ABREAST_BODIES; ++j) {
+        table[j] = tables[j < count ? j : 0];
+        step[j] = table[j][0][RATE] * lengths[j < count ? j : 0];
         own[j] = first_own[j] = last_own[j] = ZERO;
     }
     for (int k = degree; k > 0; --k) {
         UNROLLED
-        for (int j = 0; j < BODIES_AT_ONCE; ++j) {
+        for (int j = 0; j < ABREAST_BODIES; ++j) {
             const num above = own[j];
             own[j] = step[j] / ((real)(4 * k) + step[j] * above);
             first_own[j] = (real)(k % 2 ? -1 : 1) - above * first_own[j];
             last_own[j] = 1 - above * last_own[j];
-            table[j][k][GAIN] = own[j] * drive[j];
             table[j][k][RATIO] = own[j];
             table[j][k][SUM_FIRST] = first_own[j];
             table[j][k][SUM_LAST] = last_own[j];
         }
     }
-    for (int j = 0; j < BODIES_AT_ONCE; ++j) {
+    for (int j = 0; j < ABREAST_BODIES; ++j) {
         const num less = 2 * own[j] * first_own[j];
         table[j][0][SLACK] = -less / (1 - less);
         table[j][0][LOSS] = 2 * own[j] * last_own[j];
     }
-    b->count = 0;
 }
 
-static void OF(tabulate)(OF(work_of) *all, const OF(laws) *law, int sets, int degree)
+/* All tables, of so many sets (or vectors of sets). */
+static void OF(tabulate)(OF(march_tables) *all, const OF(laws) *law, int sets, int degree)
 {
-    OF(bodies) some;
-    some.count = 0;
+    num(*table[ABREAST_BODIES])[3];
+    real length[ABREAST_BODIES];
+    int count = 0;
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int body = 0; body < NAME_BODIES; ++body) {
             const int joint = body_joint[body];
             for (int set = 0; set < sets; ++set) {
-                num(*const table)[4] = all[set].body[panel][body];
-                table[0][RATE] = -law[set].rates[at_rates[joint]];
-                table[0][DRIVE] = law[set].pushed[at_pushed[joint]] / table[0][RATE];
-                some.length[some.count] = 2 * half_length[panel];
-                some.table[some.count] = table;
-                some.count += 1;
-                if (some.count == BODIES_AT_ONCE) {
-                    OF(tabulate_bodies)(&some, degree);
+                table[count] = all[set].body[panel][body];
+                table[count][0][RATE] = -law[set].rates[at_rates[joint]];
+                all[set].drive[body] = law[set].pushed[at_pushed[joint]] / table[count][0][RATE];
+                length[count] = 2 * half_length[panel];
+                if (++count == ABREAST_BODIES) {
+                    OF(tabulate_bodies)(table, length, count, degree);
+                    count = 0;
                 }
             }
         }
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
             for (int set = 0; set < sets && is_block(joint); ++set) {
-                OF(tabulate_joint)(all + set, law + set, joint, panel, degree);
+                OF(tabulate_block)(all + set, law + set, joint, panel, degree);
             }
         }
     }
-    if (some.count > 0) {
-        OF(tabulate_bodies)(&some, degree);
+    if (count > 0) {
+        OF(tabulate_bodies)(table, length, count, degree);
     }
 }
 
-/* Up to BODIES_AT_ONCE bodies, of one or several sets: their tables, what acts on them, with nothing at degree + 1, how they
- * move, and their velocity, which goes from its start to its end. */
+/* What acts on a derivative as laws change, where they do, as series: on points, with loads, on states, and on velocities
+ * of points. */
+typedef struct {
+    int changed[NAME_JOINTS];
+    num (*acting)[NAME_POINTS][NAME_ROW], (*moving)[NAME_STATES + 1][NAME_ROW], (*shifted)[NAME_POINTS][NAME_ROW];
+} OF(forcing);
+
+/* What acts on a point besides waves, a series of so many coefficients: loads, or a forcing. */
+static int OF(acting_on)(OF(march_state) *m, const OF(forcing) *by, int joint, int point, int panel, int degree,
+                         const num **acting)
+{
+    const int force = force_on[point];
+    if (by && by->changed[joint]) {
+        *acting = by->acting[panel][point];
+        return degree + 1;
+    }
+    *acting = m->force[panel][NAME_FORCES > 0 && force >= 0 ? force : 0];
+    return NAME_FORCES > 0 && force >= 0 ? 3 : 0;
+}
+
+/* What acts on the points of a joint on a panel, as series: what waves do of all but `skipped` of its ends at both sides. */
+static void OF(gather)(OF(march_state) *m, const OF(laws) *law, const OF(forcing) *by, int joint, int panel,
+                       const places *now, int degree, int skipped, num (*s)[NAME_ROW])
+{
+    for (int point = 0; point < points_of(joint); ++point) {
+        const num *acting;
+        const int count = OF(acting_on)(m, by, joint, first_point[joint] + point, panel, degree, &acting);
+        for (int k = 0; k <= degree + 1; ++k) {
+            s[point][k] = k < count ? acting[k] : ZERO;
+        }
+    }
+    for (int port = first_port[joint] + skipped; port < first_port[joint + 1] - skipped; ++port) {
+        OF(add)(s[point_of[port]], law->push[port], m->waves[now->arrived[arrive[port]]][panel], degree);
+    }
+}
+
+/* Up to ABREAST_BODIES bodies on a panel: their tables, what arrives at the first and the last end, times drives, what acts
+ * besides, what goes back, velocities, states, and where sizes of waves and truncation errors are collected. */
 typedef struct {
     int count;
-    num (*table[BODIES_AT_ONCE])[4];
-    const num *s[BODIES_AT_ONCE];
-    num *q[BODIES_AT_ONCE];
-    num *state[BODIES_AT_ONCE];
-} OF(moving);
+    num (*table[ABREAST_BODIES])[3];
+    const num *a[ABREAST_BODIES], *b[ABREAST_BODIES], *acting[ABREAST_BODIES];
+    int most[ABREAST_BODIES];
+    num drive[ABREAST_BODIES], one[ABREAST_BODIES], other[ABREAST_BODIES];
+    num *left[ABREAST_BODIES], *right[ABREAST_BODIES];
+    real on_left[ABREAST_BODIES], on_right[ABREAST_BODIES];
+    num *q[ABREAST_BODIES], *state[ABREAST_BODIES], *size[ABREAST_BODIES], *missed[ABREAST_BODIES];
+} OF(bodies);
 
-/* One alone is moved twice. */
-static void OF(move_bodies)(OF(moving) *b, int degree)
+/* One alone is stepped twice. */
+static void OF(step_bodies)(OF(bodies) *e, real half, int degree)
 {
-    num y[BODIES_AT_ONCE], begun_at[BODIES_AT_ONCE], ended_at[BODIES_AT_ONCE];
-    num(*table[BODIES_AT_ONCE])[4];
-    const num *s[BODIES_AT_ONCE];
-    num *q[BODIES_AT_ONCE];
+    num y[ABREAST_BODIES], at_first[ABREAST_BODIES], at_last[ABREAST_BODIES], above[ABREAST_BODIES], here[ABREAST_BODIES];
+    num highest[ABREAST_BODIES], one[ABREAST_BODIES], other[ABREAST_BODIES];
+    num(*table[ABREAST_BODIES])[3];
+    const num *a[ABREAST_BODIES], *b[ABREAST_BODIES];
+    num *q[ABREAST_BODIES], *left[ABREAST_BODIES], *right[ABREAST_BODIES];
+    real on_left[ABREAST_BODIES], on_right[ABREAST_BODIES];
+    int most = 0;
     UNROLLED
-    for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-        const int of = j < b->count ? j : 0;
-        table[j] = b->table[of];
-        s[j] = b->s[of];
-        q[j] = b->q[of];
-        y[j] = begun_at[j] = ended_at[j] = ZERO;
+    for (int j = 0; j < ABREAST_BODIES; ++j) {
+        const int now = j < e->count ? j : 0;
+        if (j > now) {
+            e->acting[j] = e->acting[now];
+            e->most[j] = e->most[now];
+            e->drive[j] = e->drive[now];
+        }
+        table[j] = e->table[now];
+        a[j] = e->a[now];
+        b[j] = e->b[now];
+        q[j] = e->q[now];
+        left[j] = e->left[now];
+        right[j] = e->right[now];
+        on_left[j] = e->on_left[now];
+        on_right[j] = e->on_right[now];
+        one[j] = e->one[now];
+        other[j] = e->other[now];
+        most = e->most[j] > most ? e->most[j] : most;
+        here[j] = one[j] * a[j][degree] + other[j] * b[j][degree];
+        if (e->most[j] > degree) {
+            here[j] += e->drive[j] * e->acting[j][degree];
+        }
+        highest[j] = here[j];
+        above[j] = y[j] = at_first[j] = at_last[j] = ZERO;
     }
     for (int k = degree; k > 0; --k) {
         UNROLLED
-        for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-            const num change = (k == 1 ? (num)(2 * s[j][0]) : s[j][k - 1]) - s[j][k + 1];
-            y[j] = table[j][k][GAIN] * change + table[j][k][RATIO] * y[j];
+        for (int j = 0; j < ABREAST_BODIES; ++j) {
+            num below = one[j] * a[j][k - 1] + other[j] * b[j][k - 1];
+            if (k <= most && k <= e->most[j]) {
+                below += e->drive[j] * e->acting[j][k - 1];
+            }
+            const num change = (k == 1 ? (num)(2 * below) : below) - above[j];
+            y[j] = table[j][k][RATIO] * change + table[j][k][RATIO] * y[j];
             q[j][k] = y[j];
-            begun_at[j] += table[j][k][SUM_FIRST] * y[j];
-            ended_at[j] += table[j][k][SUM_LAST] * y[j];
+            at_first[j] += table[j][k][SUM_FIRST] * y[j];
+            at_last[j] += table[j][k][SUM_LAST] * y[j];
+            above[j] = here[j];
+            here[j] = below;
         }
     }
-    for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-        if (j < b->count) {
-            const num rest = *b->state[j] - begun_at[j];
-            q[j][0] = rest - table[j][0][SLACK] * rest;
-            q[j][degree + 1] = ZERO;
-            *b->state[j] = q[j][0] + (ended_at[j] - table[j][0][LOSS] * q[j][0]);
-        }
+    for (int j = 0; j < e->count; ++j) {
+        const num rest = *e->state[j] - at_first[j];
+        const num mean = rest - table[j][0][SLACK] * rest;
+        *e->state[j] = mean + (at_last[j] - table[j][0][LOSS] * mean);
+        q[j][0] = mean;
+        left[j][0] = on_left[j] * mean - a[j][0];
+        right[j][0] = on_right[j] * mean - b[j][0];
+        OF(enlarge)(e->size[j], e->state[j]);
+        OF(enlarge)(e->size[j], left[j]);
+        OF(enlarge)(e->size[j], right[j]);
     }
-    for (int j = 0; j < BODIES_AT_ONCE; ++j) {
+    for (int j = 0; j < ABREAST_BODIES; ++j) {
         y[j] = 2 * q[j][0];
     }
     for (int k = 1; k <= degree; ++k) {
         UNROLLED
-        for (int j = 0; j < BODIES_AT_ONCE; ++j) {
+        for (int j = 0; j < ABREAST_BODIES; ++j) {
             y[j] = q[j][k] - table[j][k][RATIO] * y[j];
+            left[j][k] = on_left[j] * y[j] - a[j][k];
+            right[j][k] = on_right[j] * y[j] - b[j][k];
         }
         UNROLLED
-        for (int j = 0; j < BODIES_AT_ONCE; ++j) {
+        for (int j = 0; j < ABREAST_BODIES; ++j) {
             q[j][k] = y[j];
         }
     }
-    b->count = 0;
+    for (int j = 0; j < e->count; ++j) {
+        const num rest = (highest[j] - y[j]) * (table[j][0][RATE] * (half / (real)(2 * (degree + 1))));
+        OF(add_magnitude)(e->missed[j], &rest);
+    }
+    e->count = 0;
 }
 
-/* Waves at first, as series of so many numbers. */
-static void OF(start_waves)(OF(track_of) *waves, const OF(laws) *law, int count)
+/* What ends send: velocities of their points, less what arrives; of all ends but `skipped` at both sides. */
+static void OF(send_back)(OF(march_state) *m, int joint, int panel, const places *now, int degree, int skipped,
+                          num (*q)[NAME_ROW], num *size)
 {
-    for (int track = 0; track < NAME_TRACKS; ++track) {
-        for (int place = ring[track]; place <= ring[track] + steps[track]; ++place) {
-            for (int panel = 0; panel < NAME_PANELS; ++panel) {
-                for (int k = 0; k < count; ++k) {
-                    waves[place][panel][k] = k == 0 ? law->held[track] : ZERO;
-                }
+    for (int port = first_port[joint] + skipped; port < first_port[joint + 1] - skipped; ++port) {
+        const num *const a = m->waves[now->arrived[arrive[port]]][panel];
+        num *const out = m->waves[now->sent[send[port]]][panel];
+        for (int k = 0; k <= degree; ++k) {
+            out[k] = ratio[port] * q[point_of[port]][k] - a[k];
+        }
+        OF(enlarge)(size, out);
+    }
+}
+
+/* All bodies of some sets on a panel. */
+static void OF(march_bodies)(OF(march_state) *all, OF(march_tables) *tables, const OF(laws) *law, int sets, int panel,
+                             const places *now, int degree, const OF(forcing) *by, num *size, num *missed)
+{
+    OF(bodies) some;
+    some.count = 0;
+    for (int body = 0; body < NAME_BODIES; ++body) {
+        const int joint = body_joint[body];
+        const int port = first_port[joint], next = first_port[joint + 1] - 1;
+        for (int set = 0; set < sets; ++set) {
+            OF(march_state) *const m = all + set;
+            const int j = some.count++;
+            some.table[j] = tables[set].body[panel][body];
+            some.drive[j] = tables[set].drive[body];
+            some.a[j] = m->waves[now->arrived[arrive[port]]][panel];
+            some.b[j] = m->waves[now->arrived[arrive[next]]][panel];
+            some.left[j] = m->waves[now->sent[send[port]]][panel];
+            some.right[j] = m->waves[now->sent[send[next]]][panel];
+            some.one[j] = some.drive[j] * law[set].push[port];
+            some.other[j] = next > port ? (num)(some.drive[j] * law[set].push[next]) : ZERO;
+            some.on_left[j] = ratio[port];
+            some.on_right[j] = ratio[next];
+            some.q[j] = m->path[panel][first_state[joint]];
+            some.state[j] = &m->state[1][first_state[joint]];
+            some.size[j] = size + set;
+            some.missed[j] = missed + set;
+            some.most[j] = OF(acting_on)(m, by, joint, first_point[joint], panel, degree, &some.acting[j]);
+            if (next > port + 1) { /* what other ends do is where the velocity will be, which no longer needs it then */
+                OF(gather)(m, law + set, by, joint, panel, now, degree, 1, m->path[panel] + first_state[joint]);
+                some.acting[j] = some.q[j];
+                some.most[j] = degree + 1;
+            }
+            if (some.count == ABREAST_BODIES) {
+                OF(step_bodies)(&some, half_length[panel], degree);
             }
         }
     }
+    if (some.count > 0) {
+        OF(step_bodies)(&some, half_length[panel], degree);
+    }
+    for (int body = 0; body < NAME_BODIES; ++body) {
+        const int joint = body_joint[body];
+        for (int set = 0; set < sets && first_port[joint + 1] - first_port[joint] > 2; ++set) {
+            OF(send_back)(all + set, joint, panel, now, degree, 1, all[set].path[panel] + first_state[joint], size + set);
+        }
+    }
 }
 
-/* What acts on the points of a joint on a panel, as series, with nothing at degree + 1. */
-static void OF(gather)(OF(track_of) *waves, num (*force)[3], const OF(laws) *law, int joint, int panel,
-                       const places *now, int degree, int more, num (*acting)[NAME_ROW])
+/* A point without state between at most two ends, in one pass. */
+static void OF(scatter)(OF(march_state) *m, const OF(laws) *law, int joint, int panel, const places *now, int degree,
+                        num *size)
 {
-    const int first = first_point[joint];
-    for (int point = first; point < first_point[joint + 1]; ++point) {
-        for (int k = 0; k <= degree + 1; ++k) {
-            acting[point][k] = more ? acting[point][k] : ZERO;
+    const int port = first_port[joint], next = first_port[joint + 1] - 1, force = force_on[first_point[joint]];
+    const num *const a = m->waves[now->arrived[arrive[port]]][panel];
+    const num *const b = m->waves[now->arrived[arrive[next]]][panel];
+    num *const left = m->waves[now->sent[send[port]]][panel];
+    num *const right = m->waves[now->sent[send[next]]][panel];
+    const num one = law->push[port], other = next > port ? law->push[next] : ZERO;
+    const num passed = law->passed[at_passed[joint]], on_left = ratio[port] * passed, on_right = ratio[next] * passed;
+    for (int k = 0; k <= degree; ++k) {
+        num sum = one * a[k] + other * b[k];
+        if (NAME_FORCES > 0 && force >= 0 && k < 3) {
+            sum += m->force[panel][force][k];
         }
-        for (int k = 0; k < 3 && force && force_on[point] >= 0; ++k) {
-            acting[point][k] += force[force_on[point]][k];
-        }
+        left[k] = on_left * sum - a[k];
+        right[k] = on_right * sum - b[k];
     }
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const num *const a = waves[now->arrived[arrive[port]]][panel];
-        num *const s = acting[first + point_of[port]];
-        const num factor = law->push[port];
-        for (int k = 0; k <= degree; ++k) {
-            s[k] += factor * a[k];
-        }
-    }
+    OF(enlarge)(size, left);
+    OF(enlarge)(size, right);
 }
 
 /* f = matrix * series, or f += where there is `more`, of `rows` times `columns` numbers. */
@@ -287,92 +428,64 @@ static void OF(add_series)(const num *matrix, int rows, int columns, num (*serie
                            num (*f)[NAME_ROW])
 {
     for (int i = 0; i < rows; ++i) {
-        f[i][degree + 1] = more ? f[i][degree + 1] : ZERO;
+        for (int k = 0; k <= degree + 1 && !more; ++k) {
+            f[i][k] = ZERO;
+        }
         for (int j = 0; j < columns; ++j) {
-            const num factor = matrix[i * columns + j];
-            if (more || j > 0) {
-                for (int k = 0; k <= degree; ++k) {
-                    f[i][k] += factor * series[j][k];
-                }
-            } else {
-                for (int k = 0; k <= degree; ++k) {
-                    f[i][k] = factor * series[j][k];
-                }
-            }
+            OF(add)(f[i], matrix[i * columns + j], series[j], degree);
         }
     }
 }
 
-/* How the states of a joint move on a panel under f: the series x; `state` goes from its start to its end. */
-static void OF(moved)(const OF(work_of) *m, int joint, int panel, int degree, num (*f)[NAME_ROW], num *state,
-                      num (*x)[NAME_ROW])
+/* How the states of a block move on a panel under f: the series x; `state` goes from its start to its end. */
+static void OF(step_block)(const OF(march_tables) *m, int joint, int panel, int degree, num (*f)[NAME_ROW], num *state,
+                           num (*x)[NAME_ROW])
 {
     const int n = states_of(joint);
     const real half = half_length[panel];
-    if (!is_block(joint)) {
-        return;
-    }
-    num y[NAME_WIDEST], r[NAME_WIDEST], begun_at[NAME_WIDEST], ended_at[NAME_WIDEST];
-    for (int i = 0; i < n; ++i) {
-        y[i] = ZERO;
-        begun_at[i] = state[i];
-        ended_at[i] = ZERO;
+    num y[NAME_WIDEST], r[NAME_WIDEST], now[NAME_WIDEST], at_first[NAME_WIDEST], at_last[NAME_WIDEST];
+    for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
+        y[i] = now[i] = at_last[i] = ZERO;
+        at_first[i] = i < n ? state[i] : ZERO;
     }
     for (int k = degree; k > 0; --k) {
         const size_t here = square_at(joint, k);
-        num now[NAME_WIDEST];
         for (int i = 0; i < n; ++i) {
             r[i] = half * ((k == 1 ? (num)(2 * f[i][0]) : f[i][k - 1]) - f[i][k + 1]);
             now[i] = ZERO;
         }
         OF(add_product)(m->solver[panel][SOLVE] + here, r, n, 1, now);
         OF(add_product)(m->solver[panel][DOWN] + here, y, n, 1, now);
-        OF(add_product)(m->solver[panel][FIRST] + here, now, n, -1, begun_at);
-        OF(add_product)(m->solver[panel][LAST] + here, now, n, 1, ended_at);
+        OF(add_product)(m->solver[panel][FIRST] + here, now, n, -1, at_first);
+        OF(add_product)(m->solver[panel][LAST] + here, now, n, 1, at_last);
         for (int i = 0; i < n; ++i) {
-            y[i] = now[i];
-            x[i][k] = now[i];
+            y[i] = x[i][k] = now[i];
         }
     }
-    num before[NAME_WIDEST];
-    for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
-        before[i] = ZERO;
-    }
-    OF(add_product)(m->edge[panel][START] + at_square[joint], begun_at, n, 1, before);
-    OF(add_product)(m->edge[panel][END] + at_square[joint], before, n, 1, ended_at);
     for (int i = 0; i < n; ++i) {
-        x[i][0] = before[i];
+        y[i] = ZERO;
+    }
+    OF(add_product)(m->edge[panel][START] + at_square[joint], at_first, n, 1, y);
+    OF(add_product)(m->edge[panel][END] + at_square[joint], y, n, 1, at_last);
+    for (int i = 0; i < n; ++i) {
+        x[i][0] = y[i];
         x[i][degree + 1] = ZERO;
-        state[i] = ended_at[i];
-        before[i] = 2 * before[i];
+        state[i] = at_last[i];
+        y[i] = 2 * y[i];
     }
     for (int k = 1; k <= degree; ++k) {
-        num now[NAME_WIDEST];
         for (int i = 0; i < n; ++i) {
             now[i] = x[i][k];
         }
-        OF(add_product)(m->solver[panel][DOWN] + square_at(joint, k), before, n, -1, now);
+        OF(add_product)(m->solver[panel][DOWN] + square_at(joint, k), y, n, -1, now);
         for (int i = 0; i < n; ++i) {
-            x[i][k] = now[i];
-            before[i] = now[i];
+            y[i] = x[i][k] = now[i];
         }
     }
 }
 
-/* What ends send: their points' velocities, less what arrives. */
-static void OF(send_out)(OF(track_of) *waves, int joint, int panel, const places *now, int degree, num (*q)[NAME_ROW])
-{
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const num *const a = waves[now->arrived[arrive[port]]][panel];
-        num *const out = waves[now->sent[send[port]]][panel];
-        for (int k = 0; k <= degree; ++k) {
-            out[k] = ratio[port] * q[point_of[port]][k] - a[k];
-        }
-    }
-}
-
-/* What the polynomials of a joint miss: the one term of x' = rates x + f that does not fit, as velocities. What a spring
- * misses of its length counts by the acceleration that it makes, for half a panel. */
+/* The truncation error of a block: the one term of x' = rates x + f that does not fit, as velocities. What a spring misses
+ * of its length counts by the acceleration that it makes, for half a panel. */
 static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree, num (*f)[NAME_ROW],
                            num (*x)[NAME_ROW], num *missed)
 {
@@ -394,301 +507,59 @@ static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree
     }
 }
 
-/* What acts on the one point of a joint on a panel, as a series, with nothing at degree + 1. */
-static void OF(gather_point)(OF(work_of) *m, const OF(laws) *law, int joint, int panel, const places *now, int degree)
+/* Any joint that is no body. */
+static void OF(march_joint)(OF(march_state) *m, const OF(march_tables) *table, const OF(laws) *law, int joint, int panel,
+                            const places *now, int degree, const OF(forcing) *by, num *size, num *missed)
 {
-    const int first = first_port[joint], end = first_port[joint + 1], force = force_on[first_point[joint]];
-    num *const s = m->acting[panel][first_point[joint]];
-    const num *const a = m->waves[now->arrived[arrive[first]]][panel];
-    const num *const b = m->waves[now->arrived[arrive[end - 1]]][panel];
-    const num one = law->push[first], other = end - first > 1 ? law->push[end - 1] : ZERO;
-    for (int k = 0; k <= degree; ++k) {
-        s[k] = one * a[k] + other * b[k];
-    }
-    s[degree + 1] = ZERO;
-    for (int port = first + 1; port < end - 1; ++port) {
-        const num *const c = m->waves[now->arrived[arrive[port]]][panel];
-        const num more = law->push[port];
-        for (int k = 0; k <= degree; ++k) {
-            s[k] += more * c[k];
-        }
-    }
-    for (int k = 0; k < 3 && force >= 0; ++k) {
-        s[k] += m->force[panel][force][k];
-    }
-}
-
-/* What the ends at the one point of a joint send: `times` a series, less what arrives; two ends at once. */
-static void OF(send_point)(OF(work_of) *m, int joint, int panel, const places *now, int degree, const num *q,
-                           const num *times, num *size)
-{
-    const int end = first_port[joint + 1];
-    for (int port = first_port[joint]; port < end; port += 2) {
-        const int next = port + 1 < end ? port + 1 : port;
-        const num *const a = m->waves[now->arrived[arrive[port]]][panel];
-        const num *const b = m->waves[now->arrived[arrive[next]]][panel];
-        num *const left = m->waves[now->sent[send[port]]][panel];
-        num *const right = m->waves[now->sent[send[next]]][panel];
-        const num one = ratio[port] * *times, other = ratio[next] * *times;
-        for (int k = 0; k <= degree; ++k) {
-            left[k] = one * q[k] - a[k];
-            right[k] = other * q[k] - b[k];
-        }
-        OF(enlarge)(size, left);
-        OF(enlarge)(size, right);
-    }
-}
-
-/* A point without state between at most two rods, in one pass. */
-static void OF(scatter_point)(OF(work_of) *m, const OF(laws) *law, int joint, int panel, const places *now, int degree,
-                              num *size)
-{
-    const int port = first_port[joint], next = first_port[joint + 1] - 1, force = force_on[first_point[joint]];
-    const num *const a = m->waves[now->arrived[arrive[port]]][panel];
-    const num *const b = m->waves[now->arrived[arrive[next]]][panel];
-    num *const left = m->waves[now->sent[send[port]]][panel];
-    num *const right = m->waves[now->sent[send[next]]][panel];
-    num *const s = m->acting[panel][first_point[joint]];
-    const num one = law->push[port], other = next > port ? law->push[next] : ZERO;
-    const num times = law->passed[at_passed[joint]], on_left = ratio[port] * times, on_right = ratio[next] * times;
-    for (int k = 0; k <= degree; ++k) {
-        const num sum = one * a[k] + other * b[k];
-        s[k] = sum;
-        left[k] = on_left * sum - a[k];
-        right[k] = on_right * sum - b[k];
-    }
-    for (int k = 0; k < 3 && force >= 0; ++k) {
-        s[k] += m->force[panel][force][k];
-        left[k] = on_left * s[k] - a[k];
-        right[k] = on_right * s[k] - b[k];
-    }
-    OF(enlarge)(size, left);
-    OF(enlarge)(size, right);
-}
-
-/* Up to BODIES_AT_ONCE bodies, each between at most two rods: as `moving`, with what
- * arrives, times their drives, and what they send. */
-typedef struct {
-    int count;
-    num (*table[BODIES_AT_ONCE])[4];
-    const num *a[BODIES_AT_ONCE], *b[BODIES_AT_ONCE], *force[BODIES_AT_ONCE];
-    num *left[BODIES_AT_ONCE], *right[BODIES_AT_ONCE];
-    num one[BODIES_AT_ONCE], other[BODIES_AT_ONCE];
-    real on_left[BODIES_AT_ONCE], on_right[BODIES_AT_ONCE];
-    num *q[BODIES_AT_ONCE];
-    num *state[BODIES_AT_ONCE];
-    num *size[BODIES_AT_ONCE], *missed[BODIES_AT_ONCE];
-} OF(between);
-
-/* As move_bodies, all in two passes: for many sets, whose numbers fill vectors as they are. */
-static void OF(move_between)(OF(between) *e, real half, int degree)
-{
-    num y[BODIES_AT_ONCE], begun_at[BODIES_AT_ONCE], ended_at[BODIES_AT_ONCE];
-    num above[BODIES_AT_ONCE], here[BODIES_AT_ONCE], highest[BODIES_AT_ONCE], one[BODIES_AT_ONCE], other[BODIES_AT_ONCE];
-    num(*table[BODIES_AT_ONCE])[4];
-    const num *a[BODIES_AT_ONCE], *b[BODIES_AT_ONCE];
-    num *q[BODIES_AT_ONCE], *left[BODIES_AT_ONCE], *right[BODIES_AT_ONCE];
-    real on_left[BODIES_AT_ONCE], on_right[BODIES_AT_ONCE];
-    UNROLLED
-    for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-        const int of = j < e->count ? j : 0;
-        table[j] = e->table[of];
-        a[j] = e->a[of];
-        b[j] = e->b[of];
-        q[j] = e->q[of];
-        left[j] = e->left[of];
-        right[j] = e->right[of];
-        on_left[j] = e->on_left[of];
-        on_right[j] = e->on_right[of];
-        one[j] = e->one[of];
-        other[j] = e->other[of];
-        here[j] = one[j] * a[j][degree] + other[j] * b[j][degree];
-        highest[j] = here[j];
-        above[j] = y[j] = begun_at[j] = ended_at[j] = ZERO;
-    }
-    for (int k = degree; k > 0; --k) {
-        UNROLLED
-        for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-            num below = one[j] * a[j][k - 1] + other[j] * b[j][k - 1];
-            const num *const force = k <= 3 ? e->force[j < e->count ? j : 0] : NULL;
-            if (force) {
-                below += table[j][0][DRIVE] * force[k - 1];
-            }
-            const num change = (k == 1 ? (num)(2 * below) : below) - above[j];
-            y[j] = table[j][k][RATIO] * change + table[j][k][RATIO] * y[j];
-            q[j][k] = y[j];
-            begun_at[j] += table[j][k][SUM_FIRST] * y[j];
-            ended_at[j] += table[j][k][SUM_LAST] * y[j];
-            above[j] = here[j];
-            here[j] = below;
-        }
-    }
-    for (int j = 0; j < e->count; ++j) {
-        const num rest = *e->state[j] - begun_at[j];
-        const num mean = rest - table[j][0][SLACK] * rest;
-        *e->state[j] = mean + (ended_at[j] - table[j][0][LOSS] * mean);
-        q[j][0] = mean;
-        left[j][0] = on_left[j] * mean - a[j][0];
-        right[j][0] = on_right[j] * mean - b[j][0];
-        OF(enlarge)(e->size[j], e->state[j]);
-        OF(enlarge)(e->size[j], left[j]);
-        OF(enlarge)(e->size[j], right[j]);
-    }
-    for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-        y[j] = 2 * q[j][0];
-    }
-    for (int k = 1; k <= degree; ++k) {
-        UNROLLED
-        for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-            y[j] = q[j][k] - table[j][k][RATIO] * y[j];
-            left[j][k] = on_left[j] * y[j] - a[j][k];
-            right[j][k] = on_right[j] * y[j] - b[j][k];
-        }
-    }
-    for (int j = 0; j < e->count; ++j) {
-        const num rest = (highest[j] - y[j]) * (table[j][0][RATE] * (half / (real)(2 * (degree + 1))));
-        OF(add_magnitude)(e->missed[j], &rest);
-    }
-    e->count = 0;
-}
-
-/* Whether bodies of many sets are between at most two rods. */
-static int OF(is_between)(int joint)
-{
-    return FUSED && first_port[joint + 1] - first_port[joint] <= 2;
-}
-
-/* All such bodies of some sets on a panel. */
-static void OF(march_between)(OF(work_of) *all, const OF(laws) *law, int sets, int panel, const places *now, int degree,
-                              num *size, num *missed)
-{
-    OF(between) some;
-    some.count = 0;
-    for (int body = 0; body < NAME_BODIES; ++body) {
-        const int joint = body_joint[body], force = force_on[first_point[joint]];
-        const int port = first_port[joint], next = first_port[joint + 1] - 1;
-        for (int set = 0; set < sets && OF(is_between)(joint); ++set) {
-            OF(work_of) *const m = all + set;
-            const int j = some.count;
-            some.table[j] = m->body[panel][body];
-            some.a[j] = m->waves[now->arrived[arrive[port]]][panel];
-            some.b[j] = m->waves[now->arrived[arrive[next]]][panel];
-            some.left[j] = m->waves[now->sent[send[port]]][panel];
-            some.right[j] = m->waves[now->sent[send[next]]][panel];
-            some.one[j] = m->body[panel][body][0][DRIVE] * law[set].push[port];
-            some.other[j] = next > port ? (num)(m->body[panel][body][0][DRIVE] * law[set].push[next]) : ZERO;
-            some.on_left[j] = ratio[port];
-            some.on_right[j] = ratio[next];
-            some.force[j] = force < 0 ? NULL : m->force[panel][force];
-            some.q[j] = m->path[panel][first_state[joint]];
-            some.state[j] = &m->state[1][first_state[joint]];
-            some.size[j] = size + set;
-            some.missed[j] = missed + set;
-            some.count += 1;
-            if (some.count == BODIES_AT_ONCE) {
-                OF(move_between)(&some, half_length[panel], degree);
-            }
-        }
-    }
-    if (some.count > 0) {
-        OF(move_between)(&some, half_length[panel], degree);
-    }
-}
-
-/* All other bodies of some sets on a panel. */
-static void OF(march_bodies)(OF(work_of) *all, const OF(laws) *law, int sets, int panel, const places *now, int degree,
-                             num *size, num *missed)
-{
-    OF(moving) some;
-    some.count = 0;
-    for (int body = 0; body < NAME_BODIES; ++body) {
-        const int joint = body_joint[body];
-        for (int set = 0; set < sets && !OF(is_between)(joint); ++set) {
-            OF(work_of) *const m = all + set;
-            OF(gather_point)(m, law + set, joint, panel, now, degree);
-            some.table[some.count] = m->body[panel][body];
-            some.s[some.count] = m->acting[panel][first_point[joint]];
-            some.q[some.count] = m->path[panel][first_state[joint]];
-            some.state[some.count] = &m->state[1][first_state[joint]];
-            some.count += 1;
-            if (some.count == BODIES_AT_ONCE) {
-                OF(move_bodies)(&some, degree);
-            }
-        }
-    }
-    if (some.count > 0) {
-        OF(move_bodies)(&some, degree);
-    }
-    for (int body = 0; body < NAME_BODIES; ++body) {
-        const int joint = body_joint[body];
-        for (int set = 0; set < sets && !OF(is_between)(joint); ++set) {
-            OF(work_of) *const m = all + set;
-            num(*const table)[4] = m->body[panel][body];
-            num(*const q)[NAME_ROW] = m->path[panel] + first_state[joint];
-            const num rest = (table[0][DRIVE] * m->acting[panel][first_point[joint]][degree] - q[0][degree]) *
-                             (table[0][RATE] * (half_length[panel] / (real)(2 * (degree + 1))));
-            const num once = ZERO + 1;
-            OF(send_point)(m, joint, panel, now, degree, q[0], &once, size + set);
-            OF(add_magnitude)(missed + set, &rest);
-            OF(enlarge)(size + set, &m->state[1][first_state[joint]]);
-        }
-    }
-}
-
-/* A joint that is no body. */
-static void OF(march_joint)(OF(work_of) *m, const OF(laws) *law, int joint, int panel, const places *now, int degree,
-                            num *size, num *missed)
-{
-    num f[NAME_WIDEST][NAME_ROW];
-    num q[NAME_WIDEST][NAME_ROW];
+    num s[NAME_WIDEST][NAME_ROW], f[NAME_WIDEST][NAME_ROW], q[NAME_WIDEST][NAME_ROW];
     const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
+    const int forced = by && by->changed[joint];
     num(*const x)[NAME_ROW] = m->path[panel] + first;
-    num(*const s)[NAME_ROW] = m->acting[panel] + first_point[joint];
-    OF(gather)(m->waves, m->force[panel], law, joint, panel, now, degree, 0, m->acting[panel]);
+    OF(gather)(m, law, by, joint, panel, now, degree, 0, s);
+    OF(add_series)(law->passed + at_passed[joint], points, points, s, degree, 0, q);
     if (is_block(joint)) {
         OF(add_series)(law->pushed + at_pushed[joint], n, points, s, degree, 0, f);
-        OF(moved)(m, joint, panel, degree, f, m->state[1] + first, x);
-        OF(add_missed)(law, joint, panel, degree, f, x, missed);
-        OF(add_series)(law->shown + at_shown[joint], points, n, x, degree, 0, q);
-    }
-    OF(add_series)(law->passed + at_passed[joint], points, points, s, degree, n > 0, q);
-    OF(send_out)(m->waves, joint, panel, now, degree, q);
-    for (int i = 0; i < n; ++i) {
-        if (is_mass[first + i]) {
-            OF(enlarge)(size, &m->state[1][first + i]);
+        for (int i = 0; i < n && forced; ++i) {
+            OF(add)(f[i], ZERO + 1, by->moving[panel][first + i], degree);
         }
+        OF(step_block)(table, joint, panel, degree, f, m->state[1] + first, x);
+        OF(add_missed)(law, joint, panel, degree, f, x, missed);
+        OF(add_series)(law->shown + at_shown[joint], points, n, x, degree, 1, q);
     }
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        OF(enlarge)(size, &m->waves[now->sent[send[port]]][panel][0]);
+    for (int point = 0; point < points && forced; ++point) {
+        OF(add)(q[point], ZERO + 1, by->shifted[panel][first_point[joint] + point], degree);
+    }
+    OF(send_back)(m, joint, panel, now, degree, 0, q, size);
+    for (int i = first; i < first + n; ++i) {
+        if (is_mass[i]) {
+            OF(enlarge)(size, &m->state[1][i]);
+        }
     }
 }
 
-/* One window of some sets at a degree. To `missed` is added what its polynomials miss; `size` grows to the largest
- * velocity or mean of a wave. */
-static void OF(march)(OF(work_of) *all, const OF(laws) *law, int sets, int window, int degree, num *size, num *missed)
+/* One window of some sets at a degree, or of derivatives under a forcing. To `missed` are added truncation errors; `size`
+ * grows to the largest velocity or mean of a wave. */
+static void OF(march)(OF(march_state) *all, OF(march_tables) *tables, const OF(laws) *law, int sets, int window, int degree,
+                      const OF(forcing) *by, num *size, num *missed)
 {
     places now;
-    placed(window, &now);
+    locate(window, &now);
     for (int set = 0; set < sets; ++set) {
         for (int k = 0; k < NAME_STATES; ++k) {
             all[set].state[1][k] = all[set].state[0][k];
         }
     }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
-        if (FUSED) {
-            OF(march_between)(all, law, sets, panel, &now, degree, size, missed);
-        }
-        OF(march_bodies)(all, law, sets, panel, &now, degree, size, missed);
+        OF(march_bodies)(all, tables, law, sets, panel, &now, degree, by, size, missed);
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+            const int is_point = points_of(joint) == 1 && states_of(joint) < 1 && !(by && by->changed[joint]) &&
+                                 first_port[joint + 1] - first_port[joint] <= 2;
             for (int set = 0; set < sets && !is_body[joint]; ++set) {
-                if (states_of(joint) < 1 && points_of(joint) == 1 && first_port[joint + 1] - first_port[joint] <= 2) {
-                    OF(scatter_point)(all + set, law + set, joint, panel, &now, degree, size + set);
-                } else if (states_of(joint) < 1 && points_of(joint) == 1) {
-                    OF(gather_point)(all + set, law + set, joint, panel, &now, degree);
-                    OF(send_point)(all + set, joint, panel, &now, degree, all[set].acting[panel][first_point[joint]],
-                                   &law[set].passed[at_passed[joint]], size + set);
+                if (is_point) {
+                    OF(scatter)(all + set, law + set, joint, panel, &now, degree, size + set);
                 } else {
-                    OF(march_joint)(all + set, law + set, joint, panel, &now, degree, size + set, missed + set);
+                    OF(march_joint)(all + set, tables + set, law + set, joint, panel, &now, degree, by, size + set,
+                                    missed + set);
                 }
             }
         }

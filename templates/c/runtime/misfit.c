@@ -1,7 +1,7 @@
 /* misfit.c: sums of squares of what models miss of data, taken from coefficients.
  * Plain C that stands below the text of batches.c in generated files, which have what stands below the first
  * empty line. */
-#include "batches.c"
+#include "batch.c"
 
 /* A group is an output on a section of a window. `numbers` has of each blocks of ROWS rows of its triangle R, interlaced:
  * their weights, z, lowest degrees and all columns; then what all rows from some one on add to the rest, by that row. The
@@ -187,7 +187,7 @@ static int longer_by(int group)
 }
 
 /* So many rows and parts at a time, so that what they miss stays in registers. */
-enum { HALF = ROWS / 2, PAIRED = PARTS < 2 ? PARTS : 2 };
+enum { HALF = ROWS / 2, PAIRED = parts_batch < 2 ? parts_batch : 2 };
 
 /* Add the squares of what half a block misses of series, from a degree on, to the sums of some parts; `cells` are those of
  * its first row. */
@@ -203,14 +203,14 @@ static void square_up(const wide *series, size_t size, int least, int degree, co
         }
     }
     for (int s = 0; s < strands; ++s) {
-        const wide *const c = series + (size_t)strand_at[first_strand[group] + s] * size * PARTS;
+        const wide *const c = series + (size_t)strand_at[first_strand[group] + s] * size * parts_batch;
         const real *r = cells + (COLUMNS + least * strands + s) * ROWS;
         for (int k = least; k <= degree; ++k) {
             UNROLLED
             for (int i = 0; i < HALF; ++i) {
                 UNROLLED
                 for (int j = 0; j < PAIRED; ++j) {
-                    missed[i][j] += r[i] * c[k * PARTS + j];
+                    missed[i][j] += r[i] * c[k * parts_batch + j];
                 }
             }
             r += strands * ROWS;
@@ -233,7 +233,7 @@ static int blocks(const wide *series, size_t size, int degree, const real *cells
         for (int first = 0; first < ROWS; first += HALF) {
             const real lowest = cells[LOWEST * ROWS + first];
             const int least = lowest <= (real)degree ? (int)lowest : degree + 1; /* the rows before count alone, then */
-            for (int side = 0; side < PARTS; side += PAIRED) {
+            for (int side = 0; side < parts_batch; side += PAIRED) {
                 square_up(series + side, size, least, degree, cells + first, group, sum + side);
             }
         }
@@ -244,7 +244,7 @@ static int blocks(const wide *series, size_t size, int degree, const real *cells
 }
 
 /* The misfits of all sets of a batch. */
-static void misfit_of(const batch_of *b, const name_data *data, wide *sum)
+static void misfit_of(const name_batch *b, const name_data *data, wide *sum)
 {
     int longer[NAME_GROUPS];
     for (int group = 0; group < NAME_GROUPS; ++group) {
@@ -257,7 +257,7 @@ static void misfit_of(const batch_of *b, const name_data *data, wide *sum)
         const size_t kept = ((size_t)data->rows[n] + ROWS - 1) / ROWS * ROWS;
         const int row = blocks((const wide *)b->series[b->place[window]], (size_t)(degree + 2), degree + longer[group], cells,
                                data->rows[n], group, sum);
-        for (int side = 0; side < PARTS; ++side) {
+        for (int side = 0; side < parts_batch; ++side) {
             sum[side] += cells[cell(group, kept, 0) + (size_t)row];
         }
     }
@@ -265,9 +265,9 @@ static void misfit_of(const batch_of *b, const name_data *data, wide *sum)
 
 void name_batch_misfit(const name_batch *batch, const name_data *data, name_real *misfit)
 {
-    wide sum[PARTS];
+    wide sum[parts_batch];
     int any = 0;
-    for (int side = 0; side < PARTS; ++side) {
+    for (int side = 0; side < parts_batch; ++side) {
         sum[side] = none;
     }
     for (int set = 0; set < NAME_WIDTH; ++set) {
@@ -277,6 +277,6 @@ void name_batch_misfit(const name_batch *batch, const name_data *data, name_real
         misfit_of(batch, data, sum);
     }
     for (int set = 0; set < NAME_WIDTH; ++set) {
-        misfit[set] = batch->status[set] == 0 ? OF_SET(sum, set) : not_a_number();
+        misfit[set] = batch->status[set] == 0 ? AT(sum[set / SETS], set % SETS) : not_a_number();
     }
 }

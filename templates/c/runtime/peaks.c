@@ -21,7 +21,7 @@ static void seen(summit *top, real value_there, real tau)
 
 /* At most so large is the second derivative of an output on a section of a window: |T_k''| <= k^2 (k^2 - 1) / 3. What is
  * no more than `noise` in a series is not counted: it cannot matter, and its highest degrees would. */
-static real bend(const model_of *m, int window, int at, real noise)
+static real bend(const name_model *m, int window, int at, real noise)
 {
     const int degree = m->degree[window];
     real sum = 0;
@@ -40,7 +40,7 @@ static real bend(const model_of *m, int window, int at, real noise)
 
 /* An output on the part of a window where it is one polynomial. */
 typedef struct {
-    const model_of *m;
+    const name_model *m;
     int window, section, output;
     real begin, length, bend;
 } part;
@@ -59,7 +59,7 @@ static void climb(const part *p, summit *top, real left, real at_left, real righ
         const real higher = at_left > at_end[last] ? at_left : at_end[last];
         if (last < DEEPEST - 1 && higher + p->bend * width * width / 8 > top->best + slack) {
             const real middle = left + width / 2;
-            const real found = value(p->m, p->m->series, p->window, p->section, p->output, middle);
+            const real found = value(p->m->series + p->m->place[p->window], p->window, p->m->degree[p->window], p->section * NAME_OUTPUTS + p->output, middle);
             seen(top, found, cycle_begin(p->window) + middle);
             ++last;
             end[last] = middle;
@@ -78,7 +78,7 @@ static void survey(const part *p, real *t, real *found)
     for (int j = 0; j < BLOCK; ++j) {
         t[j] = p->begin + p->length * (offset[j] / (BLOCK - 1));
     }
-    output_block(p->m, p->m->series, p->window, p->section * NAME_OUTPUTS + p->output, t, found);
+    output_block(p->m, p->window, p->section * NAME_OUTPUTS + p->output, t, found);
 }
 
 /* As bend, of what was found in a survey: four times the largest second difference. Near a front, or where an output
@@ -120,7 +120,7 @@ static void explore(const part *p, summit *top, real left, real at_left, real ri
 
 /* Whether an output may be beyond what was seen of it, on a section of a window: a sum of c_k T_k is no further from c_0
  * than the sum of the other |c_k|, and what rounding adds to that. */
-static int beyond(const model_of *m, int window, int at, const summit *least, const summit *greatest)
+static int beyond(const name_model *m, int window, int at, const summit *least, const summit *greatest)
 {
     const int degree = m->degree[window];
     real middle = 0, around = 0, sums[SUMS] = {0}; /* a sum alone would wait for each of its terms */
@@ -145,7 +145,7 @@ static int beyond(const model_of *m, int window, int at, const summit *least, co
 }
 
 /* First the best of all instants surveyed; then, `slack` given, of all between them that may be higher. */
-static void search(const model_of *m, int output, summit *least, summit *greatest, const real *slack)
+static void search(const name_model *m, int output, summit *least, summit *greatest, const real *slack)
 {
     for (int window = 0; window < NAME_WINDOWS; ++window) {
         for (int section = 0; section < SECTIONS; ++section) {

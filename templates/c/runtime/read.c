@@ -1,13 +1,13 @@
 /* read.c: values of a model that has been built, one by one and in blocks.
  * Plain C that is put below the march in NAME.c; what stands below the first empty line. */
-#include "builds.c"
+#include "model.c"
 
 name_real name_error_estimate(const name_model *model)
 {
     return model->estimate;
 }
 
-static int inside(const model_of *m, real tau)
+static int inside(const name_model *m, real tau)
 {
     return m->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX;
 }
@@ -47,7 +47,7 @@ int name_model_eval(const name_model *model, name_real tau, name_real *out)
     const int section = at % SECTIONS;
     const real t = tau - cycle_begin(window);
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        out[output] = value(model, model->series, window, section, output, t);
+        out[output] = value(model->series + model->place[window], window, model->degree[window], section * NAME_OUTPUTS + output, t);
     }
     return 0;
 }
@@ -127,7 +127,7 @@ WITHIN void together(int count, int width, const real *series, size_t size, cons
 
 /* Strands that are read together on a window: the first and how many; `more` where values are added to what is there. */
 typedef struct {
-    const model_of *m;
+    const name_model *m;
     int window, strand, more;
 } strands_read;
 
@@ -185,7 +185,7 @@ WITHIN void read_strands(int count, const strands_read *r, const samples *s, siz
 
 /* Samples k ... end - 1, all of them on one section of a window. Whole vectors are written: what is beyond the end is
  * written anew by the runs that follow. */
-static void run(const model_of *m, int window, int section, const samples *s, size_t k, size_t end)
+static void run(const name_model *m, int window, int section, const samples *s, size_t k, size_t end)
 {
     strands_read r = {m, window, 0, 0};
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
@@ -216,7 +216,7 @@ static void run(const model_of *m, int window, int section, const samples *s, si
     }
 }
 
-static int on_section(const model_of *m, int window, int section, const samples *s, size_t k)
+static int on_section(const name_model *m, int window, int section, const samples *s, size_t k)
 {
     const real tau = instant(s->tau0, s->dtau, s->one, (real)k);
     const real t = tau - cycle_begin(window);
@@ -225,7 +225,7 @@ static int on_section(const model_of *m, int window, int section, const samples 
 }
 
 /* The first sample after k that is not where sample k is, or count. */
-static size_t run_end(const model_of *m, int window, int section, const samples *s, size_t k)
+static size_t run_end(const name_model *m, int window, int section, const samples *s, size_t k)
 {
     const int at = in_cycle(window, section);
     const real edge = cycle_begin(window) + (s->dtau < 0 ? from[at] : from[at + 1]);
@@ -241,7 +241,7 @@ static size_t run_end(const model_of *m, int window, int section, const samples 
     return end;
 }
 
-static int sampled(const model_of *m, const real *series, real tau0, real dtau, size_t count, real *out)
+static int sample_series(const name_model *m, const real *series, real tau0, real dtau, size_t count, real *out)
 {
     const volatile real unity = 1;
     const samples s = {tau0, dtau, unity, dtau < 0 || dtau > 0 ? 1 / dtau : 0, count, out, series};
@@ -269,5 +269,5 @@ static int sampled(const model_of *m, const real *series, real tau0, real dtau, 
 
 int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out)
 {
-    return sampled(model, model->series, tau0, dtau, count, out);
+    return sample_series(model, model->series, tau0, dtau, count, out);
 }

@@ -1,9 +1,12 @@
-/* series.c: what marches under parameters that come at run time share: series, loads, the size of outputs.
+/* series.c: what all of a program with parameters at run time starts from: numbers, windows, places of waves and joints.
  * Plain C of a program of a scene called `name`; it stands below the first empty line in NAME.c, above the march. */
 #include "tables.h"
 
 /* So many samples are a block. */
 enum { BLOCK = 16 };
+
+/* How many numbers of a wave follow its series: zeros. */
+enum { SPARE = NAME_ROW - NAME_DEGREE };
 
 static const slice nothing = {0};
 #if VECTOR
@@ -21,20 +24,9 @@ static real magnitude(real x)
     return x < 0 ? -x : x;
 }
 
-static const slice *slice_at(const real *x, size_t k)
+static real larger(real one, real other)
 {
-    return (const slice *)(x + k);
-}
-
-static real total_of(const slice *x)
-{
-    slice sum = *x;
-    for (int half = LANES / 2; half > 0; half /= 2) {
-        for (int lane = 0; lane < half; ++lane) {
-            AT(sum, lane) += AT(sum, lane + half);
-        }
-    }
-    return AT(sum, 0);
+    return magnitude(other) > one ? magnitude(other) : one;
 }
 
 /* False for what is no number. */
@@ -43,122 +35,15 @@ static int finite_number(real x)
     return x >= -largest_number && x <= largest_number;
 }
 
-/* sum of c_k T_k(u) */
-static real series_at(const real *c, int degree, real u)
+static real infinity(void)
 {
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = degree; k > 0; --k) {
-        const real now = (twice * next - after) + c[k];
-        after = next;
-        next = now;
-    }
-    return (u * next - after) + c[0];
+    const volatile real zero = 0;
+    return 1 / zero;
 }
 
-/* 1 / (2 k), up to some k */
-static void tell_inverses(real *inverse, int last)
+static const slice *slice_at(const real *x, size_t k)
 {
-    for (int k = 1; k <= last; ++k) {
-        inverse[k] = 1 / (real)(2 * k);
-    }
-}
-
-/* The antiderivative of a series, times 1 / half the length of the panel: all c_k but the first, which is 0. */
-static void integrate(const work_of *m, const real *w, int degree, real *c)
-{
-    c[0] = 0;
-    c[1] = w[0] - (degree > 1 ? w[2] / 2 : (real)0);
-    for (int k = 2; k < degree; ++k) {
-        c[k] = (w[k - 1] - w[k + 1]) * m->inverse[k];
-    }
-    c[degree] = w[degree - 1] * m->inverse[degree];
-    c[degree + 1] = w[degree] * m->inverse[degree + 1];
-}
-
-/* The same as series_at, sooner at both ends of a panel and in its middle. */
-static real end_value(const real *c, int degree, real u)
-{
-    real some = 0;
-    real others = 0;
-    if (u >= 0 && u <= 0) {
-        for (int k = 0; k <= degree; k += 4) {
-            some += c[k];
-            others += k + 2 <= degree ? c[k + 2] : (real)0;
-        }
-        return some - others;
-    }
-    if (u > -1 && u < 1) {
-        return series_at(c, degree, u);
-    }
-    for (int k = 0; k <= degree; k += 2) {
-        some += c[k];
-        others += k + 1 <= degree ? c[k + 1] : (real)0;
-    }
-    return u < 0 ? some - others : some + others;
-}
-
-static real larger(real one, real other)
-{
-    return magnitude(other) > one ? magnitude(other) : one;
-}
-
-/* No load, and nothing gathered yet. */
-static void start_sums(real *total, real (*load)[3], int (*since)[2])
-{
-    for (int k = 0; k < NAME_HEARD; ++k) {
-        total[k] = 0;
-    }
-    for (int f = 0; f <= NAME_FORCES; ++f) {
-        for (int power = 0; power < 3; ++power) {
-            load[f][power] = 0;
-        }
-        since[f][0] = 0;
-        since[f][1] = 0;
-    }
-}
-
-/* The loads on the panels of a window, as series, after their changes there, the first of which is `event`. The first
- * one of the next window. */
-static int press(const real *change, real (*load)[3], int (*since)[2], real (*force)[NAME_FORCES + 1][3], int window,
-                 int event)
-{
-    for (int panel = 0; panel < NAME_PANELS; ++panel) {
-        while (event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel) {
-            const int f = event_force[event];
-            real *const c = load[f];
-            const real gone =
-                (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
-            c[0] += gone * (c[1] + gone * c[2]);
-            c[1] += 2 * gone * c[2];
-            for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
-                c[k] = 0; /* what acts is told anew */
-            }
-            c[event_power[event] % 3] += change[event];
-            since[f][0] = window;
-            since[f][1] = panel;
-            ++event;
-        }
-        const real half = half_length[panel];
-        for (int f = 0; f < NAME_FORCES; ++f) {
-            const real *const c = load[f];
-            const real gone =
-                (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
-            const real middle = gone + half;
-            force[panel][f][0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
-            force[panel][f][1] = half * (c[1] + 2 * middle * c[2]);
-            force[panel][f][2] = half * half / 2 * c[2];
-        }
-    }
-    return event;
-}
-
-static void clear(real *all, int degree)
-{
-    for (size_t k = 0; k < (size_t)NAME_STRANDS * (size_t)(degree + 2); ++k) {
-        all[k] = 0;
-    }
+    return (const slice *)(x + k);
 }
 
 /* When the cycle of a window begins: after CYCLE windows, which are `span` long, tau is a whole number again. */
@@ -173,63 +58,63 @@ static int in_cycle(int window, int section)
     return window % CYCLE * SECTIONS + section;
 }
 
-/* An output, or a derivative of it, on a section of a window, t after the start of its cycle. */
-static real value(const model_of *m, const real *series, int window, int section, int output, real t)
+/* Where the section ends; what lies beyond TAU_MAX does not count. */
+static real section_end(int window, int section)
 {
-    const int at = section * NAME_OUTPUTS + output;
-    const int degree = m->degree[window];
-    real sum = 0;
-    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-        const int s = strand_at[k];
-        const int now = window % CYCLE * NAME_STRANDS + s;
-        const real u = ((t - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1;
-        sum += series_at(series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
-    }
-    return sum;
+    const real reach = NAME_TAU_MAX - cycle_begin(window), end = from[in_cycle(window, section) + 1];
+    return end < reach ? end : reach;
 }
 
-/* Look for the largest value of each output, or nearly: in the middle of sections whose mean is half as much again as
- * that of those looked at, or much more than what was found. What lies beyond TAU_MAX does not count. */
-static void look(const model_of *m, const real *series, int window, real *means, real *largest)
+/* Of a strand the u on [-1, 1] at t after the start of its window's cycle. */
+static real place_on(int strand, int window, real t)
 {
-    const real *const all = series + m->place[window];
-    for (int section = 0; section < SECTIONS; ++section) {
-        const int here = in_cycle(window, section);
-        const real reach = NAME_TAU_MAX - cycle_begin(window);
-        const real end = from[here + 1] < reach ? from[here + 1] : reach;
-        for (int output = 0; output < NAME_OUTPUTS && from[here] <= end; ++output) {
-            const int at = section * NAME_OUTPUTS + output;
-            real mean = 0;
-            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-                mean += all[(size_t)strand_at[k] * (size_t)(m->degree[window] + 2)];
-            }
-            if (2 * magnitude(mean) > 3 * means[output] || magnitude(mean) > 4 * largest[output]) {
-                const real middle = from[here] + (end - from[here]) / 2;
-                means[output] = larger(means[output], mean);
-                largest[output] = larger(largest[output], value(m, series, window, section, output, middle));
-            }
-        }
-    }
+    const int now = window % CYCLE * NAME_STRANDS + strand;
+    return ((t - strand_start[now]) + strand_excess[now]) * strand_scale[strand] - 1;
 }
 
-static real infinity(void)
+/* Where a track has what it had so many windows ago, at most as many as it has steps: often each has just one. */
+static int slot(int track, int window, int ago)
 {
-    const volatile real zero = 0;
-    return 1 / zero;
+    const int turn = NAME_SLOTS == 2 * NAME_TRACKS ? 2 : steps[track] + 1;
+    return turn == 2 ? ring[track] + ((window + ago) & 1) : ring[track] + (window + turn - ago) % turn;
 }
 
-/* Add what the values of a window's series stay below while they are read; what is no finite number stays in the sum. */
-static void weigh(real *sum, const real *all, int degree)
+static int states_of(int joint)
 {
-    const size_t count = (size_t)NAME_STRANDS * (size_t)(degree + 2);
-    slice some = nothing;
-    real others = 0;
-    size_t k = 0;
-    for (; k + LANES <= count; k += LANES) {
-        some += MAGNITUDE(*slice_at(all, k));
-    }
-    for (; k < count; ++k) {
-        others += magnitude(all[k]);
-    }
-    *sum += (real)(4 * (degree + 2)) * (total_of(&some) + others);
+    return first_state[joint + 1] - first_state[joint];
+}
+
+static int points_of(int joint)
+{
+    return first_point[joint + 1] - first_point[joint];
+}
+
+/* Whether a joint has matrices of a block. */
+static int is_block(int joint)
+{
+    return NAME_SQUARES > 0 && at_square[joint + 1] > at_square[joint];
+}
+
+/* Where those matrices begin, of those of a degree. */
+static size_t square_at(int joint, int k)
+{
+    return (size_t)k * NAME_SQUARES + (size_t)at_square[joint];
+}
+
+/* The time since a load changed, at the start of a panel. */
+static real time_since(const int *since, int window, int panel)
+{
+    return (real)(window - since[0]) * window_length + since_panel[panel * NAME_PANELS + since[1]];
+}
+
+/* Whether an event, of those in order, is on a panel. */
+static int is_event(int event, int window, int panel)
+{
+    return event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel;
+}
+
+static int higher_than(int degree)
+{
+    const int higher = degree + degree / 4;
+    return higher < NAME_DEGREE ? higher : NAME_DEGREE;
 }

@@ -25,7 +25,7 @@ enum {
     NAME_TRACKS = 4,
     NAME_SLOTS = 9,
     NAME_FORCES = 1,
-    NAME_HEARD = 4,
+    NAME_GAINS = 4,
     NAME_EVENTS = 3,
     NAME_LANES = 3,
     NAME_GROUPS = 6
@@ -41,6 +41,12 @@ typedef struct name_tangent name_tangent;
 typedef struct name_batch name_batch;
 typedef struct name_data name_data;
 
+#include "wide.h"
+#define num name_real
+#define OF(name) name_##name
+#include "set.h"
+#undef num
+#undef OF
 #include "work.h"
 struct name_model {
 #include "model.h"
@@ -74,9 +80,6 @@ void name_batch_misfit(const name_batch *batch, const name_data *data, name_real
 #include "../real.h"
 #include "../vectors.h"
 
-typedef name_model model_of;
-typedef name_work work_of;
-
 enum { LEAST = 8, LOAD_LANE = -1, SECTIONS = 3, CYCLE = 2 };
 
 /* What parameters make of joints, rods, loads and outputs. */
@@ -86,8 +89,8 @@ typedef struct {
     real shown[5 + 1];
     real passed[5 + 1];
     real push[4 + 1];
-    real held[4 + 1];
-    real begun[3 + 1];
+    real initial_wave[4 + 1];
+    real initial[3 + 1];
     real weight[3 + 1];
     real impedance[4 + 1];
     real strength[1 + 1];
@@ -162,16 +165,16 @@ extern const int reading_more[];
 extern const real strand_start[];
 extern const real strand_excess[];
 extern const real strand_scale[];
-/* what a strand is the sum of: which track, where it is, and from which u to which its integral goes */
+/* what a strand is the sum of: times which gain, which track, where it is, and from which u to which its integral goes */
 extern const int first_term[];
-extern const int term_heard[];
+extern const int term_gain[];
 extern const int term_track[];
 extern const int term_back[];
 extern const int term_panel[];
 extern const int term_summed[];
 extern const real term_low[];
 extern const real term_high[];
-/* of which output each wave is */
-extern const int heard_output[];
-/* whether it is 0 whatever the parameters are */
-extern const int silent[];
+/* gains: of which output each is */
+extern const int gain_output[];
+/* outputs: whether it is 0 whatever the parameters are */
+extern const int is_zero[];

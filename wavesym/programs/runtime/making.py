@@ -139,8 +139,8 @@ def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
     }
     functions |= {
         "push": tuple(port.push for space in spaces for port in space.ports),
-        "held": tuple(track.held for track in made.plan.tracks),
-        "begun": tuple(value for space in spaces for value in space.begun),
+        "initial_wave": tuple(track.held for track in made.plan.tracks),
+        "initial": tuple(value for space in spaces for value in space.begun),
         "weight": tuple(value for space in spaces for value in space.weights),
         "impedance": tuple(port.impedance for space in spaces for port in space.ports),
         "strength": _strengths(made),
@@ -177,7 +177,7 @@ def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, fl
         "tracks": len(plan.tracks),
         "slots": sum(track.steps + 1 for track in plan.tracks),
         "forces": plan.forces,
-        "heard": len(made.heard),
+        "gains": len(made.heard),
         "strands": len(made.strands),
         "events": len(made.pushes),
         "lanes": sum(len(field.values) for field in laws.fields),
@@ -245,15 +245,15 @@ def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple
         "strand_excess": reals(rational(real.nearest(start)) - start for start in starts),
         "strand_scale": reals(1 / strand.half for strand in made.strands),
         "first_term": firsts(len(strand.terms) for strand in made.strands),
-        "term_heard": tuple(term.heard for term in terms),
+        "term_gain": tuple(term.heard for term in terms),
         "term_track": tuple(term.wave.track for term in terms),
         "term_back": tuple(term.stretch.back for term in terms),
         "term_panel": tuple(term.stretch.panel for term in terms),
         "term_summed": tuple(int(term.wave.summed) for term in terms),
         "term_low": reals(term.low for term in terms),
         "term_high": reals(term.high for term in terms),
-        "heard_output": tuple(output for output, _ in made.heard),
-        "silent": tuple(map(int, made.silent)),
+        "gain_output": tuple(output for output, _ in made.heard),
+        "is_zero": tuple(map(int, made.silent)),
     }
 
 

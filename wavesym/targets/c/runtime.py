@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
@@ -36,7 +37,7 @@ _SIZES = (
     "tracks",
     "slots",
     "forces",
-    "heard",
+    "gains",
     "events",
     "lanes",
     "groups",
@@ -63,7 +64,6 @@ class CRuntimeField:
 class RuntimeTexts:
     """The plain C of a program, part by part; `kernel` is its march and what builds models of it."""
 
-    series: str
     kernel: str
     read: str
     blocks: str
@@ -139,16 +139,16 @@ class CRuntimeSelfTest:
 
 def files(scene: Description, program: Program) -> dict[str, str]:
     """NAME.h, NAME.c and NAME_selftest.c of a program."""
+    march = tuple(f"runtime/{name}.c" for name in ("march", "outputs", "build"))
     texts = RuntimeTexts(
-        series=kernel("runtime/series.c", scene),
-        kernel=kernels(scene, *(f"runtime/{name}.c" for name in ("joints", "march", "build", "builds"))),
+        kernel=kernels(scene, *(f"runtime/{name}.c" for name in ("series", "reach", "one")), *march, "runtime/model.c"),
         read=kernel("runtime/read.c", scene),
         blocks=kernel("runtime/blocks.c", scene),
         peaks=kernel("runtime/peaks.c", scene),
-        gradients=kernels(scene, "runtime/slopes.c", "runtime/tangents.c"),
-        bound=kernels(scene, "runtime/wrong.c", "runtime/bound.c", "runtime/bounds.c"),
+        gradients=kernel("runtime/tangents.c", scene),
+        bound=kernel("runtime/bound.c", scene),
         lanes=kernel("runtime/lanes.c", scene),
-        batch=kernels(scene, *(f"runtime/{name}.c" for name in ("part", "march", "batch", "strands", "batches"))),
+        batch=kernels(scene, "runtime/set.h", *march, "runtime/batch.c"),
         misfit=kernel("runtime/misfit.c", scene),
     )
     context = _context(scene, program, texts)
@@ -156,14 +156,14 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         scene=scene,
         sizes=tuple((name.upper(), context.constants[name]) for name in _SIZES),
         fields=context.fields,
-        work=kernel("runtime/work.h", scene),
+        work="\n\n".join((kernel("runtime/wide.h", scene), _one_set(scene), kernel("runtime/work.h", scene))),
         model=kernel("runtime/model.h", scene),
         inside=False,
         others=tuple(
             kernels(scene, *files)
             for part, files in (
                 ("gradients", ("runtime/tangent.h",)),
-                ("batch", ("runtime/wide.h", "runtime/batch.h")),
+                ("batch", ("runtime/batch.h",)),
                 ("misfit", ("runtime/data.h",)),
             )
             if part in program.parts
@@ -187,6 +187,12 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     if isinstance(program.reference, ReferenceValues):
         made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
     return made
+
+
+def _one_set(scene: Description) -> str:
+    """What templates/c/runtime/set.h declares, for one set of parameters."""
+    text = re.sub(r"\bnum\b", scene.real, kernel("runtime/set.h", scene))
+    return re.sub(r"\bOF\((\w+)\)", rf"{scene.name}_\1", text)
 
 
 def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRuntime:
@@ -240,7 +246,7 @@ def _stacked(
     scene: Description, parts: Sequence[str], memory: Memory, inside: bool, texts: RuntimeTexts
 ) -> Iterator[tuple[str, str]]:
     """What functions need of a stack, at most."""
-    building = memory.stack(texts.series, texts.kernel)
+    building = memory.stack(texts.kernel)
     work = 0 if inside else memory.size(f"{scene.name}_work")
     yield str(building + work), "build"
     yield str(building), "build_with"

@@ -1,0 +1,157 @@
+/* outputs.c: outputs as sums of waves, for one set of parameters and for many in lanes, and how large they are.
+ * Plain C that stands below the text of march.c in generated files, which have what stands below the first empty line. */
+#include "march.c"
+
+/* The antiderivative of a series on a panel: all c_k but the first, which is 0. */
+static void OF(integrate)(const real *inverse, const num *w, int degree, real half, num *c)
+{
+    c[0] = ZERO;
+    c[1] = half * (degree > 1 ? (num)(w[0] - w[2] / 2) : w[0]);
+    for (int k = 2; k < degree; ++k) {
+        c[k] = (w[k - 1] - w[k + 1]) * (half * inverse[k]);
+    }
+    c[degree] = w[degree - 1] * (half * inverse[degree]);
+    c[degree + 1] = w[degree] * (half * inverse[degree + 1]);
+}
+
+/* sum of c_k T_k(u), where c_k are `stride` apart */
+static num OF(series_at)(const num *c, int stride, int degree, real u)
+{
+    num next = ZERO, after = ZERO;
+    for (int k = degree; k > 0; --k) {
+        const num now = (2 * u * next - after) + c[k * stride];
+        after = next;
+        next = now;
+    }
+    return (u * next - after) + c[0];
+}
+
+/* The same, sooner at both ends of a panel and in its middle. */
+static num OF(end_value)(const num *c, int degree, real u)
+{
+    const int by = u < 0 || u > 0 ? 1 : 2;
+    num some = ZERO, others = ZERO;
+    if (u > -1 && u < 1 && by == 1) {
+        return OF(series_at)(c, 1, degree, u);
+    }
+    for (int k = 0; k <= degree; k += 2 * by) {
+        some += c[k];
+        others += k + by <= degree ? c[k + by] : ZERO;
+    }
+    return u > 0 ? some + others : some - others;
+}
+
+/* Add to a strand of a window a wave of each set, times a gain, or its integral from tau = 0 on, of which `total` is what
+ * windows before have brought. */
+static void OF(accumulate_term)(OF(march_state) *all, const real *inverse, const OF(laws) *law, int t, int window, int degree,
+                                num *c)
+{
+    const int gain = term_gain[t], at = slot(term_track[t], window, term_back[t]);
+    for (int side = 0; side < OF(parts); ++side) {
+        const num *const w = all[side].waves[at][term_panel[t]];
+        const num factor = law[side].gain[gain];
+        num sum[NAME_DEGREE + 2];
+        if (term_summed[t]) {
+            OF(integrate)(inverse, w, degree, half_length[term_panel[t]], sum);
+            const num low = OF(end_value)(sum, degree + 1, term_low[t]);
+            c[side] += factor * (all[side].total[gain] - low);
+            all[side].total[gain] += OF(end_value)(sum, degree + 1, term_high[t]) - low;
+        }
+        const num *const series = term_summed[t] ? sum : w;
+        for (int k = term_summed[t]; k <= degree + term_summed[t]; ++k) {
+            c[k * OF(parts) + side] += factor * series[k];
+        }
+    }
+}
+
+/* The same of both waves of a strand at once, which are all of it, and are not integrated. */
+static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t, int window, int degree, num *c)
+{
+    const num *w[OF(parts)], *v[OF(parts)];
+    num one[OF(parts)], other[OF(parts)];
+    UNROLLED
+    for (int side = 0; side < OF(parts); ++side) {
+        w[side] = all[side].waves[slot(term_track[t], window, term_back[t])][term_panel[t]];
+        v[side] = all[side].waves[slot(term_track[t + 1], window, term_back[t + 1])][term_panel[t + 1]];
+        one[side] = law[side].gain[term_gain[t]];
+        other[side] = law[side].gain[term_gain[t + 1]];
+        c[(degree + 1) * OF(parts) + side] = ZERO;
+    }
+    for (int k = 0; k <= degree; ++k) {
+        UNROLLED
+        for (int side = 0; side < OF(parts); ++side) {
+            c[k * OF(parts) + side] = one[side] * w[side][k] + other[side] * v[side][k];
+        }
+    }
+}
+
+/* The outputs on a window, or `more` in them, as series strand by strand. `weight` grows by what their values stay below
+ * while they are read; what is no finite number stays there. */
+static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(laws) *law, int window, int degree, int more,
+                           num *c, num *weight)
+{
+    for (int s = 0; s < NAME_STRANDS; ++s) {
+        const int t = first_term[s], last = first_term[s + 1];
+        if (!more && last - t == 2 && !term_summed[t] && !term_summed[t + 1]) {
+            OF(accumulate_two)(all, law, t, window, degree, c);
+        } else {
+            for (int k = 0; k < (degree + 2) * OF(parts) && !more; ++k) {
+                c[k] = ZERO;
+            }
+            for (int k = t; k < last; ++k) {
+                OF(accumulate_term)(all, inverse, law, k, window, degree, c);
+            }
+        }
+        for (int side = 0; side < OF(parts); ++side) {
+            num some = ZERO, others = ZERO;
+            for (int k = 0; k <= degree; k += 2) {
+                some += SIZE(c[k * OF(parts) + side]);
+                others += SIZE(c[(k + 1) * OF(parts) + side]);
+            }
+            if (degree % 2) {
+                some += SIZE(c[(degree + 1) * OF(parts) + side]);
+            }
+            weight[side] += (real)(4 * (degree + 2)) * (some + others);
+        }
+        c += (degree + 2) * OF(parts);
+    }
+}
+
+/* An output, or its derivative, on a section of a window (`at` counts sections and outputs), t after the start of its cycle. */
+static num OF(value)(const num *all, int window, int degree, int at, real t)
+{
+    num sum = ZERO;
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        const int s = strand_at[k];
+        sum += OF(series_at)(all + (size_t)s * (size_t)(degree + 2) * OF(parts), OF(parts), degree + 1, place_on(s, window, t));
+    }
+    return sum;
+}
+
+static num OF(mean_of)(const num *all, int degree, int at)
+{
+    num mean = ZERO;
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        mean += all[(size_t)strand_at[k] * (size_t)(degree + 2) * OF(parts)];
+    }
+    return mean;
+}
+
+/* Look for the largest value of each output, or nearly: in the middle of sections whose mean, in some set, is half as much
+ * again as that of those evaluated, or much more than what was found. */
+static void OF(find_largest)(OF(extremes) *e, const num *all, int window, int degree)
+{
+    for (int at = 0; at < SECTIONS * NAME_OUTPUTS; ++at) {
+        const int output = at % NAME_OUTPUTS, section = at / NAME_OUTPUTS;
+        const real begin = from[in_cycle(window, section)], end = section_end(window, section);
+        const num mean = OF(mean_of)(all, degree, at);
+        const TEST larger_mean = SIZE(mean) > e->threshold[output];
+        if (begin <= end && SOME(larger_mean)) {
+            const num found = OF(value)(all, window, degree, at, begin + (end - begin) / 2);
+            OF(enlarge)(&e->mean[output], &mean);
+            OF(enlarge)(&e->largest[output], &found);
+            const num half_more = (real)1.5 * e->mean[output], much_more = 4 * e->largest[output];
+            e->threshold[output] = PICK(half_more < much_more, half_more, much_more);
+        }
+    }
+}
