@@ -43,8 +43,8 @@ def test_sets_side_by_side_are_what_they_are_alone(make, flags, tmp_path):
     "change",
     [
         ("all->rates[k], lane) = law->rates[k]", "all->rates[k], 0) = law->rates[k]"),
-        ("b->waves[place][panel][k] = none;", "b->waves[place][panel][k] = none + 1;"),
-        ("b->state[0][k] = b->state[1][k];", "b->state[0][k] = b->state[0][k];"),
+        ("panel] + degree + 1, (size_t)(higher", "panel] + degree + 1, 0 * (size_t)(higher"),
+        ("AT((x)[(set) / SETS], (set) % SETS)", "AT((x)[(set) / SETS], 0)"),
     ],
 )
 def test_a_mistake_is_seen(change, tmp_path):

@@ -198,12 +198,11 @@ def test_in_single_precision_too(case, tmp_path):
 @pytest.mark.parametrize(
     "change",
     [
-        ("total[heard] += high[side] - low[side];", "total[heard] += high[side];"),
-        ("(ended_at[j] - table[j][0][LOSS] * mean)", "(ended_at[j] - table[j][0][SLACK] * mean)"),
         ("all->rates[k], lane) = law->rates[k]", "all->rates[k], 0) = law->rates[k]"),
-        ("here[side] += MAGNITUDES(sum);", "(void)sum;"),
-        ("much_more = 4 * p[side].largest[output]", "much_more = 16 * p[side].largest[output]"),
-        ("= (real)1.5 * p[side].mean[output]", "= 8 * p[side].mean[output]"),
+        ("spread(all + set / SETS, set % SETS, law);", "spread(all + set / SETS, 0, law);"),
+        ("CHOSEN(more, size, *most)", "CHOSEN(more, *most, size)"),
+        ("AT((x)[(set) / SETS], (set) % SETS)", "AT((x)[(set) / SETS], 0)"),
+        ("found |= AT(*test, lane) != 0;", "found &= AT(*test, lane) != 0;"),
     ],
 )
 def test_a_mistake_is_seen(change, tmp_path):

@@ -126,7 +126,7 @@ def test_any_parameters_give_what_their_scene_gives(case, tmp_path):
         (BODIES[0], "building"),
         (("2.0 * p->kappa[1]", "1.999999 * p->kappa[1]"), "building"),
         (("half * (c[1] + 2 * middle * c[2])", "half * (c[1] + middle * c[2])"), "ground"),
-        (("total[heard] - low", "total[heard]"), "collision"),
+        (("total[gain] - low", "total[gain]"), "collision"),
         (("/ p->inertia[2]", "/ p->inertia[1]"), "drive"),
     ],
 )
@@ -225,7 +225,7 @@ def test_its_selftest_sees_what_is_broken(tmp_path):
         return subprocess.run([folder / "test"], capture_output=True, check=False).returncode
 
     assert status(tmp_path / "right") == 0
-    assert status(tmp_path / "wrong", ("twice * next - after) + c[k]", "twice * next - after) + c[k] * 0.999999")) == 1
+    assert status(tmp_path / "wrong", ("u * next - after) + c[k * stride]", "u * next - after) + c[k * stride] * 0.999999")) == 1
 
 
 @pytest.mark.parametrize(

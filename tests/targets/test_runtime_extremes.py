@@ -173,7 +173,7 @@ def beyond_estimates(made, kappas):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "changes", [[], [("JOINTED ? (real)0 : (real)(degree * degree) / 16", "(real)0")]], ids=["right", "blind"]
+    "changes", [[], [("unit * (real)(degree * degree) / 16", "0 * unit * (real)degree")]], ids=["right", "blind"]
 )
 def test_rounding_of_high_degrees_is_in_the_estimate(changes, tmp_path):
     kappas = [41.653907084189861, 64.66177062800014, 90.06388912129225, 90.676416664731789]  # unlucky ones

@@ -65,8 +65,8 @@ def test_derivatives_are_those_of_exact_values(case, tmp_path):
     "change",
     [
         ("add_series(slope->rates", "if (0) add_series(slope->rates"),
-        ("gather(m->waves, NULL, slope", "if (0) gather(m->waves, NULL, slope"),
-        ("listen(m, m->waves, slope.gain", "listen(m, m->waves, law.gain"),
+        ("slope->push[port], m->waves", "0 * slope->push[port], m->waves"),
+        ("accumulate(b->sets, b->inverse, &slope", "accumulate(b->sets, b->inverse, b->law"),
     ],
 )
 def test_a_mistake_in_derivatives_is_seen(change, tmp_path):
@@ -155,7 +155,7 @@ def test_a_derivative_that_no_wave_has_reached_is_exactly_nothing(tmp_path):
     assert found[2, 0].any()
     assert max(made.tangent_estimate(lane) for lane in range(6)) < 1e-9
     (tmp_path / "values").mkdir()
-    change = ("== OF_VALUES ? LIT : CHANGED", "== OF_VALUES ? LIT : LIT")
+    change = ("is_read(slope, changed, output) ||", "is_read(law, since, output) ||")
     made = BuiltModel(LATE, ["kappa", "load"], tmp_path / "values", [change])
     assert made.tangents(given, 0.0, 0.1, 15)[0] == 0
     assert made.tangent_estimate(2) == np.inf
