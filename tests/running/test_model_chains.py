@@ -303,7 +303,7 @@ def test_a_bad_number_is_refused(make, tmp_path):
         ("one - (real)(k == 0 ? 2 : 1) * now[i]", "one - (real)(k == 0 ? 1.999 : 1) * now[i]"),
         ("half * ((k == 1 ? (num)(2 * f[i][0])", "half * ((k == 1 ? (num)(1.999 * f[i][0])"),
         ("add_series(slope->rates", "if (0) add_series(slope->rates"),
-        ("slope->push[port], m->waves", "0 * slope->push[port], m->waves"),
+        ("&slope->push[port], m->waves", "&tangent->error[1], m->waves"),
     ],
 )
 def test_a_mistake_is_seen(change, tmp_path):

@@ -20,7 +20,10 @@ BLOCKS = [
         "ratio[port] * q[point_of[port]][k] - a[k]",
         "ratio[port] * q[point_of[port]][k] - (k == 1 ? 1.0000001 : 1) * a[k]",
     ),
-    ("(s[point_of[port]], law->push", "(s[point_of[port]], 1.0000001 * law->push"),
+    (
+        "&law->push[port], m->waves[now->arrived[arrive[port]]][panel], degree);",
+        "&law->push[port], m->waves[now->arrived[arrive[port]]][panel], degree); s[point_of[port]][0] *= 1.0000001;",
+    ),
     ("k < count ? acting[k]", "k < count ? 1.0000001 * acting[k]"),
     ("rest = weight * rest * (half", "rest = 0 * weight * rest * (half"),
 ]

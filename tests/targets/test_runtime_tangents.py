@@ -65,7 +65,7 @@ def test_derivatives_are_those_of_exact_values(case, tmp_path):
     "change",
     [
         ("add_series(slope->rates", "if (0) add_series(slope->rates"),
-        ("slope->push[port], m->waves", "0 * slope->push[port], m->waves"),
+        ("&slope->push[port], m->waves", "&tangent->error[1], m->waves"),
         ("accumulate(b->sets, b->inverse, &slope", "accumulate(b->sets, b->inverse, b->law"),
     ],
 )

@@ -2,6 +2,15 @@
  * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty line. */
 #include "blocks.c"
 
+static const slice nothing = {0};
+#if VECTOR
+#define MAGNITUDE(x) ((slice)((choice)(x) & ~(choice)(-nothing)))
+#define LARGER(x, y) ((slice)((((x) > (y)) & (choice)(x)) | (~((x) > (y)) & (choice)(y))))
+#else
+#define MAGNITUDE(x) magnitude(x)
+#define LARGER(x, y) ((x) > (y) ? (x) : (y))
+#endif
+
 /* What may be wrong, at most; docs/march.md of wavesym has the proof. In short: let x be how the state of a joint moves.
  * How far x, and what its ends send, are from its law is computed here, rounding included. That starts an error on this
  * panel; the energy of errors, the norm in which masses, springs and waves are squared, never grows afterwards. */
@@ -106,7 +115,8 @@ static void bound_loads(errors *w, const real *change, int window, int event)
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (; is_event(event, window, panel); ++event) {
             const int f = event_force[event];
-            change_load(w->load[f], magnitude(change[event]), event, time_since(w->since[f], window, panel));
+            const real size = magnitude(change[event]);
+            change_load(w->load[f], &size, event, time_since(w->since[f], window, panel));
             w->roundings[f] = (event_power[event] >= 3 ? roundings + 8 : w->roundings[f]) + 8;
             w->since[f][0] = window;
             w->since[f][1] = panel;
@@ -424,7 +434,8 @@ static real largest_found(const march_state *m, const name_model *model, const e
     real largest = 0, most = m->extremes.largest[output];
     real t[BLOCK], values[BLOCK];
     for (int of = 0; of < SECTIONS && begin + from[in_cycle(window, of) + 1] <= NAME_TAU_MAX; ++of) {
-        const real mean = mean_of(all, model->degree[window], of * NAME_OUTPUTS + output);
+        real mean;
+        mean_of(all, model->degree[window], of * NAME_OUTPUTS + output, &mean);
         if (magnitude(mean) > largest) {
             largest = magnitude(mean);
             section = of;

@@ -72,14 +72,14 @@ static void OF(start)(OF(progress) *b)
 }
 
 /* A load, as powers of the time since it changed, takes an event. */
-static void OF(change_load)(num *c, num change, int event, real time)
+static void OF(change_load)(num *c, const num *change, int event, real time)
 {
     c[0] += time * (c[1] + time * c[2]);
     c[1] += 2 * time * c[2];
     for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
         c[k] = ZERO; /* it starts again */
     }
-    c[event_power[event] % 3] += change;
+    c[event_power[event] % 3] += *change;
 }
 
 /* The loads of some sets on the panels of a window, as series, after their changes there, the first of which is `event`. The
@@ -92,7 +92,7 @@ static int OF(apply_loads)(OF(march_state) *all, int sets, int (*since)[2], int 
             int *const then = since[event_force[event]];
             for (int set = 0; set < sets; ++set) {
                 OF(march_state) *const m = all + set;
-                OF(change_load)(m->load[event_force[event]], m->change[event], event, time_since(then, window, panel));
+                OF(change_load)(m->load[event_force[event]], &m->change[event], event, time_since(then, window, panel));
             }
             then[0] = window;
             then[1] = panel;
@@ -195,13 +195,12 @@ static void OF(keep_window)(OF(progress) *b)
 }
 
 /* How an output weighs waves, added up. */
-static num OF(weight_of)(const OF(laws) *law, int output)
+static void OF(weight_of)(const OF(laws) *law, int output, num *weight)
 {
-    num weight = ZERO + faint; /* gains may underflow */
+    *weight = ZERO + faint; /* gains may underflow */
     for (int k = 0; k < NAME_GAINS; ++k) {
-        weight += gain_output[k] == output ? SIZE(law->gain[k]) : ZERO;
+        *weight += gain_output[k] == output ? SIZE(law->gain[k]) : ZERO;
     }
-    return weight;
 }
 
 /* The estimates after the last window; what overflows is refused. */
@@ -217,7 +216,7 @@ static void OF(finish)(OF(progress) *b, const name_parameters *parameters, real 
         num error[OF(parts)], largest[OF(parts)];
         for (int side = 0; side < OF(parts); ++side) {
             largest[side] = b->sets[side].extremes.largest[output];
-            error[side] = OF(weight_of)(b->law + side, output);
+            OF(weight_of)(b->law + side, output, &error[side]);
         }
         for (int set = 0; set < OF(lanes_in_all); ++set) {
             if (b->status[set] == 0) {

@@ -48,10 +48,10 @@ static void OF(multiply)(const num *a, const num *b, int n, num *c)
 }
 
 /* y += factor a, of series to a degree */
-static void OF(add)(num *y, num factor, const num *a, int degree)
+static void OF(add)(num *y, const num *factor, const num *a, int degree)
 {
     for (int k = 0; k <= degree; ++k) {
-        y[k] += factor * a[k];
+        y[k] += *factor * a[k];
     }
 }
 
@@ -236,7 +236,7 @@ static void OF(gather)(OF(march_state) *m, const OF(laws) *law, const OF(forcing
         }
     }
     for (int port = first_port[joint] + skipped; port < first_port[joint + 1] - skipped; ++port) {
-        OF(add)(s[point_of[port]], law->push[port], m->waves[now->arrived[arrive[port]]][panel], degree);
+        OF(add)(s[point_of[port]], &law->push[port], m->waves[now->arrived[arrive[port]]][panel], degree);
     }
 }
 
@@ -432,7 +432,7 @@ static void OF(add_series)(const num *matrix, int rows, int columns, num (*serie
             f[i][k] = ZERO;
         }
         for (int j = 0; j < columns; ++j) {
-            OF(add)(f[i], matrix[i * columns + j], series[j], degree);
+            OF(add)(f[i], &matrix[i * columns + j], series[j], degree);
         }
     }
 }
@@ -514,20 +514,21 @@ static void OF(march_joint)(OF(march_state) *m, const OF(march_tables) *table, c
     num s[NAME_WIDEST][NAME_ROW], f[NAME_WIDEST][NAME_ROW], q[NAME_WIDEST][NAME_ROW];
     const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
     const int forced = by && by->changed[joint];
+    const num one = ZERO + 1;
     num(*const x)[NAME_ROW] = m->path[panel] + first;
     OF(gather)(m, law, by, joint, panel, now, degree, 0, s);
     OF(add_series)(law->passed + at_passed[joint], points, points, s, degree, 0, q);
     if (is_block(joint)) {
         OF(add_series)(law->pushed + at_pushed[joint], n, points, s, degree, 0, f);
         for (int i = 0; i < n && forced; ++i) {
-            OF(add)(f[i], ZERO + 1, by->moving[panel][first + i], degree);
+            OF(add)(f[i], &one, by->moving[panel][first + i], degree);
         }
         OF(step_block)(table, joint, panel, degree, f, m->state[1] + first, x);
         OF(add_missed)(law, joint, panel, degree, f, x, missed);
         OF(add_series)(law->shown + at_shown[joint], points, n, x, degree, 1, q);
     }
     for (int point = 0; point < points && forced; ++point) {
-        OF(add)(q[point], ZERO + 1, by->shifted[panel][first_point[joint] + point], degree);
+        OF(add)(q[point], &one, by->shifted[panel][first_point[joint] + point], degree);
     }
     OF(send_back)(m, joint, panel, now, degree, 0, q, size);
     for (int i = first; i < first + n; ++i) {

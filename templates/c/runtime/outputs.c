@@ -15,7 +15,7 @@ static void OF(integrate)(const real *inverse, const num *w, int degree, real ha
 }
 
 /* sum of c_k T_k(u), where c_k are `stride` apart */
-static num OF(series_at)(const num *c, int stride, int degree, real u)
+static void OF(series_at)(const num *c, int stride, int degree, real u, num *sum)
 {
     num next = ZERO, after = ZERO;
     for (int k = degree; k > 0; --k) {
@@ -23,22 +23,23 @@ static num OF(series_at)(const num *c, int stride, int degree, real u)
         after = next;
         next = now;
     }
-    return (u * next - after) + c[0];
+    *sum = (u * next - after) + c[0];
 }
 
 /* The same, sooner at both ends of a panel and in its middle. */
-static num OF(end_value)(const num *c, int degree, real u)
+static void OF(end_value)(const num *c, int degree, real u, num *sum)
 {
     const int by = u < 0 || u > 0 ? 1 : 2;
     num some = ZERO, others = ZERO;
     if (u > -1 && u < 1 && by == 1) {
-        return OF(series_at)(c, 1, degree, u);
+        OF(series_at)(c, 1, degree, u, sum);
+        return;
     }
     for (int k = 0; k <= degree; k += 2 * by) {
         some += c[k];
         others += k + by <= degree ? c[k + by] : ZERO;
     }
-    return u > 0 ? some + others : some - others;
+    *sum = u > 0 ? some + others : some - others;
 }
 
 /* Add to a strand of a window a wave of each set, times a gain, or its integral from tau = 0 on, of which `total` is what
@@ -53,9 +54,11 @@ static void OF(accumulate_term)(OF(march_state) *all, const real *inverse, const
         num sum[NAME_DEGREE + 2];
         if (term_summed[t]) {
             OF(integrate)(inverse, w, degree, half_length[term_panel[t]], sum);
-            const num low = OF(end_value)(sum, degree + 1, term_low[t]);
+            num low, high;
+            OF(end_value)(sum, degree + 1, term_low[t], &low);
+            OF(end_value)(sum, degree + 1, term_high[t], &high);
             c[side] += factor * (all[side].total[gain] - low);
-            all[side].total[gain] += OF(end_value)(sum, degree + 1, term_high[t]) - low;
+            all[side].total[gain] += high - low;
         }
         const num *const series = term_summed[t] ? sum : w;
         for (int k = term_summed[t]; k <= degree + term_summed[t]; ++k) {
@@ -118,23 +121,24 @@ static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(l
 }
 
 /* An output, or its derivative, on a section of a window (`at` counts sections and outputs), t after the start of its cycle. */
-static num OF(value)(const num *all, int window, int degree, int at, real t)
+static void OF(value)(const num *all, int window, int degree, int at, real t, num *found)
 {
-    num sum = ZERO;
+    *found = ZERO;
     for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
         const int s = strand_at[k];
-        sum += OF(series_at)(all + (size_t)s * (size_t)(degree + 2) * OF(parts), OF(parts), degree + 1, place_on(s, window, t));
+        const num *const c = all + (size_t)s * (size_t)(degree + 2) * OF(parts);
+        num sum;
+        OF(series_at)(c, OF(parts), degree + 1, place_on(s, window, t), &sum);
+        *found += sum;
     }
-    return sum;
 }
 
-static num OF(mean_of)(const num *all, int degree, int at)
+static void OF(mean_of)(const num *all, int degree, int at, num *mean)
 {
-    num mean = ZERO;
+    *mean = ZERO;
     for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-        mean += all[(size_t)strand_at[k] * (size_t)(degree + 2) * OF(parts)];
+        *mean += all[(size_t)strand_at[k] * (size_t)(degree + 2) * OF(parts)];
     }
-    return mean;
 }
 
 /* Look for the largest value of each output, or nearly: in the middle of sections whose mean, in some set, is half as much
@@ -144,10 +148,11 @@ static void OF(find_largest)(OF(extremes) *e, const num *all, int window, int de
     for (int at = 0; at < SECTIONS * NAME_OUTPUTS; ++at) {
         const int output = at % NAME_OUTPUTS, section = at / NAME_OUTPUTS;
         const real begin = from[in_cycle(window, section)], end = section_end(window, section);
-        const num mean = OF(mean_of)(all, degree, at);
+        num mean, found;
+        OF(mean_of)(all, degree, at, &mean);
         const TEST larger_mean = SIZE(mean) > e->threshold[output];
         if (begin <= end && SOME(larger_mean)) {
-            const num found = OF(value)(all, window, degree, at, begin + (end - begin) / 2);
+            OF(value)(all, window, degree, at, begin + (end - begin) / 2, &found);
             OF(enlarge)(&e->mean[output], &mean);
             OF(enlarge)(&e->largest[output], &found);
             const num half_more = (real)1.5 * e->mean[output], much_more = 4 * e->largest[output];

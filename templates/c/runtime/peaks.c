@@ -59,7 +59,9 @@ static void climb(const part *p, summit *top, real left, real at_left, real righ
         const real higher = at_left > at_end[last] ? at_left : at_end[last];
         if (last < DEEPEST - 1 && higher + p->bend * width * width / 8 > top->best + slack) {
             const real middle = left + width / 2;
-            const real found = value(p->m->series + p->m->place[p->window], p->window, p->m->degree[p->window], p->section * NAME_OUTPUTS + p->output, middle);
+            const int at = p->section * NAME_OUTPUTS + p->output;
+            real found;
+            value(p->m->series + p->m->place[p->window], p->window, p->m->degree[p->window], at, middle, &found);
             seen(top, found, cycle_begin(p->window) + middle);
             ++last;
             end[last] = middle;

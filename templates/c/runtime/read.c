@@ -47,7 +47,8 @@ int name_model_eval(const name_model *model, name_real tau, name_real *out)
     const int section = at % SECTIONS;
     const real t = tau - cycle_begin(window);
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        out[output] = value(model->series + model->place[window], window, model->degree[window], section * NAME_OUTPUTS + output, t);
+        value(model->series + model->place[window], window, model->degree[window], section * NAME_OUTPUTS + output, t,
+              out + output);
     }
     return 0;
 }

@@ -8,15 +8,11 @@ enum { BLOCK = 16 };
 /* How many numbers of a wave follow its series: zeros. */
 enum { SPARE = NAME_ROW - NAME_DEGREE };
 
-static const slice nothing = {0};
+/* A lane of a vector. */
 #if VECTOR
 #define AT(x, lane) ((x)[lane])
-#define MAGNITUDE(x) ((slice)((choice)(x) & ~(choice)(-nothing)))
-#define LARGER(x, y) ((slice)((((x) > (y)) & (choice)(x)) | (~((x) > (y)) & (choice)(y))))
 #else
 #define AT(x, lane) (x)
-#define MAGNITUDE(x) magnitude(x)
-#define LARGER(x, y) ((x) > (y) ? (x) : (y))
 #endif
 
 static real magnitude(real x)

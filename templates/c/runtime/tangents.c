@@ -95,15 +95,16 @@ static void force_joint(name_tangent *tangent, const laws *law, const laws *slop
     tangent->acts[lane] = larger(tangent->acts[lane], largest_acting(law, slope, joint, x, s));
     for (int point = 0; point < points; ++point) {
         clear(acting[point], (size_t)degree + 2);
-        for (int k = 0; k < 3 && force_on[first + point] >= 0; ++k) {
+        for (int k = 0; k < 3 && NAME_FORCES > 0 && force_on[first + point] >= 0; ++k) {
             acting[point][k] = tangent->lane[lane].force[panel][force_on[first + point]][k];
         }
     }
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        add(acting[point_of[port]], slope->push[port], m->waves[now->arrived[arrive[port]]][panel], degree);
+        add(acting[point_of[port]], &slope->push[port], m->waves[now->arrived[arrive[port]]][panel], degree);
     }
     if (is_body[joint]) {
-        add(acting[0], 1 / law->pushed[at_pushed[joint]], moving[0], degree);
+        const real inverse = 1 / law->pushed[at_pushed[joint]];
+        add(acting[0], &inverse, moving[0], degree);
     }
 }
 
@@ -240,8 +241,10 @@ static real estimate_slope(const name_tangent *tangent, int lane)
     }
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
         const real largest = found.largest[output];
-        const real error = weight_of(&law, output) * missed + weight_of(&slope, output) * tangent->error[0] +
-                           read_by(degree) * largest;
+        real weight, more;
+        weight_of(&law, output, &weight);
+        weight_of(&slope, output, &more);
+        const real error = weight * missed + more * tangent->error[0] + read_by(degree) * largest;
         worst = larger(worst, relative_slope(&law, &slope, lane, output, error, largest));
     }
     return worst;
