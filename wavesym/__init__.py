@@ -4,6 +4,7 @@
     run         the histories of its outputs, as a Result: by name, as a table, as a picture; also `scene.run()`
     summary     the least and the greatest value of each output, and when; `peaks` of several scenes as arrays
     spectrum    response spectra of its accelerations
+    modes       its frequencies, none missed, with damping, effective masses and shapes
     plot        its histories, place x time, envelopes, as pictures; `report` as one page
     evaluator   the outputs of a scene as a function of tau, right to the last bit
     model       its outputs for many sets of parameters: values, gradients, extremes
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
         evaluator,
         generate,
         model,
+        modes,
         peaks,
         plot,
         report,
@@ -64,6 +66,7 @@ _HOMES = {
             "evaluator",
             "generate",
             "model",
+            "modes",
             "peaks",
             "plot",
             "report",
@@ -93,6 +96,7 @@ __all__ = [
     "evaluator",
     "generate",
     "model",
+    "modes",
     "peaks",
     "plot",
     "report",

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
+    from wavesym.results.modes import Modes
     from wavesym.results.response import Response
     from wavesym.results.result import Result
     from wavesym.results.spectrum import Spectra
@@ -278,6 +279,41 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
         raise WavesymError(f'runtime: "{runtime}" is not a list of names; write ["{runtime}"]')
     lowered = lower(scene)
     return RuntimeModel(sets_program(lowered, runtime, amplitudes(scene) if "load" in runtime else ()))
+
+
+def modes(scene: Scene | str | PathLike[str], count: int = 10, below: float | None = None) -> Modes:
+    """The modes of vibration of a scene: frequencies, none missed, damping, effective masses and shapes.
+
+    Args:
+        scene: a Scene; or a file, or the name of a built-in scene, which needs neither loads nor outputs.
+        count: how many, where `below` is None; rigid modes come first.
+        below: all up to this frequency: in Hz, or in rad per tau for a scene without units.
+
+    Returns:
+        A sequence of modes with `number`, `omega`, `hz`, `period`, `damping`, `radius` (proved), `effective_mass` and
+        `shape`; `complete` says whether none is missed, `why` in words.
+
+    Raises:
+        UnservedError: for contacts, and frequencies whose modes cannot be told apart.
+        WavesymError: for a count, or a frequency, that is not positive.
+
+    >>> import wavesym
+    >>> wavesym.modes("drive_m1", 3)
+    Modes('drive_m1', 3 modes: 0, 0.18084, 0.565872 1/tau)
+    """
+    from wavesym.results.modes import modes as modes_of
+
+    chain = scene if isinstance(scene, Scene) else Scene.chain_from_toml(scene)
+    return modes_of(lower(chain), count, below)
+
+
+def plot_modes(scene: Scene, found: Modes, path: Path) -> None:
+    """Draw the shapes of modes along the chain. SceneError for a suffix that is no picture's."""
+    from wavesym.pictures.modes import draw
+    from wavesym.pictures.saving import picture_format, save
+
+    picture_format(path)
+    save(draw(found, lower(scene), {name: line for name, line in scene.system.lines.items() if line[-1].x}), path)
 
 
 def unexpected_lines(scene: Scene) -> list[str]:

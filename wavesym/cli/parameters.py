@@ -28,6 +28,9 @@ class SceneParameter(click.ParamType[Any]):
 
     name = "scene"
 
+    def __init__(self, *, needs_output: bool = True) -> None:
+        self.needs_output = needs_output
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Scene:
         """The scene; SceneError, which says more than click would, where it is none.
 
@@ -37,7 +40,7 @@ class SceneParameter(click.ParamType[Any]):
 
         if isinstance(value, Scene):
             return value
-        scene = Scene.from_toml(value)
+        scene = Scene.from_toml(value) if self.needs_output else Scene.chain_from_toml(value)
         file = "<stdin>" if value == "-" else value
         if ctx is not None and param is not None and param.nargs == 1:
             ctx.meta[_ARGUMENT] = value

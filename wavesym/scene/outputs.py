@@ -80,7 +80,7 @@ class Output(SceneTable):
 
     @model_validator(mode="after")
     def _something(self) -> Self:
-        if not any(getattr(self, quantity) for quantity in QUANTITIES):
+        if not isinstance(self, NoOutput) and not any(getattr(self, quantity) for quantity in QUANTITIES):
             *others, last = QUANTITIES
             raise wrong(f"no positions given, at least one of {', '.join(others)} or {last} expected")
         return self
@@ -90,6 +90,12 @@ class Output(SceneTable):
         """Without new quantities that are not asked for: so scenes keep the hash that they have had."""
         said: dict[str, Any] = handler(self)
         return {key: value for key, value in said.items() if value or key not in QUANTITIES[3:]}
+
+
+class NoOutput(Output):
+    """What stands for a missing [output] where outputs do not matter."""
+
+    until: Positive = Fraction(1)
 
 
 def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> Iterator[Observable]:

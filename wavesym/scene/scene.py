@@ -27,7 +27,7 @@ from wavesym.fields.table import SceneTable, first_error, key_path, shown, wrong
 from wavesym.scene.describe import describe
 from wavesym.scene.loads import loads
 from wavesym.scene.names import Name
-from wavesym.scene.outputs import Observable, Output, observables
+from wavesym.scene.outputs import NoOutput, Observable, Output, observables
 from wavesym.scene.paths import changed
 from wavesym.scene.physical.measured import placed
 from wavesym.scene.physical.scale import Scale, UnitsTable
@@ -87,7 +87,16 @@ class Scene(SceneTable):
         >>> wavesym.Scene.from_toml("drive_m1").name
         'drive_m1'
         """
+        return cls._read(*read_toml(source))
+
+    @classmethod
+    def chain_from_toml(cls, source: str | PathLike[str]) -> Self:
+        """The same where outputs do not matter: [output] may be missing, and then no output is computed."""
         file, text, fields = read_toml(source)
+        return cls._read(file, text, {"output": NoOutput(), **fields})
+
+    @classmethod
+    def _read(cls, file: str, text: str, fields: dict[str, Any]) -> Self:
         if "scene" in fields and "system" not in fields:
             raise SceneError("a sweep given, a scene expected (`wavesym sweep` takes sweeps)", file=file)
         try:

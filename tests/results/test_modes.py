@@ -1,0 +1,128 @@
+"""Modes of vibration against published numbers, closed forms and sums that are known."""
+
+from __future__ import annotations
+
+import json
+from math import atan, pi, sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import wavesym
+from wavesym.cli import main
+from wavesym.scene import Scene
+
+ROD = {"name": "rod", "output": {"until": 1, "velocity": ["1"]}}
+
+
+def chain(*parts: object, name: str = "chain") -> Scene:
+    """A chain without loads, whose outputs do not matter."""
+    return Scene(name=name, system={"type": "chain", "parts": list(parts)}, output={"until": 1, "velocity": ["1/2"]})
+
+
+def test_a_rod_has_the_frequencies_of_its_closed_form() -> None:
+    held = wavesym.modes(chain("fixed", {"rod": 1}, "free"), 5)
+    assert held.frequencies == pytest.approx([(2 * n - 1) / 4 for n in range(1, 6)], rel=1e-15)
+    free = wavesym.modes(chain("free", {"rod": 1}, "free"), 5)
+    assert free.frequencies == pytest.approx([n / 2 for n in range(5)], rel=1e-15)
+    assert (free[0].omega, free[0].period, free[0].effective_mass) == (0.0, None, None)
+    assert held.complete
+    assert all(mode.radius < 1e-15 for mode in held)
+
+
+def test_effective_masses_are_those_of_a_rod_and_add_up_to_all() -> None:
+    """A held rod: 8/((2 n - 1) pi)^2 of its mass in mode n."""
+    held = wavesym.modes(chain("fixed", {"rod": 1}, "free"), 40)
+    expected = [8 / ((2 * n - 1) * pi) ** 2 for n in range(1, 41)]
+    assert [mode.effective_mass for mode in held] == pytest.approx(expected, rel=1e-12)
+    mixed = chain(
+        "fixed", {"spring": 3}, {"mass": 2}, {"rod": 1}, {"mass": "1/2", "spring": "1/4"}, {"rod": "1/3"}, "fixed"
+    )
+    every = sum(mode.effective_mass or 0.0 for mode in wavesym.modes(mixed, 60))
+    assert 0.99 < every < 1
+
+
+def test_a_dashpot_makes_frequencies_complex() -> None:
+    """A held rod of impedance 1 that ends in a dashpot r: exp(2 i w) = -(1 - r)/(1 + r), so Im w is constant."""
+    r = 0.5
+    found = wavesym.modes(chain("fixed", {"rod": 1}, {"joint": True, "dashpot": "1/2"}), 4)
+    assert not found.complete
+    decay = -np.log((1 - r) / (1 + r)) / 2
+    for n, mode in enumerate(found, 1):
+        w = complex((2 * n - 1) * pi / 2, decay)
+        assert mode.omega == pytest.approx(abs(w), rel=1e-12)
+        assert mode.damping == pytest.approx(w.imag / abs(w), rel=1e-12)
+
+
+def test_in_units_they_are_per_second() -> None:
+    """A mass on a column that weighs nothing to speak of."""
+    parts = ["fixed", {"rod": "1 m", "A": "1 cm^2", "E": "210 GPa", "rho": "1e-6 kg/m^3"}, {"mass": "100 kg"}]
+    system = {"type": "chain", "parts": parts}
+    scene = Scene(name="bob", units={}, system=system, output={"until": "1 us", "velocity": ["1 m"]})
+    (mode,) = wavesym.modes(scene, 1)
+    assert mode.omega == pytest.approx(sqrt(2.1e7 / 100), rel=1e-9)
+    assert mode.hz == pytest.approx(mode.omega / 2 / pi, rel=1e-15)
+    assert mode.effective_mass == pytest.approx(1, rel=1e-9)
+
+
+def test_damping_of_modes_is_that_of_the_scene() -> None:
+    frame = Scene.from_toml("building_m2").with_({"system.base": "ground", "system.damping": ["1/10", "1/50"]})
+    assert [mode.damping for mode in wavesym.modes(frame, 4)] == [0.1, 0.02, 0.02, 0.02]
+
+
+PUBLISHED = {
+    "friswell963": [0, 10.304, 20.479, 24.423],
+    "five": [0.2439 / 2 / pi, 0.6689 / 2 / pi, 1 / 2 / pi, 1.286 / 2 / pi, 1.685 / 2 / pi],
+    "turbine": [0, 177.7 / 60, 220.2 / 60, 1282.6 / 60],
+}
+"""Friswell et al. 2010, 9.6.3; five storeys, holooly.com, fig. 18.8-9; Gunter and Chen 2001, ex. 8.1, in Hz."""
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_published_frequencies(name: str) -> None:
+    file = Path(__file__).parents[2].parent / "shared" / "cases" / f"{name}.toml"
+    if not file.exists():
+        pytest.skip("the shared cases are not beside the repository")
+    found = wavesym.modes(file, len(PUBLISHED[name]))
+    assert found.frequencies == pytest.approx(PUBLISHED[name], rel=3e-4)
+
+
+def test_below_a_frequency_there_are_all() -> None:
+    """tan w = 1/w of a rod with its own mass at the end."""
+    scene = chain("fixed", {"rod": 1}, {"mass": 1})
+    found = wavesym.modes(scene, below=100)
+    assert len(found) == 32
+    for n, mode in enumerate(found):
+        w = n * pi + atan(1 / mode.omega)
+        assert mode.omega == pytest.approx(w, rel=1e-14)
+    assert len(wavesym.modes(scene, below=found[-1].omega * (1 - 1e-12))) == 31
+    for wrong in ({"count": 0}, {"below": -1.0}, {"below": float("nan")}):
+        with pytest.raises(wavesym.WavesymError, match="is not positive"):
+            wavesym.modes(scene, **wrong)  # type: ignore[arg-type]
+    with pytest.raises(wavesym.CostError, match="ask for 2000 at most"):
+        wavesym.modes(scene, 5000)
+    with pytest.raises(wavesym.UnservedError, match="contact"):
+        wavesym.modes(chain("free", {"rod": 1}, "contact", {"rod": 1}, "free"))
+
+
+def test_the_command_needs_neither_loads_nor_outputs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("rod.toml").write_text('name = "rod"\n[system]\ntype = "chain"\nparts = ["fixed", { rod = 1 }, "free"]\n')
+    assert main(["modes", "rod.toml", "--count", "2", "--format", "json", "--shapes"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert (said["complete"], said["time_unit"]) == (True, None)
+    assert [mode["number"] for mode in said["modes"]] == [1, 2]
+    assert said["modes"][0]["omega"] == pytest.approx(pi / 2, rel=1e-15)
+    assert list(said["modes"][0]["shape"].values()) == [0, 1]
+    assert {"number", "omega", "hz", "period", "damping", "radius"} <= said["modes"][0].keys()
+    assert main(["modes", "rod.toml", "--below", "5", "--format", "csv", "-o", "rod.csv"]) == 0
+    assert Path("rod.csv").read_text().count("\n") == 3
+    assert main(["modes", "rod.toml", "-o", "rod.svg"]) == 0
+    assert "none is missed" in capsys.readouterr().out
+    assert Path("rod.svg").stat().st_size > 1000
+    assert main(["modes", "rod.toml", "--count", "2", "--below", "3"]) == 2
+    assert main(["run", "rod.toml"]) == 2
+    assert "rod.toml: output: missing, a table expected" in capsys.readouterr().err

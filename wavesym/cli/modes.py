@@ -1,0 +1,61 @@
+"""`wavesym modes`."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import PATH, SceneParameter, put, refuse_scene, refuse_unwritable
+from wavesym.cli.progress import progress
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+COUNT = 10
+PICTURES = (".svg", ".png", ".pdf")
+
+
+@click.command()
+@click.argument("scene", type=SceneParameter(needs_output=False))
+@click.option("--count", type=click.IntRange(min=1), help=f"How many modes.  [default: {COUNT}]")
+@click.option("--below", type=float, metavar="F", help="All below a frequency, in Hz; without [units] in rad per tau.")
+@click.option("--shapes", is_flag=True, help="How far each node moves, too.")
+@click.option(
+    "--format", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True, help="How it is written."
+)
+@click.option("-o", "out", type=PATH, metavar="FILE|PICTURE", help="Where it goes; .svg, .png, .pdf: shapes, drawn.")
+def modes(scene: Scene, count: int | None, below: float | None, shapes: bool, format: str, out: Path | None) -> None:
+    """Print the frequencies of a chain, none missed.
+
+    Each with its damping ratio, its period, and what of the mass moves with the supports. A scene needs neither loads
+    nor outputs for it; dashpots and absorbing ends make frequencies complex.
+
+    \b
+    Example:
+      wavesym modes building_m2 --count 3
+    """
+    from wavesym import api
+    from wavesym.writing import write_whole
+
+    context = click.get_current_context()
+    if count is not None and below is not None:
+        raise click.UsageError("--count and --below given, one of them expected", context)
+    drawn = out is not None and out.suffix.lower() in PICTURES
+    if drawn and not find_spec("matplotlib"):
+        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+    if out is not None:
+        refuse_unwritable(out)
+        refuse_scene(out)
+    with progress(f"modes {scene.name}"):
+        found = api.modes(scene, count or COUNT, below)
+        written = found.text if format == "text" else found.json if format == "json" else found.csv
+        text = written(shapes=shapes)
+        if drawn and out is not None:
+            api.plot_modes(scene, found, out)
+        elif out is not None:
+            write_whole({out: text})
+    if out is None or drawn:
+        put(text)

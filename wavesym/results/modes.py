@@ -1,0 +1,291 @@
+"""The modes of vibration of a scene: frequencies, damping, effective masses and shapes.
+
+Undamped frequencies are the zeros of the determinant of the dynamic stiffness; how many lie below a number is counted
+in balls (Wittrick and Williams, 1971), so that none is missed. With dashpots motions are exp(i w tau) with complex w.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from math import pi
+from typing import Any
+
+import numpy as np
+from flint import acb, arb
+from numpy.typing import NDArray
+
+from wavesym.errors import CostError, WavesymError
+from wavesym.exact.modes.dying import DyingSpectrum
+from wavesym.exact.modes.frequencies import Spectrum
+from wavesym.exact.modes.shape import Mode
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import End, Network
+from wavesym.numbers.doubles import above, midpoint, nearest
+from wavesym.programs.modes.undamped import damping_ratios
+from wavesym.results.optional import needed
+
+COUNT = 10
+_MOST = 2000
+_FIRST_GUESS = 16  # modes, where it is not known how many lie below a frequency
+_COMPLETE = "none is missed: the frequencies below the last one are counted in balls (Wittrick and Williams)"
+_INCOMPLETE = "each is proved; that none is missed is not, as of complex frequencies"
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """One mode.
+
+    Attributes:
+        number: from 1 on, rigid modes first.
+        omega: the angular frequency, in rad per s, or per tau without [units]; of a complex one the modulus.
+        hz: omega / 2 pi.
+        period: 1 / hz; None of a rigid mode.
+        damping: the ratio to critical damping.
+        radius: omega is right to so much: proved.
+        effective_mass: what of the mass moves with all supports, in parts of the whole; None where nothing holds the
+            chain, or gears make it mean nothing.
+        shape: how far each node moves, the largest 1; complex where there are dashpots.
+    """
+
+    number: int
+    omega: float
+    hz: float
+    period: float | None
+    damping: float
+    radius: float
+    effective_mass: float | None
+    shape: dict[str, complex]
+
+
+@dataclass(frozen=True, repr=False)
+class Modes:
+    """The modes of a scene, by their frequencies; `wavesym.modes` makes it.
+
+    `complete` says whether none is missed up to the last one, `why` in words; `time_unit` is "s", or None for tau.
+    """
+
+    name: str
+    modes: tuple[ModeRow, ...]
+    complete: bool
+    why: str
+    time_unit: str | None
+    exact: tuple[Mode, ...]
+
+    def __len__(self) -> int:
+        return len(self.modes)
+
+    def __iter__(self) -> Iterator[ModeRow]:
+        return iter(self.modes)
+
+    def __getitem__(self, place: int) -> ModeRow:
+        return self.modes[place]
+
+    def __repr__(self) -> str:
+        unit = "Hz" if self.time_unit else "1/tau"
+        first = ", ".join(f"{mode.hz:.6g}" for mode in self.modes[:3])
+        more = ", ..." if len(self) > 3 else ""
+        return f"Modes({self.name!r}, {len(self)} modes: {first}{more} {unit})"
+
+    @property
+    def frequencies(self) -> NDArray[np.float64]:
+        """`hz` of each."""
+        return np.array([mode.hz for mode in self.modes])
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame with a row for each mode. WavesymError where pandas is not installed."""
+        return needed("pandas", "sweep").DataFrame(self._rows(shapes=False)).set_index("number")
+
+    def json(self, *, shapes: bool = False) -> str:
+        """As JSON: `modes`, `complete`, `why`, `time_unit`; complex numbers of shapes as [real, imaginary]."""
+        about = {"complete": self.complete, "why": self.why, "time_unit": self.time_unit}
+        return json.dumps({"name": self.name, "modes": self._rows(shapes=shapes), **about}, indent=2) + "\n"
+
+    def csv(self, *, shapes: bool = False) -> str:
+        """As CSV: a line for each mode; shapes as a column for each node, in doubles, of complex ones two."""
+        lines = []
+        for mode, row in zip(self.modes, self._rows(shapes=False), strict=True):
+            if shapes:
+                for node, moved in mode.shape.items():
+                    row |= {f"shape@{node}": moved.real} | ({} if self._is_real else {f"shape@{node}.imag": moved.imag})
+            lines.append(row)
+        head = ",".join(lines[0])
+        return (
+            "\n".join([head, *(",".join("" if v is None else repr(v) for v in row.values()) for row in lines)]) + "\n"
+        )
+
+    def text(self, *, shapes: bool = False) -> str:
+        """As a table for people."""
+        per, hz = ("rad/s", "Hz") if self.time_unit else ("rad/tau", "1/tau")
+        head = ["mode", f"omega [{per}]", f"frequency [{hz}]", f"period [{self.time_unit or 'tau'}]", "damping"]
+        massive = any(mode.effective_mass is not None for mode in self.modes)
+        rows = [[*head, *["effective mass"] * massive]]
+        for mode in self.modes:
+            period = "-" if mode.period is None else f"{mode.period:.7g}"
+            mass = "-" if mode.effective_mass is None else f"{mode.effective_mass:.2%}"
+            damping = f"{mode.damping:.4g}"
+            rows.append([str(mode.number), f"{mode.omega:.9g}", f"{mode.hz:.9g}", period, damping, *[mass] * massive])
+        lines = _aligned(rows)
+        if shapes:
+            nodes = list(self.modes[0].shape)
+            table = [["node", *(f"mode {mode.number}" for mode in self.modes)]]
+            table += [[node, *(_shown(mode.shape[node]) for mode in self.modes)] for node in nodes]
+            lines += ["", *_aligned(table)]
+        radius = max(mode.radius for mode in self.modes)
+        return "\n".join([*lines, "", f"right to {radius:.1e} {per}, proved; {self.why}"]) + "\n"
+
+    def _repr_html_(self) -> str:
+        rows = self._rows(shapes=False)
+        head = "".join(f"<th>{escape(key)}</th>" for key in rows[0])
+        cells = ("".join(f"<td>{_cell(value)}</td>" for value in row.values()) for row in rows)
+        body = "".join(f"<tr>{row}</tr>" for row in cells)
+        return f"<p>{escape(repr(self))}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+    @property
+    def _is_real(self) -> bool:
+        return all(moved.imag == 0 for mode in self.modes for moved in mode.shape.values())
+
+    def _rows(self, *, shapes: bool) -> list[dict[str, Any]]:
+        real = self._is_real
+        return [
+            {
+                "number": mode.number,
+                "omega": mode.omega,
+                "hz": mode.hz,
+                "period": mode.period,
+                "damping": mode.damping,
+                "radius": mode.radius,
+                "effective_mass": mode.effective_mass,
+                **(
+                    {"shape": {node: q.real if real else [q.real, q.imag] for node, q in mode.shape.items()}}
+                    if shapes
+                    else {}
+                ),
+            }
+            for mode in self.modes
+        ]
+
+
+def modes(model: Model, count: int = COUNT, below: float | None = None) -> Modes:
+    """The first modes of a model.
+
+    Args:
+        model: a chain without contacts; loads and outputs do not matter.
+        count: how many, where `below` is None.
+        below: a frequency: in Hz, or in rad per tau for a scene without units.
+
+    Raises:
+        UnservedError: for contacts, and frequencies whose modes cannot be told apart.
+        WavesymError: for a count, or a frequency, that is not positive.
+        CostError: for more modes than can be found in a minute.
+    """
+    if count < 1 or (below is not None and not below > 0):
+        raise WavesymError(f"modes: {count if below is None else below} is not positive")
+    if count > _MOST:
+        raise CostError(f"--count: {count} modes would be found one by one; ask for {_MOST} at most")
+    damped = _is_damped(model.network)
+    spectrum = DyingSpectrum(model.network) if damped else Spectrum(model.network)
+    found = list(spectrum.first(count if below is None else _FIRST_GUESS))
+    per_tau = 1.0 if model.clock is None else nearest(model.clock.seconds)
+    if below is not None:
+        limit = below * (2 * pi * per_tau if model.clock else 1.0)
+        while abs(complex(found[-1].frequency)) <= limit:
+            if len(found) >= _MOST:
+                raise CostError(f"--below: more than {_MOST} modes lie below {below:g}; ask for a lower frequency")
+            found = list(spectrum.first(2 * len(found)))
+        found = [mode for mode in found if abs(complex(mode.frequency)) <= limit]
+    rows = tuple(_row(model, k, mode, per_tau) for k, mode in enumerate(found, 1))
+    if not damped:
+        rows = _with_ratios(model, rows, per_tau)
+    return Modes(
+        model.name, rows, not damped, _INCOMPLETE if damped else _COMPLETE, "s" if model.clock else None, tuple(found)
+    )
+
+
+def _is_damped(network: Network) -> bool:
+    """Whether a dashpot or an absorbing end makes frequencies complex."""
+    return any(point.damping != 0 and point.motion is None for point in network.points) or any(
+        link.damping != 0 and not link.contact for link in network.links
+    )
+
+
+def _row(model: Model, number: int, mode: Mode, per_tau: float) -> ModeRow:
+    w = mode.frequency
+    size = abs(w) if isinstance(w, acb) else w
+    omega = midpoint(size) / per_tau
+    ratio = midpoint(w.imag / size) if isinstance(w, acb) and not size.contains(0) else 0.0
+    return ModeRow(
+        number=number,
+        omega=omega,
+        hz=omega / (2 * pi),
+        period=2 * pi / omega if omega else None,
+        damping=ratio,
+        radius=above(size.rad()) / per_tau,
+        effective_mass=None if isinstance(w, acb) else _effective_mass(model.network, mode),
+        shape=_shape(model.network, mode),
+    )
+
+
+def _with_ratios(model: Model, rows: Sequence[ModeRow], per_tau: float) -> tuple[ModeRow, ...]:
+    """Modes with the damping that the scene gives them; rigid ones have none."""
+    if model.damping is None:
+        return tuple(rows)
+    elastic = np.array([row.omega * per_tau for row in rows if row.omega])
+    ratios = iter(damping_ratios(model.damping, elastic.tolist()).at(elastic).tolist())
+    return tuple(replace(row, damping=next(ratios)) if row.omega else row for row in rows)
+
+
+def _shape(network: Network, mode: Mode) -> dict[str, complex]:
+    """How far the points of the network move, those of its cuts left out, in parts of the largest."""
+    moved = [complex(mode.points[number]) for number in range(len(network.points))]
+    largest = max(moved, key=abs)
+    names: dict[str, complex] = {}
+    for point, each in zip(network.points, moved, strict=True):
+        name = point.name or str(point.place)
+        names.setdefault(name if name not in names else f"{name}+", each / largest if largest else 0j)
+    return names
+
+
+def _effective_mass(network: Network, mode: Mode) -> float | None:
+    """What of the mass moves with the supports: the square of the integral of mass times shape, over all of the mass.
+
+    By Newton's law that integral is the force of all supports over -w^2.
+    """
+    geared = any(ratio != 1 for bar in network.bars for ratio in bar.ratios) or any(
+        link.ratio != 1 for link in network.links
+    )
+    held = any(point.motion or point.stiffness != 0 for point in network.points)
+    if geared or not held or mode.frequency.contains(0):
+        return None
+    cut = mode.stiffness.network
+    force = arb(0)
+    for number, bar in enumerate(cut.bars):
+        for side, at in enumerate((bar.left, bar.right)):
+            if cut.points[at].motion:
+                strain = bar.impedance * mode.slope(End(number, side))
+                force += strain if side else -strain
+    for link in cut.links:
+        for one, other in ((link.left, link.right), (link.right, link.left)):
+            if cut.points[one].motion and not cut.points[other].motion:
+                force -= link.stiffness * mode.points[other]
+    for point, moved in zip(cut.points, mode.points, strict=True):
+        if not point.motion:
+            force -= point.stiffness * moved
+    whole = sum((point.mass for point in cut.points if not point.motion), arb(0))
+    whole += sum((bar.impedance * bar.delay for bar in cut.bars), arb(0))
+    return midpoint((force / mode.frequency**2) ** 2 / whole)
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in rows]
+
+
+def _shown(moved: complex) -> str:
+    return f"{moved.real:.5f}" if moved.imag == 0 else f"{abs(moved):.5f} at {np.degrees(np.angle(moved)):.1f} deg"
+
+
+def _cell(value: Any) -> str:
+    return "-" if value is None else f"{value:.7g}" if isinstance(value, float) else str(value)
