@@ -200,6 +200,24 @@ def test_what_one_coefficient_loses_is_handed_on_to_all_below_it() -> None:
     assert counted <= claimed <= 100 * counted
 
 
+def ended_at_1(degree) -> BodyOperator:
+    """With ratios of 1, and y_1 for what the velocity changes by."""
+    none = (0.0,) * (degree + 1)
+    return BodyOperator(1.0, (0.0,) + (1.0,) * degree, none, (0.0, 1.0, *none[2:]), 0.0, 0.0, 2.0**-40)
+
+
+def test_what_is_rounded_on_the_way_down_is_handed_on_to_the_last() -> None:
+    """The last coefficient of p comes to y_1, three times rounded at each step; on a way so long that this shows."""
+    degree = 20
+    of = ended_at_1(degree)
+    p = [Rounded.wrong(np.array([float(k == degree)]), 5) for k in range(degree + 1)]
+    _, end = moved(
+        of, p, Rounded(np.zeros(1)), *(list(Rounded.table(table)) for table in (of.ratio, of.first, of.last))
+    )
+    assert end.error[0] >= 3 * degree
+    assert body_roundings(ended_at_1(1000), 5).end[0] >= 3 * 1000
+
+
 def test_an_upper_bound_of_a_norm_is_one_and_near() -> None:
     random = np.random.default_rng(1)
     for matrix in (*random.uniform(0, 1, (20, 7, 5)), np.eye(4), np.diag([1.0, 1e-9, 3, 1e3]), np.ones((3, 1))):

@@ -59,6 +59,8 @@ MARGIN = 1.01
 # roundings of a product in a sum, besides those of the sum: of factors, pushes, loads and their times
 _SPARE = 24
 _LOADED = 5  # times those of a sum of at least 5 products are no less than those of a load and its times
+READING = 12
+"""Units of rounding that reading a wave adds for each unit of `reading_weights`, besides those of its gain and sum."""
 # square roots of exact numbers, rounded a few times
 _ABOVE = 1 + 1e-12
 
@@ -154,7 +156,7 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
             error += _direct(losses, of) * step * plan.windows
         if of := output.part(summed=False):
             error += _felt(plan, of) * largest_wave(smooth, plan, truncated + rounded)
-            error += (12 + max(2, len(output.heard))) * unit * reading[o] + lost_reading * max(1, len(of) / 2)
+            error += (READING + max(2, len(output.heard))) * unit * reading[o] + lost_reading * max(1, len(of) / 2)
             error += _direct(losses, of)
         if 0 < len(output.part(summed=True)) < len(output.heard):
             error += len(output.heard) * unit * held[o]  # one is added to the other
@@ -220,6 +222,14 @@ def size_of(plan: MarchPlan, track: int) -> float:
     held = [law.damping[a][b] + (law.mass[a] if a == b else 0) for a in free for b in free]
     at = free.index(point)
     return _ABOVE * sqrt(nearest(fmpq_mat(len(free), len(free), held).inv()[at, at] * (5 + 2 * plan.step)))
+
+
+def block_loss(turned: float) -> float:
+    """What a block adds to the norm of energy for each unit of eps, where rates times the panel's length is `turned`.
+
+    2 sqrt(g h) is that of the waves that it sends, 2 (1 + g h)/sqrt(2) that of the state at the end.
+    """
+    return 2 * (sqrt(turned) + (1 + turned) / sqrt(2))
 
 
 def smoothness(plan: MarchPlan, degree: int) -> Tail:
@@ -418,7 +428,7 @@ class Losses:
     def _truncated(self, missed: Array, turned: float, given: Array, sizes: Array) -> Array:
         """The squares of what is lost by truncation, (windows,)."""
         eps = np.linalg.norm(np.abs(given @ missed.T) + self._products(missed.T, sizes), axis=-1)
-        return np.asarray(np.sum((2 * eps * (sqrt(turned) + (1 + turned) / sqrt(2))) ** 2, axis=1))
+        return np.asarray(np.sum((eps * block_loss(turned)) ** 2, axis=1))
 
 
 @dataclass(frozen=True)
