@@ -92,17 +92,23 @@ static void step_joint(int joint, const joint_on_panel *on, const real *acting, 
         scatter(joint, on, acting);
         return;
     }
-    for (int k = 0; k < points * SIZE; ++k) {
-        given[k] = 0;
+    if (body) {
+        for (int k = 0; k < SIZE; ++k) {
+            given[k] = on->pushes[0] * on->arriving[0][k];
+        }
+    } else {
+        for (int k = 0; k < points * SIZE; ++k) {
+            given[k] = 0;
+        }
+    }
+    for (int port = first + body; port < first_port[joint + 1]; ++port) {
+        add(given + point_of[port] * SIZE, on->pushes[port - first], on->arriving[port - first], SIZE);
     }
     for (int point = 0; acting && point < points; ++point) {
         const int force = force_on[first_point[joint] + point];
         if (force >= 0) {
             add(given + point * SIZE, body ? on->driven : (real)1, acting + force * POWERS, POWERS);
         }
-    }
-    for (int port = first; port < first_port[joint + 1]; ++port) {
-        add(given + point_of[port] * SIZE, on->pushes[port - first], on->arriving[port - first], SIZE);
     }
     if (body) {
         given[SIZE] = 0;
