@@ -35,7 +35,7 @@ _TO_THE_END = (
     *("-eva-split-return", "auto"),
 )
 # a batch of none has no laws
-_NONE_IS_NONE = ("-eva-split-return-function", "begun_batch:0")
+_NONE_IS_NONE = ("-eva-split-return-function", "check_batch:0")
 _WITH_ITS_DEGREE = "integrate,empty,clear_part,add_series,add_series_batch,acting_again,gather"
 _AT_ONCE = ("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals")
 _ONE_BY_ONE = "main:100,name_build_with:100,sampled:100,run:100,output_block:100"
