@@ -12,12 +12,12 @@ import pandas
 import pytest
 
 import wavesym
-from wavesym import api
+from wavesym import Scene, api
 from wavesym.pictures import histories
 from wavesym.results import result as results
 from wavesym.results import summary as summaries
 from wavesym.results.rows import SAMPLES
-from wavesym.scene import Scene, lowering
+from wavesym.scene import lowering
 
 DRIVE = Scene.from_toml("drive_m1")
 FRAME = Scene(
@@ -114,7 +114,7 @@ def test_a_plot_is_a_figure_and_a_file(tmp_path: Path) -> None:
 
 def test_a_result_evaluates_a_scene_once(monkeypatch: pytest.MonkeyPatch) -> None:
     counted: Counter[str] = Counter()
-    lower, respond = api.lower, results.Response
+    lower, respond = results.lower, results.Response
 
     def lowering(scene: Scene) -> object:
         counted["lower"] += 1
@@ -124,7 +124,7 @@ def test_a_result_evaluates_a_scene_once(monkeypatch: pytest.MonkeyPatch) -> Non
         counted["response"] += 1
         return respond(model)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(api, "lower", lowering)
+    monkeypatch.setattr(results, "lower", lowering)
     monkeypatch.setattr(results, "Response", responding)
     DRIVE.run(samples=3)
     assert counted == {"lower": 1, "response": 1}

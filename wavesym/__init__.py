@@ -48,13 +48,13 @@ if TYPE_CHECKING:
         verify,
     )
     from wavesym.errors import CostError, RangeError, SceneError, ToleranceError, UnservedError, WavesymError
+    from wavesym.interactive import Scene
     from wavesym.results.result import Result
     from wavesym.running.toolchain import CompilerError
-    from wavesym.scene import Scene
 
 # Loaded when first asked for, so that `import wavesym` and `wavesym --help` wait for nobody's SymPy.
 _HOMES = {
-    "Scene": "wavesym.scene",
+    "Scene": "wavesym.interactive",
     "Result": "wavesym.results.result",
     "CompilerError": "wavesym.running.toolchain",
     **dict.fromkeys(

@@ -111,7 +111,7 @@ def run(scene: Scene, times: ArrayLike | None = None, samples: int = 1001, *, st
     """
     from wavesym.results.result import result
 
-    return result(scene, lower(scene), times, samples, strict=strict)
+    return result(scene, times, samples, strict=strict, plot=plot)
 
 
 def run_csv(

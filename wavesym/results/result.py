@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from html import escape
 from os import PathLike
@@ -12,17 +12,17 @@ import numpy as np
 
 from wavesym.errors import WavesymError, did_you_mean
 from wavesym.mechanics.event import ContactEvent
-from wavesym.mechanics.model import Model
 from wavesym.results.horizon import check_horizon
 from wavesym.results.optional import needed
 from wavesym.results.response import Response
 from wavesym.results.rows import instants
+from wavesym.results.summary import Summary, summarised
+from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import drifts
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from wavesym.results.summary import Summary
-    from wavesym.scene import Scene
 
 _SHOWN = 5  # rows of a long table at its start and its end
 
@@ -60,6 +60,7 @@ class Result:
     program: str | None
     proved: bool
     _response: Response = field(repr=False, compare=False)
+    _plot: Callable[[Scene, str | PathLike[str] | None], Any] = field(repr=False, compare=False)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         try:
@@ -92,7 +93,7 @@ class Result:
 
     def summary(self) -> Summary:
         """The extremes of the outputs on the whole horizon; errors as of `wavesym.summary`."""
-        return self.scene.summary()
+        return summarised(self._response.model, drifts=drifts(self.scene))
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """The histories of the scene as a picture.
@@ -107,7 +108,7 @@ class Result:
             WavesymError: where matplotlib is not installed.
             SceneError: for another suffix.
         """
-        return self.scene.plot(path)
+        return self._plot(self.scene, path)
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame: a column for each output, by name, over the time. WavesymError without pandas."""
@@ -155,14 +156,22 @@ class Result:
         return [f"{value:.6g}" for value in (self.time[k], *self.values[:, k])]
 
 
-def result(scene: Scene, model: Model, times: ArrayLike | None, samples: int, *, strict: bool) -> Result:
-    """The histories of a model; arguments and errors are those of `wavesym.run`.
+def result(
+    scene: Scene,
+    times: ArrayLike | None,
+    samples: int,
+    *,
+    strict: bool,
+    plot: Callable[[Scene, str | PathLike[str] | None], Any],
+) -> Result:
+    """The histories of a scene; arguments and errors are those of `wavesym.run`.
 
     Args:
-        scene: what the model was made of.
-        model: what is computed.
+        scene: what is computed.
         times, samples, strict: as of `wavesym.run`.
+        plot: draws a scene, and writes it where there is a path.
     """
+    model = lower(scene)
     at = None if times is None else _instants(times)
     if at is None and samples < 1:
         raise WavesymError(f"samples: {samples} is not positive; write 1001, or give times")
@@ -183,6 +192,7 @@ def result(scene: Scene, model: Model, times: ArrayLike | None, samples: int, *,
         program=program.evaluator if program else None,
         proved=program.proved if program else True,
         _response=response,
+        _plot=plot,
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from copy import deepcopy
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from pydantic import (
     Field,
@@ -34,10 +34,6 @@ from wavesym.scene.physical.scale import Scale, UnitsTable
 from wavesym.scene.physical.scene import PhysicalScene, physical
 from wavesym.scene.scene_file import read_toml
 from wavesym.systems import SYSTEMS, ExplicitChain, Preset, SystemTable
-
-if TYPE_CHECKING:
-    from wavesym.results.result import Result
-    from wavesym.results.summary import Summary
 
 
 class Scene(SceneTable):
@@ -126,34 +122,10 @@ class Scene(SceneTable):
             fields = changed(fields, path, value)
         return type(self)(**fields)
 
-    def run(self, times: Any = None, samples: int = 1001, *, strict: bool = False) -> Result:
-        """The histories of the outputs; arguments, value and errors are those of `wavesym.run`."""
-        from wavesym import api
-
-        return api.run(self, times, samples, strict=strict)
-
-    def summary(self, *, at_samples: bool = False) -> Summary:
-        """The extremes of the outputs; arguments, value and errors are those of `wavesym.summary`."""
-        from wavesym import api
-
-        return api.summary(self, at_samples=at_samples)
-
-    def plot(self, path: str | PathLike[str] | None = None, kind: str = "history") -> Any:
-        """A matplotlib Figure of the scene; arguments and errors are those of `wavesym.plot`."""
-        from wavesym import api
-
-        return api.plot(self, path, kind)
-
     def __repr__(self) -> str:
         return f"Scene({describe(self)})"
 
     __str__ = __repr__
-
-    def _repr_html_(self) -> str:
-        """The structure, drawn, under a line that says what it is."""
-        from wavesym import api
-
-        return api.scene_html(self)
 
     @model_serializer(mode="wrap")
     def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
