@@ -24,6 +24,7 @@ _COMMAND = (
     "--addon=misra",
     "--std=c99",
     "--quiet",
+    "--force",  # all configurations: programs with many parts have more than cppcheck looks at by itself
     "--suppress=missingIncludeSystem",
     "--template={file}:{line}:{id}",
 )
