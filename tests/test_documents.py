@@ -44,7 +44,7 @@ DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "exact", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(
-    r"(sed \S+1e4\S+ .*)?wavesym (chart|verify|plot --published|plot \S+ --kind xt|generate \S+ --target|inspect -)"
+    r"(sed .*= 1e4.* \| )?wavesym (chart|verify|plot --published|plot \S+ --kind xt|generate \S+ --target|inspect -)"
 )  # seconds and more; what is only inspected on standard input is far too long a scene
 ELSEWHERE = re.compile(r"wavesym stability\b")  # minutes: slow tests in tests/lab draw the same curves
 COMPILED = "wavesym.model("  # of a block of Python: it waits for a compiler

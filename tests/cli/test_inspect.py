@@ -230,7 +230,7 @@ def test_the_program_is_the_one_that_is_generated(name: str) -> None:
     model, read = lower(short(name)), builtin(name, "program")
     made = make(model)
     program = read["program"]
-    assert (program["kind"], program["bytes"], program["reason"]) == (made.kind, made.bytes, made.provenance.reason)
+    assert (program["kind"], program["bytes"], program["reason"]) == (made.kernel, made.bytes, made.provenance.reason)
     assert program["bound"] == made.error_bound <= float(Fraction(str(model.tolerance)))
     assert read["constants"] == made.constants
     assert read["outputs"] == [{"name": o.name, "bound": o.bound, "largest": o.largest} for o in made.outputs]
@@ -238,7 +238,7 @@ def test_the_program_is_the_one_that_is_generated(name: str) -> None:
     rows = by(read["tried"], *TRIED)
     assert rows == by(builtin(name)["tried"], *TRIED)
     small = make(model, Request(optimize="size"))
-    row = rows.get((small.kind, "double", "size")) or rows[small.kind, "double", "speed"]
+    row = rows.get((small.kernel, "double", "size")) or rows[small.kind, "double", "speed"]
     assert row["bytes"] == small.bytes < made.bytes
     assert rows["march", "double", "speed"]["refusal"].startswith("not tried: another program meets the tolerance")
 
