@@ -13,7 +13,8 @@ import wavesym
 
 PACKAGE = Path(wavesym.__file__).parent
 COSTS = {"CostError", "_TooLarge"}
-FORM = re.compile(r"(output|output\.until|load|system\.(m|parts)|--intervals|\{asked\}): .+ expected.* \(.+ helps?\)")
+KEY = r"(output|output\.until|load|system|system\.(m|parts)|--below|--count|--intervals|\{asked\})"
+FORM = re.compile(rf"{KEY}: .+ expected.* \(.+ helps?\)")
 PASSED_ON = re.compile(r".*\{error\} \(.+ helps?\)")  # the sentence of another error, which says how much
 
 

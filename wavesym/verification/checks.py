@@ -30,14 +30,18 @@ _ROUNDED = 2.0**-51
 def invariants(known: Known) -> list[Outcome]:
     """The balances of momentum and energy, in the reference itself and in the program, which generated NumPy is."""
     name = known.model.name
+
+    def refused(reason: object) -> list[Outcome]:
+        return [Outcome("momentum, energy", {"to": REFUSED}, True, f"{name}: no balances, as {reason}")]
+
     try:
         books = Balancing(known.model, _MOST_VALUES)
         if not books.struck:
-            raise CostError("fronts come too often")
+            return refused("fronts come too often")
         exact = Reference(books.model)
         right = books.balances(lambda taus: np.array(exact.values(taus.tolist())), None)
     except CostError as error:  # all ends are watched, and not only outputs
-        return [Outcome("momentum, energy", {"to": REFUSED}, True, f"{name}: no balances, as {error}")]
+        return refused(error)
     note = ""
     ours: Sequence[Balance | None] = [None] * len(right)
     try:
