@@ -149,7 +149,7 @@ void put(const real *both, real t, real *out);
 void put(const real *both, real t, real *out)
 {
     march state;
-    begin_march(&state);
+    start_march(&state);
     state.window = 1;
     for (int place = 0; place < 2 * TRACKS * PANELS * SIZE; ++place) {
         const int number = place / (PANELS * SIZE) % TRACKS;

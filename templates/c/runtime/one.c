@@ -1,6 +1,6 @@
 /* one.c: the march that follows is of one set of parameters.
  * Plain C of a program of a scene called `name`; what stands below the first empty line. */
-#include "series.c"
+#include "reach.c"
 
 static void enlarge(real *most, const real *x)
 {
