@@ -148,7 +148,10 @@ def test_instants_that_rounding_moves_are_one():
     [
         ("state->at[k] + 1 < slots[k]", "state->at[k] + 1 < slots[k] - (k == 0)"),
         ("const int slot = state->at[number] - panels;", "const int slot = (state->at[number] - panels + 1) % 2;"),
-        ("const int slot = state->turn[number] - windows;", "const int slot = (state->turn[number] + 1) % 2;"),
+        (
+            "const int slot = state->turn[number] - windows;",
+            "const int slot = state->turn[number] - (state->turn[number] > 0 ? windows : 0);",
+        ),
     ],
 )
 def test_a_leap_would_see_a_ring_that_goes_wrong(right, wrong):
