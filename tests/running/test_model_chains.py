@@ -271,7 +271,7 @@ def test_its_selftest_passes(tmp_path):
 
 @pytest.mark.slow
 def test_its_selftest_sees_what_is_broken(tmp_path):
-    assert selftest(tmp_path / "wrong", ("ended_at[j] - table[j]", "0.999999 * ended_at[j] - table[j]")) == 1
+    assert selftest(tmp_path / "wrong", ("(at_last[j] - table[j]", "(0.999999 * at_last[j] - table[j]")) == 1
 
 
 @pytest.mark.slow

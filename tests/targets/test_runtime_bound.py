@@ -65,7 +65,7 @@ def test_no_error_is_larger_whatever_the_parameters(case, flags, tmp_path):
             check(made, scene, given)
 
 
-ROUGH, SENT, CUT = BODIES[3], BODIES[4], BODIES[-1]
+ROUGH, SENT, LOADED, CUT = BODIES[3], BODIES[4], BODIES[6], BODIES[-1]
 
 
 @pytest.mark.parametrize("case", ["building", pytest.param("drive", marks=pytest.mark.slow)])
@@ -73,6 +73,8 @@ ROUGH, SENT, CUT = BODIES[3], BODIES[4], BODIES[-1]
     "change", [BODIES[0], *(pytest.param(change, marks=pytest.mark.slow) for change in BODIES[1:])]
 )
 def test_what_is_computed_wrong_is_in_the_bound(change, case, tmp_path):
+    if case == "building" and change == LOADED:
+        pytest.skip("no load acts on one of its bodies")
     scene, numbers = {"building": (BUILDING, CASES["building"][1]), "drive": (DRIVE, CASES["drive"][1])}[case]
     made = BuiltModel(scene, list(numbers), tmp_path, [change])
     bound, wrong = check(made, scene, {name: choices[-1] for name, choices in numbers.items()})

@@ -125,7 +125,9 @@ def changed_files(monkeypatch, change):
         pytest.param(
             "pieces.py", "powers[:, 1:] + powers[:, :1]", "powers[:, 1:] - powers[:, :1]", marks=pytest.mark.slow
         ),
-        pytest.param("march.c", "sum += gain[k] * gathered", "sum -= gain[k] * gathered", marks=pytest.mark.slow),
+        pytest.param(
+            "march.c", "sum += gain[k] * integral_of_wave", "sum -= gain[k] * integral_of_wave", marks=pytest.mark.slow
+        ),
         pytest.param("march.py", "total += gain * _series", "total -= gain * _series", marks=pytest.mark.slow),
     ],
 )

@@ -49,8 +49,8 @@ FAULTS = {
     "runtime/march.c": (
         CHAIN,
         "--runtime mass,load",
-        "sum += m->force[panel][force][k];",
-        "sum -= m->force[panel][force][k];",
+        "below += e->drive[j] * e->acting[j]",
+        "below -= e->drive[j] * e->acting[j]",
     ),
     "stream.c": (DRIVE, "--stream", "out[output] += gain[k] * value_now", "out[output] -= gain[k] * value_now"),
     "in single precision": (DRIVE, "--evaluator march --precision single", "sum += gain[k]", "sum -= gain[k]"),

@@ -106,7 +106,7 @@ static real time_since(const int *since, int window, int panel)
 /* Whether an event, of those in order, is on a panel. */
 static int is_event(int event, int window, int panel)
 {
-    return event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel;
+    return NAME_EVENTS > 0 && event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel;
 }
 
 static int higher_than(int degree)
