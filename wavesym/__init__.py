@@ -52,35 +52,6 @@ if TYPE_CHECKING:
     from wavesym.results.result import Result
     from wavesym.running.toolchain import CompilerError
 
-# Loaded when first asked for, so that `import wavesym` and `wavesym --help` wait for nobody's SymPy.
-_HOMES = {
-    "Scene": "wavesym.interactive",
-    "Result": "wavesym.results.result",
-    "CompilerError": "wavesym.running.toolchain",
-    **dict.fromkeys(
-        ("CostError", "RangeError", "SceneError", "ToleranceError", "UnservedError", "WavesymError"), "wavesym.errors"
-    ),
-    **dict.fromkeys(
-        (
-            "derive",
-            "evaluator",
-            "generate",
-            "model",
-            "modes",
-            "peaks",
-            "plot",
-            "report",
-            "run",
-            "spectrum",
-            "summary",
-            "sweep",
-            "tables",
-            "verify",
-        ),
-        "wavesym.api",
-    ),
-}
-
 __all__ = [
     "CompilerError",
     "CostError",
@@ -107,6 +78,17 @@ __all__ = [
     "tables",
     "verify",
 ]
+
+# Loaded when first asked for, so that `import wavesym` and `wavesym --help` wait for nobody's SymPy.
+_HOMES = {
+    **dict.fromkeys(__all__, "wavesym.api"),
+    "Scene": "wavesym.interactive",
+    "Result": "wavesym.results.result",
+    "CompilerError": "wavesym.running.toolchain",
+    **dict.fromkeys(
+        ("CostError", "RangeError", "SceneError", "ToleranceError", "UnservedError", "WavesymError"), "wavesym.errors"
+    ),
+}
 __version__ = "0.1.0"
 
 

@@ -81,6 +81,7 @@ def test_each_choice_compiles_without_a_warning(case, parts, language, tmp_path)
     wavesym.generate(scene, tmp_path, runtime=runtime, parts=parts)
     for file in (f"{scene.name}.c", f"{scene.name}_selftest.c"):
         compiler().run([*LANGUAGES[language], *STRICT, "-O1", "-c", file, "-o", f"{file}.o"], tmp_path)
+        assert (tmp_path / f"{file}.o").stat().st_size  # a warning is an error, which `run` raises
 
 
 @needs_binutils
