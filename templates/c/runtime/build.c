@@ -199,7 +199,7 @@ static void OF(weight_of)(const OF(laws) *law, int output, num *weight)
 {
     *weight = ZERO + faint; /* gains may underflow */
     for (int k = 0; k < NAME_GAINS; ++k) {
-        *weight += gain_output[k] == output ? SIZE(law->gain[k]) : ZERO;
+        *weight += gain_output[k] == output ? SIZE_OF(law->gain[k]) : ZERO;
     }
 }
 
@@ -240,7 +240,7 @@ static void OF(march_all)(OF(progress) *b)
 #undef num
 #undef OF
 #undef PICK
-#undef SIZE
+#undef SIZE_OF
 #undef ZERO
 #undef TEST
 #undef SOME

@@ -52,7 +52,7 @@ static int in_some(const mask *test)
 #define num wide
 #define OF(name) name##_batch
 #define PICK CHOSEN
-#define SIZE(x) MAGNITUDES(x)
+#define SIZE_OF(x) MAGNITUDES(x)
 #define ZERO none
 #define TEST mask
 #define SOME(test) in_some(&(test))

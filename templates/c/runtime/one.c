@@ -22,7 +22,7 @@ enum { parts = 1, lanes_in_all = 1 };
 #define num real
 #define OF(name) name
 #define PICK(test, one, other) ((test) ? (one) : (other))
-#define SIZE(x) magnitude(x)
+#define SIZE_OF(x) magnitude(x)
 #define ZERO ((real)0)
 #define TEST int
 #define SOME(test) (test)

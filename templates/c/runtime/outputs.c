@@ -108,11 +108,11 @@ static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(l
         for (int side = 0; side < OF(parts); ++side) {
             num some = ZERO, others = ZERO;
             for (int k = 0; k <= degree; k += 2) {
-                some += SIZE(c[k * OF(parts) + side]);
-                others += SIZE(c[(k + 1) * OF(parts) + side]);
+                some += SIZE_OF(c[k * OF(parts) + side]);
+                others += SIZE_OF(c[(k + 1) * OF(parts) + side]);
             }
             if (degree % 2) {
-                some += SIZE(c[(degree + 1) * OF(parts) + side]);
+                some += SIZE_OF(c[(degree + 1) * OF(parts) + side]);
             }
             weight[side] += (real)(4 * (degree + 2)) * (some + others);
         }
@@ -150,7 +150,7 @@ static void OF(find_largest)(OF(extremes) *e, const num *all, int window, int de
         const real begin = from[in_cycle(window, section)], end = section_end(window, section);
         num mean, found;
         OF(mean_of)(all, degree, at, &mean);
-        const TEST larger_mean = SIZE(mean) > e->threshold[output];
+        const TEST larger_mean = SIZE_OF(mean) > e->threshold[output];
         if (begin <= end && SOME(larger_mean)) {
             OF(value)(all, window, degree, at, begin + (end - begin) / 2, &found);
             OF(enlarge)(&e->mean[output], &mean);
