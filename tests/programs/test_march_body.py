@@ -117,7 +117,7 @@ def in_c(of, count):
 def in_numpy(of, count):
     """The scheme, with numbers that count in place of its own; q is what it sends into a port where nothing arrives."""
     degree = len(of.ratio) - 1
-    scheme = SimpleNamespace(real=object, held=np.zeros(3), steps=np.ones(3, int), degree=degree)
+    scheme = SimpleNamespace(real=object, held=np.zeros(3), steps=np.ones(3, int), degree=degree, panels=1)
     tables = {
         "first_point": (0, 1),
         "first_state": (0, 1),
@@ -133,8 +133,9 @@ def in_numpy(of, count):
     group = Bodies(scheme, tables, np.array([0]), np.zeros((1, 1), int))
     p, velocity = inputs(degree, count)
     x = Rounded.array([velocity])
-    sent = group.sent(np.stack([p, np.zeros(degree + 1, object)])[None], 0, np.zeros((1, 1, 3), object), x)
-    return sent[0, 1], x[0]
+    arriving = np.stack([p, np.zeros(degree + 1, object)])[None, None]
+    sent = group.sent(arriving, np.zeros((1, 1, 1, 3), object), x, np.zeros((1, 1), object))
+    return sent[0, 0, 1], x[0]
 
 
 def norms(q, end):
@@ -303,8 +304,9 @@ def test_a_load_is_as_large_and_as_wrong_as_it_is_said_to_be(steps, ramps, moved
     cuts = [float(panel.start) for panel in plan.panels]
     (point,) = {p for p in range(len(scheme.force_on)) if scheme.force_on[p] == 0}
     compared = 0
+    largest = [sizes.on(window)[:, point] for window in range(plan.windows)]
     for window, p in np.ndindex(plan.windows, len(cuts)):
-        size = sizes.on(window, p)[point]
+        size = largest[window][p]
         begun = [event for event in plan.events if (event.window, event.panel) <= (window, p)]
         if not begun:
             assert not size.any()

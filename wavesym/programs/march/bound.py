@@ -316,7 +316,7 @@ class Losses:
     def of(self, block: WindowBlock) -> tuple[float, float]:
         """By truncation and by rounding, in all windows of a block."""
         panels = range(len(self._lengths))
-        loads = np.array([[self._loads.on(block.first + n, panel) for panel in panels] for n in range(block.count)])
+        loads = np.array([self._loads.on(block.first + n) for n in range(block.count)])
         lost = inexact = 0.0
         for panel in panels:
             truncation, rounding = np.zeros(block.count), np.zeros(block.count)

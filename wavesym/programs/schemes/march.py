@@ -294,11 +294,9 @@ class Marching:
         if first > 0:
             self._waves[: scheme.deepest] = self._waves[self.most : self.most + scheme.deepest].copy()
         for n in range(count):
-            for panel in range(scheme.panels):
-                starts[n, panel] = self._x
-                acting[n, panel] = self._loads.on(first + n, panel)
-                for group in scheme.groups:
-                    group.move(self._waves, scheme.deepest + n, panel, acting[n, panel], self._x)
+            acting[n] = self._loads.on(first + n)
+            for group in scheme.groups:
+                group.move(self._waves, scheme.deepest + n, acting[n], self._x, starts[n])
         made = WindowBlock(scheme, first, self._waves, starts, acting, self._totals)
         self._totals = made.totals[:, -1]
         return made
@@ -312,23 +310,33 @@ class RunningLoads:
         self._now: dict[int, tuple[int, int, NDArray[np.float64]]] = {}
         self._event = 0
 
-    def on(self, window: int, panel: int) -> NDArray[np.float64]:
-        """Three coefficients of what acts on each point on a panel; panels come in order."""
+    def on(self, window: int) -> NDArray[np.float64]:
+        """What acts on each point on the panels of a window, (panels, points, 3); windows come in order."""
         scheme = self._scheme
-        while self._event < len(scheme.event_window) and (
-            (scheme.event_window[self._event], scheme.event_panel[self._event]) == (window, panel)
-        ):
-            self._now[int(scheme.event_force[self._event])] = window, panel, self._powers[self._event]
-            self._event += 1
         # one more, for points on which nothing acts
-        acting = np.zeros((scheme.forces + 1, 3), scheme.real)
-        half = scheme.half_length[panel]
-        for force, (begun, place, c) in self._now.items():
-            middle = ((window - begun) * scheme.step + self._since[panel, place]) + half
-            acting[force, 0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2]
-            acting[force, 1] = half * (c[1] + 2 * middle * c[2])
-            acting[force, 2] = half * half / 2 * c[2]
-        return acting[scheme.force_on]
+        acting = np.zeros((scheme.panels, scheme.forces + 1, 3), scheme.real)
+        first = 0
+        while first < scheme.panels:
+            end = self._begin(window, first)
+            half = scheme.half_length[first:end]
+            for force, (begun, place, c) in self._now.items():
+                middle = ((window - begun) * scheme.step + self._since[first:end, place]) + half
+                acting[first:end, force, 0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2]
+                acting[first:end, force, 1] = half * (c[1] + 2 * middle * c[2])
+                acting[first:end, force, 2] = half * half / 2 * c[2]
+            first = end
+        return acting[:, scheme.force_on]
+
+    def _begin(self, window: int, panel: int) -> int:
+        """Take the changes at the start of a panel; the next panel of the window that has one, or how many it has."""
+        scheme = self._scheme
+        while self._event < len(scheme.event_window) and scheme.event_window[self._event] == window:
+            place = int(scheme.event_panel[self._event])
+            if place > panel:
+                return place
+            self._now[int(scheme.event_force[self._event])] = window, place, self._powers[self._event]
+            self._event += 1
+        return scheme.panels
 
 
 class JointGroup:
@@ -360,6 +368,7 @@ class JointGroup:
         self.push, self.ratio = of_ports("push", 0), of_ports("ratio", 0)
         self.at = of_ports("point_of", 0).astype(int)[..., None] == np.arange(self.points.shape[1])
         self.size = scheme.degree + 1
+        self._panels = np.arange(scheme.panels)[:, None, None]
         self._answers, self._matrix = answers[:, joints], np.array(tables["matrix"], scheme.real)
 
     def matrices(self, width: int, height: int) -> NDArray[np.float64]:
@@ -371,18 +380,25 @@ class JointGroup:
         self,
         waves: NDArray[np.float64],
         n: int,
-        panel: int,
         acting: NDArray[np.float64],
         x: NDArray[np.float64],
+        starts: NDArray[np.float64],
     ) -> None:
-        """A panel of a window: what the joints send goes into `waves`, and their states x go on."""
-        a = waves[n - self.back, self.arrive, panel]
-        waves[n, self.send, panel] = self.sent(a, panel, acting[self.points], x)
+        """A window, in which nothing arrives that is sent in it: what the joints send goes into `waves`.
+
+        Their states x go on; `starts` takes them at the start of each panel.
+        """
+        a = waves[n - self.back, self.arrive, self._panels]
+        waves[n, self.send, self._panels] = self.sent(a, acting[:, self.points], x, starts)
 
     def sent(
-        self, a: NDArray[np.float64], panel: int, load: NDArray[np.float64], x: NDArray[np.float64]
+        self,
+        a: NDArray[np.float64],
+        load: NDArray[np.float64],
+        x: NDArray[np.float64],
+        starts: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """What goes out, (joints, ports, k), where a arrives and a load of three coefficients acts on each point."""
+        """What goes out, (panels, joints, ports, k), where a arrives and a load, (panels, joints, points, 3), acts."""
         raise NotImplementedError
 
 
@@ -404,10 +420,14 @@ class Scatterers(JointGroup):
         )
 
     def sent(
-        self, a: NDArray[np.float64], panel: int, load: NDArray[np.float64], x: NDArray[np.float64]
+        self,
+        a: NDArray[np.float64],
+        load: NDArray[np.float64],
+        x: NDArray[np.float64],
+        starts: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        out = self.waves[panel] @ a
-        out[..., :3] += self.loads[panel] @ load
+        out = self.waves @ a
+        out[..., :3] += self.loads @ load
         return np.asarray(out)
 
 
@@ -440,26 +460,32 @@ class Bodies(JointGroup):
             stride, down, up = 2 * stride, longer, longer_up
 
     def sent(
-        self, a: NDArray[np.float64], panel: int, load: NDArray[np.float64], x: NDArray[np.float64]
+        self,
+        a: NDArray[np.float64],
+        load: NDArray[np.float64],
+        x: NDArray[np.float64],
+        starts: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        p = (self.push[:, None, :] @ a)[:, 0]
-        p[:, :3] += self.drive * load[:, 0]
+        p = (self.push[:, None, :] @ a)[:, :, 0]
+        p[..., :3] += self.drive * load[:, :, 0]
         y = np.zeros_like(p)
-        y[:, 1:] = p[:, :-1]
-        y[:, 1] *= 2
-        y[:, 1:-1] -= p[:, 2:]
-        y *= self.ratios[panel]
+        y[..., 1:] = p[..., :-1]
+        y[..., 1] *= 2
+        y[..., 1:-1] -= p[..., 2:]
+        y *= self.ratios
         for stride, products in self.down:
-            y[:, :-stride] += products[panel] * y[:, stride:]
-        begun, ended = _total(self.sums[panel] * y)
-        begun = x[self.states[:, 0]] - begun
-        mean = begun - self.slack[panel] * begun
-        x[self.states[:, 0]] = mean + (ended - self.loss[panel] * mean)
-        y[:, 0] = 2 * mean
+            y[..., :-stride] += products * y[..., stride:]
+        sums, mean, own = _total(self.sums * y[:, None]), np.zeros_like(y[..., 0]), self.states[:, 0]
+        for panel, (begun, ended) in enumerate(sums):
+            starts[panel, own] = x[own]
+            begun = x[own] - begun
+            mean[panel] = begun - self.slack[panel] * begun
+            x[own] = mean[panel] + (ended - self.loss[panel] * mean[panel])
+        y[..., 0] = 2 * mean
         for stride, products in self.up:
-            y[:, stride:] += products[panel] * y[:, :-stride]
-        y[:, 0] = mean
-        return np.asarray(self.ratio[..., None] * y[:, None] - a)
+            y[..., stride:] += products * y[..., :-stride]
+        y[..., 0] = mean
+        return np.asarray(self.ratio[..., None] * y[:, :, None] - a)
 
 
 class Blocks(JointGroup):
@@ -480,13 +506,21 @@ class Blocks(JointGroup):
         self.columns = self.matrices(width, width)[:, 0]
 
     def sent(
-        self, a: NDArray[np.float64], panel: int, load: NDArray[np.float64], x: NDArray[np.float64]
+        self,
+        a: NDArray[np.float64],
+        load: NDArray[np.float64],
+        x: NDArray[np.float64],
+        starts: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         s = self.collect @ a
         s[..., :3] += load
-        answer = np.concatenate([s.reshape(len(s), -1), x[self.states]], axis=1) @ self.columns[panel]
-        x[self.states] += answer[:, s[0].size :]
-        return np.asarray(self.spread @ answer[:, : s[0].size].reshape(s.shape) - a)
+        for panel, start in enumerate(starts):
+            start[self.states] = x[self.states]
+            answer = np.concatenate([s[panel].reshape(len(self.joints), -1), x[self.states]], axis=1)
+            answer = answer @ self.columns[panel]
+            x[self.states] += answer[:, s[0, 0].size :]
+            s[panel] = answer[:, : s[0, 0].size].reshape(s[panel].shape)
+        return np.asarray(self.spread @ s - a)
 
 
 def _total(values: NDArray[np.float64]) -> NDArray[np.float64]:

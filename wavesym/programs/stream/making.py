@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import inf, isfinite
+from math import inf, isfinite, log
 
 from flint import arb, fmpq
 
@@ -122,23 +122,62 @@ def _at_worst(plan: StreamPlan, verdict: Verdict, tolerance: fmpq) -> str:
 
 
 def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
-    """The least degree that will do, and what it is worth."""
-    degree, spent = max(first_degree(plan.rings, real) - 8, 4), 0.0
+    """The least degree that will do, and what it is worth.
+
+    A march of the whole horizon judges a degree, so few are tried. What polynomials lose falls by about the same
+    factor from one degree to the next: e**2 as a rule, until two degrees show it.
+    """
     tolerance = nearest(max(model.tolerance, _ROUNDINGS * real.roundoff))
+    degree, spent = max(first_degree(plan.rings, real) - 8, 4), 0.0
+    failed: tuple[int, float] | None = None
+    gain = 2.0
+    found: tuple[int, float, Verdict] | None = None
     while True:
-        spent = refuse_long(plan.rings, degree, spent, real)
         try:
-            verdict = judge(plan.rings, degree, real)
-        except OverflowError:
-            raise
-        except ArithmeticError as error:
-            raise CostError(f"system.parts: to solve the joints of a stream, {error} (softer springs help)") from None
-        worst = max(verdict.bounds)
-        # what polynomials have in it; where nothing is left of an output, what rounding has says what matters
-        share = tolerance * (verdict.truncated + verdict.rounded) / worst if 0 < worst < inf else verdict.rounded
-        if _SPARE * verdict.truncated <= share:
-            return degree, verdict
-        degree += 1
+            spent = refuse_long(plan.rings, degree, spent, real)
+        except CostError:
+            if failed is None or degree == failed[0] + 1:
+                raise
+            degree = failed[0] + 1  # not as far at once
+            continue
+        verdict = _judged(plan, degree, real)
+        excess = _excess(verdict, tolerance)
+        if excess > 0:
+            if failed:
+                gain = max((failed[1] - excess) / (degree - failed[0]), 0.1)
+            failed = degree, excess
+        else:
+            found = degree, excess, verdict
+        if found and (failed is None or found[0] == failed[0] + 1):
+            return found[0], found[2]
+        assert failed is not None
+        low, missing = failed
+        if found:
+            high, spare, _ = found
+            degree = low + min(max(round((high - low) * missing / (missing - spare)), 1), high - low - 1)
+        else:
+            degree = low + max(1, int(min(missing / gain, low / 4)))
+
+
+def _judged(plan: StreamPlan, degree: int, real: Real) -> Verdict:
+    try:
+        return judge(plan.rings, degree, real)
+    except OverflowError:
+        raise
+    except ArithmeticError as error:
+        raise CostError(f"system.parts: to solve the joints of a stream, {error} (softer springs help)") from None
+
+
+def _excess(verdict: Verdict, tolerance: float) -> float:
+    """How much more polynomials lose than they may, as a logarithm: more than 0 where a degree is too low."""
+    worst, lost = max(verdict.bounds), _SPARE * verdict.truncated
+    # what polynomials have in it; where nothing is left of an output, what rounding has says what matters
+    share = verdict.rounded
+    if 0 < worst < inf:
+        share = tolerance * (verdict.truncated + verdict.rounded) / worst
+    if lost <= share:
+        return max(log(lost / share), -100.0) if lost > 0 else -100.0
+    return log(lost / share) if share > 0 else 100.0
 
 
 _CHECKED = 8  # longest steps of the march, at most
