@@ -172,7 +172,6 @@ def test_commands_put_out_the_same_with_it_and_without(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(published, "paper", Slow)  # ours takes longer, and no other way
-    monkeypatch.setattr(published, "particulars", Slow)
     monkeypatch.chdir(tmp_path_factory.mktemp("pipe"))
     status = main(arguments)
     out, aside = capsys.readouterr()

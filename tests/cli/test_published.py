@@ -28,7 +28,6 @@ def judged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
             return made
 
     monkeypatch.setattr(published, "paper", Watched)
-    monkeypatch.setattr(published, "particulars", Watched)
     monkeypatch.chdir(tmp_path)
     return found
 
@@ -58,7 +57,7 @@ def test_the_whole_paper_in_every_format(format: str, capsys: pytest.CaptureFixt
     [
         (["--published", "1.2"], ["(1.2).1"]),
         (["T1.a", "--published", "(1.1)"], ["(1.1)", "T1.a.x", "T1.a.y"]),
-        (["--published", "Table 1", "--format", "json"], ["T1.a.x", "T1.a.y", "T1.b.x", "T1.b"]),
+        (["--published", "Table 1", "--format", "json"], ["T1.b", "T1.a.x", "T1.a.y", "T1.b.x", "T1.b.y"]),
     ],
 )
 def test_only_what_is_asked_for_is_judged(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
+from wavesym.papers.entries import Passage
 from wavesym.papers.pielorz1979.paper import ADAPTERS
 from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.record import Record, judge
@@ -18,3 +20,8 @@ def judged(id: str, slip: Mapping[str, object] | None = None, **changes: object)
         assert entry.slip is not None
         entry = entry.model_copy(update={"slip": entry.slip.model_copy(update=slip)})
     return judge(entry, ADAPTERS[entry.kind](entry))
+
+
+def changed_passage(passage: Passage, **changes: Any) -> Passage:
+    """A passage with other data, whose records follow from these."""
+    return Passage(**{name: changes.get(name, getattr(passage, name)) for name in Passage.model_fields})

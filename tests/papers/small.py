@@ -4,31 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from wavesym.papers.about import About, Heading, TableLayout
-from wavesym.papers.entries import Aside, PaperEntry, Passage, Slip
+from wavesym.papers.entries import About, Aside, PaperEntry, Passage, Slip, passage_hashes
 from wavesym.papers.entries import Paper as EntriesPaper
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.mutations import mutations
 from wavesym.papers.pages.findings import Findings
 from wavesym.papers.record import Case, Reading, Record, Reproduction, Test, case, judge
+from wavesym.papers.tables import PrintedTable, TableHead
 from wavesym.papers.tree import Relation
 
 SCENE = 'name = "counterexample"\n\n[system]\ntype = "drive"\n'
-TABLE = TableLayout(
-    name="Table 1",
-    cell="T1.{row}.{column}",
-    row_head="T1.{row}",
-    columns=(Heading(key="x", formula=r"\bar{x}_{0,i}"), Heading(key="y", words="who & what")),
-    rows=(Heading(key="a", formula="a"), Heading(key="b", words="b_1")),
-    names={"T1.b.y": "U(x, t)"},
-)
 ABOUT = About(
     author="A. Łoś",
     title="Sumy & <iloczyny>",
     english="Sums",
     date="received 1979",
     transcription="Read from a scan.",
-    table=(TABLE,),
 )
 
 
@@ -58,42 +49,76 @@ def entry(id: str, printed: str, where: str, slip: Slip | None = None, **more: o
     return PaperEntry(id=id, kind="sum", printed=printed, where=where, slip=slip, **given)
 
 
-def _slip(corrected: str, **more: object) -> Slip:
-    return Slip(**{"verdict": "misprint", "corrected": corrected, "note": "One more.", **more})
+def _slip(corrected: str, note: str = "One more.", **more: object) -> dict[str, object]:
+    return {"slip": {"verdict": "misprint", "corrected": corrected, "note": note, **more}}
 
 
 EQUIVALENT = (("sign of 0n in 0n + n", "-0 & 0 are one"), ("2 n for n in n", "0 times n is 0"))
-ENTRIES = (
-    entry("(1.1)", "n + 2 = 2 + n", "section 1, (1.1)"),
-    entry("(1.2).1", "n + n = 3n", "section 1, (1.2)", _slip("n + n = 2n", origin="print", note="A factor.")),
-    entry("T1.a.x", "n - 1 = n + 1", "Table 1, row a", _slip("n + 1 = n + 1")),
-    entry("T1.a.y", "n + 1 + 1 = n + 1", "Table 1, row a", _slip("n + 1 = n + 1", note="One less.")),
-    entry("T1.b.x", "0n + n = n", "Table 1, row b", ranges=("n = 1, 2",), equivalent=EQUIVALENT),
-    entry("text.1", "n + n = [2", "section 1, after (1.2)", _slip("n + n = 2n", verdict="unreadable", note="#1_%")),
-    entry("T1.b", "n + 1 = 1 + n", "Table 1, row b"),
+PASSAGES = (
+    Passage(
+        lines=(1, 2),
+        where="section 1, (1.2)",
+        kind="sum",
+        text="n + 2 = 2 + n\nn + n = 3n, żółć Резюме $a_1$",
+        record={
+            "(1.1)": {"printed": "n + 2 = 2 + n", "where": "section 1, (1.1)"},
+            "(1.2).1": {"printed": "n + n = 3n", **_slip("n + n = 2n", origin="print", note="A factor.")},
+        },
+        aside=(Aside(scan="żółć Резюме $a_1$", why="names <a> & b"),),
+    ),
+    Passage(
+        lines=(4, 6),
+        where="Table 1",
+        kind="sum",
+        text="\t$\\bar{x}_{0,i}$\twho & what\tU\n"
+        "a\tn - 1 = n + 1\tn + 1 + 1 = n + 1\tU(x, t)\n"
+        "n + 1 = 1 + n\t0n + n = n\tn = n\tV(x, t)",
+        record={
+            "T1.b": {"printed": "n + 1 = 1 + n"},
+            "T1.a.x": _slip("n + 1 = n + 1"),
+            "T1.a.y": _slip("n + 1 = n + 1", note="One less."),
+            "T1.b.x": {"ranges": ("n = 1, 2",), "equivalent": EQUIVALENT},
+        },
+        table=(
+            PrintedTable(
+                name="Table 1",
+                cell="T1.{row}.{column}",
+                head=4,
+                line=5,
+                row_head="T1.{row}",
+                columns=(
+                    TableHead(r"$\bar{x}_{0,i}$", "x"),
+                    TableHead("who & what", "y"),
+                    TableHead("U", "z"),
+                ),
+                rows=(TableHead("a", "a"), TableHead("n + 1 = 1 + n", "b")),
+                unjudged={"z": "a name"},
+            ),
+        ),
+    ),
+    Passage(
+        lines=(8, 8),
+        where="section 1, after (1.2)",
+        kind="sum",
+        text="n + n = [2",
+        record={"text.1": {"printed": "n + n = [2", **_slip("n + n = 2n", verdict="unreadable", note="#1_%")}},
+    ),
+    Passage(lines=(10, 10), where="section 1", why="a title"),
 )
+PAPER = EntriesPaper(ABOUT, PASSAGES, {each.lines: passage_hashes(each.text, each.entries) for each in PASSAGES})
+ENTRIES = tuple(PAPER.entries.values())
 
 
 def records(*entries: PaperEntry) -> tuple[Record, ...]:
     return tuple(judge(each, adding(each)) for each in entries or ENTRIES)
 
 
-PASSAGES = (
-    Passage(lines=(1, 2), where="section 1", text="x", aside=(Aside(scan="żółć Резюме $a_1$", why="names <a> & b"),)),
-    Passage(lines=(4, 4), where="section 1", why="a title"),
-)
-
-
 class Paper:
     """Stands in for a paper's module: what `verify --published` asks of one."""
 
     @staticmethod
-    def about() -> About:
-        return ABOUT
-
-    @staticmethod
     def paper() -> EntriesPaper:
-        return EntriesPaper((PASSAGES[0].model_copy(update={"record": ENTRIES}), PASSAGES[1]), {})
+        return PAPER
 
     @staticmethod
     def records(
@@ -103,4 +128,4 @@ class Paper:
 
 
 def findings(reproduce: bool = False) -> Findings:
-    return Findings(ABOUT, records(), PASSAGES, reproduce)
+    return Findings(PAPER, records(), True, reproduce)

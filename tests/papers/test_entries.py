@@ -2,79 +2,113 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import pytest
 
-from wavesym.papers.entries import WHOLE, Aside, Paper, PaperEntry, Passage, digest, edited, plain, problems
+from tests.papers.small import ABOUT
+from wavesym.papers.entries import WHOLE, Aside, Paper, Passage, passage_hashes, problems
+from wavesym.papers.selection import plain, position
 
 TEXT = r"$$(1.1) \quad a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m$$"
-ENTRY = PaperEntry(
-    id="(1.1)",
-    kind="test",
-    scan=r"a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m",
-    printed="a_i + b = 0",
-    ranges=(r"i = 1, 2, \dots, m",),
-    edits=(("+ +", "+", "the sign stands twice where the line breaks"),),
-)
-HASHES = {"3": digest(TEXT), "5": digest("and so on"), "(1.1):edits": digest(edited(ENTRY))}
+RECORD: dict[str, Any] = {
+    "printed": "a_i + b = 0",
+    "ranges": (r"i = 1, 2, \dots, m",),
+    "edits": (("+ +", "+", "the sign stands twice where the line breaks"),),
+}
 LATER = Passage(lines=(5, 5), why="announces")
 
 
-def _paper(entry=ENTRY, text=TEXT, hashes=HASHES, later=LATER, **passage):
-    return Paper((Passage(lines=(3, 3), text=text, record=(entry,), **passage), later), hashes)
+def _passage(text: str = TEXT, record: Mapping[str, Any] = RECORD, id: str = "(1.1)", **more: Any) -> Passage:
+    return Passage(lines=(3, 3), text=text, kind="test", record={id: record}, **more)
 
 
-def _changed(**changes):
-    return ENTRY.model_copy(update=changes)
+RIGHT = _passage()
+HASHES = {RIGHT.lines: passage_hashes(TEXT, RIGHT.entries), LATER.lines: passage_hashes("and so on")}
 
 
-def test_what_fits():
-    assert not list(problems(_paper()))
+def _problems(*passages: Passage, hashes: Mapping[tuple[int, int], Any] = HASHES) -> list[tuple[str, str]]:
+    return list(problems(Paper(ABOUT, passages, hashes)))
+
+
+def test_what_fits() -> None:
+    assert not _problems(RIGHT, LATER)
+    (entry,) = RIGHT.entries
+    assert entry.scan == r"a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m"
+    assert entry.lines == (3, 3)
 
 
 @pytest.mark.parametrize(
-    "entry",
+    "change",
     [
-        _changed(printed="a_i - b = 0"),
-        _changed(printed="a_j + b = 0"),
-        _changed(ranges=(r"i = 1, 2, \dots, m-1",)),
-        _changed(edits=()),
-        _changed(edits=(*ENTRY.edits, ("c", "d", "nothing"))),
-        _changed(edits=(("+ +", "-", "the sign stands twice"),), printed="a_i - b = 0"),
-        _changed(scan="a_i - b = 0"),
+        {"printed": "a_i - b = 0"},
+        {"printed": "a_j + b = 0"},
+        {"ranges": (r"i = 1, 2, \dots, m-1",)},
+        {"edits": ()},
+        {"edits": (*RECORD["edits"], ("c", "d", "nothing"))},
+        {"edits": (("+ +", "-", "the sign stands twice"),), "printed": "a_i - b = 0"},
     ],
 )
-def test_a_string_that_is_changed_does_not(entry):
-    assert "(1.1)" in {id for id, _ in problems(_paper(entry))}
+def test_a_string_that_is_changed_does_not(change: Mapping[str, Any]) -> None:
+    assert "(1.1)" in {id for id, _ in _problems(_passage(record={**RECORD, **change}), LATER)}
 
 
-def test_a_changed_line_is_seen():
-    wrong = TEXT.replace("b", "c")
-    entry = _changed(scan=ENTRY.scan.replace("b", "c"), printed="a_i + c = 0")
-    assert list(problems(_paper(entry, wrong))) == [("(1.1)", "lines 3-3: line 3 is not the source's")]
+def test_a_changed_line_is_seen() -> None:
+    wrong = _passage(TEXT.replace("b", "c"), {**RECORD, "printed": "a_i + c = 0"})
+    assert _problems(wrong, LATER) == [("(1.1)", "lines 3-3: they are not the source's")]
 
 
-def test_a_changed_translation_is_seen():
-    words = "a_i rośnie"
-    said = PaperEntry(id="text.1", kind="sentence", scan=words, printed=words, english="a rises")
-    hashes = {"3": digest("a_i rośnie"), "text.1": digest("a rises"), "5": HASHES["5"]}
-    assert not list(problems(_paper(said, "a_i rośnie", hashes)))
+def test_a_changed_translation_is_seen() -> None:
+    record = {"printed": "a_i rośnie", "english": "a rises"}
+    right = _passage("a_i rośnie", record, "text.1")
+    hashes = {**HASHES, (3, 3): passage_hashes(right.text, right.entries)}
+    assert not _problems(right, LATER, hashes=hashes)
     for change in ({"english": "a falls"}, {"printed": "a_i maleje"}, {"edits": (("a_i", "a_j", "an index"),)}):
-        changed = said.model_copy(update=change)
-        assert "text.1" in [id for id, _ in problems(_paper(changed, "a_i rośnie", hashes))]
+        changed = _passage("a_i rośnie", {**record, **change}, "text.1")
+        assert "text.1" in [id for id, _ in _problems(changed, LATER, hashes=hashes)]
 
 
-def test_nothing_is_left_out():
+def test_nothing_is_left_out() -> None:
     longer = TEXT + r" oraz $c = 1$"
-    hashes = {**HASHES, "3": digest(longer)}
-    assert "neither judged nor set aside" in dict(problems(_paper(text=longer, hashes=hashes)))["(1.1)"]
+    hashes = {**HASHES, (3, 3): passage_hashes(longer, RIGHT.entries)}
+    assert "neither judged nor set aside" in dict(_problems(_passage(longer), LATER, hashes=hashes))["(1.1)"]
     aside = (Aside(scan="$c = 1$", why="a definition"),)
-    assert not list(problems(_paper(text=longer, hashes=hashes, aside=aside)))
-    assert dict(problems(_paper(hashes={**HASHES, "7": digest("more")})))[WHOLE] == "lines in no passage: [7]"
-    assert dict(problems(_paper(later=Passage(lines=(3, 5), why="announces"))))[WHOLE] == "lines in two passages: [3]"
-    assert dict(problems(_paper(later=Passage(lines=(5, 5)))))[WHOLE] == "lines 5-5: neither judged nor set aside"
+    assert not _problems(_passage(longer, aside=aside), LATER, hashes=hashes)
+    missing = {**HASHES, (7, 7): passage_hashes("more")}
+    assert dict(_problems(RIGHT, LATER, hashes=missing))[WHOLE] == "lines in no passage: [(7, 7)]"
+    twice = Passage(lines=(3, 5), why="announces")
+    assert (WHOLE, "lines in two passages: [(3, 5)]") in _problems(RIGHT, twice)
+    assert dict(_problems(RIGHT, Passage(lines=(5, 5))))[WHOLE] == "lines 5-5: neither judged nor set aside"
 
 
-def test_layout_is_no_difference():
+def test_layout_is_no_difference() -> None:
     assert plain(r"\left( a & = \left\{ b \right. \right) c \quad \text{dla} d,") == plain(r"(a = \{ b ) c, d")
     assert plain("a + b") != plain("a - b")
     assert plain(r"a \times b") != plain("a b")
+
+
+@pytest.mark.parametrize(
+    ("source", "strings", "edits", "part"),
+    [
+        (r"x, a &= b, \\ c &= d", ("c = d",), (), "c &= d"),
+        ("dla $a = 1$, potem", ("a = 1",), (), "$a = 1$"),
+        (r"z przedziału $\langle 0, 1 \rangle$.", (r"z \in \langle 0, 1 \rangle",), (("przedziału", r"\in", ""),),
+         r"z przedziału $\langle 0, 1 \rangle$"),
+        ("Suma maleje. Suma rośnie.", ("Suma rośnie.",), (), "Suma rośnie."),
+        (r"r = \begin{cases} 1 & i = 2 \\ 0 & i = 3 \end{cases} \\", (r"r = 1, i = 2 0, i = 3",), (),
+         r"r = \begin{cases} 1 & i = 2 \\ 0 & i = 3 \end{cases}"),
+        ("oraz maleją K = 1", ("K = 1",), (("maleją", "", "in words"),), "maleją K = 1"),
+        ("a = b", ("a = c",), (), ""),
+    ],
+)  # fmt: skip
+def test_a_string_selects_its_part_of_a_passage(
+    source: str, strings: tuple[str, ...], edits: tuple[tuple[str, str, str], ...], part: str
+) -> None:
+    start, end = position(source, strings, edits) or (0, 0)
+    assert source[start:end] == part
+
+
+def test_what_stands_twice_is_selected_twice() -> None:
+    first = position("a a", ("a",))
+    assert (first, position("a a", ("a",), used=[first or (0, 0)])) == ((0, 1), (2, 3))

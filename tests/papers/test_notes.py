@@ -22,8 +22,8 @@ PLACES = {passage.where.split(",")[0] for passage in paper().passages}
 def _sayings() -> Iterator[tuple[str, str]]:
     """Whatever is said beside what is printed, by record or line."""
     for passage in paper().passages:
-        yield f"line {passage.lines[0]}", " ".join([passage.why, *(aside.why for aside in passage.aside)])
-        for entry in passage.entries():
+        yield f"line {passage.lines[0]}", " ".join([passage.why, *(aside.why for aside in passage.asides)])
+        for entry in passage.entries:
             reasons = [why for _, why in entry.equivalent] + [why for _, _, why in entry.edits]
             yield entry.id, " ".join([entry.slip.note if entry.slip else "", entry.note, *reasons])
 

@@ -131,7 +131,9 @@ def test_a_sentence_that_lacks_words_is_incomplete(printed, corrected, kind):
         lambda said, ranges: Reading(said),
         lambda right: [("another", Reading("It stays."))],
     )
-    entry = PaperEntry(id="x", kind="test", english=printed, slip=Slip(verdict=kind, corrected=corrected, note=""))
+    entry = PaperEntry(
+        id="x", kind="test", printed="", english=printed, slip=Slip(verdict=kind, corrected=corrected, note="")
+    )
     assert judge(entry, test).verdict == kind
 
 

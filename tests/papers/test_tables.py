@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.papers.falsified import changed_passage
 from wavesym.papers import entries as data
 from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.pielorz1979 import cells
@@ -98,7 +99,7 @@ def test_a_counterexample_says_where_to_look():
 @pytest.mark.parametrize(
     ("before", "after", "problem"),
     [
-        ("\t1\t$", "\t2\t$", "is not the source's"),
+        ("\t1\t$", "\t2\t$", "they are not the source's"),
         ("g_1\tn", "g_2\tn", "has no label g_1"),
         ("F_i\t", "F_i\tn+3", "neither judged nor set aside: n+3"),
     ],
@@ -106,5 +107,7 @@ def test_a_counterexample_says_where_to_look():
 def test_a_table_is_bound_to_the_source(before, after, problem):
     (table,) = (passage for passage in paper().passages if passage.where == "Table 2")
     assert before in table.text
-    changed = data.Paper((table.model_copy(update={"text": table.text.replace(before, after, 1)}),), paper().hashes)
+    changed = data.Paper(
+        paper().about, (changed_passage(table, text=table.text.replace(before, after, 1)),), paper().hashes
+    )
     assert any(problem in found for _, found in data.problems(changed))

@@ -1,23 +1,27 @@
 """A paper as data: passages of its text in their order, each cut into records, or set aside with a reason.
 
-A passage is some whole lines of the source. Its records say what is printed there; what of it is no record is set aside
-with a reason, so that nothing can be left out unseen. Every line of the source has a committed hash: a transcription
-that is changed afterwards no longer fits it (`problems`).
+A passage is some whole lines of the source, as they stand. A record says what is printed there, and selects its part of
+the passage by that (selection.py); what of a passage is no record is set aside with a reason, so that nothing can be
+left out unseen. The lines of every passage, and its translations and edits, have a committed hash: a transcription that
+is changed afterwards no longer fits it (`problems`).
 """
 
 from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from hashlib import sha256
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict
 
 from wavesym.papers import tables
+from wavesym.papers.selection import plain, position
 from wavesym.papers.tables import PrintedTable
 
 Slipped = Literal["misprint", "unreadable", "convention", "model", "depends", "incomplete"]
@@ -44,16 +48,16 @@ class Slip(_Data):
 class PaperEntry(_Data):
     """One printed formula, cell or sentence.
 
-    `scan` is the text of the source, verbatim; `printed` is the same on one line, a formula without words: it differs
-    by `edits` alone (from, to, why). `english` is a sentence in the words that are judged; then `edits` are of what it
-    says. `ranges` are printed too, `inferred` ones are not. `equivalent` are the faults that no case can turn (name,
-    why). `about` is what the adapter of this `kind` needs to know. The ranges of a cell of a table are those of its
+    `printed` stands in one line, a formula without words; `scan` is its part of the source, verbatim, from which it
+    differs by `edits` alone (from, to, why). `english` is a sentence in the words that are judged; then `edits` are of
+    what it says. `ranges` are printed too, `inferred` ones are not. `equivalent` are the faults that no case can turn
+    (name, why). `about` is what the test of this `kind` needs to know. The ranges of a cell of a table are those of its
     `heads`, whose records bind them to the source.
     """
 
     id: str
     kind: str
-    printed: str = ""
+    printed: str
     english: str = ""
     scan: str = ""
     ranges: tuple[str, ...] = ()
@@ -81,7 +85,7 @@ class PaperEntry(_Data):
         return self.slip.corrected, (*ranges, *self.inferred)
 
 
-class Aside(_Data):
+class Aside(NamedTuple):
     """A part of a passage that is not judged: a definition, an announcement, a reference."""
 
     scan: str
@@ -89,82 +93,137 @@ class Aside(_Data):
 
 
 class Passage(_Data):
-    """Lines of the source, first to last, with their text where anything of it is judged.
+    """Lines of the source, first to last, with their text where anything of it is judged, else the reason.
 
-    Every cell of a `table` is a record too; `cell` gives what is to be said of one beyond what stands there, by its id.
+    `where` names the place; {line} in it is the last part of a record's id. `record` has what is printed, by id; its
+    records have the `kind` and `about` of the passage unless they say otherwise. Every cell of a `table` is a record
+    too, about which `record` may say more.
     """
 
     lines: tuple[int, int]
     where: str = ""
     text: str = ""
     why: str = ""
-    record: tuple[PaperEntry, ...] = ()
+    kind: str = ""
+    about: Mapping[str, Any] = {}
+    record: Mapping[str, Mapping[str, Any]] = {}
     aside: tuple[Aside, ...] = ()
     table: tuple[PrintedTable, ...] = ()
-    cell: Mapping[str, Mapping[str, Any]] = {}
 
-    def entries(self) -> Iterator[PaperEntry]:
+    @cached_property
+    def entries(self) -> tuple[PaperEntry, ...]:
         """The records, each with its place and its scan."""
-        for entry in self.record:
-            scan = entry.scan or self.text.strip("\n")
-            yield entry.model_copy(
-                update={
-                    "scan": scan,
-                    "printed": entry.printed or " ".join(scan.split()),
-                    "where": entry.where or self.where,
-                    "lines": self.lines,
-                }
-            )
-        yield from self._cells()
+        cells = {place.id for place in tables.places(self.table, self.text, self.lines[0])}
+        used: list[tuple[int, int]] = []
+        found = [self._entry(id, data, used) for id, data in self.record.items() if id not in cells]
+        return (*found, *self._cells({entry.id: entry for entry in found}))
 
-    def _cells(self) -> Iterator[PaperEntry]:
+    def _entry(self, id: str, data: Mapping[str, Any], used: list[tuple[int, int]]) -> PaperEntry:
+        entry = PaperEntry(**{"id": id, "kind": self.kind, "about": self.about, **data})
+        strings = (entry.printed,) if entry.english else (entry.printed, *entry.ranges)
+        start, end = span = position(self.text, strings, () if entry.english else entry.edits, used) or (0, 0)
+        used.append(span)
+        place = {
+            "scan": self.text[start:end],
+            "where": entry.where or self.where.replace("{line}", id.rpartition(".")[-1]),
+            "lines": (self._line(start), self._line(max(start, end - 1))),
+        }
+        return entry.model_copy(update=place)
+
+    def _line(self, place: int) -> int:
+        """The number of the line in which a place of the text is."""
+        return self.lines[0] + self.text.count("\n", 0, place)
+
+    def _cells(self, known: Mapping[str, PaperEntry]) -> Iterator[PaperEntry]:
         """The cells of tables, each with the ranges of its heads."""
-        known = {entry.id: entry for entry in self.record}
         for place in tables.places(self.table, self.text, self.lines[0]):
+            if place.column.name in place.table.unjudged:
+                continue
             heads = tuple(head for head in place.heads if head in known)
-            given: dict[str, Any] = {
+            data: dict[str, Any] = {
+                "kind": "cell",
                 "printed": place.scan.strip("$"),
-                "ranges": tuple(range_ for head in heads for range_ in _said(known[head])),
-                "about": {"table": place.table.id, "row": place.row, "column": place.column},
-                **self.cell.get(place.id, {}),
+                "ranges": tuple(range_ for head in heads for range_ in _head_ranges(known[head])),
+                "about": {"row": place.row.name, "column": place.column.name},
+                "where": f"{self.where}, row {place.row.name}, column {place.column.name}",
+                **self.record.get(place.id, {}),
             }
-            where = f"{self.where}, row {place.row}, column {place.column}"
-            yield PaperEntry(
-                id=place.id, kind="cell", scan=place.scan, where=where, lines=self.lines, heads=heads, **given
-            )
+            yield PaperEntry(id=place.id, scan=place.scan, lines=(place.line, place.line), heads=heads, **data)
+
+    @property
+    def asides(self) -> tuple[Aside, ...]:
+        """The parts that are not judged, columns of tables among them."""
+        cells = tables.places(self.table, self.text, self.lines[0])
+        unjudged = (Aside(c.scan, c.table.unjudged[c.column.name]) for c in cells if c.column.name in c.table.unjudged)
+        return (*self.aside, *unjudged)
 
 
-def _said(head: PaperEntry) -> tuple[str, ...]:
+def _head_ranges(head: PaperEntry) -> tuple[str, ...]:
     """The ranges that a head gives to its cells: its own, and itself where it is one."""
     return (head.printed, *head.ranges) if head.kind == "range" else head.ranges
 
 
+class About(_Data):
+    """A paper: author, title, the title in English, its date, and in what form it was at hand."""
+
+    author: str
+    title: str
+    english: str
+    date: str
+    transcription: str
+
+
+class PassageHashes(NamedTuple):
+    """The hashes of the lines of a passage, and of its translations and edits."""
+
+    lines: str
+    checked: str
+
+
 @dataclass(frozen=True)
 class Paper:
-    """All passages in the order of the source, and the hashes of its lines and of the translations."""
+    """What is known of a paper itself, all passages in the order of the source, and their hashes, by their lines."""
 
+    about: About
     passages: tuple[Passage, ...]
-    hashes: Mapping[str, str]
+    hashes: Mapping[tuple[int, int], PassageHashes]
 
-    def entries(self) -> tuple[PaperEntry, ...]:
-        """All records."""
-        return tuple(entry for passage in self.passages for entry in passage.entries())
+    @cached_property
+    def entries(self) -> Mapping[str, PaperEntry]:
+        """All records by their ids, in the order of print."""
+        return {entry.id: entry for passage in self.passages for entry in passage.entries}
+
+    @property
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """All tables."""
+        return tuple(table for passage in self.passages for table in passage.table)
 
 
-def read_paper(files: Iterable[Path], hashes: Path) -> Paper:
-    """The passages of some TOML files, in the order of the source."""
-    passages = [
-        Passage(**passage)
-        for file in files
-        for passage in tomllib.loads(file.read_text(encoding="utf-8")).get("passage", ())
-    ]
-    known = dict(line.split() for line in hashes.read_text(encoding="utf-8").splitlines())
-    return Paper(tuple(sorted(passages, key=lambda passage: passage.lines)), known)
+def read_paper(directory: Path) -> Paper:
+    """The passages of the TOML files of a directory, what paper.toml says of the paper, and hashes.txt."""
+    data = {file.stem: tomllib.loads(file.read_text(encoding="utf-8")) for file in sorted(directory.glob("*.toml"))}
+    about = About(**data.pop("paper"))
+    passages = [Passage(**passage) for file in data.values() for passage in file["passage"]]
+    for first, last, where, why in (row for file in data.values() for row in file.get("unjudged", ())):
+        passages.append(Passage(lines=(first, last), where=where, why=why))
+    hashes = {}
+    for line in (directory / "hashes.txt").read_text(encoding="utf-8").splitlines():
+        first, last, *known = line.split()
+        hashes[int(first), int(last)] = PassageHashes(*known)
+    return Paper(about, tuple(sorted(passages, key=lambda passage: passage.lines)), hashes)
 
 
 def digest(text: str) -> str:
-    """The hash of a line, spaces told apart from nothing else."""
+    """The hash of a text; how many spaces there are makes no difference."""
     return sha256(" ".join(text.split()).encode()).hexdigest()[:16]
+
+
+def passage_hashes(text: str, entries: Iterable[PaperEntry] = ()) -> PassageHashes:
+    """The hashes of a text of some lines, and of the translations and edits of its records."""
+    checked = [
+        part for entry in entries for part in (entry.english, *(part for edit in entry.edits for part in edit[:2]))
+    ]
+    return PassageHashes(digest(text), digest(" | ".join(part for part in checked if part)))
 
 
 WHOLE = "paper"
@@ -175,58 +234,51 @@ def problems(paper: Paper) -> Iterator[tuple[str, str]]:
     """What does not fit: the id of a record, or `WHOLE`, and what is wrong. A passage's are all its records'."""
     yield from _uncovered(paper)
     for passage in paper.passages:
-        entries = tuple(passage.entries())
-        for problem in _misfits(passage, paper.hashes):
-            told = f"lines {passage.lines[0]}-{passage.lines[1]}: {problem}"
-            yield from ((entry.id, told) for entry in entries)
-            if not entries:
-                yield WHOLE, told
-        for entry in entries:
-            yield from ((entry.id, problem) for problem in _unlike(entry, passage, paper.hashes))
+        for problem in _misfits(passage, paper.hashes.get(passage.lines)):
+            message = f"lines {passage.lines[0]}-{passage.lines[1]}: {problem}"
+            yield from ((entry.id, message) for entry in passage.entries)
+            if not passage.entries:
+                yield WHOLE, message
+        for entry in passage.entries:
+            yield from ((entry.id, problem) for problem in _unlike(entry))
 
 
-def _misfits(passage: Passage, hashes: Mapping[str, str]) -> Iterator[str]:
+def _uncovered(paper: Paper) -> Iterator[tuple[str, str]]:
+    spans = [passage.lines for passage in paper.passages]
+    if twice := [after for before, after in pairwise(spans) if after[0] <= before[1]]:
+        yield WHOLE, f"lines in two passages: {twice}"
+    if missing := sorted(paper.hashes.keys() - set(spans)):
+        yield WHOLE, f"lines in no passage: {missing}"
+
+
+def _misfits(passage: Passage, known: PassageHashes | None) -> Iterator[str]:
     """How a passage does not fit the source, or leaves out something of it."""
     if not passage.text:
         if not passage.why:
             yield "neither judged nor set aside"
         return
-    lines = passage.text.strip("\n").split("\n")
-    for number, line in zip(_span(passage), lines, strict=False):
-        if hashes.get(str(number), digest("")) != digest(line):
-            yield f"line {number} is not the source's"
-    if len(lines) != len(_span(passage)):
+    hashes = passage_hashes(passage.text, passage.entries)
+    if known is None or hashes.lines != known.lines:
+        yield "they are not the source's"
+    if known is None or hashes.checked != known.checked:
+        yield "their translations and edits are not those that were checked"
+    if len(passage.text.split("\n")) != passage.lines[1] - passage.lines[0] + 1:
         yield "not as many lines as it says"
+    ids = {entry.id for entry in passage.entries}
+    yield from (f"there is no cell {id}" for id in passage.record if id not in ids)
     if passage.table:
-        others = [record.scan for record in passage.record] + [aside.scan for aside in passage.aside]
+        others = [entry.scan for entry in passage.entries] + [aside.scan for aside in passage.aside]
         yield from tables.problems(passage.table, passage.text, passage.lines[0], others)
-        ids = {entry.id for entry in passage.entries()}
-        yield from (f"there is no cell {id}" for id in passage.cell if id not in ids)
-    elif left := _left_over(passage):
-        yield f"neither judged nor set aside: {left}"
+    elif rest := _rest(passage):
+        yield f"neither judged nor set aside: {rest}"
     yield from (f"set aside without a reason: {aside.scan}" for aside in passage.aside if not aside.why)
 
 
-def _span(passage: Passage) -> range:
-    return range(passage.lines[0], passage.lines[1] + 1)
-
-
-def _uncovered(paper: Paper) -> Iterator[tuple[str, str]]:
-    numbers = sorted(number for passage in paper.passages for number in _span(passage))
-    lines = sorted(int(name) for name in paper.hashes if name.isdigit())
-    if twice := sorted({n for n in numbers if numbers.count(n) > 1}):
-        yield WHOLE, f"lines in two passages: {twice}"
-    if missing := sorted(set(lines) - set(numbers)):
-        yield WHOLE, f"lines in no passage: {missing}"
-
-
-def _left_over(passage: Passage) -> str:
+def _rest(passage: Passage) -> str:
     """Formulas and long stretches of words that are in no record and not set aside."""
     text = passage.text
-    for scan in sorted([e.scan for e in passage.record if e.scan] + [a.scan for a in passage.aside], key=len)[::-1]:
+    for scan in sorted([e.scan for e in passage.entries if e.scan] + [a.scan for a in passage.aside], key=len)[::-1]:
         text = text.replace(scan, "\0")
-    if any(not entry.scan for entry in passage.record):
-        return ""
     for rest in text.split("\0"):
         words = plain(_TAGS.sub("", rest))
         if len(words) > LONGEST_REST or re.search(r"[\d\\]", words):
@@ -239,50 +291,18 @@ LONGEST_REST = 25
 _TAGS = re.compile(r"\(\d\.\d+\)(_\d)?|\[cd\.\]")
 
 
-def _unlike(entry: PaperEntry, passage: Passage, hashes: Mapping[str, str]) -> Iterator[str]:
-    if entry.scan not in passage.text:
-        yield "its scan is not in the text of its passage"
-    if entry.english and hashes.get(entry.id) != digest(entry.english):
-        yield "is not the translation that was checked"
-    if entry.edits and hashes.get(f"{entry.id}:edits") != digest(edited(entry)):
-        yield "its edits are not those that were checked"
+def _unlike(entry: PaperEntry) -> Iterator[str]:
+    """How a record is not what its edits make of its scan."""
     text = plain(entry.scan)
+    if not text:
+        yield f"does not stand in its passage: {entry.printed}"
+        return
     for before, after, _ in entry.edits:
         if plain(before) not in text:
             yield f"nothing to edit: {before}"
         if entry.english and plain(after) not in plain(entry.english):
             yield f"is not in the English: {after}"
         text = text if entry.english else text.replace(plain(before), plain(after))
-    said = plain(entry.printed if entry.heads or entry.english else ",".join((entry.printed, *entry.ranges)))
-    if text != said:
-        yield f"is not what its edits make of the scan: {text} there, {said} printed"
-
-
-def edited(entry: PaperEntry) -> str:
-    """What is edited in a scan, as it is checked: from, to, from, to."""
-    return " | ".join(part for before, after, _ in entry.edits for part in (before, after))
-
-
-def plain(text: str) -> str:
-    """A formula without what only lays it out: spaces, alignment, braces of cases, sizes of brackets.
-
-    "dla" (for), and what stands for it in cases, is a comma.
-    """
-    for pattern, instead in _LAYOUT:
-        text = pattern.sub(instead, text)
-    return text.strip(",.;")
-
-
-_LAYOUT: Sequence[tuple[re.Pattern[str], str]] = tuple(
-    (re.compile(pattern), instead)
-    for pattern, instead in (
-        (r"(?s)&(?=(?:(?!\\begin\{).)*\\end\{cases\})", " , "),
-        (r"\\(?:begin|end)\{cases\}", " "),
-        (r"\\begin\{aligned\}|\\end\{aligned\}|\\left\.|\\right\.|\$|&|\\\\|\\quad", " "),
-        (r"\\left(?=[\W_])|\\right(?=[\W_])", " "),
-        (r"\\text\{([^}]*)\}", r"\1"),
-        (r"(^|\s)dla(\s|$)", " , "),
-        (r"\s+", ""),
-        (r",+", ","),
-    )
-)
+    printed = plain(entry.printed if entry.heads or entry.english else ",".join((entry.printed, *entry.ranges)))
+    if text != printed:
+        yield f"is not what its edits make of the scan: {text} there, {printed} printed"

@@ -9,7 +9,7 @@ from wavesym.papers.asked import asked
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.pages import as_json, html, latex, markdown, text
 from wavesym.papers.pages.findings import Findings
-from wavesym.papers.pielorz1979 import paper, particulars
+from wavesym.papers.pielorz1979 import paper
 from wavesym.papers.record import VERDICTS
 from wavesym.programs.request import refuse_unknown
 
@@ -44,8 +44,8 @@ def published(
     """
     if only:
         refuse_unknown("--only", only, VERDICTS)
-    wanted = asked(paper.paper().entries(), names) if names else None
-    passages = () if names or only else paper.paper().passages
-    findings = Findings(particulars.about(), paper.records(wanted, watch), passages, reproduce, only)
+    data = paper.paper()
+    wanted = asked(tuple(data.entries.values()), names) if names else None
+    findings = Findings(data, paper.records(wanted, watch), not (names or only), reproduce, only)
     page = findings if format == "text" else replace(findings, records=findings.shown)
     return _PAGES[format](page), findings.passed

@@ -10,7 +10,7 @@ from math import sqrt
 from operator import attrgetter
 
 from wavesym import __version__
-from wavesym.papers.about import About, Heading, TableLayout
+from wavesym.papers.entries import About
 from wavesym.papers.pages.findings import (
     Findings,
     ScanEdit,
@@ -26,6 +26,7 @@ from wavesym.papers.pages.findings import (
 from wavesym.papers.pages.reproduction import ReproducedPage, reproduction
 from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed, readable, words
 from wavesym.papers.record import VERDICTS, Record
+from wavesym.papers.tables import PrintedTable, TableHead, places
 
 SIGNS = {
     "holds": "✓",
@@ -147,7 +148,7 @@ def document(findings: Findings, format: str) -> Document:
     tried, turned = findings.faults
     used = [verdict for verdict, _ in findings.counts]
     return Document(
-        findings.about,
+        findings.paper.about,
         __version__,
         f"wavesym verify --published --format {format}",
         findings.whole,
@@ -157,7 +158,7 @@ def document(findings: Findings, format: str) -> Document:
         tried,
         turned,
         mistakes,
-        [_laid(table, judged) for table in findings.about.table if table.ids() & judged.keys()],
+        [_laid(table, findings, judged) for table in findings.paper.tables if table.ids & judged.keys()],
         {name: _by_test([judged[record.id] for record in group]) for name, group in by_place(findings.holding).items()},
         findings.edits,
         [(lines(part.lines), part) for part in findings.unjudged],
@@ -203,24 +204,35 @@ def _note(group: Sequence[Record]) -> str:
     return readable(notes.pop()) if len(notes) == 1 else ""
 
 
-def _laid(table: TableLayout, judged: Mapping[str, Judged]) -> Laid:
-    columns = tuple(_head(column, judged.get(table.column_head.format(column=column.key))) for column in table.columns)
-    named = {id: _head(Heading(key=id, formula=name)) for id, name in table.names.items()}
+def _laid(table: PrintedTable, findings: Findings, judged: Mapping[str, Judged]) -> Laid:
+    columns = tuple(_head(column, findings, judged.get(table.column_id(column))) for column in table.columns)
+    scans = {
+        place.id: Head(formula(place.scan.strip("$")), "")
+        for passage in findings.paper.passages
+        for place in places(passage.table, passage.text, passage.lines[0])
+        if place.column.name in place.table.unjudged
+    }
     rows = []
     for row in table.rows:
-        ids = [table.id(row, column) for column in table.columns]
-        head = _head(row, judged.get(table.row_head.format(row=row.key)))
-        rows.append((head, tuple(judged.get(id) or named.get(id) for id in ids)))
-    return Laid(table.name, table.caption, columns, tuple(rows), _widths(table, judged))
+        ids = [table.cell_id(row, column) for column in table.columns]
+        head = _head(row, findings, judged.get(table.row_id(row)))
+        rows.append((head, tuple(judged.get(id) or scans.get(id) for id in ids)))
+    return Laid(table.name, table.caption, columns, tuple(rows), _widths(rows))
 
 
-def _widths(table: TableLayout, judged: Mapping[str, Judged]) -> tuple[float, ...]:
+def _widths(rows: Sequence[tuple[Head, Sequence[Judged | Head | None]]]) -> tuple[float, ...]:
     """By the longest cell of a column; a cell twice as long takes two lines of a column that is not twice as wide."""
-    columns = [[table.id(row, column) for row in table.rows] for column in table.columns]
-    longest = [max(judged[id].size if id in judged else 0 for id in ids) for ids in columns]
-    sizes = [sqrt(max(SHORTEST, size)) for size in (max(len(row.words) for row in table.rows), *longest)]
+    columns = zip(*(cells for _, cells in rows), strict=True)
+    longest = [max(cell.size if isinstance(cell, Judged) else 0 for cell in column) for column in columns]
+    sizes = [sqrt(max(SHORTEST, size)) for size in (max(len(head.words) for head, _ in rows), *longest)]
     return tuple(round(size / sum(sizes), 3) for size in sizes)
 
 
-def _head(heading: Heading, judged: Judged | None = None) -> Head:
-    return Head(formula(heading.formula) if heading.formula else None, heading.words, judged)
+def _head(head: TableHead, findings: Findings, judged: Judged | None) -> Head:
+    """A head as it is printed: a record with its ranges, or a label."""
+    known = findings.paper.entries
+    other = (known[head.record].printed,) if head.record in known else ()
+    if judged is None:
+        label = head.label.strip("$").replace("\N{GREEK SMALL LETTER ALPHA}", r"\alpha")
+        return Head(formula(label), readable(", ".join(other)))
+    return Head(judged.printed.formula, readable(", ".join((*other, *known[judged.id].ranges))), judged)

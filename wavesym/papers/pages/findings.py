@@ -7,8 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from wavesym.papers.about import About
-from wavesym.papers.entries import PaperEntry, Passage, Slip
+from wavesym.papers.entries import Paper, PaperEntry, Slip
 from wavesym.papers.record import VERDICTS, Record, Verdict
 
 ORIGINS = {
@@ -51,13 +50,12 @@ class ScanEdit:
 class Findings:
     """The verdicts on a paper, or on the records of it that were asked for; `reproduce`: with their examples.
 
-    `passages` are empty where only some records were asked for; `only` is the verdict of those that are shown, empty
-    for all of them.
+    `whole`: all of it was asked for; `only` is the verdict of those that are shown, empty for all of them.
     """
 
-    about: About
+    paper: Paper
     records: tuple[Record, ...]
-    passages: tuple[Passage, ...] = ()
+    whole: bool = False
     reproduce: bool = False
     only: str = ""
 
@@ -65,11 +63,6 @@ class Findings:
     def shown(self) -> tuple[Record, ...]:
         """The records that are shown, of which the others are counted alone."""
         return tuple(record for record in self.records if self.only in ("", record.verdict))
-
-    @property
-    def whole(self) -> bool:
-        """Whether all of the paper was asked for."""
-        return bool(self.passages)
 
     @property
     def passed(self) -> bool:
@@ -107,10 +100,10 @@ class Findings:
     def unjudged(self) -> list[Unjudged]:
         """What of the paper was set aside, in the order of print."""
         found = []
-        for passage in self.passages:
+        for passage in self.paper.passages if self.whole else ():
             if passage.why:
                 found.append(Unjudged(passage.lines, passage.where, passage.text, passage.why))
-            found += [Unjudged(passage.lines, passage.where, aside.scan, aside.why) for aside in passage.aside]
+            found += [Unjudged(passage.lines, passage.where, aside.scan, aside.why) for aside in passage.asides]
         return found
 
     @property
@@ -137,7 +130,7 @@ class Findings:
 
     @cached_property
     def _cells(self) -> frozenset[str]:
-        return frozenset[str]().union(*(table.ids() for table in self.about.table))
+        return frozenset[str]().union(*(table.ids for table in self.paper.tables))
 
     def _error(self, record: Record) -> object:
         """What one error is told from others by."""

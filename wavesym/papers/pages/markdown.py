@@ -20,7 +20,7 @@ from wavesym.papers.record import VERDICTS, Record
 
 def page(findings: Findings) -> str:
     """Counts, what does not hold in full, what holds in a line each, what was not judged, what survived."""
-    about, (tried, turned) = findings.about, findings.faults
+    about, (tried, turned) = findings.paper.about, findings.faults
     parts = [
         "# Errata",
         f"{about.author}, *{about.title}* ({about.english}), {about.date}. {about.transcription} Written by "

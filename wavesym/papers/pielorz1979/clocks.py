@@ -41,7 +41,7 @@ def arrival(chain: Chain, rod: int, which: Callable[[Iterable[int]], int] = min)
 
 def cell(entry: PaperEntry) -> Test:
     """A cell of the columns x_0, tau_0, v, for every rod."""
-    example, column = EXAMPLES[entry.about["example"]], entry.about["column"]
+    example, column = EXAMPLES[entry.about["row"]], entry.about["column"]
 
     def cases(reading: Reading) -> Iterator[Case]:
         formula = reading.formula

@@ -124,7 +124,7 @@ def speed(entry: PaperEntry) -> Test:
     """c_f^2 in Table 1; the letter after it is a name for its root."""
 
     def cases(reading: Reading) -> Iterator[Case]:
-        physical = Physical(entry.about["example"], SIZES[entry.about["example"]][-1])
+        physical = Physical(entry.about["row"], SIZES[entry.about["row"]][-1])
         scope = Material(physical)
         value, name = sides(reading.formula)
         for rod in range(1, physical.m + 1):

@@ -241,8 +241,8 @@ def bodies(entry: PaperEntry) -> Test:
 
     def cases(reading: Reading) -> Iterator[Case]:
         named = reading.ranges[0] if reading.ranges else _RODS
-        for m in {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3)}[entry.about["example"]]:
-            scope = Moving(driven(entry.about["example"], m))
+        for m in {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3)}[entry.about["row"]]:
+            scope = Moving(driven(entry.about["row"], m))
             rigid = {x + 1: bool(node.loads) for x, node in enumerate(scope.chain.nodes) if node.inertia}
             for i in span(named, scope):
                 t = fmpq(i, 2)

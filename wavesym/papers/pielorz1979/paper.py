@@ -23,14 +23,21 @@ from wavesym.papers.pielorz1979 import (
 )
 from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
 from wavesym.papers.pielorz1979.transcript import paper as paper
-from wavesym.papers.record import Adapter, Record, judge
+from wavesym.papers.record import Adapter, Record, Test, judge
+
+
+def _cell(entry: PaperEntry) -> Test:
+    """A cell of a table, of Table 1 by its column."""
+    if not entry.id.startswith("T1."):
+        return cells.cell(entry)
+    return {"c_f^2": constants.speed, "S": motion.bodies}.get(entry.about["column"], clocks.cell)(entry)
+
 
 ADAPTERS: Mapping[str, Adapter] = {
     "base acceleration": motion.base,
     "bodies": statements.statement,
     "caption": caption_of_figure,
-    "cell": cells.cell,
-    "clock": clocks.cell,
+    "cell": _cell,
     "coefficients": remarks.coefficients,
     "condition": conditions.test,
     "contact": end_of_contact,
@@ -48,7 +55,6 @@ ADAPTERS: Mapping[str, Adapter] = {
     "kappa": constants.kappa,
     "line": coefficients.coefficient,
     "load without dimensions": constants.load,
-    "loads of bodies": motion.bodies,
     "makeup": statements.statement,
     "moments": motion.moments,
     "power": remarks.power,
@@ -58,7 +64,6 @@ ADAPTERS: Mapping[str, Adapter] = {
     "sentence": prose.solution,
     "sizes": coefficients.sizes,
     "solution": motion.solution,
-    "speed": constants.speed,
     "systems": statements.statement,
     "unit of moment": constants.moment_factor,
     "waves": statements.statement,
@@ -75,7 +80,8 @@ def records(
     unlike = defaultdict(list)
     for id, problem in problems(paper()):
         unlike[id].append(problem)
-    entries = paper().entries() if wanted is None else wanted
+    entries = paper().entries.values() if wanted is None else wanted
     return tuple(
-        judge(entry, ADAPTERS[entry.kind](entry), [*unlike[WHOLE], *unlike[entry.id]]) for entry in watch(entries)
+        judge(entry, ADAPTERS[entry.kind](entry), [*unlike[WHOLE], *unlike[entry.id]])
+        for entry in watch(tuple(entries))
     )

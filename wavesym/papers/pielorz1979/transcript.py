@@ -17,13 +17,12 @@ _DATA = Path(__file__).with_name("data")
 @cache
 def paper() -> Paper:
     """The data."""
-    return read_paper(sorted(_DATA.glob("*.toml")), _DATA / "hashes.txt")
+    return read_paper(_DATA)
 
 
-@cache
 def entries() -> Mapping[str, PaperEntry]:
     """All records by their ids, in the order of print."""
-    return {entry.id: entry for entry in paper().entries()}
+    return paper().entries
 
 
 def entry(id: str) -> PaperEntry:
@@ -50,5 +49,5 @@ def ids(kind: str, start: str = "") -> tuple[str, ...]:
 def others(id: str, kind: str) -> tuple[Reading, ...]:
     """Beside "(4.6).1": "(4.6).2", "(4.6).3", ... of its kind, as they are right; beside "(4.6)" all of them."""
     number, _, _ = id.partition(")")
-    entries = (e for e in paper().entries() if e.kind == kind and e.id != id)
-    return tuple(reading(*entry.settled) for entry in entries if entry.id.partition(")")[0] == number)
+    beside = (e for e in entries().values() if e.kind == kind and e.id != id)
+    return tuple(reading(*entry.settled) for entry in beside if entry.id.partition(")")[0] == number)
