@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from flint import fmpq
 
 from tests.papers.falsified import ENTRIES, judged
-from wavesym.papers.pielorz1979.constants import Physical
+from wavesym.papers.pielorz1979.letters import Material, Units
+from wavesym.papers.pielorz1979.truth import driven
 
 
 @pytest.mark.parametrize(
@@ -38,8 +40,14 @@ def test_a_wrong_string_is_a_verdict(id, changes):
     assert record.problems
 
 
-def test_equal_sections_give_twice_kappa():
-    for equal in (True, False):
-        node = Physical("II", 3, equal).node(1)
-        kappa = node.beta / node.inertia / 2
-        assert (node.rate == 2 * kappa) is equal
+def test_the_bodies_and_rods_of_a_chain_have_the_laws_of_its_nodes():
+    """The rate of a body is what its rods pull, over its inertia, in the units of the chain."""
+    for name, m in (("I", 4), ("II", 3), ("III", 3)):
+        chain = driven(name, m).exact.chain
+        units = Units(fmpq(2), fmpq(3), fmpq(5, 7))
+        material = Material(chain, units)
+        for x, node in enumerate(chain.nodes):
+            if node.inertia:
+                pulls = sum(material.stiffness(rod) for rod in (x, x + 1) if 1 <= rod <= m)
+                body = material.inertia(x + 1 if name == "II" else x)
+                assert node.rate == pulls / body * units.l / units.c_f**2, (name, x)

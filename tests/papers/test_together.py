@@ -20,7 +20,7 @@ from wavesym.papers.evaluation import MeaninglessError, Scope, items, range_of, 
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.jets import Jet
 from wavesym.papers.pielorz1979.coefficients import STEP, Alone, corrected
-from wavesym.papers.pielorz1979.letters import Moving
+from wavesym.papers.pielorz1979.letters import Motion
 from wavesym.papers.pielorz1979.lines import truth, unknowns
 from wavesym.papers.pielorz1979.transcript import settled
 from wavesym.papers.pielorz1979.truth import DrivenChain
@@ -49,9 +49,7 @@ def _right(id: str) -> Reading:
 RIGHT: Formulas = {
     id: _right(id)
     for id, entry in ENTRIES.items()
-    if entry.kind in ("condition", "delay", "solution", "moments", "kappa", "unit of moment")
-    or id.startswith("T1.")
-    or id == "def.s"
+    if entry.kind in ("condition", "delay", "solution", "load", "constant") or id.startswith("T1.")
 }
 
 
@@ -308,7 +306,7 @@ def _against_the_list(lines: list[Reading]) -> set[str]:
             gained.setdefault(rate, []).append(known(key) / a.weight)
     nothing = {function: [{}] * (most + 1) for function in gains}
     exact = Exact(driven.exact.chain, 2, {"a": gains, "b": nothing})
-    scope = Moving(DrivenChain(exact, {"a": (a,), "b": (b,)}))
+    scope = Motion(DrivenChain(exact, {"a": (a,), "b": (b,)}))
     found = set()
     for id in ("(4.8).2", "(4.8).3", "(4.8).4", "(4.8).5"):
         left, right = sides(settled(id).formula)

@@ -350,7 +350,10 @@ def _fraction(tree: Fraction) -> Runner:
         over, under = above(scope), below(scope)
         if under == 0:
             raise MeaninglessError(f"{latex(tree)} divides by 0")
-        return fmpq(over) / under if isinstance(over, int) else over / under
+        try:
+            return fmpq(over) / under if isinstance(over, int) else over / under
+        except TypeError:
+            raise MeaninglessError(f"{latex(tree)} divides by what is no rational number") from None
 
     return run
 

@@ -42,6 +42,12 @@ class Exact:
         sources = self.responses if source is None else (source,)
         return max(len(self.increment(s, letter, rod, interval).get(rate, ())) for s in sources) - 1
 
+    @property
+    def rates(self) -> dict[int, fmpq]:
+        """The rates of the bodies, by the number that kappa or gamma has for them."""
+        first = 1 if self.interval == 1 else 0
+        return {x + first: fmpq(node.rate) for x, node in enumerate(self.chain.nodes) if node.inertia}
+
     def alive(self, letter: str, rod: int, interval: int) -> bool:
         """Whether a function changes at all in an interval."""
         return any(self.increment(source, letter, rod, interval) for source in self.responses)

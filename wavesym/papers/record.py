@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from flint import fmpq
 
+from wavesym.papers.difference import subtracted
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.exponentials import Exponentials
@@ -137,10 +138,10 @@ class Test:
     """How records of a kind are tried. `cases` come in order of size, the smallest first.
 
     `against` is what they are compared with. `read` makes a reading of strings, `faults` puts faults into one.
-    `difference`, where it can be written, is printed less derived. `mathematics` are the cases in which a `model` holds
-    nevertheless; `conventions` are those of what is printed under something that the text may mean, by what that is.
-    `varied` is what the cases differ by, where the text does not give it. `observed` is what was measured, in a
-    sentence.
+    `is_subtracted`: whether printed less corrected is shown, term by term. `mathematics` are the cases in which a
+    `model` holds nevertheless; `conventions` are those of what is printed under something that the text may mean, by
+    what that is. `varied` is what the cases differ by, where the text does not give it. `observed` is what was
+    measured, in a sentence.
     """
 
     __test__ = False  # not pytest's
@@ -149,7 +150,7 @@ class Test:
     cases: Callable[[Reading], Iterable[Case]]
     read: Callable[[str, Iterable[str]], Reading] = reading
     faults: Callable[[Reading], Iterable[tuple[str, Reading]]] = faults
-    difference: Callable[[Reading], str] | None = None
+    is_subtracted: bool = False
     mathematics: Callable[[Reading], Iterable[Case]] | None = None
     conventions: Mapping[str, Callable[[Reading], Iterable[Case]]] = field(default_factory=dict)
     varied: str = ""
@@ -232,11 +233,8 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
     turned, unturned = _faulty(entry, test, text, ranges) if settled.wrong is None else (Mutations(), ())
     found += unturned
     difference = None
-    if test.difference and not settled.wrong:
-        difference = _less_derived(test, entry.statement, (*entry.ranges, *entry.inferred))
-        left = _less_derived(test, text, ranges)
-        if left != "0":
-            found.append(f"printed less derived is {left} where it is said to hold")
+    if test.is_subtracted and slip and not settled.wrong:
+        difference = _subtracted(test, entry.statement, text)
     if test.observed:
         evidence.append(test.observed())
     verdict: Verdict = "untested" if found else slip.verdict if slip else "holds"
@@ -276,11 +274,11 @@ def _adds(entry: PaperEntry) -> bool:
     return any(right.startswith(start) and right.endswith(end) for start, end in cuts)
 
 
-def _less_derived(test: Test, text: str, ranges: Iterable[str]) -> str | None:
-    """Printed less derived, where what is printed can be read."""
+def _subtracted(test: Test, printed: str, corrected: str) -> str | None:
+    """Printed less corrected, where both can be read and differ."""
     try:
-        return test.difference(test.read(text, ranges)) if test.difference else None
-    except (MeaninglessError, UnreadableError):
+        return subtracted(test.read(printed, ()).formula, test.read(corrected, ()).formula) or None
+    except UnreadableError:
         return None
 
 

@@ -10,12 +10,12 @@ from itertools import product
 from flint import fmpq
 
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds
 from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, gives, truth, unknowns
 from wavesym.papers.pielorz1979.transcript import entry as transcribed
 from wavesym.papers.pielorz1979.transcript import ids, settled
 from wavesym.papers.record import Case, Reading, Test, by_size, case, reading
-from wavesym.papers.tree import Addition, Group, Minus, Product, Tree, latex, negative, symbols
+from wavesym.papers.tree import Tree
 
 SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(11 - m)))
 SMALL = 9
@@ -31,7 +31,7 @@ def coefficient(entry: PaperEntry) -> Test:
         "every coefficient, and every coefficient given once",
         partial(_cases, entry.id),
         conventions={"the functions g of the first interval are 0": partial(_cases, entry.id, rests=True)},
-        difference=partial(_difference, entry.id) if entry.slip else None,
+        is_subtracted=True,
         observed=partial(consequence, entry.id) if entry.slip else None,
     )
 
@@ -104,42 +104,6 @@ def _given(id: str, m: int, n: int) -> frozenset[Key]:
 
 def _names(keys: Iterable[Key]) -> tuple[str, ...]:
     return tuple(map(str, keys))
-
-
-# what is printed less what is right
-
-
-def _difference(id: str, read: Reading) -> str:
-    """The terms in which they differ."""
-    if len(items(read.formula)) != 1:
-        return "no line of the list"
-    mine, theirs = (list(_terms(sides(line.formula)[1])) for line in (read, settled(id)))
-    left = [term for term in mine if term not in theirs] + [negative(term) for term in theirs if term not in mine]
-    return latex(Addition(tuple(left))) if left else "0"
-
-
-def _terms(tree: Tree) -> Iterator[Tree]:
-    """The terms of a sum, brackets with coefficients in them multiplied out."""
-    match tree:
-        case Addition(terms):
-            for term in terms:
-                yield from _terms(term)
-        case Minus(of):
-            yield from map(negative, _terms(of))
-        case Product(factors):
-            for chosen in product(*([*_terms(f.inner)] if _brackets(f) else [f] for f in factors)):  # type: ignore[union-attr]
-                plain = [factor.of if isinstance(factor, Minus) else factor for factor in chosen]
-                flat = [
-                    part for factor in plain for part in (factor.factors if isinstance(factor, Product) else [factor])
-                ]
-                turned = sum(isinstance(factor, Minus) for factor in chosen) % 2
-                yield negative(Product(tuple(flat))) if turned else Product(tuple(flat))
-        case _:
-            yield tree
-
-
-def _brackets(factor: Tree) -> bool:
-    return isinstance(factor, Group) and any(symbol.above for symbol in symbols(factor))
 
 
 # the list run by itself, from nothing but the parameters

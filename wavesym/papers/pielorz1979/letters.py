@@ -1,4 +1,7 @@
-"""What the letters of sections 2 to 4 mean on a chain that moves under loads, in exact numbers."""
+"""What the letters of the paper mean on a chain that moves under loads, in exact numbers.
+
+Physical quantities and those without dimensions are of one motion, in units that a chain is given.
+"""
 
 from __future__ import annotations
 
@@ -8,19 +11,24 @@ from functools import partial
 from typing import Any
 
 from flint import fmpq
-from sympy.tensor.indexed import IndexException
 
 from wavesym.mechanics.chain import Chain
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.jets import Jet
 from wavesym.papers.pielorz1979.truth import DrivenChain
 from wavesym.papers.record import shown
-from wavesym.papers.tree import Call, Derivative, Symbol, Tree, latex
+from wavesym.papers.tree import Call, Derivative, Number, Symbol, Tree, latex
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.drive import DRIVE
 
-Displaced = Callable[[int, Jet, Jet], Jet]
+Displacement = Callable[[int, Jet, Jet], Jet]
 """The displacement of a rod at a place and an instant, without dimensions."""
 
+DISPLACEMENTS = {"I": r"\baru", "II": r"\bar\theta", "III": r"\bary"}
+"""The U of (2.1) without dimension, Table 1."""
 _C_F = Symbol("c", below=(Symbol("f"),))
+_S_0 = Symbol("S", below=(Number("0"),))
+_X_I = Symbol("x", below=(Symbol("i"),))
 _ANY_V_0 = fmpq(7, 5)
 
 
@@ -50,21 +58,88 @@ class IndexedLetters(Scope):
         index = self.indices(symbol)
         try:
             return means(*index, *arguments)
-        except (LookupError, TypeError, IndexException):
-            told = f"with indices {shown(index)}" if index else "without an index"
-            raise MeaninglessError(f"{latex(symbol)} is not defined {told}") from None
+        except (LookupError, TypeError):
+            which = f"with indices {shown(index)}" if index else "without an index"
+            raise MeaninglessError(f"{latex(symbol)} is not defined {which}") from None
 
 
 @dataclass(frozen=True)
 class Units:
-    """The speed of sound, the length of a rod, the unit of displacement."""
+    """What a chain has beside its numbers without dimensions.
+
+    The speed of sound, the length of a rod, the unit of displacement, and the unit of moment where it is not that of
+    the chain, G J_01 U_0 / l.
+    """
 
     c_f: fmpq
     l: fmpq  # noqa: E741 - the paper's letter
     U_0: fmpq
+    S_0: fmpq | None = None
 
 
-_ONES = Units(fmpq(1), fmpq(1), fmpq(1))
+ONES = Units(fmpq(1), fmpq(1), fmpq(1))
+_DENSITY = fmpq(11, 6)
+
+
+_PLAIN: Mapping[str, Mapping[str, fmpq]] = {
+    "I": {"F": fmpq(3, 8)},
+    "II": {},
+    "III": {"k'": fmpq(5, 6), "n": fmpq(4), "A": fmpq(2, 9)},
+}
+"""What the text gives an example's rods beside density and modulus: sections, columns of a storey, shear."""
+
+
+class Material:
+    """The inertias and stiffnesses of a chain in some units: those with which its nodes have their laws.
+
+    A node's inertia U_tt = beta/2 dU_right/dx - alpha/2 dU_left/dx, in tau and x / l, is that of a body of inertia M
+    between rods of stiffness K where M c_f^2 / l^2 = 2 K / (l beta) times the node's inertia.
+    """
+
+    def __init__(self, chain: Chain, units: Units) -> None:
+        self.chain, self.units = chain, units
+        self.example = {DRIVE: "II", BUILDING_FORCE: "III", BUILDING_GROUND: "III"}.get(chain.system, "I")
+        self._areas: Mapping[int, Any] = (chain.parameters.inertia or {}) if self.example == "I" else {}
+        modulus = _DENSITY * units.c_f**2
+        self.plain = {**_PLAIN[self.example], r"\rho": _DENSITY}
+        self.plain |= {"I": {"E": modulus, "a": units.c_f}}.get(self.example, {"C": units.c_f})
+        if self.example != "I":
+            self.plain["G"] = modulus / self.plain.get("k'", fmpq(1))
+
+    def stiffness(self, rod: int) -> fmpq:
+        """The force in a rod, or moment, for a unit of strain. LookupError."""
+        _check_index(1 <= rod <= self.chain.m)
+        if self.example == "II":
+            node = self.chain.nodes[rod - 1]
+            return self.inertia(rod) * self._per_stiffness(node.beta)
+        area = self.plain["F"] * self._areas.get(rod, 1) if self.example == "I" else self.plain["n"] * self.plain["A"]
+        return area * _DENSITY * self.units.c_f**2
+
+    def inertia(self, body: int) -> fmpq:
+        """The mass of a body, or its moment of inertia, by its number. LookupError."""
+        if self.example == "II":
+            return fmpq(self.chain.parameters.inertia[body]) * fmpq(3, 7)
+        _check_index(0 <= body <= self.chain.m)
+        node = self.chain.nodes[body]
+        # the inertia of a foundation is in its load
+        own = node.inertia or next((-load.coefficients[0] for load in node.loads if load.kind == "a"), fmpq(0))
+        _check_index(own != 0)
+        rod, coupling = (body + 1, node.beta) if node.right else (body, node.alpha)
+        return fmpq(own) * self.stiffness(rod) / self._per_stiffness(coupling)
+
+    def _per_stiffness(self, coupling: fmpq) -> fmpq:
+        """K / M of a rod that a node of inertia 1 has with this alpha or beta."""
+        return fmpq(coupling) / 2 * self.units.c_f**2 / self.units.l
+
+    @property
+    def moment(self) -> fmpq:
+        """The unit of moment of a drive, G J_01 U_0 / l."""
+        return self.stiffness(1) * self.units.U_0 / self.units.l
+
+
+def _check_index(known: bool) -> None:
+    if not known:
+        raise LookupError
 
 
 def unit_of_moment(chain: Chain, body: int) -> fmpq:
@@ -74,44 +149,71 @@ def unit_of_moment(chain: Chain, body: int) -> fmpq:
     return -fmpq(value) if body == len(chain.nodes) else fmpq(value)
 
 
-class Moving(IndexedLetters):
+class Motion(IndexedLetters):
     """The letters on the motion of a chain; `seen` tells whether anything moved where it was looked at.
 
-    A velocity with a bar is that of a body. `most` is the highest derivative that is asked for.
+    `constants` are those that ranges say the value of; `velocities` whether a v is that of a "body" or of a "rod".
     """
 
-    def __init__(self, motion: DrivenChain, units: Units = _ONES, constants: Mapping[Tree, Tree] | None = None) -> None:
-        self.units = units
-        super().__init__({"m": motion.exact.m, "l": units.l}, constants)
-        self.motion, self.chain, self.seen, self.most = motion, motion.exact.chain, False, 2
+    def __init__(
+        self,
+        motion: DrivenChain,
+        units: Units | None = None,
+        constants: Mapping[Tree, Tree] | None = None,
+        velocities: str = "body",
+    ) -> None:
+        self.units = units = units or ONES
+        self.motion, self.chain, self.seen, self._most = motion, motion.exact.chain, False, 2
+        self.material = material = Material(self.chain, units)
+        super().__init__({"m": motion.exact.m, "l": units.l, **material.plain}, constants)
         parameters, late = self.chain.parameters, units.l / units.c_f
+        bodies = (parameters.velocity or {}).__getitem__
         self.letters = {
             r"\kappa": parameters.kappa.__getitem__,
-            "J": (parameters.inertia or {}).__getitem__,
-            r"\barA": lambda i: unit_of_moment(self.chain, i),
-            r"\barv": (parameters.velocity or {}).__getitem__,
+            r"\gamma": motion.exact.rates.__getitem__,
+            "J": self._inertia_or_section,
+            "A": material.stiffness,
+            "B": lambda number: material.inertia(self.own_number(number)),
+            r"\barA": lambda i: unit_of_moment(self.chain, i) * self.value(_S_0) / material.moment,
+            r"\barv": bodies if velocities == "body" else self.velocity,
             "v": lambda i: self.velocity(i) * units.U_0 / late if i else _ANY_V_0,
             "m": lambda i: len(motion.loads[self._source(i)]) - 1,
-            r"\tau": self._start,
-            "t": lambda *index: self._start(*index) * late,
-            r"\barx": lambda *index: self._first(*index).x0 if index else self.bound[r"\bar{x}"],
-            "x": lambda *index: self._first(*index).x0 * units.l,
-            "U": {0: units.U_0}.__getitem__,
+            r"\tau": self.start,
+            "t": lambda *index: self.start(*index) * late,
+            r"\barx": lambda *index: self.first(*index).x0 if index else self.bound[r"\bar{x}"],
+            "x": lambda *index: self.first(*index).x0 * units.l,
+            "S": {0: material.moment if units.S_0 is None and self.is_drive else units.S_0}.__getitem__,
+            "U": lambda i: self._displaced(i, self.bound["x"], self.bound["t"]) if i else units.U_0,
+            r"\barU": lambda i: self._moved(i, self.bound[r"\bar{x}"], self.bound[r"\tau"]),
             r"\ddoty": self._ground,
-            **dict.fromkeys(("M", r"\barM"), lambda i, k: self._weight(f"M{i}", k)),
+            r"\barM": lambda i, k: self._weight(f"M{i}", k),
         }
         self.functions = {
-            **dict.fromkeys(("M", r"\barM"), lambda i, t: motion.load(self._source(i), t)),
+            **dict.fromkeys((r"\barM", r"\barS"), self._applied),
+            "S": lambda i, t: self._applied(self.own_number(i), t / late) * self.unit_of_load,
             "U": self._displaced,
-            r"\barU": lambda i, x, tau: self.displacement(i, Jet.of(x), Jet.of(tau)),
+            **dict.fromkeys((r"\barU", DISPLACEMENTS[material.example]), self._moved),
         }
+        if self.is_drive:
+            self.letters["M"] = lambda i, k: self._weight(f"M{i}", k) * material.moment
+            self.functions["M"] = lambda i, t: self.load(i - 1, t / late) * material.moment
+        else:
+            self.letters["M"] = material.inertia
+        if "k'" in material.plain:
+            self.letters["k'"] = lambda: material.plain["k'"]
         for source in "ab":
             self.letters |= dict.fromkeys((source, rf"\bar{source}"), partial(self._weight, source))
         for wave in "fg":
             physical = rf"\mathcal{wave.upper()}"
             self.letters[physical] = partial(self._in_physical_units, wave)
+            self.letters[wave] = lambda rod, wave=wave: self._along(wave, rod, self.bound["z"])
             self.functions |= {wave: partial(self._along, wave), physical: partial(self._in_physical_units, wave)}
             self.functions |= {wave + "'" * order: partial(self.wave, wave, order) for order in (1, 2, 3)}
+
+    @property
+    def is_drive(self) -> bool:
+        """Whether the chain is one of example II."""
+        return self.chain.system is DRIVE
 
     def symbol(self, symbol: Symbol) -> Any:
         return self.units.c_f if symbol == _C_F else super().symbol(symbol)
@@ -120,12 +222,12 @@ class Moving(IndexedLetters):
         by = latex(derivative.by)
         if by not in self.bound or derivative.order > 2:
             raise MeaninglessError(f"{latex(derivative)} is not defined")
-        self.most = derivative.order
+        self._most = derivative.order
         try:
             with self.binding({by: Jet(self.bound[by], 1)}):
                 found = Jet.of(self.value(derivative.of))
         finally:
-            self.most = 2
+            self._most = 2
         return found.first if derivative.order == 1 else found.second
 
     def at(self, x: Any, tau: Any) -> Mapping[str, Any]:
@@ -141,7 +243,7 @@ class Moving(IndexedLetters):
 
     def _along(self, name: str, rod: int, z: Any) -> Jet:
         at = Jet.of(z)
-        return at.of_function(lambda order: self.wave(name, order, rod, at.value), self.most)
+        return at.of_function(lambda order: self.wave(name, order, rod, at.value), self._most)
 
     def _in_physical_units(self, name: str, rod: int, z: Any = None) -> Jet:
         """F or G; where no argument is printed, of z."""
@@ -154,7 +256,7 @@ class Moving(IndexedLetters):
         if tau.value < 0:
             raise MeaninglessError("the motion begins at t = 0")
         numbers = (fmpq(n) for at in (x, tau) for n in (at.value, at.first, at.second))
-        key = ("displacement", rod, self.most, *((int(n.p), int(n.q)) for n in numbers))
+        key = ("displacement", rod, self._most, *((int(n.p), int(n.q)) for n in numbers))
         if key not in self.motion.known:
             clock = self.chain.rod(rod)
             f = self._along("f", rod, tau - x + (clock.x0 - clock.tau0))
@@ -166,6 +268,9 @@ class Moving(IndexedLetters):
         self.seen = self.seen or changes
         return moved
 
+    def _moved(self, rod: int, x: Any, tau: Any) -> Jet:
+        return self.displacement(rod, Jet.of(x), Jet.of(tau))
+
     def _displaced(self, *at: Any) -> Jet:
         """In physical units; without a number, of the rod that is there."""
         *rod, x, t = at
@@ -173,29 +278,57 @@ class Moving(IndexedLetters):
         number = rod[0] if rod else -int((-place.value).floor())
         return self.displacement(number, place, tau) * self.units.U_0
 
-    def unit(self, displacement: Symbol) -> Any:
-        """In which a displacement is counted that is called so."""
-        return 1 if displacement.accent else self.units.U_0
-
     def velocity(self, rod: int) -> fmpq:
         """How fast the body is at the start that a rod is fixed to; MeaninglessError."""
-        self._first(0, rod)
+        self.first(0, rod)
         return body_velocity(self.chain, rod)
 
-    def law(self, x: int, tau: fmpq, displaced: Displaced) -> tuple[Any, Any]:
+    def law(self, x: int, tau: fmpq, displacement: Displacement) -> tuple[Any, Any]:
         """What displacements mean for a node: a step of velocity, and what has to act there."""
         node, place, time = self.chain.nodes[x], Jet(fmpq(x), 1), Jet(tau, 1)
-        moving = [displaced(rod, Jet(fmpq(x)), time) for rod in rods_at(self.chain, x)]
+        moving = [displacement(rod, Jet(fmpq(x)), time) for rod in rods_at(self.chain, x)]
         force = node.inertia * moving[0].second + node.damping * moving[0].first
         if node.left:
-            force = force + node.alpha / 2 * displaced(x, place, Jet(tau)).first
+            force = force + node.alpha / 2 * displacement(x, place, Jet(tau)).first
         if node.right:
-            force = force - node.beta / 2 * displaced(x + 1, place, Jet(tau)).first
+            force = force - node.beta / 2 * displacement(x + 1, place, Jet(tau)).first
         return moving[-1].first - moving[0].first, force
 
-    def acting(self, x: int, tau: fmpq) -> Any:
-        """What acts on a node, by the exact motion."""
-        return self.law(x, tau, self.displacement)[1]
+    def load(self, x: int, tau: fmpq) -> Any:
+        """What acts on a node by the exact motion, in what the unit of its load gives at first. LookupError."""
+        _check_index(0 <= x <= self.chain.m and bool(self.chain.nodes[x].loads))
+        _, force = self.law(x, tau, self.displacement)
+        return force / self.chain.nodes[x].loads[0].coefficients[0]
+
+    def _applied(self, body: int, tau: Any) -> Any:
+        """The load that is put on a body, without dimension; 0 where there is none. LookupError."""
+        x = body - 1 if self.is_drive else body
+        _check_index(0 <= x <= self.chain.m and bool(self.chain.nodes[x].inertia or self.chain.nodes[x].loads))
+        return self.motion.load(f"M{body}", tau)
+
+    @property
+    def unit_of_load(self) -> fmpq:
+        """The unit of moment of a drive; the other examples have no loads of bodies."""
+        return self.material.moment if self.is_drive else fmpq(1)
+
+    def own_number(self, number: Any) -> Any:
+        """The number in its example of a body of (2.4), which may number bodies by their places: x_i."""
+        place = self.constants.get(_X_I)
+        if place is None:
+            return number
+        with self.binding({"i": number}):
+            x = self.value(place) / self.units.l
+        if x.denom() != 1:
+            raise MeaninglessError(f"no body stands at {x} l")
+        return int(x) + (1 if self.is_drive else 0)
+
+    def _inertia_or_section(self, *index: int) -> fmpq:
+        """J_i of a body, J_(0,i) of a shaft. LookupError."""
+        if len(index) == 1:
+            return self.material.inertia(*index) if self.is_drive else self.chain.parameters.inertia[index[0]]
+        zero, rod = index
+        _check_index(zero == 0 and self.is_drive)
+        return self.material.stiffness(rod) / self.material.plain["G"]
 
     def _source(self, number: int) -> str:
         """Of a drive its moment with a number; a building has load number 1 alone. LookupError."""
@@ -208,22 +341,22 @@ class Moving(IndexedLetters):
         """The acceleration of the ground, y_0 with two dots. LookupError."""
         if zero != 0:
             raise LookupError(zero)
-        return self.motion.load("a", self.bound["t"]) + self.motion.load("b", self.bound["t"], 1)
+        return self.load(0, self.bound["t"])
 
     def _weight(self, source: str, k: int) -> fmpq:
         return self.motion.piece(source, k).weight
 
-    def _start(self, *index: int) -> fmpq:
+    def start(self, *index: int) -> fmpq:
         """tau_(s,k) and tau_k of a piece of a load, tau_(0,i) of a rod."""
         *number, k = index
         if number == [0]:
-            return fmpq(self._first(0, k).tau0)
+            return fmpq(self.first(0, k).tau0)
         source = f"M{number[0]}" if number else "a"
         if source not in self.motion.loads:
             raise LookupError(source)
         return self.motion.piece(source, k).time
 
-    def _first(self, zero: int, rod: int) -> Any:
+    def first(self, zero: int, rod: int) -> Any:
         """Where and when the first disturbance reaches a rod."""
         if zero != 0 or not 1 <= rod <= self.chain.m:
             raise MeaninglessError(f"there is no rod {rod}")

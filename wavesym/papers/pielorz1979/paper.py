@@ -6,43 +6,25 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import WHOLE, PaperEntry, problems
-from wavesym.papers.pielorz1979 import (
-    cells,
-    clocks,
-    coefficients,
-    conditions,
-    constants,
-    delays,
-    forms,
-    heads,
-    motion,
-    prose,
-    rates,
-    remarks,
-    statements,
-)
+from wavesym.papers.pielorz1979 import cells, coefficients, forms, heads, prose, remarks, statements
+from wavesym.papers.pielorz1979.equations import GROUPS, equation, solution
 from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
 from wavesym.papers.pielorz1979.transcript import paper as paper
 from wavesym.papers.record import Adapter, Record, Test, judge
 
 
 def _cell(entry: PaperEntry) -> Test:
-    """A cell of a table, of Table 1 by its column."""
-    if not entry.id.startswith("T1."):
-        return cells.cell(entry)
-    return {"c_f^2": constants.speed, "S": motion.bodies}.get(entry.about["column"], clocks.cell)(entry)
+    """A cell of a table; those of Table 1 are equations."""
+    return equation(entry) if entry.id.startswith("T1.") else cells.cell(entry)
 
 
 ADAPTERS: Mapping[str, Adapter] = {
-    "base acceleration": motion.base,
+    **dict.fromkeys(GROUPS, equation),
     "bodies": statements.statement,
     "caption": caption_of_figure,
     "cell": _cell,
     "coefficients": remarks.coefficients,
-    "condition": conditions.test,
     "contact": end_of_contact,
-    "definition": motion.definition,
-    "delay": delays.test,
     "factor": remarks.factor,
     "figure": said_of_figure,
     "form": forms.form,
@@ -50,22 +32,16 @@ ADAPTERS: Mapping[str, Adapter] = {
     "function": heads.function,
     "group": remarks.group,
     "heaviside": remarks.heaviside,
-    "inside": motion.inside,
     "interval": heads.interval,
-    "kappa": constants.kappa,
     "line": coefficients.coefficient,
-    "load without dimensions": constants.load,
     "makeup": statements.statement,
-    "moments": motion.moments,
     "power": remarks.power,
     "range": heads.interval_or_size,
-    "rate": rates.rate,
     "rest": remarks.rest,
     "sentence": prose.solution,
     "sizes": coefficients.sizes,
-    "solution": motion.solution,
+    "solution": solution,
     "systems": statements.statement,
-    "unit of moment": constants.moment_factor,
     "waves": statements.statement,
 }
 

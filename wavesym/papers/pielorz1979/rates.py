@@ -7,7 +7,7 @@ on chains with all rates different, with neighbours equal, and with one twice an
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from functools import cache
 from itertools import product
 from typing import Any
@@ -15,14 +15,9 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.mechanics.node import Parameters
-from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, items, places, sides
-from wavesym.papers.exact_tables import Exact, collision, drive, with_parameters
+from wavesym.papers.exact_tables import Exact, collision, with_parameters
 from wavesym.papers.pielorz1979.cells import EXAMPLE
-from wavesym.papers.pielorz1979.forms import TABLES, known, rates
-from wavesym.papers.pielorz1979.transcript import ids, settled
-from wavesym.papers.record import Case, Reading, Test, case
-from wavesym.papers.tree import Symbol, latex
+from wavesym.papers.pielorz1979.forms import TABLES, rates
 
 _ONE, _A, _B, _C = fmpq(1), fmpq(2, 3), fmpq(3, 5), fmpq(5, 7)
 _COLLISIONS = (
@@ -46,20 +41,6 @@ _DRIVES = (  # kappa, J
 )
 _BUILDINGS = ((2, _A, _B), (2, _A, 2 * _A), (3, _A, _B), (3, _A, 2 * _A))  # m, kappa of floors, of the roof
 INTERVALS = 9
-
-
-class RateScope(Scope):
-    """kappa and J of a chain, and gamma, the rates of its discs."""
-
-    def __init__(self, exact: Exact) -> None:
-        super().__init__({"m": exact.m})
-        parameters = exact.chain.parameters
-        self.values: Mapping[str, Mapping[int, Any]] = {r"\kappa": parameters.kappa, "J": parameters.inertia or {}}
-
-    def symbol(self, symbol: Symbol) -> Any:
-        if symbol.name not in self.values or len(symbol.below) != 1 or symbol.accent:
-            return super().symbol(symbol)
-        return known(self.values[symbol.name], self.indices(symbol)[0], symbol.name)
 
 
 def _variants(table: str) -> Iterator[tuple[int, Parameters]]:
@@ -103,32 +84,3 @@ def chains_of_rates(table: str) -> tuple[tuple[Exact, bool], ...]:
         )
         found.append((exact, same))
     return tuple(found)
-
-
-def rate(entry: PaperEntry) -> Test:
-    """gamma_i; the formulas of (4.11) together give every one once."""
-    others = [settled(id) for id in ids("rate") if id != entry.id]
-
-    def cases(reading: Reading) -> Iterator[Case]:
-        for m in range(1, 6):
-            exact = drive(m)
-            scope, true, parameters = RateScope(exact), rates(exact), exact.chain.parameters
-            given = [i for other in (reading, *others) for i, _, _ in _gammas(other, scope)]
-            yield Case({"m": m, "claim": "the gamma that are given"}, sorted(given), sorted(true))
-            for i, right, place in _gammas(reading, scope):
-                at = {"m": m, "i": i, "kappa": dict(parameters.kappa), "J": dict(parameters.inertia)}
-                with scope.binding(place):
-                    yield case(at, lambda: scope.value(right), true.get(i))  # noqa: B023
-
-    return Test("the rates of the discs by their derived node laws, m = 1 ... 5", cases)
-
-
-def _gammas(reading: Reading, scope: Scope) -> Iterator[tuple[int, Any, dict[str, Any]]]:
-    """The number of every gamma, and what it is where; once where the left index has no i, else for every i."""
-    for equation in items(reading.formula):
-        left, right = sides(equation)
-        if not isinstance(left, Symbol) or left.name != r"\gamma" or len(left.below) != 1:
-            raise MeaninglessError(f"{latex(left)} is no gamma")
-        for place in places(reading.ranges if Symbol("i") in left.below else (), scope):
-            with scope.binding(place):
-                yield scope.indices(left)[0], right, place

@@ -22,8 +22,7 @@ from wavesym.mechanics.network import network_of
 from wavesym.mechanics.probe import Probe
 from wavesym.papers.evaluation import Scope, span
 from wavesym.papers.exact_tables import drive, meeting, uneven_building
-from wavesym.papers.pielorz1979.clocks import arrival
-from wavesym.papers.pielorz1979.delays import given_once
+from wavesym.papers.pielorz1979.equations import arrival, is_complete
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, instants, loads
 from wavesym.papers.reader import read_formula, read_range
@@ -140,7 +139,7 @@ def _given(words: Words) -> Iterator[Case]:
     first, second, *_ = map(int, numbers[:2])
     for m in range(2, 12, 2):
         said = m >= first and (m - first) % (second - first) == 0
-        yield Case({"m": m, "what": "every function is given once"}, said, given_once("(4.6)", m))
+        yield Case({"m": m, "what": "every function is given once"}, said, is_complete("(4.6)", m))
 
 
 def _follows(words: Words) -> Iterator[Case]:

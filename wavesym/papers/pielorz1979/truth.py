@@ -53,7 +53,7 @@ Loads = Mapping[str, Sequence[LoadStep]]
 """The pieces of every source of a chain, number k of each from 0 on."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DrivenChain:
     """A chain under loads: the motion that the derived laws give it."""
 
