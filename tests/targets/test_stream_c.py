@@ -149,7 +149,9 @@ def test_the_alarm_is_given_when_a_kink_is_lost_and_not_before(case, place):
         told.append((status, last, stream.lost, error))
     (at_once, _, lost, error), (_, fine, spare, exact) = told
     assert at_once == 2
-    assert 1e-6 < error < lost < 30_000 * error  # bounds of all steps, added up with one sign
+    # bounds of all steps, added up with one sign: near an edge as large as in the middle, where more is lost
+    most = (3000 if case == "hung" else 350) * (1 if place == Fraction(1, 2) else 10)
+    assert 1e-6 < error < lost < most * error
     assert fine == 0
     assert exact < 1e-12
     assert spare < 1e-10

@@ -17,7 +17,6 @@ from wavesym.scene import Scene, lower
 from wavesym.verification import integrations
 from wavesym.verification.differences import SpaceTimeGrid
 from wavesym.verification.integrations import _grid as grid
-from wavesym.verification.observed import read_by
 from wavesym.verification.problem import problem_of
 from wavesym.verification.reference import known
 
@@ -53,7 +52,7 @@ FOUR = pytest.mark.parametrize("scene", [BUILDING, FORCE, COLLISION, DRIVE], ids
 
 def with_cells(model, cells):
     """A grid with so many cells in a rod of length 1."""
-    return SpaceTimeGrid(problem_of(model), read_by(model), Fraction(1, cells))
+    return SpaceTimeGrid(problem_of(model), Fraction(1, cells))
 
 
 def errors(first, finer, scene, until):

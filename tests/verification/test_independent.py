@@ -20,7 +20,6 @@ from wavesym.systems import SYSTEMS, building, chain_places, collision, drawing,
 from wavesym.verification.collocation import integrate
 from wavesym.verification.independent import READERS, independent_model
 from wavesym.verification.integrations import collocation
-from wavesym.verification.observed import observed
 from wavesym.verification.problem import Problem, problem_of
 from wavesym.verification.reference import known
 
@@ -99,7 +98,7 @@ def numbers(made: Problem) -> list[Any]:
     """All that a problem is made of, in units of its first impedance; of points without mass only what is felt."""
     unit, heavy = made.impedance[0], made.mass > 0
     taus = np.linspace(0, 3, 37)
-    loads = made.load_integral(taus, 1)
+    loads = made.loads(taus)
     loads[made.is_free] /= unit
     parts = [
         made.mass / unit,
@@ -120,11 +119,11 @@ def assert_same(scene: Scene) -> None:
     for one, other in zip(numbers(theirs), numbers(ours), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-14, atol=1e-14)
     until = min(float(model.until), 3.0)
-    taus = np.linspace(0, until, 23).tolist()
+    taus = np.linspace(0, until, 23)
     motion = integrate(ours, until, 16)
-    for one, other in zip(observed(own), observed(model), strict=True):  # where programs have them
-        values = [view.values(lambda probe: motion.at(probe, taus), taus) for view in (one, other)]
-        np.testing.assert_allclose(*values, rtol=1e-9, atol=1e-9)
+    read = (np.array([motion.at(reading, taus.tolist()) for reading in made.readings]) for made in (ours, theirs))
+    ours_out, theirs_out = (made.outputs(values, taus) for made, values in zip((ours, theirs), read, strict=True))
+    np.testing.assert_allclose(ours_out, theirs_out, rtol=1e-9, atol=1e-9)  # where programs have them
 
 
 @pytest.mark.parametrize("name", builtin_names())

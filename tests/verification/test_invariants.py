@@ -87,7 +87,7 @@ def test_balances_hold_to_the_last_digits(scene):
 @given(scenes())
 def test_balances_hold_in_any_system(scene):
     for balance in balances(*exactly(scene, 3)):
-        assert balance.error <= balance.allowed < 1e-10
+        assert balance.error <= balance.allowed < 1e-12
 
 
 def in_rods(scene, tau):

@@ -68,7 +68,7 @@ def line(model: Model) -> Line:
     problem = unlinked_problem(model)
     ends = np.stack([np.arange(problem.points - 1), np.arange(1, problem.points)], axis=1)
     alike = all(np.all(each == 1) for each in (problem.delay, problem.speed, problem.ratios))
-    if not np.array_equal(problem.ends, ends) or not alike or not problem.sums.is_trivial:
+    if not np.array_equal(problem.ends, ends) or not alike or not problem.reads_outputs:
         raise UnservedError("system: rods that differ, branches or sums given, a line of equal rods expected")
     free = ~np.isin(np.arange(problem.points), problem.prescribed)
     alpha, beta = (np.where(free, 2 * each, 0.0) for each in _beside(problem.impedance))

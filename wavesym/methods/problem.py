@@ -1,12 +1,24 @@
-"""A network in doubles, with its loads and outputs: where every other method starts."""
+"""A network in doubles, as the wave equation in its bars and the balance of forces at its points say it.
+
+In a bar U_tt = speed^2 U_xx, and its force is impedance * speed * U_x. Its end moves `ratio` times as fast as its
+point, on which `ratio` times its force acts. At the points, all at once,
+
+    mass u'' + damping u' + stiffness u = sum over ends of ratio * force of the bar + loads + pushes of contacts.
+
+A contact between two points keeps its gap from being negative; while that is 0 it pushes, and never pulls.
+
+At tau = 0 nothing is displaced: what a bar is strained then is counted besides. Every method but wavesym's own starts
+here, and the integrators of `verify`: nothing knows of joints, waves or their laws. All is dimensionless.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
+from typing import TypeVar
 
 import numpy as np
 from flint import fmpq
@@ -14,11 +26,11 @@ from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.damping import Damping
-from wavesym.mechanics.gauge import Gauge, Sum, Weighted
+from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import fraction, nearest
+from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]
@@ -41,32 +53,15 @@ class LoadEvent:
 
 
 @dataclass(frozen=True)
-class OutputSums:
-    """What outputs are the sums of: `weights` (outputs, readings), and loads.
-
-    `loads` are an output, a time, and the polynomial (highest power first) that is added to the output from then on.
-    """
-
-    weights: Array
-    loads: tuple[tuple[int, float, Array], ...]
-
-    @cached_property
-    def is_trivial(self) -> bool:
-        """Whether outputs are the readings themselves."""
-        return not self.loads and np.array_equal(self.weights, np.eye(len(self.weights)))
-
-
-@dataclass(frozen=True)
 class Problem:
-    """Bars in which waves travel, between points; a bar's end moves `ratio` times as fast as its point,
+    """Bars, and points that their ends move with.
 
-        mass u'' + damping u' + stiffness u = sum over ends of ratio * force of the bar + loads.
-
-    At tau = 0 nothing is displaced: what a bar is strained then is counted besides. Everything is dimensionless.
     `velocity` and `mass` have shape (points,), `damping` and `stiffness` (points, points). The velocity of a point
-    whose motion is `prescribed` is its load, at tau = 0, too. `ends` has the points of each bar's left and right end,
-    `ratios` their ratios, both (bars, 2); `speed`, `impedance`, `start_velocity` and `start_strain` have shape (bars,).
-    `readings` are what the outputs are sums of; `modal` is how modes are damped besides.
+    whose motion is `prescribed` is its load, at tau = 0, too; displacements relative to the `ground` are those beyond
+    that of this point. `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2);
+    `speed`, `impedance`, `start_velocity` and `start_strain` have shape (bars,). `modal` is how modes are damped
+    besides. The gaps of contacts are `gaps` + `parting` @ displacements, (contacts,); their pushes act on points by
+    `parting` transposed.
     """
 
     mass: Array
@@ -74,6 +69,7 @@ class Problem:
     stiffness: Array
     velocity: Array
     prescribed: tuple[int, ...]
+    ground: int
     ends: NDArray[np.int_]
     ratios: Array
     delays: tuple[Fraction, ...]
@@ -81,9 +77,10 @@ class Problem:
     impedance: Array
     start_velocity: Array
     start_strain: Array
+    gaps: Array
+    parting: Array
     events: tuple[LoadEvent, ...]
-    readings: tuple[Gauge, ...]
-    sums: OutputSums
+    probes: tuple[Probe, ...]
     until: float
     modal: Damping | None = None
 
@@ -132,19 +129,123 @@ class Problem:
                 total[:, event.point] += c / (k + 1) * (last ** (k + 1) - first ** (k + 1)) / (high - low)
         return total
 
+    @cached_property
+    def _polynomials(self) -> dict[int, tuple[Array, Array]]:
+        """Of each loaded point when its load changes, and what that is from then on, in the time since: (changes,),
+        (LOAD_TERMS, changes). They are added up exactly, as what changes of long records cancel."""
+        changes: dict[int, dict[Fraction, list[Fraction]]] = {}
+        for event in sorted(self.events, key=lambda event: event.time):
+            known = changes.setdefault(event.point, {})
+            c0, c1, c2 = [Fraction(0)] * LOAD_TERMS
+            if known:
+                since = event.time - (last := next(reversed(known)))
+                c0, c1, c2 = known[last]
+                c0, c1 = c0 + since * (c1 + since * c2), c1 + 2 * since * c2
+            known[event.time] = [c + Fraction(more) for c, more in zip((c0, c1, c2), event.coefficients, strict=True)]
+        return {
+            point: (
+                np.array([not_below(rational(time)) for time in known]),
+                np.array([[float(c) for c in powers] for powers in known.values()]).T,
+            )
+            for point, known in changes.items()
+        }
+
+    def loads(self, taus: Array) -> Array:
+        """The loads at doubles tau, right-hand limits: (points, taus)."""
+        values = np.zeros((self.points, len(taus)))
+        for point, (times, (c0, c1, c2)) in self._polynomials.items():
+            place = np.searchsorted(times, taus, side="right") - 1
+            since = taus - times[place]
+            values[point] = np.where(place >= 0, c0[place] + since * (c1[place] + since * c2[place]), 0.0)
+        return values
+
+    @cached_property
+    def end_points(self) -> NDArray[np.int_]:
+        """The point of each end, the left one of bar b at 2 b, the right one at 2 b + 1: (2 bars,)."""
+        return self.ends.ravel()
+
+    @cached_property
+    def end_ratios(self) -> Array:
+        """The ratio of each end: (2 bars,)."""
+        return self.ratios.ravel()
+
+    def carried(self, point: int, *, bars: bool = False, springs: bool = False) -> tuple[Array, Array]:
+        """How fast points (points,) and bars (bars,) move with a point of velocity 1, all contacts closed.
+
+        With `bars` these are rigid, with `springs` springs and dashpots are, too. What is not reached has velocity 0.
+        """
+        points, rods = np.zeros(self.points), np.zeros(len(self.delays))
+        held = (self.damping != 0) | (self.stiffness != 0)
+        points[point], waiting = 1.0, [point]
+        while waiting:
+            here = waiting.pop()
+            found = [
+                (int(o), -row[here] / row[o] * points[here])
+                for row in self.parting
+                for o in np.flatnonzero(row)
+                if row[here] != 0
+            ]
+            if bars:
+                for end in np.flatnonzero(self.end_points == here).tolist():
+                    rods[end // 2] = self.end_ratios[end] * points[here]
+                    found.append((int(self.end_points[end ^ 1]), rods[end // 2] / self.end_ratios[end ^ 1]))
+            if springs:
+                found += [(int(other), points[here]) for other in np.flatnonzero(held[here])]
+            for other, speed in found:
+                if points[other] == 0:
+                    points[other] = speed
+                    waiting.append(other)
+        return points, rods
+
+    @cached_property
+    def _sums(self) -> tuple[dict[Gauge, Array], Array]:
+        """What outputs are the sums of: times readings, each with (outputs,) weights; and loads (outputs, points)."""
+        readings: dict[Gauge, Array] = {}
+        loads = np.zeros((len(self.probes), self.points))
+        for output, probe in enumerate(self.probes):
+            for weight, reading in output_terms(self, probe):
+                row = loads[:, reading.point] if reading.quantity == "load" else None
+                if row is None:
+                    row = readings.setdefault(reading, np.zeros(len(self.probes)))
+                row[output] += nearest(probe.factor) * weight
+        return readings, loads
+
+    @property
+    def readings(self) -> tuple[Gauge, ...]:
+        """The strains, velocities and displacements that outputs are sums of; of damped modes accelerations, too."""
+        return tuple(self._sums[0])
+
+    @cached_property
+    def weights(self) -> Array:
+        """What the readings count in outputs: (outputs, readings)."""
+        columns = list(self._sums[0].values())
+        return np.stack(columns, axis=1) if columns else np.zeros((len(self.probes), 0))
+
+    @property
+    def load_weights(self) -> Array:
+        """What the loads on points count in outputs: (outputs, points)."""
+        return self._sums[1]
+
+    @cached_property
+    def reads_outputs(self) -> bool:
+        """Whether outputs are the readings themselves."""
+        return not np.any(self.load_weights) and np.array_equal(self.weights, np.eye(len(self.probes)))
+
     def strain_at_start(self, reading: Gauge) -> float:
         """What a reading has of the strain at tau = 0."""
         return float(self.start_strain[reading.rod - 1]) if reading.quantity == "strain" else 0.0
 
     def outputs(self, values: Array, taus: Array) -> Array:
         """The outputs, (outputs, n), from the values (readings, n) of the readings at `taus` (n,)."""
-        if self.sums.is_trivial:
+        if self.reads_outputs:
             return values
-        total = self.sums.weights @ values
-        for output, time, powers in self.sums.loads:
-            since = taus - time
-            total[output] += np.where(since >= 0, np.polyval(powers, since), 0.0)
+        total = self.weights @ values
+        if np.any(self.load_weights):
+            total += self.load_weights @ self.loads(taus)
         return np.asarray(total)
+
+
+Stated = TypeVar("Stated", bound=Problem)
 
 
 @dataclass(frozen=True)
@@ -176,34 +277,33 @@ class Method:
         return lambda taus: problem.outputs(evaluate(taus), taus)
 
 
-def problem_of(model: Model) -> Problem:
-    """State the problem of a model, modal damping included.
-
-    Raises:
-        UnservedError: contacts open and close.
-    """
+def network_problem(model: Model, kind: type[Stated]) -> Stated:
+    """State the problem of a model, contacts and modal damping included, as a `kind` of Problem."""
     network = model.network
-    if network.contacts:
-        raise UnservedError("system: a contact that opens and closes given, none expected")
     points, bars = network.points, network.bars
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
+    gaps, parting = [], []
     for link in network.links:
         pair = np.zeros(len(points))
-        pair[link.left], pair[link.right] = nearest(link.ratio), -1.0
-        damping = damping + nearest(link.damping) * np.outer(pair, pair)
-        stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
+        pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
+        if link.contact:
+            gaps.append(nearest(link.gap))
+            parting.append(pair)
+        else:
+            damping = damping + nearest(link.damping) * np.outer(pair, pair)
+            stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
     events = tuple(_load_events(model))
     velocity = np.array([nearest(_start_velocity(network, number)) for number in range(len(points))])
     prescribed = tuple(number for number, point in enumerate(points) if point.motion)
     for number in prescribed:
         velocity[number] = sum(event.coefficients[0] for event in events if event.point == number and event.time == 0)
-    readings, sums = _output_sums(model)
-    return Problem(
+    return kind(
         mass=_numbers(points, "mass"),
         damping=damping,
         stiffness=stiffness,
         velocity=velocity,
         prescribed=prescribed,
+        ground=next((number for number in prescribed if points[number].motion != "fixed"), 0),
         ends=np.array([(bar.left, bar.right) for bar in bars], dtype=int).reshape(-1, 2),
         ratios=np.array([[nearest(ratio) for ratio in bar.ratios] for bar in bars]).reshape(-1, 2),
         delays=tuple(fraction(bar.delay) for bar in bars),
@@ -211,12 +311,24 @@ def problem_of(model: Model) -> Problem:
         impedance=_numbers(bars, "impedance"),
         start_velocity=_numbers(bars, "velocity"),
         start_strain=_numbers(bars, "strain"),
+        gaps=np.array(gaps),
+        parting=np.array(parting).reshape(-1, len(points)),
         events=events,
-        readings=readings,
-        sums=sums,
+        probes=model.probes,
         until=nearest(model.until),
         modal=model.damping,
     )
+
+
+def problem_of(model: Model) -> Problem:
+    """State the problem of a model without contacts, modal damping included.
+
+    Raises:
+        UnservedError: contacts open and close.
+    """
+    if model.network.contacts:
+        raise UnservedError("system: a contact that opens and closes given, none expected")
+    return network_problem(model, Problem)
 
 
 def undamped_problem(model: Model) -> Problem:
@@ -276,28 +388,49 @@ def _coefficients(exact: Sequence[fmpq]) -> tuple[float, float, float]:
     return a, b, c
 
 
-def _output_sums(model: Model) -> tuple[tuple[Gauge, ...], OutputSums]:
-    """What a method has to read, and the sums of it that are the outputs."""
-    sums = [_terms(model, probe) for probe in model.probes]
-    readings = list(dict.fromkeys(each for terms in sums for _, each in terms if each.quantity != "load"))
-    weights, loads = np.zeros((len(sums), len(readings))), []
-    for output, terms in enumerate(sums):
-        for weight, each in terms:
-            if each.quantity != "load":
-                weights[output, readings.index(each)] = nearest(weight)
-            elif each.point is not None:
-                units = {unit.source: unit.coefficients for unit in model.network.points[each.point].loads}
-                for load in (load for load in model.loads if load.source in units):
-                    powers = np.array([nearest(weight * load.weight * c) for c in reversed(units[load.source])])
-                    loads.append((output, nearest(load.time), powers))
-    return tuple(readings), OutputSums(weights, tuple(loads))
+def output_terms(problem: Problem, probe: Probe) -> Iterator[tuple[float, Gauge]]:
+    """So many times strains, velocities, displacements and loads on points: what an output is the sum of.
+
+    How a mass is accelerated the balance of forces says. What contacts hold together has no mass but that one:
+    multiplied by how fast its points would move together, and added up, their balances are without pushes, whether
+    contacts are open or closed. Where modes are damped more acts on it than rods and loads, so that it is read.
+    """
+    bar, here = probe.rod - 1, Gauge(probe.quantity, probe.rod, probe.place, probe.point)
+    match probe.quantity:
+        case "acceleration" if problem.modal is None:
+            yield from _acceleration(problem, probe)
+        case "force":
+            yield float(problem.impedance[bar] * problem.speed[bar]), replace(here, quantity="strain")
+        case "drift":
+            yield 1.0, Gauge("displacement", probe.rod, fmpq(1))
+            yield -1.0, Gauge("displacement", probe.rod, fmpq(0))
+        case "relative":
+            yield 1.0, replace(here, quantity="displacement")
+            yield -1.0, _at_point("displacement", problem.ground)
+        case _:
+            yield 1.0, here
 
 
-def _terms(model: Model, probe: Probe) -> Sum:
-    """What an output is the sum of. Where modes are damped more acts on a mass than rods and loads."""
-    if probe.quantity == "acceleration" and model.damping is not None:
-        return (Weighted(probe.factor, Gauge(probe.quantity, probe.rod, probe.place, probe.point)),)
-    return model.sums[probe]
+def _acceleration(problem: Problem, probe: Probe) -> Iterator[tuple[float, Gauge]]:
+    """All that acts on a mass, and on what touches it, but loads and pushes as they work where points are so fast."""
+    point, ratio = probe.point, 1.0
+    if point is None:
+        end = 2 * (probe.rod - 1) + int(probe.place)
+        point, ratio = int(problem.end_points[end]), float(problem.end_ratios[end])
+    speeds = problem.carried(point)[0] * (ratio / float(problem.mass[point]))
+    stiffness = np.repeat(problem.impedance * problem.speed, 2) * np.tile([1.0, -1.0], len(problem.speed))
+    for end, force in enumerate((speeds @ problem.onto * stiffness).tolist()):
+        if speeds[problem.end_points[end]]:
+            yield force, Gauge("strain", end // 2 + 1, fmpq(end % 2))
+    unit = np.eye(problem.points)
+    for matrix, quantity in ((-problem.damping, "velocity"), (-problem.stiffness, "displacement"), (unit, "load")):
+        held = speeds @ matrix
+        for number in np.flatnonzero(held).tolist():
+            yield float(held[number]), _at_point(quantity, number)
+
+
+def _at_point(quantity: str, point: int) -> Gauge:
+    return Gauge(quantity, 0, fmpq(0), point)
 
 
 def _numbers(parts: Sequence[object], name: str) -> Array:

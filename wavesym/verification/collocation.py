@@ -21,10 +21,11 @@ from itertools import product
 from math import ceil
 
 import numpy as np
+from flint import arb, arb_mat, ctx
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.verification.problem import Change, ContactProblem
@@ -43,8 +44,11 @@ _REACH = 2.0
 _LOOKED = np.linspace(0, 1, 65) ** 4
 _HALVINGS = 60
 
-# a panel rounds no more often than this for each of its points
-_ROUNDINGS = 16
+# bits of Gauss's rule before it is rounded
+_BITS = 256
+
+# a panel rounds no more often than this for each of its points: a tenth of it was seen
+_ROUNDINGS = 1
 
 
 class Undecided(ArithmeticError):
@@ -68,7 +72,7 @@ class Motion:
     vague: list[float] = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
 
-    def at(self, reading: Probe, taus: Sequence[float]) -> Array:
+    def at(self, reading: Gauge, taus: Sequence[float]) -> Array:
         """Evaluate a strain, velocity or displacement.
 
         Args:
@@ -90,14 +94,25 @@ class Motion:
         right, left = parts
         return (left - right) / self.problem.speed[reading.rod - 1] if reading.quantity == "strain" else left + right
 
-    def distance(self, reading: Probe, taus: Array) -> Array:
+    def outputs(self, taus: Array) -> Array:
+        """The outputs at doubles tau in [0, until], right-hand limits: (outputs, taus)."""
+        values = [self.at(reading, taus.tolist()) for reading in self.problem.readings]
+        return self.problem.outputs(np.array(values).reshape(-1, len(taus)), taus)
+
+    @property
+    def output_roundoff(self) -> Array:
+        """What rounding may have added to the outputs: (outputs,)."""
+        rounded = [self.roundoff(reading) for reading in self.problem.readings]
+        return np.asarray(np.abs(self.problem.weights) @ np.array(rounded))
+
+    def distance(self, reading: Gauge, taus: Array) -> Array:
         """How far instants (n,) are from where a reading may jump or bend at a time that is not known exactly: (n,)."""
         vague = np.array([-np.inf, *self.vague, np.inf])
         seen = taus - np.array([[float(late)] for _, _, late in self._read(reading)])
         after = np.searchsorted(vague, seen)
         return np.asarray(np.min(np.minimum(seen - vague[after - 1], vague[after] - seen), axis=0))
 
-    def roundoff(self, reading: Probe) -> float:
+    def roundoff(self, reading: Gauge) -> float:
         """What rounding may have added to a reading, absolute: it adds up over panels, and no joint amplifies it."""
         largest = float(np.max(np.abs(self._coefficients)))
         if reading.quantity == "displacement":
@@ -105,7 +120,7 @@ class Motion:
         relative = _ROUNDINGS * self.points * len(self.starts) * float(UNIT_ROUNDOFF)
         return max(relative, 10 * SAME if len(self.problem.gaps) else 0.0) * largest
 
-    def _read(self, reading: Probe) -> list[tuple[int, int, Fraction]]:
+    def _read(self, reading: Gauge) -> list[tuple[int, int, Fraction]]:
         """The waves that a reading is made of: side and bar that they are sent from, and how late they come."""
         if reading.point is not None:
             return [(0, len(self.problem.delays) + reading.point, Fraction(0))]
@@ -168,12 +183,29 @@ class Gauss:
 
 @cache
 def gauss(points: int) -> Gauss:
-    """Gauss's rule with so many points."""
-    nodes, weights = legendre.leggauss(points)
-    sizes = np.arange(points)[:, np.newaxis] + 0.5
-    series = np.asarray(sizes * weights * legendre.legvander(nodes, points - 1).T)
-    integrals = [legendre.legval(nodes, legendre.legint(unit, lbnd=-1)) for unit in np.eye(points)]
-    return Gauss((nodes + 1) / 2, weights / 2, np.stack(integrals, axis=1) @ series / 2, series)
+    """Gauss's rule with so many points, each number rounded once: NumPy has weights that are wrong by up to 1e-12."""
+    with ctx.workprec(_BITS):
+        rule = (arb.legendre_p_root(points, k, weight=True) for k in reversed(range(points)))
+        nodes, weights = zip(*rule, strict=True)
+        values = [_legendre(node, points) for node in nodes]
+        series = [[(2 * j + 1) * w * p[j] / 2 for w, p in zip(weights, values, strict=True)] for j in range(points)]
+        # P_j integrated from -1 on is (P_(j+1) - P_(j-1))/(2 j + 1)
+        integrals = [[1 + p[1], *((p[j + 1] - p[j - 1]) / (2 * j + 1) for j in range(1, points))] for p in values]
+        until = arb_mat(integrals) * arb_mat(series)
+        on_unit = _rounded(arb_mat([[(x + 1) / 2 for x in nodes], [w / 2 for w in weights]]))
+    return Gauss(on_unit[0], on_unit[1], _rounded(until) / 2, _rounded(arb_mat(series)))
+
+
+def _legendre(x: arb, degree: int) -> list[arb]:
+    """Legendre's polynomials P_0 ... P_degree at x."""
+    values = [arb(1), x]
+    for j in range(1, degree):
+        values.append(((2 * j + 1) * x * values[j] - j * values[j - 1]) / (j + 1))
+    return values
+
+
+def _rounded(matrix: arb_mat) -> Array:
+    return np.array([[float(value.mid()) for value in row] for row in matrix.tolist()])
 
 
 def integrate(problem: ContactProblem, until: float, points: int, most: int = 100_000) -> Motion:
@@ -259,7 +291,7 @@ class _Integration:
         problem = self._problem
         times = float(now) + float(width) * self._rule.nodes
         self._arriving = np.stack([self._wave(end, now, width, times) for end in range(len(problem.end_points))])
-        acting = problem.load_integral(times, 0)
+        acting = problem.loads(times)
         acting[problem.is_free] += (self._arriving_force @ self._arriving)[problem.is_free]
         self._velocities, self._states = np.zeros((len(self._q), self._found.points)), self._open.copy()
         return {number: self._settle(number, width, acting) for number in range(len(problem.groups))}

@@ -18,7 +18,7 @@ from math import ceil, lcm
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.differences import Grid, point_steps
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
@@ -69,7 +69,6 @@ class SpaceTimeGrid:
     """A network whose bars have cells of a step of tau. An instant k is tau = k * step."""
 
     problem: ContactProblem
-    readings: tuple[Probe, ...]
     step: Fraction
 
     @property
@@ -103,11 +102,11 @@ class SpaceTimeGrid:
         """
         measure, step = self.problem.measure, float(self.step)
         cuts = {event.time % measure for event in self.problem.events} | {Fraction(0)}
-        reaches = [1 if _is_whole(self._place(reading)) else _STENCIL for reading in self.readings]
+        reaches = [1 if _is_whole(self._place(reading)) else _STENCIL for reading in self.problem.readings]
         instants = np.arange(1, int(until / step) - max(reaches) + 1)
         free = np.ones(len(instants), dtype=bool)
         window = float(measure / self.step)
-        for reading, reach in zip(self.readings, reaches, strict=True):
+        for reading, reach in zip(self.problem.readings, reaches, strict=True):
             bar = reading.rod - 1
             offset = Fraction(0) if reading.point is not None else fraction(reading.place) * self.problem.delays[bar]
             for way in (offset, -offset):
@@ -137,7 +136,7 @@ class SpaceTimeGrid:
     def integrate(self, instants: Instants) -> Displaced:
         """The readings at positive instants in ascending order. At a front, the mean of what is before and after it."""
         kept = np.unique(np.add.outer(instants, (-1, 0, 1)))
-        terms = [list(self._terms(reading)) for reading in self.readings]
+        terms = [list(self._terms(reading)) for reading in self.problem.readings]
         places = np.unique([place for some in terms for _, place, _ in some])
         history = np.zeros((len(kept), len(places)))
         motion, row, largest = _Motion(self, int(instants[-1]) + 3), 0, 0.0
@@ -147,9 +146,9 @@ class SpaceTimeGrid:
                 largest = max(largest, float(np.max(np.abs(motion.now))))
                 row += 1
             motion.advance()
-        values = np.zeros((len(self.readings), len(instants)))
+        values = np.zeros((len(self.problem.readings), len(instants)))
         rows = np.searchsorted(kept, instants)
-        for reading, value, some in zip(self.readings, values, terms, strict=True):
+        for reading, value, some in zip(self.problem.readings, values, terms, strict=True):
             value += self.problem.start_strain[reading.rod - 1] if reading.quantity == "strain" else 0.0
             for later, place, weight in some:
                 value += weight * history[rows + later, np.searchsorted(places, place)]
@@ -166,7 +165,7 @@ class SpaceTimeGrid:
             "velocity": 1 / lightest,
             "strain": 1 / lightest / slowest,
         }
-        return np.array([most[reading.quantity] for reading in self.readings])
+        return np.array([most[reading.quantity] for reading in self.problem.readings])
 
     def _lasting(self, changes: Sequence[tuple[int, str, int]]) -> Iterator[Change]:
         """What happened at contacts and stayed so for some steps: the rest is what fronts between instants do."""
@@ -187,7 +186,8 @@ class SpaceTimeGrid:
         """
         slope = steps / float(self.step)
         sizes = {"displacement": float(steps * steps), "velocity": slope}
-        found = [sizes.get(reading.quantity, slope / self.problem.speed[reading.rod - 1]) for reading in self.readings]
+        speed, readings = self.problem.speed, self.problem.readings
+        found = [sizes.get(reading.quantity, slope / speed[reading.rod - 1]) for reading in readings]
         return _ROUNDINGS * float(UNIT_ROUNDOFF) * np.array(found)
 
     @cached_property
@@ -196,13 +196,13 @@ class SpaceTimeGrid:
         counts = np.array([int(delay / self.step) for delay in self.problem.delays])
         return Grid(self.problem, counts, float(self.step))
 
-    def _place(self, reading: Probe) -> float:
+    def _place(self, reading: Gauge) -> float:
         """Where a reading is, in cells from the left end of its bar."""
         if reading.point is not None:
             return 0.0
         return float(fraction(reading.place) * self.problem.delays[reading.rod - 1] / self.step)
 
-    def _terms(self, reading: Probe) -> Iterator[Term]:
+    def _terms(self, reading: Gauge) -> Iterator[Term]:
         """What a reading is the sum of, but the strain at the start."""
         half = 1 / (2 * float(self.step))
         bar, place = reading.rod - 1, self._place(reading)
@@ -224,17 +224,15 @@ class SpaceTimeGrid:
             yield from ((later, first + k, weight * factor) for later, k, factor in terms)
 
 
-def coarsest_grid(problem: ContactProblem, readings: tuple[Probe, ...], until: Fraction) -> SpaceTimeGrid:
+def coarsest_grid(problem: ContactProblem, until: Fraction) -> SpaceTimeGrid:
     """The coarsest grid: loads and readings are on it where their denominators are small."""
     measure, common = problem.measure, 1
-    offsets = [
-        fraction(reading.place) * problem.delays[reading.rod - 1] for reading in readings if reading.point is None
-    ]
+    offsets = [fraction(each.place) * problem.delays[each.rod - 1] for each in problem.readings if each.point is None]
     for time in (*(event.time for event in problem.events), *offsets):
         if lcm(common, (time / measure).denominator) <= _FINEST_ALIGNED:
             common = lcm(common, (time / measure).denominator)
     shortest = min(*problem.delays, until)
-    return SpaceTimeGrid(problem, readings, measure / common / ceil(COARSEST * measure / common / shortest))
+    return SpaceTimeGrid(problem, measure / common / ceil(COARSEST * measure / common / shortest))
 
 
 class _Motion:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -23,7 +23,6 @@ from wavesym.methods.problem import problem_of as damped_problem
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, Undecided, integrate
 from wavesym.verification.differences import LATE, SpaceTimeGrid, coarsest_grid
-from wavesym.verification.observed import Term, observed, read_by
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, refused, shown
 from wavesym.verification.problem import Change, Struck, alike, problem_of
 from wavesym.verification.reference import Known, evenly, spread
@@ -68,7 +67,7 @@ def collocation(known: Known) -> list[Outcome]:
     if isinstance(solved, str):
         return refused(known, "N", solved)
     taus = np.array(known.taus)
-    instants = [solved.clear(each.terms, taus) for each in observed(known.integrated)]
+    instants = solved.clear(taus)
     truths = [Truth(output.values[clear], output.scale) for output, clear in zip(known.outputs, instants, strict=True)]
     method = solved.method([taus[clear].tolist() for clear in instants])
     return method.outcomes(known.whole.name, known.names, truths, {})
@@ -100,7 +99,7 @@ class _Solved:
         Raises:
             Undecided: that takes too many panels, or other things happen at contacts.
         """
-        self._model, self._until, self._problem = model, until, problem_of(model)
+        self._until, self._problem = until, problem_of(model)
         self.has_contacts = len(self._problem.gaps) > 0
         self._motions: dict[int, Motion] = {}
         for points in _POINTS_OF_CONTACTS if self.has_contacts else (_POINTS,):
@@ -123,22 +122,22 @@ class _Solved:
             self._motions[points] = integrate(self._problem, self._until, points, most)
         return self._motions[points]
 
-    def clear(self, terms: Sequence[Term], taus: Array) -> Array:
-        """Which instants are as far from fronts that contacts cause as these are known: (n,)."""
-        motions = [self.motion(k * self.points) for k in (1, 2, 4)] if self.has_contacts else []
-        far = [motion.distance(reading, taus) for motion in motions for _, reading in terms]
-        return np.asarray(np.min(far, axis=0, initial=np.inf) > _CLOSE) if far else np.ones(len(taus), bool)
+    def clear(self, taus: Array) -> Array:
+        """Which instants are as far from fronts that contacts cause as these are known, by output: (outputs, n)."""
+        problem, far = self._problem, np.full((len(self._problem.readings), len(taus)), np.inf)
+        for motion in [self.motion(k * self.points) for k in (1, 2, 4)] if self.has_contacts else []:
+            far = np.minimum(far, [motion.distance(reading, taus) for reading in problem.readings])
+        return np.array([np.all(far[weights != 0] > _CLOSE, axis=0) for weights in problem.weights])
 
     def method(self, instants: Sequence[Sequence[float]]) -> Method:
         """The outputs at instants of each."""
-        views = observed(self._model)
+        every = np.unique(np.concatenate([np.asarray(taus, dtype=float) for taus in instants]))
+        places = [np.searchsorted(every, taus) for taus in instants]
 
         def solve(finer: int) -> list[Solution]:
             motion = self.motion(finer * self.points)
-            return [
-                Solution(view.values(partial(motion.at, taus=taus), taus), view.roundoff(motion.roundoff))
-                for view, taus in zip(views, instants, strict=True)
-            ]
+            outputs = zip(motion.outputs(every), motion.output_roundoff, places, strict=True)
+            return [Solution(values[at], rounding) for values, rounding, at in outputs]
 
         def is_affordable(finer: int) -> bool:
             return not self.has_contacts and finer * self.points <= _MOST_POINTS
@@ -191,24 +190,23 @@ def differences(known: Known) -> list[Outcome]:
         Truth(np.array(values), output.scale)
         for values, output in zip(Reference(known.model).values(taus), known.outputs, strict=True)
     ]
-    views = observed(model)
+    problem = first.problem
 
     def solve(finer: int) -> list[Solution]:
         found = first.finer(finer).integrate(finer * instants)
-        values = dict(zip(first.readings, found.values, strict=True))
-        roundoff = dict(zip(first.readings, found.roundoff.tolist(), strict=True))
-        return [Solution(v.values(values.__getitem__, taus), v.roundoff(roundoff.__getitem__)) for v in views]
+        outputs = problem.outputs(found.values, np.array(taus))
+        return [Solution(*each) for each in zip(outputs, np.abs(problem.weights) @ found.roundoff, strict=True)]
 
     def is_affordable(finer: int) -> bool:
         return first.finer(finer).cost(until) <= MOST_MOVED
 
     rule: Rule = "extrapolated" if first.aligned and not struck else "wandering"
-    method = Method("space-time grid", first.cells, solve, is_affordable, rule, [taus] * len(views), clear=True)
+    method = Method("space-time grid", first.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
     return method.outcomes(model.name, known.names, truths, {"to": f"{until:.4g}"})
 
 
 def _grid(model: Model) -> SpaceTimeGrid:
-    return coarsest_grid(problem_of(model), read_by(model), fraction(model.until))
+    return coarsest_grid(problem_of(model), fraction(model.until))
 
 
 # finite elements

@@ -195,7 +195,7 @@ class _Books:
             rounded = float(UNIT_ROUNDOFF) * np.max(np.abs(values), axis=1)
             wrong = np.abs(scales) * (rounded if errors is None else np.array(errors))[:, np.newaxis]
             return Within(
-                np.concatenate([scales * values, problem.load_integral(times, 0)]),
+                np.concatenate([scales * values, problem.loads(times)]),
                 np.concatenate([wrong, np.zeros((size, 1))]) + np.zeros(len(times)),
             )
 
