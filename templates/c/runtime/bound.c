@@ -47,13 +47,14 @@ static const real alternating[17] = {1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1
 
 static real total_of(const slice *x)
 {
-    slice sum = *x;
+    real sum[LANES];
+    *(slice *)sum = *x;
     for (int half = LANES / 2; half > 0; half /= 2) {
         for (int lane = 0; lane < half; ++lane) {
-            AT(sum, lane) += AT(sum, lane + half);
+            sum[lane] += sum[lane + half];
         }
     }
-    return AT(sum, 0);
+    return sum[0];
 }
 
 /* No less than the root, and hardly more: half the sum of y and x/y is no less, whatever y is. */
@@ -214,7 +215,7 @@ static void start_errors(march_state *m, const laws *law, errors *w)
 }
 
 /* A sum of products of numbers of a law, `count` of them, with slices of series; and of their magnitudes. */
-static void add_slices(const real *numbers, const slice *series, const slice *sizes, int count, slice *sum, slice *size)
+WITHIN void add_slices(const real *numbers, const slice *series, const slice *sizes, int count, slice *sum, slice *size)
 {
     for (int j = 0; j < count; ++j) {
         *sum += numbers[j] * series[j];
@@ -223,24 +224,27 @@ static void add_slices(const real *numbers, const slice *series, const slice *si
 }
 
 /* What acts on the points of a joint, from a coefficient on, and what that is the sum of in absolute values. */
-static void acting_slices(const march_state *m, const laws *law, int joint, int panel, int window, size_t k, slice *acting,
-                         slice *size)
+WITHIN void acting_slices(const progress *b, const places *now, int joint, int panel, int points, size_t k, slice *acting,
+                          slice *size)
 {
-    const int first = first_point[joint];
-    for (int point = 0; point < points_of(joint); ++point) {
-        const int force = force_on[first + point];
-        real load[3 + LANES] = {0};
-        for (int power = 0; power < 3 && force >= 0; ++power) {
-            load[power] = m->force[panel][force][power];
+    const march_state *const m = b->sets;
+    for (int point = 0; point < points; ++point) {
+        const int force = force_on[first_point[joint] + point];
+        acting[point] = nothing;
+        if (k < 3 && force >= 0) {
+            real load[3 + LANES] = {0};
+            for (int power = 0; power < 3; ++power) {
+                load[power] = m->force[panel][force][power];
+            }
+            acting[point] = *slice_at(load, k);
         }
-        acting[point] = k < 3 ? *slice_at(load, k) : nothing;
         size[point] = MAGNITUDE(acting[point]);
     }
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const slice pushed = law->push[port] *
-                             *slice_at(m->waves[slot(arrive[port], window, steps[arrive[port]])][panel], k);
-        acting[point_of[port]] += pushed;
-        size[point_of[port]] += MAGNITUDE(pushed);
+        const slice pushed = b->law->push[port] * *slice_at(m->waves[now->arrived[arrive[port]]][panel], k);
+        const int point = points > 1 ? point_of[port] : 0;
+        acting[point] += pushed;
+        size[point] += MAGNITUDE(pushed);
     }
 }
 
@@ -255,25 +259,29 @@ static real load_error(const errors *w, const real *row, int joint, int panel)
     return sum;
 }
 
-/* What a joint adds to the energy of errors on a panel. */
-static void add_residual(const march_state *m, const real *inverse, const laws *law, errors *w, int joint, int panel, int window, int degree,
-                   slice *energy, real *apart)
+/* What a joint of n states and so many points adds to the energy of errors on a panel, and to what each end sends; of a
+ * body nothing that acts passes at once. */
+WITHIN void add_residual(const progress *b, const places *now, errors *w, int joint, int panel, int n, int points,
+                         int passing, slice *energy, real *apart)
 {
-    const int n = states_of(joint), points = points_of(joint), first = first_state[joint], ports = first_port[joint];
+    const march_state *const m = b->sets;
+    const laws *const law = b->law;
+    const int first = first_state[joint], ports = first_port[joint], degree = b->degree;
     const real half = half_length[panel], few = unit * ((real)(degree / LANES + 12) + 2 * w->bent[panel][joint]);
     const real exact = unit * ((real)(n + points + first_port[joint + 1] - ports + 10) + 3 * roundings);
     real rate_of[NAME_WIDEST][NAME_ROW + LANES + 1];
     slice x[NAME_WIDEST], x_size[NAME_WIDEST], s[NAME_WIDEST], s_size[NAME_WIDEST];
-    slice begins[NAME_WIDEST], ends[NAME_WIDEST], aparts[NAME_PORTS], reads[NAME_PORTS];
+    slice begins[NAME_WIDEST], ends[NAME_WIDEST], sizes[NAME_WIDEST], x_sizes[NAME_WIDEST];
+    slice aparts[NAME_PORTS], sums[NAME_PORTS], waves[NAME_PORTS], reads[NAME_PORTS];
     for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
-        begins[i] = ends[i] = x[i] = x_size[i] = nothing;
+        begins[i] = ends[i] = sizes[i] = x_sizes[i] = x[i] = x_size[i] = nothing;
     }
     for (int port = ports; port < first_port[joint + 1]; ++port) {
-        aparts[port] = reads[port] = nothing;
+        aparts[port] = sums[port] = waves[port] = reads[port] = nothing;
     }
     size_t end = 0;
     for (; end <= (size_t)degree; end += LANES) {
-        acting_slices(m, law, joint, panel, window, end, s, s_size);
+        acting_slices(b, now, joint, panel, points, end, s, s_size);
         for (int i = 0; i < n; ++i) {
             x[i] = *slice_at(m->path[panel][first + i], end);
             x_size[i] = MAGNITUDE(x[i]);
@@ -285,18 +293,21 @@ static void add_residual(const march_state *m, const real *inverse, const laws *
             add_slices(law->rates + at_rates[joint] + i * n, x, x_size, n, &sum, &size);
             add_slices(law->pushed + at_pushed[joint] + i * points, s, s_size, points, &sum, &size);
             *(slice *)(rate_of[i] + end) = sum;
-            *energy += w->weight[first + i] * (2 * half * exact * size + few * x_size[i]);
+            sizes[i] += size;
+            x_sizes[i] += x_size[i];
         }
         for (int port = ports; port < first_port[joint + 1]; ++port) {
-            const int row = point_of[port];
-            const slice out = *slice_at(m->waves[slot(send[port], window, 0)][panel], end);
-            const slice a = *slice_at(m->waves[slot(arrive[port], window, steps[arrive[port]])][panel], end);
+            const int row = points > 1 ? point_of[port] : 0;
+            const slice out = *slice_at(m->waves[now->sent[send[port]]][panel], end);
+            const slice a = *slice_at(m->waves[now->arrived[arrive[port]]][panel], end);
             const slice out_size = MAGNITUDE(out);
             slice sum = nothing, size = nothing;
             add_slices(law->shown + at_shown[joint] + row * n, x, x_size, n, &sum, &size);
-            add_slices(law->passed + at_passed[joint] + row * points, s, s_size, points, &sum, &size);
+            add_slices(law->passed + at_passed[joint] + row * points, s, s_size, passing, &sum, &size);
             const slice much = (out + a) - ratio[port] * sum;
-            aparts[port] += MAGNITUDE(much) + magnitude(ratio[port]) * exact * size + unit * 4 * (out_size + MAGNITUDE(a));
+            aparts[port] += MAGNITUDE(much);
+            sums[port] += size;
+            waves[port] += out_size + MAGNITUDE(a);
             reads[port] += *slice_at(w->reading, end) * out_size;
         }
     }
@@ -308,11 +319,12 @@ static void add_residual(const march_state *m, const real *inverse, const laws *
             rate[end + k] = 0;
         }
         for (size_t k = 1; k <= (size_t)degree + 1; k += LANES) {
-            const slice bent = half * *slice_at(inverse, k) * (*slice_at(rate, k - 1) - *slice_at(rate, k + 1));
+            const slice bent = half * *slice_at(b->inverse, k) * (*slice_at(rate, k - 1) - *slice_at(rate, k + 1));
             const slice missed = *slice_at(m->path[panel][first + i], k) - bent;
             rest += MAGNITUDE(missed) + 4 * unit * MAGNITUDE(bent);
         }
-        *energy += w->weight[first + i] * w->bent[panel][joint] * rest;
+        rest = w->bent[panel][joint] * rest + (2 * half * exact * sizes[i] + few * x_sizes[i]);
+        *energy += w->weight[first + i] * rest;
         w->energy += w->weight[first + i] *
                      (magnitude(total_of(&begins[i]) - w->end[first + i]) +
                       2 * half * load_error(w, law->pushed + at_pushed[joint] + i * points, joint, panel));
@@ -320,7 +332,8 @@ static void add_residual(const march_state *m, const real *inverse, const laws *
     }
     for (int port = ports; port < first_port[joint + 1]; ++port) {
         const real beyond = load_error(w, law->passed + at_passed[joint] + point_of[port] * points, joint, panel);
-        const real here = total_of(&aparts[port]) + magnitude(ratio[port]) * beyond;
+        const slice much = aparts[port] + magnitude(ratio[port]) * exact * sums[port] + unit * 4 * waves[port];
+        const real here = total_of(&much) + magnitude(ratio[port]) * beyond;
         w->energy += w->length[panel] * w->passes[port] * here;
         apart[port] = larger(apart[port], here);
         slice *const most = &w->read[send[port]];
@@ -328,18 +341,27 @@ static void add_residual(const march_state *m, const real *inverse, const laws *
     }
 }
 
-/* What a window adds to the errors, and how large those of its waves are. */
-static void add_window(const march_state *m, const real *inverse, const laws *law, errors *w, int window, int degree)
+/* What a window that has been marched adds to the errors, and how large those of its waves are. */
+static void add_window(const progress *b, errors *w)
 {
-    const real spare = (real)(256 * (degree + 4)) * least_number;
+    const laws *const law = b->law;
+    const int window = b->window;
+    const real spare = (real)(256 * (b->degree + 4)) * least_number;
     slice energy = nothing;
+    places now;
     real apart[NAME_PORTS];
+    locate(window, &now);
     for (int port = 0; port < NAME_PORTS; ++port) {
         apart[port] = 0;
     }
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            add_residual(m, inverse, law, w, joint, panel, window, degree, &energy, apart);
+            if (is_body[joint]) {
+                add_residual(b, &now, w, joint, panel, 1, 1, 0, &energy, apart);
+            } else {
+                const int points = points_of(joint);
+                add_residual(b, &now, w, joint, panel, states_of(joint), points, points, &energy, apart);
+            }
         }
     }
     w->energy += total_of(&energy) + spare * w->all;
@@ -357,13 +379,13 @@ static void add_window(const march_state *m, const real *inverse, const laws *la
                                      law->passed[at_passed[joint] + point_of[port] * points + point_of[other]] *
                                      law->push[other];
                 const real back = through - (port == other ? (real)1 : (real)0);
-                const real arrived = w->wave[slot(arrive[other], window, steps[arrive[other]])];
+                const real arrived = w->wave[now.arrived[arrive[other]]];
                 error += (magnitude(back) + 2 * (roundings + 4) * unit * magnitude(through)) * arrived;
             }
             const real all = w->thins[port] * w->instant;
             error = all < error ? all : error;
             w->energy = finite_number(error) ? w->energy : infinity();
-            w->wave[slot(send[port], window, 0)] = larger(w->wave[slot(send[port], window, 1)], error);
+            w->wave[now.sent[send[port]]] = larger(w->wave[slot(send[port], window, 1)], error);
         }
     }
 }
@@ -472,10 +494,10 @@ int name_error_bound_with(
         summed[term_gain[t]] = term_summed[t];
     }
     for (int window = 0, event = 0; window < NAME_WINDOWS && next_window(&now); ++window) {
-        keep_window(&now);
         bound_loads(&w, m->change, window, event);
         start_reading(&w, now.degree);
-        add_window(m, work->inverse, &law, &w, window, now.degree);
+        add_window(&now, &w);
+        keep_window(&now);
         add_integrals(m, &w, summed, window, now.degree);
         note_largest(m, &w, window);
         event = now.event;
