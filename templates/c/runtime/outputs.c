@@ -67,8 +67,8 @@ static void OF(accumulate_term)(OF(march_state) *all, const real *inverse, const
     }
 }
 
-/* The same of both waves of a strand at once, which are all of it, and are not integrated. */
-static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t, int window, int degree, num *c)
+/* The same of both waves of a strand at once, which are all of it, and are not integrated; `sum` grows by magnitudes. */
+static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t, int window, int degree, num *c, num *sum)
 {
     const num *w[OF(parts)], *v[OF(parts)];
     num one[OF(parts)], other[OF(parts)];
@@ -83,7 +83,9 @@ static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t,
     for (int k = 0; k <= degree; ++k) {
         UNROLLED
         for (int side = 0; side < OF(parts); ++side) {
-            c[k * OF(parts) + side] = one[side] * w[side][k] + other[side] * v[side][k];
+            const num now = one[side] * w[side][k] + other[side] * v[side][k];
+            c[k * OF(parts) + side] = now;
+            sum[side] += SIZE_OF(now);
         }
     }
 }
@@ -95,8 +97,12 @@ static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(l
 {
     for (int s = 0; s < NAME_STRANDS; ++s) {
         const int t = first_term[s], last = first_term[s + 1];
+        num sum[OF(parts)];
+        for (int side = 0; side < OF(parts); ++side) {
+            sum[side] = ZERO;
+        }
         if (!more && last - t == 2 && !term_summed[t] && !term_summed[t + 1]) {
-            OF(accumulate_two)(all, law, t, window, degree, c);
+            OF(accumulate_two)(all, law, t, window, degree, c, sum);
         } else {
             for (int k = 0; k < (degree + 2) * OF(parts) && !more; ++k) {
                 c[k] = ZERO;
@@ -104,17 +110,14 @@ static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(l
             for (int k = t; k < last; ++k) {
                 OF(accumulate_term)(all, inverse, law, k, window, degree, c);
             }
+            for (int k = 0; k <= degree + 1; ++k) {
+                for (int side = 0; side < OF(parts); ++side) {
+                    sum[side] += SIZE_OF(c[k * OF(parts) + side]);
+                }
+            }
         }
         for (int side = 0; side < OF(parts); ++side) {
-            num some = ZERO, others = ZERO;
-            for (int k = 0; k <= degree; k += 2) {
-                some += SIZE_OF(c[k * OF(parts) + side]);
-                others += SIZE_OF(c[(k + 1) * OF(parts) + side]);
-            }
-            if (degree % 2) {
-                some += SIZE_OF(c[(degree + 1) * OF(parts) + side]);
-            }
-            weight[side] += (real)(4 * (degree + 2)) * (some + others);
+            weight[side] += (real)(4 * (degree + 2)) * sum[side];
         }
         c += (degree + 2) * OF(parts);
     }
