@@ -192,8 +192,8 @@ typedef struct {
     num *q[ABREAST_BODIES], *state[ABREAST_BODIES], *size[ABREAST_BODIES], *missed[ABREAST_BODIES];
 } OF(bodies);
 
-/* One alone is stepped twice. */
-static void OF(step_bodies)(OF(bodies) *e, real half, int degree)
+/* `count` of them. */
+WITHIN void OF(step_abreast)(OF(bodies) *e, int count, real half, int degree)
 {
     num y[ABREAST_BODIES], at_first[ABREAST_BODIES], at_last[ABREAST_BODIES], above[ABREAST_BODIES], here[ABREAST_BODIES];
     num highest[ABREAST_BODIES], one[ABREAST_BODIES], other[ABREAST_BODIES];
@@ -203,23 +203,17 @@ static void OF(step_bodies)(OF(bodies) *e, real half, int degree)
     real on_left[ABREAST_BODIES], on_right[ABREAST_BODIES];
     int most = 0;
     UNROLLED
-    for (int j = 0; j < ABREAST_BODIES; ++j) {
-        const int now = j < e->count ? j : 0;
-        if (j > now) {
-            e->acting[j] = e->acting[now];
-            e->most[j] = e->most[now];
-            e->drive[j] = e->drive[now];
-        }
-        table[j] = e->table[now];
-        a[j] = e->a[now];
-        b[j] = e->b[now];
-        q[j] = e->q[now];
-        left[j] = e->left[now];
-        right[j] = e->right[now];
-        on_left[j] = e->on_left[now];
-        on_right[j] = e->on_right[now];
-        one[j] = e->one[now];
-        other[j] = e->other[now];
+    for (int j = 0; j < count; ++j) {
+        table[j] = e->table[j];
+        a[j] = e->a[j];
+        b[j] = e->b[j];
+        q[j] = e->q[j];
+        left[j] = e->left[j];
+        right[j] = e->right[j];
+        on_left[j] = e->on_left[j];
+        on_right[j] = e->on_right[j];
+        one[j] = e->one[j];
+        other[j] = e->other[j];
         most = e->most[j] > most ? e->most[j] : most;
         here[j] = one[j] * a[j][degree] + other[j] * b[j][degree];
         if (e->most[j] > degree) {
@@ -230,13 +224,13 @@ static void OF(step_bodies)(OF(bodies) *e, real half, int degree)
     }
     for (int k = degree; k > 0; --k) {
         UNROLLED
-        for (int j = 0; j < ABREAST_BODIES; ++j) {
+        for (int j = 0; j < count; ++j) {
             num below = one[j] * a[j][k - 1] + other[j] * b[j][k - 1];
             if (k <= most && k <= e->most[j]) {
                 below += e->drive[j] * e->acting[j][k - 1];
             }
             const num change = (k == 1 ? (num)(2 * below) : below) - above[j];
-            y[j] = table[j][k][RATIO] * change + table[j][k][RATIO] * y[j];
+            y[j] = table[j][k][RATIO] * y[j] + table[j][k][RATIO] * change;
             q[j][k] = y[j];
             at_first[j] += table[j][k][SUM_FIRST] * y[j];
             at_last[j] += table[j][k][SUM_LAST] * y[j];
@@ -244,7 +238,7 @@ static void OF(step_bodies)(OF(bodies) *e, real half, int degree)
             here[j] = below;
         }
     }
-    for (int j = 0; j < e->count; ++j) {
+    for (int j = 0; j < count; ++j) {
         const num rest = *e->state[j] - at_first[j];
         const num mean = rest - table[j][0][SLACK] * rest;
         *e->state[j] = mean + (at_last[j] - table[j][0][LOSS] * mean);
@@ -255,24 +249,34 @@ static void OF(step_bodies)(OF(bodies) *e, real half, int degree)
         OF(enlarge)(e->size[j], left[j]);
         OF(enlarge)(e->size[j], right[j]);
     }
-    for (int j = 0; j < ABREAST_BODIES; ++j) {
+    for (int j = 0; j < count; ++j) {
         y[j] = 2 * q[j][0];
     }
     for (int k = 1; k <= degree; ++k) {
         UNROLLED
-        for (int j = 0; j < ABREAST_BODIES; ++j) {
+        for (int j = 0; j < count; ++j) {
             y[j] = q[j][k] - table[j][k][RATIO] * y[j];
             left[j][k] = on_left[j] * y[j] - a[j][k];
             right[j][k] = on_right[j] * y[j] - b[j][k];
         }
         UNROLLED
-        for (int j = 0; j < ABREAST_BODIES; ++j) {
+        for (int j = 0; j < count; ++j) {
             q[j][k] = y[j];
         }
     }
-    for (int j = 0; j < e->count; ++j) {
+    for (int j = 0; j < count; ++j) {
         const num rest = (highest[j] - y[j]) * (table[j][0][RATE] * (half / (real)(2 * (degree + 1))));
         OF(add_magnitude)(e->missed[j], &rest);
+    }
+}
+
+/* All that there are: bodies that are stepped side by side need not wait for each other. */
+static void OF(step_bodies)(OF(bodies) *e, real half, int degree)
+{
+    if (e->count == ABREAST_BODIES) {
+        OF(step_abreast)(e, ABREAST_BODIES, half, degree);
+    } else if (e->count > 0) {
+        OF(step_abreast)(e, 1, half, degree);
     }
     e->count = 0;
 }
@@ -328,9 +332,7 @@ static void OF(march_bodies)(OF(march_state) *all, OF(march_tables) *tables, con
             }
         }
     }
-    if (some.count > 0) {
-        OF(step_bodies)(&some, half_length[panel], degree);
-    }
+    OF(step_bodies)(&some, half_length[panel], degree);
     for (int body = 0; body < NAME_BODIES; ++body) {
         const int joint = body_joint[body];
         for (int set = 0; set < sets && first_port[joint + 1] - first_port[joint] > 2; ++set) {
