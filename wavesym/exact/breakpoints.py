@@ -22,6 +22,7 @@ from flint import fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.contacts.events import scheduled
+from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.joints.joint import SWING, JointLaw
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.loads import Applied
@@ -93,9 +94,7 @@ class Breakpoints:
             }
         if not self.cut:
             return self._natural
-        return {
-            number: sorted({fmpq(0), *times, self._end(number, times)}) for number, times in self._met(True).items()
-        }
+        return {number: sorted({fmpq(0), *times, self._end(number, times)}) for number, times in self._cuts().items()}
 
     @cached_property
     def cut(self) -> bool:
@@ -109,6 +108,15 @@ class Breakpoints:
             for number, longest in self._bearable.items()
             for low, high in pairwise(self._natural[number])
         )
+
+    @property
+    def most_swing(self) -> fmpq | None:
+        """What series bear at most, as exp(this), where stages of contacts are cut for it."""
+        if self.schedule is None:
+            return None
+        from wavesym.exact.contacts.touching_joint import MOST_SWING  # how contacts touch: few scenes have any
+
+        return MOST_SWING
 
     def longest(self, number: int) -> fmpq:
         """The longest stretch of a joint on which it moves."""
@@ -224,9 +232,17 @@ class Breakpoints:
     @cached_property
     def _natural(self) -> Mapping[int, Sequence[fmpq]]:
         later = min(self._delays)
-        return {
-            number: sorted({fmpq(0), *times, self._last[number] + later}) for number, times in self._met(False).items()
-        }
+        found: dict[int, list[fmpq]] = {number: [fmpq(0)] for number in self._last}
+        sources = front_sources(self._network, self._acting, self._last)
+        for count, (time, number) in enumerate(front_times(self._network, sources, self._last), 1):
+            if count > MOST_BREAKPOINTS:
+                raise CostError(
+                    f"output.until: fronts meet joints more than {MOST_BREAKPOINTS} times by tau = {float(time):g}, at "
+                    f"most {MOST_BREAKPOINTS} expected (a shorter horizon or lengths with a larger common measure help)"
+                )
+            if time > 0:
+                found[number].append(time)
+        return {number: [*times, self._last[number] + later] for number, times in found.items()}
 
     def _end(self, number: int, times: set[fmpq]) -> fmpq:
         """Later than anything that is asked of a joint, but no later than the stretches before it let it be known."""
@@ -241,8 +257,8 @@ class Breakpoints:
                         if load.source == unit.source:
                             yield number, load
 
-    def _met(self, cutting: bool) -> dict[int, set[fmpq]]:
-        """When fronts meet joints; with cuts, where these are made, too."""
+    def _cuts(self) -> dict[int, set[fmpq]]:
+        """When fronts meet joints, those of cuts and where these are made, too."""
         network = self._network
         found: dict[int, set[fmpq]] = {number: set() for number in self._last}
         latest: dict[int, fmpq] = {}
@@ -250,7 +266,7 @@ class Breakpoints:
         coming += [
             (fmpq(0), number, False)
             for number in self._last
-            if (cutting and number in self._bearable) or not network.at_rest(network.joints[number])
+            if number in self._bearable or not network.at_rest(network.joints[number])
         ]
         heapify(coming)
         count = 0
@@ -264,13 +280,8 @@ class Breakpoints:
             latest[number] = time
             count += 1
             if count > MOST_BREAKPOINTS:
-                if cutting:
-                    raise self._too_stiff(f"more than {MOST_BREAKPOINTS}")
-                raise CostError(
-                    f"output.until: fronts meet joints more than {MOST_BREAKPOINTS} times by tau = {float(time):g}, at "
-                    f"most {MOST_BREAKPOINTS} expected (a shorter horizon or lengths with a larger common measure help)"
-                )
-            if cutting and number in self._bearable:
+                raise self._too_stiff(f"more than {MOST_BREAKPOINTS}")
+            if number in self._bearable:
                 heappush(coming, (time + self._reach(number), number, True))
             for end, _ in network.joints[number].ends:
                 bar = network.bars[end.bar]

@@ -124,7 +124,11 @@ class Motion:
     def _hardest(self) -> tuple[JointLaw, fmpq]:
         """The joint whose series has to bear most on its longest stretch: its law, and exp(what)."""
         laws = ((JointLaw.of(self._network, self._network.joints[n]), n) for n in self._breakpoints.joints)
-        return max(((law, law.fastest * self._breakpoints.longest(n)) for law, n in laws), key=lambda each: each[1])
+        law, swing = max(
+            ((law, law.fastest * self._breakpoints.longest(n)) for law, n in laws), key=lambda each: each[1]
+        )
+        most = self._breakpoints.most_swing
+        return law, swing if most is None else min(swing, most)
 
     @cached_property
     def size(self) -> arb:

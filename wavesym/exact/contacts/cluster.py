@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain, combinations
 
 from flint import fmpq
 
 from wavesym.errors import WavesymError
 from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.relaxation import Relaxation
 
 Closed = frozenset[int]
 """Contacts, by the numbers of their links."""
@@ -68,6 +70,14 @@ class Cluster:
     def stateless(self) -> bool:
         """Whether what it does depends on nothing but what acts now."""
         return not (self.law.heavy or any(value != 0 for row in self.law.elastic for value in row))
+
+    @cached_property
+    def relaxations(self) -> tuple[Relaxation, ...]:
+        """How it moves when all that is fast has died away.
+
+        A body alone that presses on a contact is let die away as it does: the sign of its force stays known.
+        """
+        return () if self.pushes and len(self.law.mass) == 1 and not self.law.springs else Relaxation.all(self.law)
 
     def leader(self, group: int) -> int:
         """The point that a group moves like."""

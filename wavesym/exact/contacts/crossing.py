@@ -7,6 +7,7 @@ from typing import cast
 
 from flint import acb, arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
+from wavesym.exact.joints.enclosed import Enclosed, shortened
 from wavesym.numbers.doubles import middle
 
 _COARSE = 64  # bits that do, where the interval is no shorter than this part of the whole
@@ -20,14 +21,14 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
     It is `low` itself where nothing can be said there.
     """
     with ctx.workprec(_COARSE):
-        rough = p * arb(1)
+        rough = shortened(Enclosed(p * arb(1), error), high)
     stack = [(low, high)]
     while stack:
         a, b = stack.pop()
         half = (b - a) / 2
         if b - a > high * _CLOSE:
             with ctx.workprec(_COARSE):
-                positive, way = _told(rough, error, a + half, half)
+                positive, way = _told(rough.polynomial, rough.error, a + half, half)
         if b - a <= high * _CLOSE or (b - a <= high * _NEAR and not positive and not way):
             positive, way = _told(p, error, a + half, half)
         if positive:

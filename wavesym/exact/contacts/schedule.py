@@ -18,7 +18,7 @@ from flint import arb, ctx, fmpq
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.contacts.cluster import Closed, subsets
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.contacts.touching_joint import Moved, SwingError
+from wavesym.exact.contacts.touching_joint import MOST_SWING, Moved, SwingError
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replayed
 from wavesym.exact.joints.enclosed import Enclosed
 from wavesym.mechanics.loads import Applied
@@ -39,9 +39,8 @@ _TOLD = 320
 _LONGER = 3
 # working precision at first, and how much of it is beyond the first of these stretches
 _BITS, _SPARE = 448, 128
-_ATTEMPTS = 2
-# a series is begun anew where it would have to bear more than exp(this)
-_SWING = fmpq(12)
+# what is tried: bits, and whether what decays fast is left out where it is lost among rounding errors
+_ATTEMPTS = ((_BITS, True), (_BITS, False), (2 * _BITS, False))
 _NOTHING = fmpq(0)
 
 T = TypeVar("T")
@@ -89,7 +88,7 @@ def schedule(network: Network, loads: tuple[Applied, ...], last: tuple[tuple[int
 
     CostError where it would take minutes, GrazingError where no number of bits tells what a contact does.
     """
-    return _decided(network, lambda: _Search(network, loads, dict(last)).scheduled())
+    return _decided(network, loads, last, _Search.scheduled)
 
 
 @lru_cache(maxsize=16)
@@ -98,16 +97,17 @@ def first_opening(network: Network, loads: tuple[Applied, ...], last: tuple[tupl
 
     CostError, GrazingError as in `schedule`.
     """
-    return _decided(network, lambda: _Search(network, loads, dict(last)).opening())
+    return _decided(network, loads, last, _Search.opening)
 
 
-def _decided(network: Network, search: Callable[[], T]) -> T:
+def _decided(
+    network: Network, loads: Sequence[Applied], last: tuple[tuple[int, fmpq], ...], found: Callable[[_Search], T]
+) -> T:
     """What is found with as many bits as it takes."""
-    for attempt in range(_ATTEMPTS):
-        bits = _BITS << attempt
+    for bits, relaxing in _ATTEMPTS:
         try:
             with ctx.workprec(bits):
-                return search()
+                return found(_Search(network, loads, dict(last), relaxing))
         except _Undecided as doubt:
             undecided = doubt
     link = network.links[undecided.link]
@@ -216,8 +216,9 @@ class _Course:
 
 
 class _Search:
-    def __init__(self, network: Network, loads: Sequence[Applied], last: Mapping[int, fmpq]) -> None:
+    def __init__(self, network: Network, loads: Sequence[Applied], last: Mapping[int, fmpq], relaxing: bool) -> None:
         self._network = network
+        self._relaxing = relaxing
         self._waves = TouchingWaves(network, last, loads)
         self._found: list[Found] = []
         self._coming: list[tuple[fmpq, int]] = []
@@ -228,15 +229,13 @@ class _Search:
         self._resolution = self._least / 4
         # a joint is not moved after its last instant: its last series has to bear what neighbours read of it later
         rates = [joint.law.fastest for joint in self._waves.joints.values()]
-        self._beyond = min([bar.delay for bar in network.bars] + [_SWING / rate for rate in rates if rate != 0])
+        self._beyond = min([bar.delay for bar in network.bars] + [MOST_SWING / rate for rate in rates if rate != 0])
         self._courses = {number: self._course(number, until, loads) for number, until in last.items()}
         self._refuse_many_moves()
 
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> _Course:
         network, joint = self._network, self._network.joints[number]
         far = [network.bars[end.bar].delay for end, _ in joint.ends]
-        if (longest := self._waves.joints[number].law.longest) is not None:
-            far.append(longest)
         gaps = {
             n: _Gap(arb(network.links[n].gap), network.links[n].gap, network.links[n].gap == 0)
             for n in self._waves.joints[number].touches
@@ -294,9 +293,13 @@ class _Search:
         """From where a joint's motion is known up to the next limit, or to where a contact may change."""
         breakpoint, limit = course.comes(time), course.limit(time)
         if course.moved is not None and not breakpoint and not self._swings(course.moved, limit - course.since):
-            moved = self._moved(course, course.since, limit - course.since, course.moved.closed)
-            self._kept(course, moved, self._end(course, moved, time - course.since))
-            return
+            since, far = course.since, time - course.since
+            moved = self._moved(course, since, limit - since, course.moved.closed)
+            if moved.length > far:
+                moved, end = self._cut(course, since, moved, far)
+                if moved.length > far or end is not None:
+                    self._kept(course, moved, end)
+                    return
         if course.moved is not None:
             self._take(course, course.moved)
             course.moved = None
@@ -304,16 +307,24 @@ class _Search:
 
     def _swings(self, moved: Moved, length: fmpq) -> bool:
         """Whether a stretch would become too long for its series."""
-        return moved.swing * length > _SWING
+        return moved.swing * length > MOST_SWING
 
     def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
         """On a stretch, or on as much of it as a series bears."""
         joint = self._waves.joints[course.number]
         try:
             arriving = self._waves.arriving(course.number, start, length)
-            return joint.moved(arriving, start, length, closed, bear=_SWING)
+            return joint.moved(arriving, start, length, closed, relaxing=self._relaxing)
         except SwingError as error:
             return self._moved(course, start, error.longest, closed)
+
+    def _cut(self, course: _Course, start: fmpq, moved: Moved, low: fmpq) -> tuple[Moved, _End | None]:
+        """As much of a stretch as all contacts are certainly what they are said to be, as they are up to `low`."""
+        end = self._end(course, moved, low)
+        if end is None or end.length == 0:
+            return moved, end
+        moved = self._moved(course, start, end.length, moved.closed)
+        return moved, end if moved.length == end.length else None
 
     def _begin(self, course: _Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
@@ -378,7 +389,9 @@ class _Search:
     def _is_fast(self, course: _Course) -> bool:
         """Whether stretches are cut short by what swings, not by fronts."""
         ends = self._network.joints[course.number].ends
-        return course.swing * min((self._network.bars[end.bar].delay for end, _ in ends), default=course.last) > _SWING
+        return (
+            course.swing * min((self._network.bars[end.bar].delay for end, _ in ends), default=course.last) > MOST_SWING
+        )
 
     def _decided(self, course: _Course, start: fmpq, limit: fmpq) -> tuple[Moved, _End | None] | None:
         """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
@@ -386,7 +399,7 @@ class _Search:
         for closed in sorted(subsets(shut), key=len, reverse=True):
             moved = self._moved(course, start, limit - start, closed)
             if all(_starts_well(moved, n, gap) for n, gap in course.gaps.items()):
-                end = self._end(course, moved, fmpq(0))
+                moved, end = self._cut(course, start, moved, fmpq(0))
                 return (moved, end) if end is None or end.length > 0 else None
         return None
 
@@ -398,7 +411,6 @@ class _Search:
             self._tell(course, since, moved)
             return
         if end.length > 0:
-            moved = self._moved(course, since, end.length, moved.closed)
             self._tell(course, since, moved)
             self._take(course, moved)
         course.moved, course.reached, course.spread = None, since + end.length, end.spread

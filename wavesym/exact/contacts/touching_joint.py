@@ -40,6 +40,9 @@ from wavesym.mechanics.network import Network
 _NOTHING, _ONE = fmpq(0), fmpq(1)
 _SLACK = fmpq(1, 2**20)
 _ROUNDS = 8  # in which a bound of the forces must hold
+MOST_SWING = fmpq(20)
+"""A series is begun anew where it would have to bear more than exp(this): few bits cancel in it then."""
+_MISSED = 16  # bits: what has died away is that much more than rounding errors, at most
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,7 @@ class Moved:
 
 
 class SwingError(Exception):
-    """A stretch that is too long for a series."""
+    """A stretch that is too long for a series, by what it is at most."""
 
     def __init__(self, longest: fmpq) -> None:
         super().__init__()
@@ -109,6 +112,7 @@ class TouchingJoint:
         touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
         self._bare = {n for n, end in enumerate(self._ends) if end.place in touched and self.law.mass[end.place] == 0}
         self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
+        self._energy = arb(0)  # the largest that a set had
         # sets of points that have energy: mass or springs
         self._sets = [
             points
@@ -127,11 +131,13 @@ class TouchingJoint:
         length: fmpq,
         closed: Closed,
         vague: Closed = frozenset(),
-        bear: fmpq | None = None,
+        relaxing: bool | None = None,
     ) -> Moved:
         """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then.
 
-        SwingError where a series would have to bear more than exp(`bear`).
+        Where a series would have to bear more than exp(`MOST_SWING`), that is its motion without what decays fast. Such
+        a stretch is decided already (`relaxing` None), or it is seen that this is lost among rounding errors:
+        SwingError where it is not, or where it is not to be tried.
         """
         acting = [load.on(start) for load in self._loads]
         forces = forces_on(self._ends, arriving, acting)
@@ -140,7 +146,7 @@ class TouchingJoint:
             if any(self.touches[n].left in cluster.points for n in vague):
                 self._drift(cluster, result, arriving, forces, acting)
             else:
-                self._move(cluster, result, forces, acting, bear)
+                self._move(cluster, result, forces, acting, relaxing)
         for n, touch in self.touches.items():
             if n not in closed and n not in vague:
                 result.rates[n] = together(_rate(touch, result.velocities))
@@ -176,7 +182,7 @@ class TouchingJoint:
         result: Moved,
         forces: Sequence[Terms],
         acting: Sequence[fmpq_poly],
-        bear: fmpq | None,
+        relaxing: bool | None,
     ) -> None:
         law, points = cluster.law, cluster.points
         pushed = grouped(cluster, forces)
@@ -194,15 +200,18 @@ class TouchingJoint:
                 place = places[k](result.length) if self._elastic(k) else fmpq(0)
                 result.state[k] = PointState.of(ratio * exact[group](result.length), place)
         else:
-            if bear is not None and law.fastest * result.length > bear:
-                raise SwingError(bear / law.fastest)
             motion = self._balls(cluster)
             waves = [together(force) for force in pushed]
-            terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in waves))
-            moving = motion.moved(waves, prescribed, result.length, terms)
+            longest = max(wave.polynomial.length() for wave in waves)
+            if law.fastest * result.length > MOST_SWING:
+                rate, moving = self._relaxed(cluster, motion, waves, prescribed, result.length, relaxing)
+            else:
+                rate, terms = law.fastest, _terms(law.fastest * result.length, longest)
+                moving = motion.moved(waves, prescribed, result.length, terms)
             q = [[(_ONE, each)] for each in self._begun(cluster, pushed, prescribed, moving, result.length)]
             result.state |= self._after(cluster, motion)
-            result.swing = max(result.swing, law.fastest)
+            result.swing = max(result.swing, rate)
+            self._energy = self._energy.max(motion.energy(motion.velocity, motion.displacement))
         for k, (group, ratio) in zip(points, law.moves, strict=True):
             result.velocities[k] = scaled(q[group], ratio)
         for n, push in cluster.pushes.items():
@@ -214,6 +223,36 @@ class TouchingJoint:
             result.pushes[n] = together(pull)
             if motion is not None:
                 result.pushes[n] = self._sprung(cluster, push, motion, result.pushes[n])
+
+    def _relaxed(
+        self,
+        cluster: Cluster,
+        motion: JointMotion,
+        waves: Sequence[Enclosed],
+        prescribed: Sequence[fmpq_poly],
+        length: fmpq,
+        relaxing: bool | None,
+    ) -> tuple[fmpq, list[Enclosed]]:
+        """The rate at which a cluster moves when what decays fast has died away, and its velocities."""
+        longest = max(wave.polynomial.length() for wave in waves)
+        if relaxing is None:
+            relaxation = next(each for each in reversed(cluster.relaxations) if each.slow * length <= MOST_SWING)
+            q, u, missed = motion.relaxed(relaxation, waves, prescribed, _terms(relaxation.slow * length, longest))
+            motion.lose(missed)
+            return relaxation.slow, motion.follow(q, u, waves, length)
+        for relaxation in cluster.relaxations if relaxing else ():
+            shorter = min(length, MOST_SWING / relaxation.slow) if relaxation.slow != 0 else length
+            terms = _terms(relaxation.slow * shorter, longest)
+            if not relaxation.serves(shorter, terms):
+                continue
+            q, u, missed = motion.relaxed(relaxation, waves, prescribed, terms)
+            if missed > self._energy * arb(2) ** (2 * (_MISSED - ctx.prec)):
+                continue
+            if shorter < length:
+                raise SwingError(shorter)
+            motion.lose(missed)
+            return relaxation.slow, motion.follow(q, u, waves, length)
+        raise SwingError(MOST_SWING / cluster.law.fastest)
 
     def _elastic(self, k: int) -> bool:
         return any(c != 0 for c in self.law.stiffness[k])
@@ -298,20 +337,12 @@ class TouchingJoint:
         """The state of a cluster; what rounding loses of one that was exact is energy not known."""
         points = cluster.points
         state = [self._state[k] for k in points]
-        lost = sum((arb(self.law.mass[k]) * self._state[k].velocity.rad() ** 2 for k in points), arb(0))
-        for k in points:
-            for j in points:
-                spread = self._state[k].displacement.rad() * self._state[j].displacement.rad()
-                lost += abs(arb(self.law.stiffness[k][j])) * spread
         unknown = sum((self._state[each[0]].unknown for each in self._sets if each[0] in points), arb(0))
-        root = unknown.sqrt() + (lost / 2).sqrt()
-        return JointMotion(
-            cluster.law,
-            [state[leader].velocity.mid() for leader in cluster.law.leaders],
-            [each.displacement.mid() for each in state],
-            (root * root).upper(),
-            decays=True,
-        )
+        velocity = [state[leader].velocity for leader in cluster.law.leaders]
+        displacement = [each.displacement for each in state]
+        motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], unknown, decays=True)
+        motion.round(velocity, displacement)
+        return motion
 
     def _after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
         leaders = dict(zip(cluster.law.leaders, motion.velocity, strict=True))

@@ -27,13 +27,16 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import count, islice
 from math import isqrt
-from typing import NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
 from wavesym.derivation.exact_rule import joint_rule
 from wavesym.exact.joints.enclosed import Enclosed, Terms, scaled
 from wavesym.mechanics.network import End, Joint, Network
+
+if TYPE_CHECKING:
+    from wavesym.exact.joints.relaxation import Relaxation
 
 Number = TypeVar("Number", fmpq, arb)
 Coefficient = TypeVar("Coefficient", covariant=True)
@@ -257,37 +260,77 @@ class JointMotion:
 
         `prescribed` are the velocities of the points whose motion is given, exact.
         """
-        q, u = self._series(forces, prescribed, terms)
+        return self.follow(*self._series(forces, prescribed, terms), forces, length)
+
+    def follow(
+        self, q: list[list[arb]], u: list[list[arb]], forces: Sequence[Enclosed], length: fmpq
+    ) -> list[Enclosed]:
+        """The same along any series of the velocities of groups and the displacements of points, its integrals.
+
+        How far it begins from where the joint is has to be among what is `unknown`.
+        """
         errors = self._errors(forces, q, u, length)
         result = [Enclosed(arb_poly(c), e) for c, e in zip(q, errors, strict=True)]
-        self.places = u
-        self._move_on(q, u, arb(length))
+        self.places, h = u, arb(length)
+        self.round([arb_poly(c)(h) for c in q], [arb_poly(c)(h) for c in u] if self.law.springs else [])
         return result
 
-    def _move_on(self, q: list[list[arb]], u: list[list[arb]], h: arb) -> None:
-        """To the end of the stretch; what rounding loses there is energy not known."""
+    def relaxed(
+        self, relaxation: Relaxation, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
+    ) -> tuple[list[list[arb]], list[list[arb]], arb]:
+        """The series without what decays fast, as `follow` takes it, and the energy of what it leaves out."""
+        velocities, places = relaxation.series(
+            self.velocity, self.displacement, *self._inputs(forces, prescribed, terms), terms
+        )
+        u = [[place] for place in places]
+        if self.law.springs:
+            for series, (group, ratio) in zip(u, self.law.moves, strict=True):
+                series += [(arb(ratio) * c / n).mid() for n, c in enumerate(velocities[group], 1)]
+        missed = self.energy(
+            [now - series[0] for now, series in zip(self.velocity, velocities, strict=True)],
+            [now - place for now, place in zip(self.displacement, places, strict=True)],
+        )
+        return velocities, u, missed
+
+    def energy(self, velocity: Sequence[arb], displacement: Sequence[arb]) -> arb:
+        """An upper bound of the energy that velocities of groups and displacements of points have."""
         law = self.law
-        ends = [arb_poly(c)(h) for c in q]
-        lost = sum((arb(law.mass[k]) * ends[k].rad() ** 2 for k in law.heavy), arb(0))
-        self.velocity = [end.mid() for end in ends]
+        twice = sum((arb(law.mass[k]) * velocity[k] * velocity[k] for k in law.heavy), arb(0))
         if law.springs:
-            places = [arb_poly(c)(h) for c in u]
-            for a, row in enumerate(law.elastic or law.stiffness):
-                lost += sum((abs(arb(k)) * places[a].rad() * places[b].rad() for b, k in enumerate(row)), arb(0))
-            self.displacement = [place.mid() for place in places]
-        root = self.unknown.sqrt() + (lost / 2).sqrt()
+            for u, row in zip(displacement, law.elastic or law.stiffness, strict=True):
+                twice += sum((arb(c) * u * other for c, other in zip(row, displacement, strict=True) if c != 0), arb(0))
+        return (twice / 2).upper().max(arb(0))
+
+    def lose(self, energy: arb) -> None:
+        """Know less of the joint, by so much energy."""
+        root = self.unknown.sqrt() + energy.sqrt()
         self.unknown = (root * root).upper()
+
+    def round(self, velocity: Sequence[arb], displacement: Sequence[arb]) -> None:
+        """Go on from the middles of balls; what rounding loses there is energy not known."""
+        self.velocity = [each.mid() for each in velocity]
+        if self.law.springs:
+            self.displacement = [each.mid() for each in displacement]
+        around = [[each - each.mid() for each in balls] for balls in (velocity, displacement)]
+        self.lose(self.energy(*around))
 
     def _series(
         self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
     ) -> tuple[list[list[arb]], list[list[arb]]]:
         """The coefficients of q and u: middles, whatever rounding made of them."""
-        acting = [arb_poly([c.mid() for c in force.polynomial.coeffs()[:terms]]) for force in forces]
-        given = [arb_poly([arb(c) for c in each.coeffs()]) for each in prescribed]
+        acting, given = self._inputs(forces, prescribed, terms)
         *_, (q, u, _) = islice(
             motion_series(self.law, self.velocity, self.displacement, acting, given, arb, arb.mid), terms + 1
         )
         return q, u
+
+    @staticmethod
+    def _inputs(
+        forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
+    ) -> tuple[list[arb_poly], list[arb_poly]]:
+        """The middles of forces, in so many terms, and prescribed velocities."""
+        acting = [arb_poly([c.mid() for c in force.polynomial.coeffs()[:terms]]) for force in forces]
+        return acting, [arb_poly([arb(c) for c in each.coeffs()]) for each in prescribed]
 
     def _errors(self, forces: Sequence[Enclosed], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
         """What the velocities may be off by, at most, on the stretch; and the energy of it at the end."""

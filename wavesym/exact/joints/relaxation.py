@@ -1,0 +1,206 @@
+"""The motion that is left of a stiff joint when what decays fast has died away, as a polynomial.
+
+A light mass, or a point without mass on a spring and a dashpot, answers at a rate far above all others. With the state
+x = (velocities of masses, displacements of points), inputs f (forces, prescribed velocities) and the law of the joint
+
+    x' = A x + B f,    q = Q x + S f,
+
+let P be the spectral projector of A onto all that is slow, and R the inverse of A on the rest, 0 on the slow part. The
+solution whose fast part has died away is y = z + v,
+
+    z' = A P z + P B f,   z(0) = P x(0),        v = -(R B f + R^2 B f' + R^3 B f'' + ...),
+
+where the sum ends, as f is a polynomial. The coefficients of z follow from lower ones and grow as the slow rates do,
+those of v follow from higher ones: v_n = R ((n + 1) v_(n+1) - B f_n). So one series serves a stretch on which a Taylor
+series of x would have to bear exp(fast rate x length). What y leaves out, x(0) - y(0), is still there and decays.
+
+P is what (1 + (A/s)^k)^-1 becomes for large k = 2^j, with s between the slow and the fast rates. Nothing here is
+proved: whatever y is, its defect in the law and what it leaves out bound its error (`joint`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, log2
+from typing import cast
+
+from flint import acb, arb, arb_mat, ctx, fmpq, fmpq_mat
+
+from wavesym.exact.joints.joint import JointLaw, Powers
+
+_APART = 8  # fast rates are so many times the slow ones, at least
+_OSCILLATES = 8  # and at most so many times as fast as they decay
+_FAR = 2**16  # times the slow ones: no larger gap is needed to part them
+_SPARE = 64  # bits
+_POINTS = 20  # of a joint, at most
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxation:
+    """The slow part of a joint's law, at the working precision at which it was made.
+
+    Args:
+        slow: the largest rate of what is slow, about; 0 where nothing moves.
+        fast: the least rate of what decays fast, about.
+    """
+
+    slow: fmpq
+    fast: fmpq
+    _heavy: tuple[int, ...]
+    _sprung: bool
+    _generator: arb_mat
+    _driven: arb_mat
+    _inverse: arb_mat
+    _quasistatic: arb_mat
+    _projector: arb_mat
+    _read: arb_mat
+    _through: arb_mat
+
+    @classmethod
+    def all(cls, law: JointLaw) -> tuple[Relaxation, ...]:
+        """One for each gap between rates of a law above which all decays, the one with the slowest rates first."""
+        if len(law.moves) > _POINTS or not (law.heavy or law.springs):
+            return ()
+        system = _system(law)
+        return tuple(cls._parting(law, system, *rates) for rates in reversed(_gaps(system[0])))
+
+    @classmethod
+    def _parting(
+        cls,
+        law: JointLaw,
+        system: tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat],
+        slow: fmpq,
+        fast: fmpq,
+        fastest: fmpq,
+    ) -> Relaxation:
+        """What is at most `slow` from what is at least `fast` and at most `fastest`."""
+        a, b, read, through = system
+        size, bits = a.nrows(), ctx.prec + _SPARE
+        low, high = log2(max(float(slow), float(fast) / _FAR)), log2(float(fast))
+        step = round((low + high) / 2)
+        between = fmpq(2) ** step
+        doublings = ceil(log2(bits / min(high - step, step - low)))
+        with ctx.workprec(2 * bits + int(2**doublings * log2(float(fastest / between)))):
+            one = arb_mat(fmpq_mat(size, size, [int(i == j) for i in range(size) for j in range(size)]))
+            power = arb_mat(a / between)
+            for _ in range(doublings):
+                power = (power * power).mid()
+            projector = (one + power).inv().mid()
+            exact = arb_mat(a)
+            generator = (exact * projector).mid()
+            inverse = ((exact - generator + projector).inv() * (one - projector)).mid()
+            driven, quasistatic = projector * arb_mat(b), inverse * arb_mat(b)
+        return cls(
+            slow,
+            fast,
+            law.heavy,
+            law.springs,
+            _generator=_round(generator),
+            _driven=_round(driven),
+            _inverse=_round(inverse),
+            _quasistatic=_round(quasistatic),
+            _projector=_round(projector),
+            _read=arb_mat(read),
+            _through=arb_mat(through),
+        )
+
+    def serves(self, length: fmpq, terms: int) -> bool:
+        """Whether what is fast is so fast that its coefficients do not grow, in so many terms on such a stretch."""
+        return self.fast * length > terms
+
+    def series(
+        self,
+        velocity: Sequence[arb],
+        displacement: Sequence[arb],
+        forces: Sequence[Powers[arb]],
+        prescribed: Sequence[Powers[arb]],
+        terms: int,
+    ) -> tuple[list[list[arb]], list[arb]]:
+        """The coefficients of the velocities of groups, and the displacements of points at the start."""
+        inputs = arb_mat([[each[n] for n in range(terms)] for each in (*forces, *prescribed)])
+        driven, quasistatic = (self._driven * inputs).mid(), (self._quasistatic * inputs).mid()
+        size = self._generator.nrows()
+        state = [velocity[k] for k in self._heavy] + (list(displacement) if self._sprung else [])
+        slow = [(self._projector * _column(state)).mid()]
+        for n in range(terms - 1):
+            slow.append(((self._generator * slow[n] + _at(driven, n)) * (arb(1) / (n + 1))).mid())
+        fast = [arb_mat(size, 1)] * (terms + 1)
+        for n in reversed(range(terms)):
+            fast[n] = (self._inverse * fast[n + 1] * (n + 1) - _at(quasistatic, n)).mid()
+        found = [(slow[n] + fast[n]).mid() for n in range(terms)]
+        states = arb_mat([[each[k, 0] for each in found] for k in range(size)])
+        velocities = (self._read * states + self._through * inputs).mid()
+        places = [states[len(self._heavy) + k, 0] for k in range(len(displacement))] if self._sprung else displacement
+        return [list(row) for row in velocities.tolist()], list(places)
+
+
+def _round(matrix: arb_mat) -> arb_mat:
+    """To the middles, at the working precision."""
+    return (matrix * 1).mid()
+
+
+def _column(values: Sequence[arb]) -> arb_mat:
+    return arb_mat([[value] for value in values])
+
+
+def _at(matrix: arb_mat, n: int) -> arb_mat:
+    return arb_mat([[matrix[k, n]] for k in range(matrix.nrows())])
+
+
+def _system(law: JointLaw) -> tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat]:
+    """A, B, Q and S of the law; inputs are forces on all groups, and the prescribed velocities of all."""
+    groups, points = len(law.mass), len(law.moves) if law.springs else 0
+    size, given = len(law.heavy) + points, [a for a in range(groups) if law.given[a] is not None]
+    wide = size + 2 * groups  # columns: state, forces, prescribed velocities
+
+    def unit(column: int) -> list[fmpq]:
+        return [fmpq(int(n == column)) for n in range(wide)]
+
+    def added(terms: Sequence[tuple[fmpq, list[fmpq]]]) -> list[fmpq]:
+        return [sum((factor * row[n] for factor, row in terms if factor != 0), fmpq(0)) for n in range(wide)]
+
+    velocity = {a: unit(row) for row, a in enumerate(law.heavy)} | {a: unit(size + groups + a) for a in given}
+    sprung = {a: [(-law.stiffness[a][k], unit(len(law.heavy) + k)) for k in range(points)] for a in range(groups)}
+    known = list(velocity.items())
+    right = {
+        a: added([(fmpq(1), unit(size + a)), *sprung[a], *((-law.damping[a][c], row) for c, row in known)])
+        for a in law.light
+    }
+    for row, a in enumerate(law.light):
+        velocity[a] = added([(law.inverse[row, n], right[b]) for n, b in enumerate(law.light)])
+    moving = [
+        [
+            x / law.mass[a]
+            for x in added(
+                [(fmpq(1), unit(size + a)), *sprung[a], *((-law.damping[a][c], row) for c, row in velocity.items())]
+            )
+        ]
+        for a in law.heavy
+    ]
+    moving += [[ratio * x for x in velocity[group]] for group, ratio in law.moves[:points]]
+    read = [velocity[a] for a in range(groups)]
+
+    def cut(rows: Sequence[Sequence[fmpq]], low: int, high: int) -> fmpq_mat:
+        return fmpq_mat(len(rows), high - low, [x for row in rows for x in row[low:high]])
+
+    return cut(moving, 0, size), cut(moving, size, wide), cut(read, 0, size), cut(read, size, wide)
+
+
+def _gaps(a: fmpq_mat) -> list[tuple[fmpq, fmpq, fmpq]]:
+    """The rates below and above each gap, and the largest of all; what is fast first."""
+    roots = [z for z, _ in cast("list[tuple[acb, int]]", a.charpoly().numer().complex_roots())]
+    rates = sorted(((abs(z).mid(), z.real) for z in roots), key=lambda each: -each[0])
+    found = []
+    for (rate, real), (slower, _) in pairwise([*rates, (arb(0), arb(0))]):
+        if not -real * _OSCILLATES > rate:
+            break
+        if rate > slower * _APART:
+            found.append((_short(slower), _short(rate), _short(rates[0][0])))
+    return found
+
+
+def _short(rate: arb) -> fmpq:
+    """About the same in a few bits."""
+    return fmpq(*float(f"{float(rate):.2g}").as_integer_ratio())
