@@ -75,34 +75,19 @@ class Statics:
         return [scale * q for q in points]
 
     @cached_property
-    def _springs(self) -> tuple[list[list[tuple[int, int, arb]]], list[arb], list[arb]]:
-        """Of each point what pulls it, (point, other point, stiffness) counted with ratios; pivots and couplings."""
-        network, rows = self.stiffness.network, self.stiffness.rows
-        springs = [
-            (bar.left, bar.right, bar.ratios[0], bar.ratios[1], bar.impedance / bar.delay) for bar in network.bars
-        ]
-        springs += [(link.left, link.right, link.ratio, fmpq(1), link.stiffness) for link in network.links]
-        diagonal = [arb(network.points[point].stiffness) for point in self.stiffness.points]
-        up = [arb(0)] * len(diagonal)
-        pulls: list[list[tuple[int, int, arb]]] = [[] for _ in network.points]
-        for left, right, there, here, stiffness in springs:
-            across = arb(there * here * stiffness)
-            pulls[left].append((left, right, across))
-            pulls[right].append((right, left, across))
-            if left in rows:
-                diagonal[rows[left]] += arb(there * there * stiffness)
-            if right in rows:
-                diagonal[rows[right]] += arb(here * here * stiffness)
-                if left in rows:
-                    up[min(rows[left], rows[right])] -= across
-        return pulls, self.stiffness.pivots(diagonal, up), up
+    def _springs(self) -> tuple[list[arb], list[arb]]:
+        """Pivots and couplings of K where nothing moves: a bar is a spring of its impedance over its delay."""
+        law = self.stiffness.law(arb)
+        over = [1 / delay for delay in law.delays]
+        diagonal, up = law.assembled(arb(0), over, [-each for each in over])
+        return self.stiffness.pivots(diagonal, up), up
 
     def solved(self, forces: Sequence[arb]) -> list[arb]:
         """How far the points move under forces on them, those that are not free by nothing.
 
         Where nothing holds the chain the forces are in balance, and its root does not move.
         """
-        _, pivots, up = self._springs
+        pivots, up = self._springs
         acting = [forces[point] for point in self.stiffness.points]
         return self.stiffness.placed(self.stiffness.substituted(pivots, up, acting, free=self.free is not None))
 
@@ -128,11 +113,9 @@ class Statics:
 
     def imposed(self, point: int) -> Shape:
         """The shape that the unit motion of a point imposes that moves as it is told."""
-        pulls, _, _ = self._springs
-        forces = [arb(0)] * len(self.stiffness.network.points)
-        for _, other, across in pulls[point]:
-            forces[other] += across
-        moved = self.solved(forces)
+        over = {bar.delay: 1 / arb(bar.delay) for bar in self.stiffness.network.bars}
+        _, forces = self.stiffness.prescribed_column(point, arb, over, over)
+        moved = self.solved([forces.get(other, arb(0)) for other in range(len(self.stiffness.network.points))])
         moved[point] = arb(1)
         return Shape(self, moved)
 

@@ -12,7 +12,7 @@ A dashpot adds i w times what it resists. Then K is symmetric, and frequencies a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -22,7 +22,7 @@ from flint import arb, fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
-from wavesym.mechanics.network import Network
+from wavesym.mechanics.network import Bar, Link, Network
 from wavesym.numbers.doubles import nearest
 
 # doubles (arrays of them), or balls
@@ -167,6 +167,35 @@ class Stiffness:
             [*map(number, delays)],
             [sum(bar.delay == delay for bar in network.bars) for delay in delays],
         )
+
+    def prescribed_column(
+        self,
+        point: int,
+        number: Callable[[fmpq], Quantity],
+        pulled: Mapping[fmpq, Quantity],
+        shared: Mapping[fmpq, Quantity],
+        rate: Quantity = None,
+    ) -> tuple[Quantity, dict[int, Quantity]]:
+        """What holds a point whose motion is prescribed when it moves by 1, and how that pushes the points beside it.
+
+        Of each delay `pulled` and `shared` are what a bar of impedance 1 does at that end and at its other one.
+        """
+        held, forces = number(fmpq(0)), dict[int, Quantity]()
+        parts: list[Bar | Link] = [*self.network.bars, *self.network.links]
+        for part in parts:
+            ends = [(part.left, part.right), (part.right, part.left)]
+            if isinstance(part, Bar):
+                ratios, size = part.ratios, number(part.impedance)
+                near, far = pulled[part.delay] * size, shared[part.delay] * size
+            else:
+                ratios = part.ratio, fmpq(1)
+                near = number(part.stiffness) if rate is None else number(part.stiffness) + rate * number(part.damping)
+                far = near
+            for (here, there), ratio, other in zip(ends, ratios, reversed(ratios), strict=True):
+                if here == point:
+                    held = held + near * number(ratio * ratio)
+                    forces[there] = forces.get(there, number(fmpq(0))) + far * number(ratio * other)
+        return held, forces
 
     def orders(self, root: int) -> list[tuple[int, int, int]]:
         """The rows from one row outwards, each with the row that it hangs by and the row that names their coupling."""

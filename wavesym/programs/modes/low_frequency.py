@@ -159,22 +159,10 @@ class LowFrequency:
         if network.points[driver.point].motion is None:
             moved = self._under({driver.point: one * gain})
             return SlowPort(moved, moved[driver.point] * gain, 0, *self._impulse_energy({driver.point: driver.gain}))
-        held, forces = arb_series([0]), dict[int, Series]()
-        for bar in network.bars:
-            pulled, shared = self._bars[bar.delay]
-            for here, there, (ratio, other) in (
-                (bar.left, bar.right, bar.ratios),
-                (bar.right, bar.left, bar.ratios[::-1]),
-            ):
-                if here == driver.point:
-                    held += pulled * arb(bar.impedance * ratio * ratio)
-                    forces[there] = forces.get(there, arb_series([0])) + shared * arb(bar.impedance * ratio * other)
-        for link in network.links:
-            across = arb_series([arb(link.stiffness), arb(link.damping)])
-            for here, there, ratio in ((link.left, link.right, link.ratio), (link.right, link.left, fmpq(1))):
-                if here == driver.point:
-                    held += across * arb(ratio * ratio)
-                    forces[there] = forces.get(there, arb_series([0])) + across * arb(link.ratio)
+        pulled, shared = ({delay: pair[k] for delay, pair in self._bars.items()} for k in (0, 1))
+        held, forces = self._stiffness.prescribed_column(
+            driver.point, lambda value: arb_series([value]), pulled, shared, self._s
+        )
         moved = [q * gain for q in self._under(forces)]
         pull = sum((forces[point] * moved[point] for point in forces if network.points[point].motion is None), one * 0)
         moved[driver.point] = one * gain

@@ -120,15 +120,10 @@ class _Response:
             forces[driver.point] = _modular(driver.gain)
         else:
             prescribed = moved[driver.point] = -_modular(driver.gain) / (_W * _W)
-            for bar in network.bars:
-                ratio = _modular(bar.impedance * bar.ratios[0] * bar.ratios[1])
-                across = ratio * _W / self._circular[bar.delay][0]
-                for here, there in ((bar.left, bar.right), (bar.right, bar.left)):
-                    forces[there] += across * prescribed if here == driver.point else zero
-            for link in network.links:
-                across = _modular(link.ratio * link.stiffness) + _I * _W * _modular(link.ratio * link.damping)
-                for here, there in ((link.left, link.right), (link.right, link.left)):
-                    forces[there] += across * prescribed if here == driver.point else zero
+            shared = {delay: _W / sine for delay, (sine, _) in self._circular.items()}
+            _, pushed = self._stiffness.prescribed_column(driver.point, _modular, shared, shared, _I * _W)
+            for there, across in pushed.items():
+                forces[there] += across * prescribed
         law = self._stiffness.law(_modular)
         pairs = [self._circular[delay] for delay in sorted(self._circular)]
         matrix = law.matrix(_W, [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs], _I * _W)
