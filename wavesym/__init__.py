@@ -5,6 +5,7 @@
     summary     the least and the greatest value of each output, and when; `peaks` of several scenes as arrays
     spectrum    response spectra of its accelerations
     modes       its frequencies, none missed, with damping, effective masses and shapes
+    frf         its frequency responses: complex amplitudes under a harmonic load, and their enclosed peaks
     plot        its histories, place x time, envelopes, as pictures; `report` as one page
     evaluator   the outputs of a scene as a function of tau, right to the last bit
     model       its outputs for many sets of parameters: values, gradients, extremes
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from wavesym.api import (
         derive,
         evaluator,
+        frf,
         generate,
         model,
         modes,
@@ -65,6 +67,7 @@ __all__ = [
     "__version__",
     "derive",
     "evaluator",
+    "frf",
     "generate",
     "model",
     "modes",

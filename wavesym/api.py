@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.programs.request import KINDS, Request, refuse_unknown
 from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import named_chain
+from wavesym.scene.lowering import named_chain, sources
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
+    from wavesym.results.frequency_response import FrequencyResponse
     from wavesym.results.modes import Modes
     from wavesym.results.response import Response
     from wavesym.results.result import Result
@@ -305,6 +306,64 @@ def modes(scene: Scene | str | PathLike[str], count: int = 10, below: float | No
 
     chain = scene if isinstance(scene, Scene) else Scene.chain_from_toml(scene)
     return modes_of(lower(chain), count, below)
+
+
+def frf(
+    scene: Scene,
+    frequencies: ArrayLike | None = None,
+    load: str | int | None = None,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    points: int = 400,
+) -> FrequencyResponse:
+    """The frequency response of a scene: complex amplitudes of its outputs under one unit of a load exp(+i w t).
+
+    They come from the dynamic stiffness K(w) of the chain, in balls: dashpots, absorbing ends and modal damping too.
+
+    Args:
+        scene: a chain whose contacts do not open.
+        frequencies: (n,), in Hz, or w in rad per tau for a scene without units; None for `points` of them, equally
+            spaced from `low` to `high`.
+        load: its number in the scene from 0 on, or the node it acts on; None where there is one load.
+        low: the first frequency; None for one step above 0, where chains that nothing holds have no answer.
+        high: the last one; None for that of the fifth mode without dashpots.
+        points: how many.
+
+    Returns:
+        `frequency`, `response[NAME]`, `amplitude`, `phase`, `values` (outputs, n), `bound`, `poles`; `peaks()` encloses
+        the greatest amplitudes between the first and the last frequency, `to_pandas()`, `csv()` and `json()` make
+        tables.
+
+    Raises:
+        WavesymError: for a load or a frequency that is none.
+        UnservedError: for contacts that open, and modes that cannot be told apart.
+        ToleranceError: where damping ratios would need too many modes for the scene's tolerance.
+        CostError: for too many frequencies.
+
+    >>> import wavesym
+    >>> response = wavesym.frf(wavesym.Scene.from_toml("building_m2"), [0.5, 1.0])
+    >>> response
+    FrequencyResponse('building_m2', 6 outputs at 2 frequencies from 0.5 to 1 rad per tau, bound 2.2e-16)
+    >>> abs(response["strain@0.5"])
+    array([4.60118888, 3.58758905])
+    """
+    from wavesym.results.frequency_response import equally_spaced, frequency_response
+    from wavesym.results.transfer import harmonic_load
+
+    lowered = lower(scene)
+    acting = harmonic_load(lowered, sources(scene), load)
+    at = equally_spaced(lowered, low, high, points) if frequencies is None else frequencies
+    return frequency_response(lowered, acting, at)
+
+
+def plot_frf(found: FrequencyResponse, path: Path) -> None:
+    """Draw amplitudes and phases over frequency. SceneError for a suffix that is no picture's."""
+    from wavesym.pictures.frequency_response import draw
+    from wavesym.pictures.saving import picture_format, save
+
+    picture_format(path)
+    save(draw(found), path)
 
 
 def plot_modes(scene: Scene, found: Modes, path: Path) -> None:

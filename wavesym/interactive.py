@@ -10,6 +10,7 @@ from wavesym import api, scene
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from wavesym.results.frequency_response import FrequencyResponse
     from wavesym.results.modes import Modes
     from wavesym.results.result import Result
     from wavesym.results.summary import Summary
@@ -29,6 +30,10 @@ class Scene(scene.Scene):
     def modes(self, count: int = 10, below: float | None = None) -> Modes:
         """The frequencies of the chain; arguments, value and errors are those of `wavesym.modes`."""
         return api.modes(self, count, below)
+
+    def frf(self, frequencies: ArrayLike | None = None, load: str | int | None = None) -> FrequencyResponse:
+        """The outputs under one unit of a harmonic load; arguments, value and errors are those of `wavesym.frf`."""
+        return api.frf(self, frequencies, load)
 
     def plot(self, path: str | PathLike[str] | None = None, kind: str = "history") -> Any:
         """A matplotlib Figure of the scene; arguments and errors are those of `wavesym.plot`."""

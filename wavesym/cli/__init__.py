@@ -20,7 +20,7 @@ from wavesym.errors import WavesymError, did_you_mean, printable
 
 GROUPS = {
     "Start": ("init", "scenes", "record"),
-    "Compute": ("run", "summary", "modes", "spectrum", "sweep"),
+    "Compute": ("run", "summary", "modes", "frf", "spectrum", "sweep"),
     "Show": ("plot", "report"),
     "Generate": ("generate",),
     "Understand": ("inspect", "advise", "derive", "tables", "verify"),

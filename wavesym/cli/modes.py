@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SceneParameter, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, PICTURES, SceneParameter, put, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
 COUNT = 10
-PICTURES = (".svg", ".png", ".pdf")
 
 
 @click.command()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+import re
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -128,6 +130,9 @@ class RatioParameter(click.ParamType[Any]):
 SCENE = SceneParameter()
 RATIO = RatioParameter()
 PATH = click.Path(path_type=Path)
+PICTURES = (".svg", ".png", ".pdf")
+
+_DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
 
 
 def put(text: str | Iterable[str]) -> None:
@@ -136,3 +141,18 @@ def put(text: str | Iterable[str]) -> None:
         click.echo(text, nl=not text.endswith("\n"))
     else:
         sys.stdout.writelines(text)
+
+
+def decimals(path: Path) -> list[float]:
+    """The numbers in a file, each as a double; SceneError names the first line that holds something else."""
+    from wavesym.fields.table import shown
+    from wavesym.reading import read_text
+
+    file, text = read_text(path, "a file with one decimal a line")
+    numbers: list[float] = []
+    for count, line in enumerate(text.split("\n"), 1):
+        if written := line.partition("#")[0].strip():
+            if not _DECIMAL.fullmatch(written) or not math.isfinite(float(written)):
+                raise SceneError(f"{shown(written)} given, a decimal expected", f"line {count}", file)
+            numbers.append(float(written))
+    return numbers

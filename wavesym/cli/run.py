@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, put, refuse_scene
+from wavesym.cli.parameters import PATH, SCENE, decimals, put, refuse_scene
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -17,8 +15,6 @@ if TYPE_CHECKING:
 
 DEFAULT_SAMPLES = 1001
 MOST_SAMPLES = 10**7
-
-_DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
 
 
 @click.command()
@@ -49,7 +45,7 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
     """
     if samples is not None and at is not None:
         raise click.UsageError("--samples and --at given, one of them expected", click.get_current_context())
-    taus = _decimals(at) if at is not None else None
+    taus = decimals(at) if at is not None else None
 
     from wavesym import api
     from wavesym.writing import write_whole
@@ -65,19 +61,3 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
         click.echo(f"{scene.name}: {line}", err=True)
     if out is None:
         put(lines)
-
-
-def _decimals(path: Path) -> list[float]:
-    """The numbers in a file, each as a double; SceneError names the first line that holds something else."""
-    from wavesym.errors import SceneError
-    from wavesym.fields.table import shown
-    from wavesym.reading import read_text
-
-    file, text = read_text(path, "a file with one decimal a line")
-    taus: list[float] = []
-    for number, line in enumerate(text.split("\n"), 1):
-        if written := line.partition("#")[0].strip():
-            if not _DECIMAL.fullmatch(written) or not math.isfinite(float(written)):
-                raise SceneError(f"{shown(written)} given, a decimal expected", f"line {number}", file)
-            taus.append(float(written))
-    return taus

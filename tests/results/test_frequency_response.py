@@ -1,0 +1,358 @@
+"""Frequency responses against closed forms, a dense dynamic stiffness, and transforms of histories."""
+
+from __future__ import annotations
+
+import csv
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+import wavesym
+from wavesym import Scene
+from wavesym.cli import main
+from wavesym.exact.modes.harmonic import Amplitudes
+from wavesym.mechanics.network import Network
+from wavesym.scene import lower
+
+ULP = 2.0**-52
+
+
+def rod(**joint: object) -> Scene:
+    """A held rod of impedance and delay 1, a unit force on its end."""
+    return Scene(
+        name="rod",
+        system={"type": "chain", "parts": ["fixed", {"rod": 1}, {"joint": True, "name": "tip", **joint}]},
+        load=[{"at": "tip", "times": [0], "steps": [1]}],
+        output={
+            "until": 1,
+            "strain": ["0"],
+            "velocity": ["1/3"],
+            "displacement": ["tip", "1/2"],
+            "force": ["1/4"],
+            "drift": [1],
+        },
+    )
+
+
+def test_a_rod_answers_as_its_closed_form() -> None:
+    w = np.array([0.3, 1.5, 2.0, 7.7, 100.0])
+    found = wavesym.frf(rod(), w)
+    expected = {
+        "strain@0": 1 / np.cos(w),
+        "velocity@1/3": 1j * np.sin(w / 3) / np.cos(w),
+        "displacement@tip": np.tan(w) / w,
+        "displacement@1/2": np.sin(w / 2) / np.cos(w) / w,
+        "force@1/4": np.cos(w / 4) / np.cos(w),
+        "drift@1": np.tan(w) / w,
+    }
+    for name, values in expected.items():
+        # numpy's functions are right to some ulps, and w is rounded before it is multiplied
+        assert found[name] == pytest.approx(values, rel=200 * ULP)
+    assert found.bound < 3 * ULP
+    assert np.all(found.phase[0][np.cos(w) < 0] == 180)
+
+
+def test_at_rest_a_rod_is_a_spring() -> None:
+    assert wavesym.frf(rod(), [0.0]).values[:, 0] == pytest.approx([1, 0, 1, 0.5, 1, 1])
+
+
+def test_a_layer_on_rock_amplifies_by_the_ratio_of_impedances() -> None:
+    """A layer of impedance 1 on a half space of impedance 4: |surface/outcrop| = 1/|cos w + i sin(w)/4|."""
+    parts = [{"joint": True, "name": "rock", "dashpot": 4}, {"rod": 1}, "free"]
+    load = [{"at": "rock", "times": [0], "steps": [1]}]  # 1/4 of the force of an outcrop's velocity 1
+    scene = Scene(
+        name="soil",
+        system={"type": "chain", "parts": parts},
+        load=load,
+        output={"until": 1, "velocity": ["1"], "tolerance": 1e-9},
+    )
+    w = np.linspace(0.1, 20, 50)
+    assert 4 * wavesym.frf(scene, w)["velocity@1"] == pytest.approx(1 / (np.cos(w) + 1j * np.sin(w) / 4), rel=1e-13)
+    (peak,) = wavesym.frf(scene, w).peaks()
+    assert peak.low <= 1 <= peak.high
+    assert peak.high - peak.low < 1e-8
+    assert abs(np.cos(peak.frequency)) < 1e-4
+
+
+def dense(network: Network, point: int, w: float) -> NDArray[np.complex128]:
+    """How far points move under a unit force, from the dynamic stiffness written out as a matrix."""
+    k = np.zeros((len(network.points),) * 2, complex)
+    for number, each in enumerate(network.points):
+        k[number, number] += float(each.stiffness) + 1j * w * float(each.damping) - w * w * float(each.mass)
+    for bar in network.bars:
+        ends, ratios = [bar.left, bar.right], np.array([float(r) for r in bar.ratios])
+        z, angle = float(bar.impedance) * w, w * float(bar.delay)
+        block = z * np.array([[np.cos(angle), -1], [-1, np.cos(angle)]]) / np.sin(angle)
+        k[np.ix_(ends, ends)] += ratios[:, None] * block * ratios
+    for link in network.links:
+        ends, ratios = [link.left, link.right], np.array([float(link.ratio), 1.0])
+        resist = float(link.stiffness) + 1j * w * float(link.damping)
+        k[np.ix_(ends, ends)] += ratios[:, None] * (resist * np.array([[1, -1], [-1, 1]])) * ratios
+    free = [number for number, each in enumerate(network.points) if each.motion is None]
+    moved = np.zeros(len(network.points), complex)
+    moved[free] = np.linalg.solve(k[np.ix_(free, free)], np.eye(len(network.points))[free, point])
+    return moved
+
+
+NUMBER = st.sampled_from(["1/7", "1/2", "1", "1", "1", "10001/10000", "3", "20"])
+ROD = st.fixed_dictionaries(
+    {"rod": NUMBER, "impedance": NUMBER}, optional={"spring": NUMBER, "dashpot": NUMBER, "speed": NUMBER}
+)
+NODE = st.fixed_dictionaries({"mass": NUMBER}, optional={"spring": NUMBER, "dashpot": NUMBER})
+LINK = st.fixed_dictionaries({"spring": NUMBER}, optional={"dashpot": NUMBER})
+END = st.sampled_from(["free", "fixed", "absorbing"])
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> Scene:
+    """A chain with a geared branch, a force somewhere, all nodes watched."""
+    names = iter("abcdefghijklmnop")
+
+    def line(*, first: bool) -> list[object]:
+        parts: list[object] = [draw(END)] if first else []
+        for _ in range(draw(st.integers(1, 3))):
+            parts.append(draw(ROD))
+            parts.append({**draw(NODE), "name": next(names)})
+            if draw(st.booleans()):
+                parts += [draw(LINK), {**draw(NODE), "name": next(names)}]
+        return [*parts, draw(ROD), draw(END)]
+
+    main_line, branch = line(first=True), line(first=False)
+    system = {
+        "type": "chain",
+        "parts": main_line,
+        "branch": [{"from": "a", "name": "side", "ratio": draw(st.sampled_from(["2", "-1/3", "1"])), "parts": branch}],
+    }
+    nodes = [part["name"] for part in (*main_line, *branch) if isinstance(part, dict) and "name" in part]
+    return Scene(
+        name="tree",
+        system=system,
+        load=[{"at": draw(st.sampled_from(nodes)), "times": [0], "steps": [1]}],
+        output={"until": 1, "displacement": nodes},
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(trees(), st.sampled_from([0.01, 0.7, 1.3, 4.0, 17.0, 40.0]))
+def test_any_tree_answers_as_its_matrix(scene: Scene, w: float) -> None:
+    network = lower(scene).network
+    driven = next(number for number, point in enumerate(network.points) if point.loads)
+    names = {point.name: number for number, point in enumerate(network.points)}
+    found, moved = wavesym.frf(scene, [w]), dense(network, driven, w)
+    # rounding of the matrix: doubles, times how much nearly equal terms cancel in it
+    size = np.max(np.abs(moved))
+    for name in found:
+        assert abs(found[name][0] - moved[names[name.partition("@")[2]]]) < 1e-7 * size
+
+
+@pytest.mark.parametrize("lost", ["resistance", "coupling"])
+def test_the_comparison_finds_what_is_missing(lost: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A bar that resists, or takes its far end along, a millionth too much."""
+    through, coupling = Amplitudes._through, Amplitudes._coupling
+
+    def broken(self: Amplitudes, branch):  # type: ignore[no-untyped-def]
+        n, d = through(self, branch)
+        return (n * (1 + 2**-16), d) if lost == "resistance" else (n, d)
+
+    monkeypatch.setattr(Amplitudes, "_through", broken)
+    if lost == "coupling":
+        monkeypatch.setattr(Amplitudes, "_coupling", lambda self, branch: coupling(self, branch) * (1 + 2**-16))
+    scene = Scene(
+        name="tree",
+        system={
+            "type": "chain",
+            "parts": ["fixed", {"rod": 1}, {"mass": 1, "name": "a"}, {"rod": 2}, {"mass": 1, "name": "b"}],
+        },
+        load=[{"at": "b", "times": [0], "steps": [1]}],
+        output={"until": 1, "displacement": ["a", "b"]},
+    )
+    network = lower(scene).network
+    found, moved = wavesym.frf(scene, [1.3]), dense(network, 2, 1.3)
+    assert np.max(np.abs(found.values[:, 0] - moved[1:])) > 1e-7 * np.max(np.abs(moved))
+
+
+def test_it_is_the_transform_of_a_history() -> None:
+    """A pulse that is linear between samples, and what it does, which dies away: both as Fourier integrals."""
+    until, spacing = 40, 0.5
+    samples = [0, 1, 3, 2, -1, 0]
+    base = rod(dashpot="4/5")
+    load = [{"at": "tip", "spacing": spacing, "samples": samples}]
+    scene = Scene(name="rod", system=base.system, load=load, output={"until": until, "displacement": ["1/2"]})
+    fine = 4000
+    times = np.linspace(0, until, fine * until + 1)
+    history = scene.run(times)["displacement@1/2"]
+    pulse = np.interp(times, spacing * np.arange(len(samples)), samples)
+    for w in (0.4, 1.9):
+        turns = np.exp(-1j * w * times)
+        expected = np.trapezoid(history * turns, times) / np.trapezoid(pulse * turns, times)
+        # rule of trapezes: both are kinked at multiples of its step alone, and their second derivatives are below 10
+        assert wavesym.frf(scene, [w]).values[0, 0] == pytest.approx(expected, abs=20 * until / fine**2)
+
+
+def frame(damping: object, tolerance: float = 1e-5) -> Scene:
+    """A building on moving ground."""
+    scene = Scene.from_toml("building_m2").with_({"system.base": "ground"})
+    return scene.with_({"system.damping": damping, "output.tolerance": tolerance}) if damping else scene
+
+
+def elements(scene: Scene, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Frequencies, shapes and shares of a building on moving ground, its rods as `count` linear elements each."""
+    network = lower(scene).network
+    size = count * len(network.bars) + 1
+    k, m = np.zeros((size, size)), np.zeros((size, size))
+    for number, bar in enumerate(network.bars):
+        z, h = float(bar.impedance), float(bar.delay) / count
+        for e in range(count * number, count * (number + 1)):
+            k[e : e + 2, e : e + 2] += z / h * np.array([[1, -1], [-1, 1]])
+            m[e : e + 2, e : e + 2] += z * h / 6 * np.array([[2, 1], [1, 2]])
+    for number, point in enumerate(network.points):
+        m[count * number, count * number] += float(point.mass)
+    factor = np.linalg.cholesky(m[1:, 1:])
+    inverse = np.linalg.inv(factor)
+    squares, vectors = np.linalg.eigh(inverse @ k[1:, 1:] @ inverse.T)
+    shapes = inverse.T @ vectors
+    shares = shapes.T @ (m[1:, 1:] @ np.ones(size - 1) + m[1:, 0])
+    return np.sqrt(squares), shapes, shares
+
+
+@pytest.mark.parametrize(
+    "damping", [["1/20"], ["1/10", "1/50", "1/5"], {"modes": [1, 2], "ratio": "1/20"}], ids=["one", "list", "rayleigh"]
+)
+def test_damped_modes_answer_as_those_of_finite_elements(damping: object) -> None:
+    count, scene = 60, frame(damping)
+    n, shapes, shares = elements(scene, count)
+    if isinstance(damping, dict):
+        a, b = 2 / 20 * n[0] * n[1] / (n[0] + n[1]), 2 / 20 / (n[0] + n[1])
+        ratios = (a / n + b * n) / 2
+    else:
+        given = [float(Fraction(ratio)) for ratio in damping]  # type: ignore[attr-defined]
+        ratios = np.array([*given, *[given[-1]] * len(n)])[: len(n)]
+    for w in (0.2, 0.9, 2.5):
+        relative = shapes @ (-shares / (n * n - w * w + 2j * ratios * n * w))  # under the acceleration 1
+        expected = relative[3 * count // 2 - 1] - 1 / w**2
+        # two points a wave fewer than elements: an error of (w h)^2/24 of each frequency
+        assert wavesym.frf(scene, [w])["displacement@1.5"][0] == pytest.approx(expected, rel=2e-3)
+
+
+def test_ratios_of_every_mode_are_rayleighs() -> None:
+    """The same damping, once in closed form and once as a list for the first modes: others hardly move here."""
+    n = [mode.omega for mode in wavesym.modes(frame(None), 40)]
+    a, b = 2 / 500 * n[0] * n[1] / (n[0] + n[1]), 2 / 500 / (n[0] + n[1])
+    ratios = [(a / w + b * w) / 2 for w in n]
+    w = [0.2, 0.3, 1.1]
+    rayleigh = wavesym.frf(frame({"modes": [1, 2], "ratio": "1/500"}), w)
+    listed = wavesym.frf(frame(ratios), w)
+    for name in ("displacement@0.5", "displacement@1.5", "velocity@1.5"):
+        assert listed[name] == pytest.approx(rayleigh[name], rel=1e-5)
+
+
+@pytest.mark.slow
+@settings(max_examples=6, deadline=None)
+@given(trees())
+def test_no_amplitude_is_above_its_peak(scene: Scene) -> None:
+    response = wavesym.frf(scene, np.linspace(0.1, 3, 400))
+    peaks = response.peaks()
+    for name, row in zip(response, response.amplitude, strict=True):
+        assert np.nanmax(row) <= peaks[name].high * (1 + 4 * ULP)
+        if peaks[name].high < np.inf:
+            assert peaks[name].high - peaks[name].low <= 1e-9 * peaks[name].high
+            there = wavesym.frf(scene, [peaks[name].frequency])[name][0]
+            assert abs(there) == pytest.approx(peaks[name].amplitude, rel=1e-9)
+
+
+def test_a_narrow_peak_between_points_is_not_missed() -> None:
+    """A dashpot of 1/10 000 at the end: the strain at the support rises to 10 000 within 1/10 000 of frequency."""
+    response = wavesym.frf(rod(dashpot="1/10000"), np.linspace(1, 3, 5))
+    assert response.amplitude[0].max() < 20
+    peak = response.peaks()["strain@0"]
+    assert peak.low <= 10_000 <= peak.high < 10_001
+    assert peak.frequency == pytest.approx(np.pi / 2, abs=1e-6)
+
+
+def test_what_nothing_damps_has_no_greatest_amplitude() -> None:
+    peak = wavesym.frf(rod(), [1.0, 2.0]).peaks()["strain@0"]
+    assert (peak.amplitude, peak.high) == (np.inf, np.inf)
+    assert peak.frequency == pytest.approx(np.pi / 2)
+    spring = Scene(
+        name="bob",
+        system={"type": "chain", "parts": ["fixed", {"rod": 1}, {"mass": 1}, {"spring": 9}, {"mass": 1, "name": "a"}]},
+        load=[{"at": "a", "times": [0], "steps": [1]}],
+        output={"until": 1, "displacement": ["1-"]},
+    )
+    assert wavesym.frf(spring, [1.0]).poles == ()
+    free = Scene.from_toml("drive_m1")
+    assert wavesym.frf(free, [0.0, 1.0], load=0).poles == (0.0,)
+
+
+def test_units_are_those_of_one_unit_of_the_load() -> None:
+    """A mass of 100 kg on a rod that weighs nothing to speak of: 1 kN moves it by 1/(k - m w^2)."""
+    parts = [
+        "fixed",
+        {"rod": "1 m", "A": "1 cm^2", "E": "210 GPa", "rho": "1e-6 kg/m^3"},
+        {"mass": "100 kg", "name": "bob", "dashpot": "300 N*s/m"},
+    ]
+    scene = Scene(
+        name="bob",
+        units={"force": "kN", "length": "mm"},
+        system={"type": "chain", "parts": parts},
+        load=[{"at": "bob", "times": ["0 s"], "steps": ["3 kN"]}],
+        output={"until": "1 us", "displacement": ["bob"]},
+    )
+    f = np.array([10.0, 70.0, 200.0])
+    w = 2 * np.pi * f
+    found = wavesym.frf(scene, f)
+    per = {"N": 1.0, "kN": 1e3}[found.load_unit]
+    assert found.units == ("mm",)
+    assert found["displacement@bob"] == pytest.approx(1e3 * per / (2.1e7 - 100 * w**2 + 300j * w), rel=1e-8)
+    assert found.frequency_label == "frequency [Hz]"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["drive_m1"], "there are 2 loads; name one of 0 (M1), 1 (M2)"),
+        (["drive_m1", "--load", "M3"], "M3 is no load of this scene; it has 0 (M1), 1 (M2)"),
+        (["collision_m4"], "a frequency response needs a [[load]]"),
+        (["building_m2", "--from", "2", "--to", "1"], "no band of frequencies"),
+        (["building_m2", "--to", "1", "--at", "x.txt"], "--at and --from, --to or --points given"),
+        (["building_m2", "--points", "100000000"], "at most 1000000 expected"),
+    ],
+)
+def test_a_request_that_is_none_gets_one_line(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["frf", *arguments]) == 2
+    said = capsys.readouterr()
+    assert message in said.err
+    assert said.out == ""
+
+
+def test_the_command_writes_tables(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    at = tmp_path / "at.txt"
+    at.write_text("# rad per tau\n0.25\n1e0\n")
+    assert main(["frf", "building_m2", "--at", str(at)]) == 0
+    said = capsys.readouterr()
+    rows = list(csv.DictReader(said.out.splitlines()))
+    found = wavesym.frf(Scene.from_toml("building_m2"), [0.25, 1.0])
+    assert [float(row["omega"]) for row in rows] == [0.25, 1.0]
+    assert [float(row["velocity@0.5.imag"]) for row in rows] == found["velocity@0.5"].imag.tolist()
+    assert "right to 2.2e-16 of each output's largest amplitude here, proved" in said.err
+    out = tmp_path / "out.json"
+    assert main(["frf", "building_m2", "--to", "2", "--peaks", "--format", "json", "-o", str(out)]) == 0
+    (first, *_) = json.loads(out.read_text())["peaks"]
+    assert first["high"] is None
+    assert list(found.to_pandas().columns) == list(found.outputs)
+
+
+def test_a_picture_has_a_panel_for_each_quantity(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out.svg"
+    assert main(["frf", "building_m2", "-o", str(out)]) == 0
+    text = out.read_text()
+    assert all(each in text for each in ("strain", "velocity", "displacement", "phase"))
+    capsys.readouterr()

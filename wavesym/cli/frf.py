@@ -1,0 +1,85 @@
+"""`wavesym frf`."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import PATH, PICTURES, SCENE, decimals, put, refuse_scene, refuse_unwritable
+from wavesym.cli.progress import progress
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+POINTS = 400
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option("--load", metavar="NAME|NUMBER", help="Which load: its node, or its number in the scene from 0 on.")
+@click.option(
+    "--from",
+    "low",
+    type=float,
+    metavar="F",
+    help="The first frequency, in Hz; without [units] in rad per tau.  [default: 1/400 of the last]",
+)
+@click.option("--to", "high", type=float, metavar="F", help="The last one.  [default: that of the fifth mode]")
+@click.option("--points", type=click.IntRange(min=2), help=f"How many, equally spaced.  [default: {POINTS}]")
+@click.option("--at", type=PATH, metavar="FILE", help="File of frequencies to use instead: one decimal a line.")
+@click.option(
+    "--peaks", is_flag=True, help="The greatest amplitude of each output in the band, enclosed, in their place."
+)
+@click.option(
+    "--format", type=click.Choice(["csv", "json"]), default="csv", show_default=True, help="How it is written."
+)
+@click.option("-o", "out", type=PATH, metavar="FILE|PICTURE", help="Where it goes; .svg, .png, .pdf: drawn.")
+def frf(
+    scene: Scene,
+    load: str | None,
+    low: float | None,
+    high: float | None,
+    points: int | None,
+    at: Path | None,
+    peaks: bool,
+    format: str,
+    out: Path | None,
+) -> None:
+    """Print frequency responses: amplitudes of outputs under a load.
+
+    Print the complex amplitudes of the outputs under one unit of a load exp(+i w t), over frequency; with --peaks the
+    greatest of each output between --from and --to. All are proved.
+
+    \b
+    Example:
+      wavesym frf building_m2 --to 5 --points 11
+    """
+    from wavesym import api
+    from wavesym.writing import write_whole
+
+    context = click.get_current_context()
+    if at is not None and not low is high is points is None:
+        raise click.UsageError("--at and --from, --to or --points given, one of them expected", context)
+    drawn = out is not None and out.suffix.lower() in PICTURES
+    if drawn and not find_spec("matplotlib"):
+        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+    if out is not None:
+        refuse_unwritable(out)
+        refuse_scene(out)
+    with progress(f"frf {scene.name}"):
+        frequencies = decimals(at) if at is not None else None
+        few = 2 if peaks and not drawn else POINTS
+        found = api.frf(scene, frequencies, load, low=low, high=high, points=points or few)
+        table = found.peaks() if peaks else found
+        text = table.json() if format == "json" else "".join(table.csv())
+        if drawn and out is not None:
+            api.plot_frf(found, out)
+        elif out is not None:
+            write_whole({out: text})
+    for line in found.notes:
+        click.echo(f"{scene.name}: {line}", err=True)
+    if out is None:
+        put(text)

@@ -1,0 +1,291 @@
+"""How a network answers a harmonic force or motion exp(i w tau) of one of its points: complex amplitudes, in balls.
+
+Seen from that point outwards the network is a tree. Each branch resists by a ratio N/D of functions of w that have no
+poles, found from its tip to its root. At the far end of a bar of impedance Z and delay T let what lies beyond resist
+by A/B, and a spring and a dashpot beside the bar by k. With c = cos w T and S = sin(w T)/w both ends move as
+
+    near : far = D : B (Z + k S),   D = A S + B (Z c + k S),   N = A (Z c + k S) + B (2 Z k (c - 1) - Z^2 w^2 S)
+
+So w = 0 is no exception, and the whole tree is divided by one number alone, which is 0 at its natural frequencies.
+The arithmetic is that of w: balls, or power series of them about a frequency.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import prod
+from typing import Any, NamedTuple
+
+from flint import acb, acb_series, arb, fmpq
+
+from wavesym.errors import UnservedError
+from wavesym.mechanics.network import Network, Point
+
+# balls, complex balls, or power series of them
+Quantity = Any
+
+_I, _UNKNOWN = acb(0, 1), acb(arb("nan"), arb("nan"))
+
+
+class Branch(NamedTuple):
+    """What leads from one point to the next, outwards: a bar, whose near end is `side`, or None, and what is beside it.
+
+    `ratios` say how far its near and its far end move when their points move by 1.
+    """
+
+    near: int
+    far: int
+    bar: int | None
+    side: int
+    ratios: tuple[fmpq, fmpq]
+    stiffness: fmpq
+    damping: fmpq
+
+
+class Turn(NamedTuple):
+    """sin(w T)/w and cos(w T)."""
+
+    sine: Quantity
+    cosine: Quantity
+
+
+@dataclass(frozen=True)
+class HarmonicNetwork:
+    """A network in which nothing but one point is driven, with frequency w.
+
+    UnservedError, when it is driven, for a ring of parts.
+    """
+
+    network: Network
+    _branches: dict[int, list[Branch]] = field(default_factory=dict, compare=False)
+
+    @cached_property
+    def equals(self) -> list[int]:
+        """Of each bar the first one with its delay."""
+        bars = self.network.bars
+        first: dict[tuple[int, int], int] = {}
+        return [first.setdefault((int(bar.delay.p), int(bar.delay.q)), number) for number, bar in enumerate(bars)]
+
+    def driven(self, root: int, w: Quantity) -> Amplitudes:
+        """The amplitudes under a unit force on a point, or, where its motion is prescribed, a unit displacement.
+
+        Args:
+            root: the point.
+            w: the frequency, per tau; a power series must not begin with 0.
+
+        Returns:
+            Amplitudes; they are not finite where w may be a natural frequency.
+        """
+        return Amplitudes(self, root, w)
+
+    def branches(self, root: int) -> list[Branch]:
+        """The branches that are reached from a point, each after those nearer to it."""
+        if root not in self._branches:
+            self._branches[root] = self._reached(root)
+        return self._branches[root]
+
+    def _reached(self, root: int) -> list[Branch]:
+        beside: dict[int, list[Branch]] = {}
+        for branch in self._every:
+            beside.setdefault(branch.near, []).append(branch)
+            back = branch._replace(
+                near=branch.far, far=branch.near, side=1 - branch.side, ratios=(branch.ratios[1], branch.ratios[0])
+            )
+            beside.setdefault(back.near, []).append(back)
+        found: list[Branch] = []
+        coming, met = [(root, -1)], {root}
+        for point, before in coming:
+            if point != root and self.network.points[point].motion is not None:
+                continue
+            for branch in beside.get(point, ()):
+                if branch.far == before:
+                    continue
+                if branch.far in met and self.network.points[branch.far].motion is None:
+                    raise UnservedError("system.parts: a ring of parts given, a chain with branches expected in modes")
+                met.add(branch.far)
+                found.append(branch)
+                coming.append((branch.far, point))
+        return found
+
+    @property
+    def _every(self) -> list[Branch]:
+        """All of them, from left to right."""
+        network, found = self.network, dict[tuple[int, int], Branch]()
+        for number, bar in enumerate(network.bars):
+            pair = bar.left, bar.right
+            if pair in found or pair[::-1] in found:
+                raise UnservedError("system.parts: two rods between the same nodes given, one expected in modes")
+            found[pair] = Branch(*pair, number, 0, bar.ratios, fmpq(0), fmpq(0))
+        for link in network.links:
+            if link.stiffness == 0 and link.damping == 0:
+                continue
+            pair, ratios = (link.left, link.right), (link.ratio, fmpq(1))
+            if pair[::-1] in found:
+                pair, ratios = pair[::-1], ratios[::-1]
+            branch = found.get(pair, Branch(*pair, None, 0, ratios, fmpq(0), fmpq(0)))
+            scale = ratios[1] / branch.ratios[1]  # a spring counted at the ends of the bar
+            if ratios[0] != scale * branch.ratios[0]:
+                raise UnservedError("system.parts: a gear beside a rod given, a spring or dashpot expected in modes")
+            found[pair] = branch._replace(
+                stiffness=branch.stiffness + scale**2 * link.stiffness, damping=branch.damping + scale**2 * link.damping
+            )
+        return list(found.values())
+
+
+class Amplitudes:
+    """The complex amplitudes of a network one point of which is driven; whatever no branch leads to is at rest."""
+
+    def __init__(self, harmonic: HarmonicNetwork, root: int, w: Quantity) -> None:
+        self._network, self._w, self._equals = harmonic.network, w, harmonic.equals
+        self._square, self._branches = w * w, harmonic.branches(root)
+        self._turns: dict[int, Turn] = {}
+        self._children: dict[int, list[Branch]] = {}
+        for branch in self._branches:
+            self._children.setdefault(branch.near, []).append(branch)
+        # of each point what it and all beyond resist by, A/B; of each branch N and D, by its far point
+        self._beyond: dict[int, tuple[Quantity, Quantity]] = {}
+        self._resistance: dict[int, tuple[Quantity, Quantity]] = {}
+        for branch in reversed(self._branches):
+            self._beyond[branch.far] = self._summed(branch.far)
+            self._resistance[branch.far] = self._through(branch)
+        self._moved: dict[int, Quantity] = {}
+        self._scales: dict[int, tuple[Branch, Quantity]] = {}
+        self._drive(root)
+
+    def point(self, number: int) -> Quantity:
+        """How far a point moves."""
+        return self._moved.get(number, arb(0))
+
+    def displacement(self, bar: int, place: fmpq) -> Quantity:
+        """How far a place of a bar moves, counted in lengths of the bar from its left end."""
+        if bar not in self._scales:
+            return arb(0)
+        branch, scale = self._scales[bar]
+        a, b = self._at_far_end(branch)
+        near, far = self._turned_to(branch, place)
+        moved = a * far.sine + b * self._network.bars[bar].impedance * far.cosine
+        beside = self._beside(branch)
+        return scale * (moved if beside is None else moved + b * beside * (near.sine + far.sine))
+
+    def slope(self, bar: int, place: fmpq) -> Quantity:
+        """The strain of a place of a bar times the bar's speed."""
+        if bar not in self._scales:
+            return arb(0)
+        branch, scale = self._scales[bar]
+        a, b = self._at_far_end(branch)
+        near, far = self._turned_to(branch, place)
+        slope = a * far.cosine - b * self._network.bars[bar].impedance * self._square * far.sine
+        beside = self._beside(branch)
+        if beside is not None:
+            slope = slope + b * beside * (far.cosine - near.cosine)
+        return scale * slope * (1 if branch.side else -1)
+
+    def _drive(self, root: int) -> None:
+        """Find how far each point moves, and what the amplitudes on each branch are scaled by."""
+        force: Quantity = None
+        if self._network.points[root].motion is None:
+            a, b = self._summed(root)
+            force = _inverse(a)
+            self._moved[root] = force * b
+        else:
+            self._moved[root] = arb(1)
+        share = {root: force}
+        for branch in self._branches:
+            if branch.near == root and force is None:
+                scale = _inverse(self._resistance[branch.far][1])
+            else:
+                others = (self._resistance[b.far][1] for b in self._children[branch.near] if b is not branch)
+                scale = prod(others, start=share[branch.near])
+            if branch.ratios[0] != 1:
+                scale = scale * branch.ratios[0]
+            if branch.bar is not None:
+                self._scales[branch.bar] = branch, scale
+            share[branch.far] = scale * branch.ratios[1] * self._coupling(branch)
+            if self._network.points[branch.far].motion is None:
+                self._moved[branch.far] = share[branch.far] * self._beyond[branch.far][1]
+
+    def _summed(self, number: int) -> tuple[Quantity, Quantity]:
+        """A and B of a point with all that hangs on it."""
+        point = self._network.points[number]
+        if point.motion is not None:
+            return arb(1), arb(0)
+        found = [self._resistance[branch.far] for branch in self._children.get(number, ())]
+        own = self._own(point)
+        if len(found) == 1:  # as along a line
+            ((n, d),) = found
+            return (n if own is None else own * d + n), d
+        b = prod((d for _, d in found), start=arb(1))
+        a = b * (arb(0) if own is None else own)
+        for k, (n, _) in enumerate(found):
+            a = a + prod((d for j, (_, d) in enumerate(found) if j != k), start=n)
+        return a, b
+
+    def _own(self, point: Point) -> Quantity:
+        """How a point resists by itself; None where it does not."""
+        if point.mass == point.damping == point.stiffness == 0:
+            return None
+        own: Quantity = arb(point.stiffness)
+        if point.mass != 0:
+            own = own - self._square * point.mass
+        return own if point.damping == 0 else own + self._w * (_I * point.damping)
+
+    def _through(self, branch: Branch) -> tuple[Quantity, Quantity]:
+        """N and D of a branch, seen from its near point."""
+        (a, b), beside = self._at_far_end(branch), self._beside(branch)
+        if branch.bar is None:
+            return self._geared(branch, a * beside), a + b * beside
+        bar = self._network.bars[branch.bar]
+        z, (sine, cosine) = bar.impedance, self._whole_turn(branch.bar)
+        across = z * cosine if beside is None else z * cosine + beside * sine
+        held = sine * (-z * z) * self._square
+        if beside is not None:
+            held = held + 2 * z * beside * (cosine - 1)
+        return self._geared(branch, a * across + b * held), a * sine + b * across
+
+    def _geared(self, branch: Branch, resistance: Quantity) -> Quantity:
+        return resistance if branch.ratios[0] == 1 else resistance * branch.ratios[0] ** 2
+
+    def _coupling(self, branch: Branch) -> Quantity:
+        """What the far end moves by, times D and over B, when the near end does."""
+        beside = self._beside(branch)
+        if branch.bar is None:
+            return beside
+        bar = self._network.bars[branch.bar]
+        return arb(bar.impedance) if beside is None else bar.impedance + beside * self._whole_turn(branch.bar).sine
+
+    def _at_far_end(self, branch: Branch) -> tuple[Quantity, Quantity]:
+        """A and B of what lies beyond it, seen by its far end."""
+        a, b = self._beyond[branch.far]
+        return a, b if branch.ratios[1] == 1 else b * branch.ratios[1] ** 2
+
+    def _beside(self, branch: Branch) -> Quantity:
+        """How a spring and a dashpot resist; None where there are none."""
+        if branch.damping != 0:
+            return self._w * (_I * branch.damping) + branch.stiffness
+        return arb(branch.stiffness) if branch.stiffness != 0 else None
+
+    def _turned_to(self, branch: Branch, place: fmpq) -> tuple[Turn, Turn]:
+        """From a place of its bar to the near and to the far end."""
+        assert branch.bar is not None  # which the place lies on
+        delay = self._network.bars[branch.bar].delay
+        part = 1 - place if branch.side else place
+        return self._turn(delay * part), self._turn(delay * (1 - part))
+
+    def _whole_turn(self, bar: int) -> Turn:
+        first = self._equals[bar]
+        if first not in self._turns:
+            self._turns[first] = self._turn(self._network.bars[first].delay)
+        return self._turns[first]
+
+    def _turn(self, delay: fmpq) -> Turn:
+        angle = self._w * delay
+        sine = angle.sin() * _inverse(self._w) if isinstance(angle, acb_series) else angle.sinc() * delay
+        return Turn(sine, angle.cos())
+
+
+def _inverse(value: Quantity) -> Quantity:
+    """1 over a value: not finite where that may be 0."""
+    if isinstance(value, acb_series) and acb(value[0]).contains(0):
+        return acb_series([_UNKNOWN, _UNKNOWN, _UNKNOWN], prec=value.prec)
+    return 1 / value

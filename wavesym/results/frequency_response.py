@@ -1,0 +1,291 @@
+"""The frequency response of a scene: complex amplitudes of its outputs over frequency, each right to the tolerance."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from flint import acb, arb, ctx
+from numpy.typing import NDArray
+
+from wavesym.errors import CostError, ToleranceError, WavesymError, did_you_mean
+from wavesym.exact.modes.dying import undamped
+from wavesym.exact.modes.frequencies import Spectrum
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import above, midpoint, nearest
+from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.results.modal_transfer import ModalTransfer
+from wavesym.results.optional import needed
+from wavesym.results.resonance import Peaks, peaks
+from wavesym.results.transfer import HarmonicLoad, Transfer, angular
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+Vector = NDArray[np.float64]
+
+_MODES_SHOWN, _STEPS = 5, 400
+_MOST_POINTS = 1_000_000
+_BITS, _MOST_BITS = 128, 1 << 13
+_FIRST_MODES, _MOST_MODES = 32, 2048
+_SHARP, _ZERO, _BITS_OF_ZERO = 70, 160, 1024
+_BITS_OF_MODES = 192
+_ROUNDING = 2.0**-52  # both parts, each to the nearest double
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FrequencyResponse:
+    """Complex amplitudes of the outputs under one unit of a load exp(+i w t); `wavesym.frf` makes it.
+
+    Attributes:
+        name: the scene.
+        load: what the load is called; `load_unit` its unit, empty without [units].
+        frequency: (n,), in Hz, or, without [units], w in rad per tau; `frequency_label` says which.
+        outputs: the names, in the order of the scene; `units` that of each, per unit of the load.
+        values: (outputs, n), complex; nan at a natural frequency that nothing damps.
+        bound: what a value is wrong by at most, relative to its output's largest amplitude here: proved.
+        poles: the natural frequencies met.
+
+    `response[NAME]` is one output, (n,).
+    """
+
+    name: str
+    load: str
+    load_unit: str
+    frequency: NDArray[np.float64]
+    frequency_label: str
+    outputs: tuple[str, ...]
+    units: tuple[str, ...]
+    values: NDArray[np.complex128]
+    bound: float
+    poles: tuple[float, ...]
+    _model: Model = field(repr=False)
+    _load: HarmonicLoad = field(repr=False)
+
+    def __getitem__(self, name: str) -> NDArray[np.complex128]:
+        try:
+            return np.asarray(self.values[self.outputs.index(name)])
+        except ValueError:
+            known = f"{', '.join(self.outputs)}. {did_you_mean(str(name), self.outputs)}".rstrip(". ")
+            raise KeyError(f"{name} is no output of {self.name}; there are {known}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.outputs)
+
+    def __len__(self) -> int:
+        return len(self.outputs)
+
+    def __repr__(self) -> str:
+        low, high = self.frequency[[0, -1]] if len(self.frequency) else (0.0, 0.0)
+        unit = "Hz" if self.frequency_label.endswith("[Hz]") else "rad per tau"
+        return (
+            f"FrequencyResponse({self.name!r}, {len(self)} outputs at {len(self.frequency)} frequencies from {low:g} "
+            f"to {high:g} {unit}, bound {self.bound:.1e})"
+        )
+
+    @property
+    def amplitude(self) -> NDArray[np.float64]:
+        """The absolute values, (outputs, n)."""
+        return np.abs(self.values)
+
+    @property
+    def phase(self) -> NDArray[np.float64]:
+        """By how much each output is ahead of the load, in degrees from -180 to 180, (outputs, n)."""
+        return np.degrees(np.angle(self.values))
+
+    def peaks(self) -> Peaks:
+        """The greatest amplitude of each output between the least frequency and the last, enclosed.
+
+        WavesymError where there are no two. CostError where too many intervals would be needed.
+        """
+        band = self.frequency.min(initial=np.inf), self.frequency.max(initial=0.0)
+        return peaks(self._model, self._load, *map(float, band))
+
+    @property
+    def notes(self) -> list[str]:
+        """How good values are, and where there are none: lines for people."""
+        unit = "Hz" if self.frequency_label.endswith("[Hz]") else "rad per tau"
+        poles = ", ".join(f"{pole:g}" for pole in self.poles)
+        return [
+            f"per unit of {self.load}{self.load_unit and ' '}{self.load_unit}; right to {self.bound:.1e} of each "
+            "output's largest amplitude here, proved",
+            *([f"no value at {poles} {unit}: nothing limits the answer there"] if poles else []),
+        ]
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame: a complex column for each output over the frequency. WavesymError without pandas."""
+        pandas = needed("pandas", "sweep")
+        index = pandas.Index(self.frequency, name=self.frequency_label)
+        return pandas.DataFrame(dict(zip(self.outputs, self.values, strict=True)), index=index)
+
+    def csv(self) -> Iterator[str]:
+        """Lines of CSV: the frequency, then the real and the imaginary part of each output."""
+        yield ",".join([self.frequency_label, *(f"{name}.{part}" for name in self for part in ("real", "imag"))]) + "\n"
+        parts = np.stack([self.values.real, self.values.imag], axis=1).reshape(2 * len(self), -1)
+        for f, row in zip(self.frequency.tolist(), parts.T.tolist(), strict=True):
+            yield ",".join(map(repr, [f, *row])) + "\n"
+
+    def json(self) -> str:
+        """As JSON: `frequency`, and of each output `real` and `imag`; null where there is no value."""
+        outputs = [
+            {"name": name, "unit": unit, "real": _numbers(row.real), "imag": _numbers(row.imag)}
+            for name, unit, row in zip(self.outputs, self.units, self.values, strict=True)
+        ]
+        about = {"load": self.load, "load_unit": self.load_unit, "frequency_label": self.frequency_label}
+        more = {"bound": self.bound, "poles": list(self.poles), "outputs": outputs}
+        return json.dumps({"name": self.name, **about, "frequency": self.frequency.tolist(), **more}, indent=2) + "\n"
+
+
+def _numbers(row: NDArray[np.float64]) -> list[float | None]:
+    return [None if np.isnan(value) else value for value in row.tolist()]
+
+
+def frequency_response(model: Model, load: HarmonicLoad, frequencies: ArrayLike) -> FrequencyResponse:
+    """The outputs of a model under one unit of a load, at some frequencies.
+
+    Args:
+        model: a chain without contacts that open.
+        load: which load (transfer.harmonic_load).
+        frequencies: (n,), in Hz where the model has a clock, else in rad per tau; at least 0.
+
+    Raises:
+        WavesymError: for a frequency that is negative or no number.
+        UnservedError: for contacts, rings of parts, modes that cannot be told apart.
+        ToleranceError: where damping ratios of single modes would need too many modes for the tolerance.
+        CostError: for too many frequencies, or more bits than can be had.
+    """
+    given = np.atleast_1d(np.asarray(frequencies, np.float64))
+    for f in given:
+        if not (np.isfinite(f) and f >= 0):
+            raise WavesymError(f"frequency: {f:g} is not a number of at least 0")
+    _refuse_many(len(given))
+    values = np.full((len(model.probes), len(given)), np.nan + 0j)
+    errors = np.zeros(len(model.probes))
+    if model.damping is not None and model.damping.modes is None and model.damping.acts:
+        errors = _modal(model, load, given, values)
+    else:
+        points = _Points(Transfer(model, load))
+        for k, f in enumerate(given.tolist()):
+            found = points.at(f)
+            if found is not None:
+                values[:, k] = found[0]
+                errors = np.maximum(errors, found[1])
+    largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
+    relative = np.divide(errors, largest, out=np.zeros_like(errors), where=largest > 0)
+    if relative.max(initial=0.0) > nearest(model.tolerance):
+        raise ToleranceError(
+            f"output.tolerance: {relative.max():.1e} reached (frequencies further from resonance help)"
+        )
+    missing = np.isnan(values[0].real) if len(values) else np.zeros(len(given), bool)
+    return FrequencyResponse(
+        name=model.name,
+        load=load.label,
+        load_unit=load.unit,
+        frequency=given,
+        frequency_label="omega" if model.clock is None else "frequency [Hz]",
+        outputs=tuple(probe.name for probe in model.probes),
+        units=tuple(probe.unit for probe in model.probes),
+        values=values,
+        bound=float(relative.max(initial=0.0)) + _ROUNDING,
+        poles=tuple(given[missing].tolist()),
+        _model=model,
+        _load=load,
+    )
+
+
+def equally_spaced(model: Model, low: float | None, high: float | None, points: int) -> Vector:
+    """Frequencies from `low` to `high`, ends included, where these are None from one step above 0 to the fifth mode.
+
+    (That is the mode without dashpots. At 0 nothing but supports holds the chain: it may have no answer.)
+
+    WavesymError for a band that is none. CostError for too many points.
+    """
+    if high is None:
+        fifth = Spectrum(undamped(model.network)).first(_MODES_SHOWN)[-1].frequency
+        high = float(f"{midpoint(fifth / angular(model, 1.0)):.3g}")
+    _refuse_many(points)
+    if low is None:
+        low = high / max(points, _STEPS)
+    if not 0 <= low < high or points < 2:
+        raise WavesymError(f"--from {low:g} --to {high:g} --points {points}: no band of frequencies")
+    return np.linspace(low, high, points)
+
+
+def _refuse_many(points: int) -> None:
+    if points > _MOST_POINTS:
+        raise CostError(f"--points: {points} given, at most {_MOST_POINTS} expected (fewer points help)")
+
+
+@dataclass
+class _Points:
+    """The outputs at single frequencies, with as many bits as the last one needed."""
+
+    transfer: Transfer
+    bits: int = _BITS
+
+    def at(self, frequency: float) -> tuple[list[complex], list[float]] | None:
+        """The outputs at a frequency, both parts as the nearest doubles, and what these are wrong by before rounding.
+
+        None where there is no answer, as at a natural frequency. CostError where no bits tell.
+        """
+        model, bits = self.transfer.model, self.bits
+        before = [arb("inf") for _ in model.probes]
+        while bits <= _MOST_BITS:
+            with ctx.workprec(bits):
+                found = [acb(each) for each in self.transfer(angular(model, frequency))]
+                radii = [max(each.real.rad(), each.imag.rad()) for each in found]
+                if all(each.is_finite() for each in found):
+                    # frequencies of modes, which Rayleigh's damping takes, are known to so many bits and no more
+                    known = all(radius == 0 or 2 * radius > last for radius, last in zip(radii, before, strict=True))
+                    if known or all(_is_sharp(*each, bits) for each in zip(found, radii, strict=True)):
+                        self.bits = max(_BITS, bits * 7 // 8 if bits == self.bits else bits)
+                        return [complex(midpoint(v.real), midpoint(v.imag)) for v in found], [above(r) for r in radii]
+                    before = radii
+            bits = bits * 3 // 2
+        if before[:1] and not before[0].is_finite():
+            return None
+        raise CostError(
+            f"frequency: more than {_MOST_BITS} bits at {frequency:g}, at most {_MOST_BITS} expected (fewer parts help)"
+        )
+
+
+def _is_sharp(value: acb, radius: arb, bits: int) -> bool:
+    """Whether a value is known beside its absolute value, or, with many bits, is 0 as far as anyone can see."""
+    if radius == 0 or radius < abs(value).lower() * arb(2) ** -_SHARP:
+        return True
+    return bits >= _BITS_OF_ZERO and bool(abs(value) < arb(2) ** -_ZERO)
+
+
+def _modal(model: Model, load: HarmonicLoad, given: Vector, values: NDArray[np.complex128]) -> Vector:
+    """Fill in sums over as many modes as the tolerance needs; what each output is wrong by at most.
+
+    ToleranceError where that are too many.
+    """
+    tolerance, count, modes = nearest(model.tolerance), _FIRST_MODES, UndampedModes(model)
+    while True:
+        with ctx.workprec(_BITS_OF_MODES):
+            transfer = ModalTransfer(modes, load, count)
+            highest = max((angular(model, f) for f in given.tolist()), default=arb(0))
+            errors = np.array([above(each) for each in transfer.left_out(highest)])
+            enough = np.isfinite(errors).all()
+            if enough:
+                left = errors
+                for k, f in enumerate(given.tolist()):
+                    found = [acb(each) for each in transfer(angular(model, f))]
+                    if not all(each.is_finite() for each in found):
+                        continue
+                    values[:, k] = [complex(midpoint(each.real), midpoint(each.imag)) for each in found]
+                    errors = np.maximum(errors, left + [above(each.real.rad() + each.imag.rad()) for each in found])
+                largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
+                enough = (errors <= tolerance * largest).all()
+        if enough:
+            return errors
+        if 2 * count > _MOST_MODES:
+            raise ToleranceError(
+                f"output.tolerance: {tolerance:.1e} would need more than {_MOST_MODES} modes in a frequency response; "
+                "a larger tolerance, lower frequencies or Rayleigh damping (modes = [i, j]) help"
+            )
+        count *= 2

@@ -1,0 +1,177 @@
+"""The transfer functions of a model whose modes have damping ratios of their own: sums over modes, as balls.
+
+A mode of mass 1 with shares l in an output and f in a load answers by l f/(w_n^2 - w^2 + 2 i z w_n w). What it would
+do if the load did not change, l f/w_n^2, is known for all modes together, so that of those left out there remains
+
+    |l f (w^2 - 2 i z w_n w)/(w_n^2 (w_n^2 - w^2 + 2 i z w_n w))| <= |l f| (w^2 + 2 z w_n w)/(w_n^2 (w_n^2 - w^2))
+
+which is summed by Cauchy and Schwarz, as sums of squares over all modes are known too (exact/modes/statics.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from flint import acb, arb, fmpq
+
+from wavesym.exact.modes.harmonic import Quantity
+from wavesym.exact.modes.shape import Mode
+from wavesym.exact.modes.statics import Statics
+from wavesym.mechanics.model import Model
+from wavesym.programs.modes.projection import Driver, modal_output, share
+from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.results.transfer import ORDERS, HarmonicLoad, drive
+
+_I = acb(0, 1)
+
+
+class ModalDrive(NamedTuple):
+    """What one point is driven by.
+
+    `shares[k][n]` is l f of output k in mode n. `imposed` (None under a force) and `static` are the outputs of the
+    shape that a motion imposes, and under the load when it does not change. Of the modes left out the sum of |l f|
+    over a power of w_n is at most `left_out[k]`, with that `powers[k]`.
+    """
+
+    point: int
+    coefficients: tuple[fmpq, ...]
+    shares: list[list[arb]]
+    imposed: list[arb] | None
+    static: list[arb]
+    left_out: list[arb]
+    powers: list[int]
+
+
+@dataclass(frozen=True)
+class ModalTransfer:
+    """The outputs of a model under one unit of a load, as functions of the frequency: the first `count` modes."""
+
+    modes: UndampedModes
+    load: HarmonicLoad
+    count: int
+
+    @property
+    def model(self) -> Model:
+        """Whose outputs they are."""
+        return self.modes.model
+
+    def __call__(self, w: Quantity) -> list[Quantity]:
+        """The complex amplitudes of the outputs, without what `left_out` bounds.
+
+        Args:
+            w: the frequency in rad per tau: a ball, or a power series of complex ones about one that is not 0.
+
+        Returns:
+            One for each output, in its unit per unit of the load.
+        """
+        rate, square = w * _I, w * w
+        answers = [
+            1 / (rate * (2 * ratio * n) - square + n * n) - (1 / (n * n) if n != 0 else 0)
+            for n, ratio in zip(self._frequencies, self._ratios, strict=True)
+        ]
+        made: list[Quantity] = [acb(0) for _ in self.model.probes]
+        for each in self._drives:
+            acting = self._acting(each, rate)
+            for k, shares in enumerate(each.shares):
+                moved = sum(
+                    (answer * share for share, answer in zip(shares, answers, strict=True)), acb(each.static[k])
+                )
+                if each.imposed is not None:
+                    moved = moved + each.imposed[k] / (rate * rate)
+                made[k] = made[k] + acting * moved
+        return [
+            each * rate ** ORDERS.get(probe.quantity, 0) for probe, each in zip(self.model.probes, made, strict=True)
+        ]
+
+    def left_out(self, w: arb) -> list[arb]:
+        """What all modes after the first `count` can add to the amplitude of each output; None where that is open.
+
+        Args:
+            w: the frequency in rad per tau; a wide ball stands for all in it.
+        """
+        last, most = self._frequencies[-1], self._ratios[-1]
+        made = [arb(0) for _ in self.model.probes]
+        if not last > w:
+            return [arb("inf") for _ in made]
+        rate = acb(0, w)
+        for each in self._drives:
+            acting = abs(self._acting(each, rate))
+            for k, (left, power) in enumerate(zip(each.left_out, each.powers, strict=True)):
+                order = ORDERS.get(self.model.probes[k].quantity, 0)
+                most_of_one = last ** (power - 2) * (w * w + 2 * most * last * w) / (last * last - w * w)
+                made[k] += acting * left * most_of_one * w**order
+        return made
+
+    def _acting(self, each: ModalDrive, rate: Quantity) -> Quantity:
+        """The force on the point, or its acceleration."""
+        acting = drive(each.coefficients, rate)
+        return acting * rate if self.model.network.points[each.point].motion == "velocity" else acting
+
+    @cached_property
+    def _found(self) -> list[Mode]:
+        return self.modes.spectrum.first(self.count)
+
+    @cached_property
+    def _frequencies(self) -> list[arb]:
+        return [mode.frequency for mode in self._found]
+
+    @cached_property
+    def _ratios(self) -> list[arb]:
+        """The damping ratio of each mode; a motion without strain has none."""
+        assert self.model.damping is not None  # who has none needs no modes
+        ratios = iter(self.model.damping.ratios)
+        last = ratio = next(ratios)
+        made = []
+        for n in self._frequencies:
+            made.append(arb(0) if n == 0 else arb(ratio))
+            if n != 0:
+                last = ratio
+                ratio = next(ratios, last)
+        return made
+
+    @cached_property
+    def _drives(self) -> list[ModalDrive]:
+        found, cut = self._found, self.modes.spectrum.cut
+        statics = Statics(found[0].stiffness)
+        outputs = [modal_output(self.model.network, cut, probe) for probe in self.model.probes]
+        values = [[output.value(mode) for mode in found] for output in outputs]
+        made = []
+        for point, coefficients in self.load.drives:
+            driver = Driver(point, fmpq(1), "", "")
+            shares = [share(cut.network, driver, mode) for mode in found]
+            if self.model.network.points[point].motion is None:
+                imposed, static, power = None, statics.under({point: fmpq(1)}), 1
+                total = static.points[point]
+            else:
+                imposed = statics.imposed(point)
+                static, power, total = statics.accelerated(imposed), 0, statics.mass(imposed.points)
+            spare = self._spare(total, shares, power)
+            left_out, powers = [], []
+            for output, row in zip(outputs, values, strict=True):
+                # as a displacement, whatever of it is the output
+                wide = output.power if output.order < 2 else 1
+                whole = output.total(statics) if output.order < 2 else statics.under(output.points)
+                whole = whole if isinstance(whole, arb) else arb(output.value(whole))
+                left_out.append((self._spare(whole, row, wide) * spare).sqrt().upper())
+                powers.append(wide + power)
+            made.append(
+                ModalDrive(
+                    point,
+                    coefficients,
+                    [[one * other for one, other in zip(row, shares, strict=True)] for row in values],
+                    None if imposed is None else [output.value(imposed) for output in outputs],
+                    [output.value(static) for output in outputs],
+                    left_out,
+                    powers,
+                )
+            )
+        return made
+
+    def _spare(self, total: arb, row: list[arb], power: int) -> arb:
+        """What is left of a sum of squares over w^(2 power) once the first modes are taken away: at least 0."""
+        for value, n in zip(row, self._frequencies, strict=True):
+            if n != 0:
+                total = total - value * value / n ** (2 * power)
+        return total.max(arb(0))

@@ -1,0 +1,266 @@
+"""The greatest amplitude of each output in a band of frequencies, enclosed: no peak between points is missed.
+
+On an interval about m of half width r a function is its Taylor polynomial about m, and a rest that its second
+derivative on the whole interval bounds: h(m) + h'(m) s + h''(interval)/2 s^2, |s| <= r, all of it in balls. Intervals
+whose amplitudes may exceed the greatest one found so far are halved until none is left.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import inf
+
+from flint import acb, acb_series, arb, ctx
+
+from wavesym.errors import CostError, WavesymError
+from wavesym.exact.modes.harmonic import Quantity
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import above, midpoint
+from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.results.modal_transfer import ModalTransfer
+from wavesym.results.transfer import HarmonicLoad, Transfer, angular
+
+_BITS = 256
+_SHARE = arb(2) ** -33  # of the greatest amplitude: what peaks are enclosed to
+_LEAST = arb(2) ** -40  # of the band: an interval in which amplitudes are still not bounded has a pole
+_MOST = 600_000  # intervals times parts
+_NEWTON = 3
+_PARTS = 64  # of the band at first
+_FIRST_MODES, _MOST_MODES = 32, 2048
+
+Transfers = Callable[[Quantity], list[Quantity]]
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The greatest amplitude of one output in the band.
+
+    Attributes:
+        name: the output; `unit` its unit, per unit of the load.
+        frequency: where it is, in Hz, or in rad per tau without [units].
+        amplitude: what it is there, to the nearest double; inf at a natural frequency that nothing damps.
+        low: proved: it is at least this, and at most `high`.
+    """
+
+    name: str
+    unit: str
+    frequency: float
+    amplitude: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """The peaks of all outputs; `wavesym.frf(..., peaks=True)` makes it."""
+
+    name: str
+    load: str
+    load_unit: str
+    frequency_label: str
+    band: tuple[float, float]
+    peaks: tuple[Peak, ...]
+
+    def __iter__(self) -> Iterator[Peak]:
+        return iter(self.peaks)
+
+    def __len__(self) -> int:
+        return len(self.peaks)
+
+    def __getitem__(self, name: str) -> Peak:
+        return next(peak for peak in self.peaks if peak.name == name)
+
+    def csv(self) -> str:
+        """A line for each output."""
+        head = f"output,{self.frequency_label},amplitude,low,high\n"
+        rows = ((p.name, p.frequency, p.amplitude, p.low, p.high) for p in self.peaks)
+        return head + "".join(",".join([name, *map(repr, numbers)]) + "\n" for name, *numbers in rows)
+
+    def json(self) -> str:
+        """As JSON; null in place of what is not bounded."""
+        peaks = [
+            {
+                "name": p.name,
+                "unit": p.unit,
+                "frequency": p.frequency,
+                "amplitude": None if p.amplitude == inf else p.amplitude,
+                "low": p.low,
+                "high": None if p.high == inf else p.high,
+            }
+            for p in self.peaks
+        ]
+        about = {"load": self.load, "load_unit": self.load_unit, "frequency_label": self.frequency_label}
+        return json.dumps({"name": self.name, **about, "band": list(self.band), "peaks": peaks}, indent=2) + "\n"
+
+
+def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Peaks:
+    """The greatest amplitude of each output from one frequency to another.
+
+    Args:
+        model: a chain without contacts that open.
+        load: which load.
+        low: the least frequency, in Hz where the model has a clock, else in rad per tau.
+        high: the greatest.
+
+    Raises:
+        WavesymError: for a band that is none.
+        UnservedError: as for `frequency_response`.
+        CostError: where too many intervals would be needed.
+    """
+    if not 0 <= low < high:
+        raise WavesymError(f"--from, --to: {low:g} to {high:g} is no band of frequencies")
+    with ctx.workprec(_BITS):
+        first, last = angular(model, low), angular(model, high)
+        for transfer, rests in _transfers(model, load, last):
+            found = [_Search(rest) for rest in rests]
+            if not all(rest.is_finite() for rest in rests):
+                continue
+            _search(transfer, found, first, last, len(model.network.points))
+            if all(each.rest**2 <= each.square * arb(model.tolerance) ** 2 for each in found):
+                break
+        per = angular(model, 1.0)
+        made = [
+            Peak(
+                name=probe.name,
+                unit=probe.unit,
+                frequency=low if each.at is None else min(max(midpoint(each.at / per), low), high),
+                amplitude=inf if each.pole else midpoint(each.square.sqrt()),
+                low=-above(each.rest - each.square.sqrt()) if each.square > each.rest**2 else 0.0,
+                high=inf if each.pole else above((each.square * (1 + _SHARE)).sqrt() + each.rest),
+            )
+            for probe, each in zip(model.probes, found, strict=True)
+        ]
+    label = "omega" if model.clock is None else "frequency [Hz]"
+    return Peaks(model.name, load.label, load.unit, label, (low, high), tuple(made))
+
+
+class _Search:
+    """The greatest amplitude of one output: as far as it is known."""
+
+    def __init__(self, rest: arb) -> None:
+        self.rest = rest
+        """What the modes left out may add."""
+        self.square = arb(0)
+        """The square of the greatest amplitude found, without the rest."""
+        self.at: arb | None = None
+        self.pole = False
+
+    def seen(self, w: arb, square: arb) -> None:
+        """An amplitude, squared, at a frequency."""
+        if square.is_finite() and (self.at is None or square.lower() > self.square):
+            self.square, self.at = square.lower(), w
+
+    def excludes(self, square: arb) -> bool:
+        """Whether what is nowhere above so much cannot matter."""
+        return bool(square <= self.square * (1 + _SHARE))
+
+
+@dataclass(frozen=True)
+class _Interval:
+    """Frequencies from `low` to `high`, and the outputs whose greatest amplitude may be there."""
+
+    low: arb
+    high: arb
+    outputs: Sequence[int]
+
+    @property
+    def middle(self) -> arb:
+        return ((self.low + self.high) / 2).mid()
+
+    def halves(self, outputs: Sequence[int]) -> Iterator[_Interval]:
+        yield _Interval(self.low, self.middle, outputs)
+        yield _Interval(self.middle, self.high, outputs)
+
+
+def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb, parts: int) -> None:
+    """Find the greatest amplitudes from one frequency to another. CostError."""
+    every = list(range(len(found)))
+    edges = [(first + (last - first) * k / _PARTS).mid() for k in range(_PARTS + 1)]
+    edges[0], edges[-1] = first.lower(), last.upper()
+    for edge in (edges[0], edges[-1]):
+        for search, (square, _, _) in zip(found, _squares(transfer, edge), strict=True):
+            search.seen(edge, square)
+    level, count = [_Interval(*each, every) for each in pairwise(edges)], 0
+    allowed = _MOST // parts
+    least = (last - first) * _LEAST
+    while level:
+        count += len(level)
+        if count > allowed:
+            raise CostError(
+                f"--peaks: {count} intervals, at most {allowed} expected (a narrower band or fewer parts help)"
+            )
+        middles = [_squares(transfer, each.middle) for each in level]
+        for each, squares in zip(level, middles, strict=True):
+            for k in each.outputs:
+                found[k].seen(each.middle, squares[k][0])
+        following: list[_Interval] = []
+        for each, squares in zip(level, middles, strict=True):
+            whole = _squares(transfer, each.low.union(each.high))
+            half = (each.high - each.low) / 2
+            open_for = []
+            for k in each.outputs:
+                value, slope, _ = squares[k]
+                rest = value + abs(slope) * half + abs(whole[k][2]) * half * half
+                most = (whole[k][0] if each.low.contains(0) else rest).upper()
+                if found[k].pole or (most.is_finite() and found[k].excludes(most)):
+                    continue
+                if each.high - each.low < least:
+                    found[k].pole, found[k].at = True, each.middle
+                else:
+                    open_for.append(k)
+            if open_for:
+                following += each.halves(open_for)
+        level = following
+    for k, search in enumerate(found):
+        _polish(transfer, search, k, first, last)
+
+
+def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb) -> None:
+    """Go to the top that the greatest amplitude found lies beside, by Newton's method."""
+    for _ in range(_NEWTON):
+        if search.pole or search.at is None or search.at.contains(0):
+            return
+        _, slope, bend = _squares(transfer, search.at)[k]
+        if not bend < 0:
+            return
+        better = (search.at - slope / (2 * bend)).mid()
+        if first < better < last:
+            search.seen(better, _squares(transfer, better)[k][0])
+
+
+def _squares(transfer: Transfers, w: arb) -> list[tuple[arb, arb, arb]]:
+    """Of each output the square of the amplitude, its slope, and half its second derivative, on all of a ball."""
+    if w.contains(0):
+        sizes = (abs(acb(value)) for value in transfer(w))
+        return [(size * size, arb(0), arb(0)) for size in sizes]
+    made = []
+    for value in transfer(acb_series([acb(w), 1], prec=3)):
+        c = [acb(0)] * 3
+        for k, each in enumerate(value.coeffs() if isinstance(value, acb_series) else [value]):
+            c[k] = acb(each)
+        re, im = [each.real for each in c], [each.imag for each in c]
+        made.append(
+            (
+                re[0] * re[0] + im[0] * im[0],
+                2 * (re[0] * re[1] + im[0] * im[1]),
+                re[1] * re[1] + im[1] * im[1] + 2 * (re[0] * re[2] + im[0] * im[2]),
+            )
+        )
+    return made
+
+
+def _transfers(model: Model, load: HarmonicLoad, last: arb) -> Iterator[tuple[Transfers, list[arb]]]:
+    """The transfer functions, better and better, and what modes left out may add to each of them in the band."""
+    if model.damping is None or model.damping.modes is not None or not model.damping.acts:
+        yield Transfer(model, load), [arb(0) for _ in model.probes]
+        return
+    modes, count = UndampedModes(model), _FIRST_MODES
+    while count <= _MOST_MODES:
+        transfer = ModalTransfer(modes, load, count)
+        yield transfer, transfer.left_out(last)
+        count *= 4
+    if not transfer.left_out(last)[0].is_finite():
+        raise CostError(f"--to: {count} modes lie below it, at most {_MOST_MODES} expected (a lower frequency helps)")

@@ -1,0 +1,207 @@
+"""The transfer functions of a model: its outputs under one unit of a load exp(i w tau), as balls.
+
+The network's amplitudes are exact (exact/modes/harmonic.py). With Rayleigh's damping a + b w_n^2 of mode n each mode
+answers a force by 1/(w_n^2 - w^2 + i w (a + b w_n^2)), which is that of the undamped network at another frequency v:
+
+    1/((1 + i b w) (w_n^2 - v^2)),    v^2 = (w^2 - i a w)/(1 + i b w)
+
+so their sum needs no modes. What a prescribed motion imposes is not damped, nor is a motion without strain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import factorial
+
+from flint import acb, arb, fmpq
+
+from wavesym.errors import WavesymError, did_you_mean
+from wavesym.exact.modes.frequencies import Spectrum
+from wavesym.exact.modes.harmonic import Amplitudes, HarmonicNetwork, Quantity
+from wavesym.exact.modes.shape import rigid
+from wavesym.mechanics.gauge import ground
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Network
+from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import rational
+
+_I = acb(0, 1)
+ORDERS = {"velocity": 1, "acceleration": 2}
+"""How often a displacement is differentiated in time for an output."""
+
+
+@dataclass(frozen=True)
+class HarmonicLoad:
+    """One unit of a load that is harmonic.
+
+    Attributes:
+        label: what it is called.
+        unit: its unit; empty without [units].
+        drives: the points it acts on, each with what acts when the load is a unit step, as coefficients of powers of
+            tau.
+    """
+
+    label: str
+    unit: str
+    drives: tuple[tuple[int, tuple[fmpq, ...]], ...]
+
+
+def harmonic_load(model: Model, sources: tuple[str, ...], wanted: str | int | None = None) -> HarmonicLoad:
+    """The load that is meant.
+
+    Args:
+        model: the chain.
+        sources: what its loads are steps of, in the order of the scene.
+        wanted: its number from 0 on, its node or its source; None where there is one.
+
+    Raises:
+        WavesymError: where there is no load, more than one and none wanted, or none of that name.
+    """
+    names = {source: source.partition(":")[0] if ":" in source else source for source in sources}
+    known = ", ".join(f"{number} ({name})" for number, name in enumerate(names.values()))
+    if not sources:
+        raise WavesymError("load: there is none; a frequency response needs a [[load]] that says where it acts")
+    if wanted is None and len(sources) > 1:
+        raise WavesymError(f"--load: there are {len(sources)} loads; name one of {known}")
+    found = [s for number, s in enumerate(sources) if wanted is None or str(wanted) in (str(number), s, names[s])]
+    if len(found) != 1:
+        hint = did_you_mean(str(wanted), names.values())
+        raise WavesymError(f"--load: {wanted} is no load of this scene; it has {known}{hint and '. '}{hint}")
+    (source,) = found
+    factor, unit = model.inputs.get(source, (fmpq(1), ""))
+    drives = tuple(
+        (number, tuple(fmpq(c) / factor for c in load.coefficients))
+        for number, point in enumerate(model.network.points)
+        for load in point.loads
+        if load.source == source
+    )
+    return HarmonicLoad(names[source], unit, drives)
+
+
+def drive(coefficients: tuple[fmpq, ...], rate: Quantity) -> Quantity:
+    """What a load exp(rate tau) does that as a unit step is a sum of powers of tau: by Laplace's transform."""
+    made: Quantity = acb(0)
+    for power, c in enumerate(coefficients):
+        if c != 0:
+            made = made + arb(c * factorial(power)) / rate**power
+    return made
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """The outputs of a model under one unit of a load, as functions of the frequency.
+
+    UnservedError, when it is called, for contacts that open, rings of parts and frequencies that modal damping cannot
+    tell apart.
+    """
+
+    model: Model
+    load: HarmonicLoad
+
+    def __call__(self, w: Quantity) -> list[Quantity]:
+        """The complex amplitudes of the outputs.
+
+        Args:
+            w: the frequency in rad per tau: a ball, or a power series of complex ones about one that is not 0.
+
+        Returns:
+            One for each output, in its unit per unit of the load; not finite where w may be a natural frequency.
+        """
+        rate = w * _I
+        total: list[Quantity] = [acb(0) for _ in self.model.probes]
+        for point, coefficients in self.load.drives:
+            acting = drive(coefficients, rate)
+            if motion := self.model.network.points[point].motion:
+                acting = acting / rate ** ORDERS[motion]
+            for k, (probe, moved) in enumerate(zip(self.model.probes, self._displaced(point, w), strict=True)):
+                total[k] = total[k] + acting * moved * rate ** ORDERS.get(probe.quantity, 0)
+        return total
+
+    def _displaced(self, point: int, w: Quantity) -> list[Quantity]:
+        """The outputs, not yet differentiated in time, under a unit force on a point, or its unit displacement."""
+        if self._rayleigh is None:
+            return self._undamped(point, w)
+        first, second, ratio = self._rayleigh
+        a, b = 2 * ratio * first * second / (first + second), 2 * ratio / (first + second)
+        lag = w * (_I * b) + 1
+        square = (w * w - w * (_I * a)) / lag
+        moved = self._undamped(point, square.sqrt())
+        if self.model.network.points[point].motion is None:
+            made = [each / lag for each in moved]
+            if self._rigid is None:
+                return made
+            # the motion without strain: as it is, in place of damped
+            shape, mass = self._rigid
+            share = shape(point) / mass
+            rigid_part = [share * self._of_shape(probe, shape) for probe in self.model.probes]
+            return [each + r / (square * lag) - r / (w * w) for each, r in zip(made, rigid_part, strict=True)]
+        imposed = self._undamped(point, arb(0))
+        return [u + (each - u) * (w * w) / (square * lag) for each, u in zip(moved, imposed, strict=True)]
+
+    def _undamped(self, point: int, w: Quantity) -> list[Quantity]:
+        amplitudes = self._harmonic.driven(point, w)
+        return [output_amplitude(self.model.network, probe, amplitudes) for probe in self.model.probes]
+
+    @cached_property
+    def _harmonic(self) -> HarmonicNetwork:
+        self.model.network.refuse_contacts()
+        return HarmonicNetwork(self.model.network)
+
+    @cached_property
+    def _rayleigh(self) -> tuple[arb, arb, fmpq] | None:
+        """The frequencies of the two modes, and the ratio of both."""
+        damping = self.model.damping
+        if damping is None or damping.modes is None or not damping.acts:
+            return None
+        found = (mode.frequency for mode in Spectrum(self.model.network).first(max(damping.modes) + 1))
+        strained = [w for w in found if w != 0]
+        first, second = (strained[number - 1] for number in damping.modes)
+        return first, second, damping.ratios[0]
+
+    @cached_property
+    def _rigid(self) -> tuple[Callable[[int], fmpq], fmpq] | None:
+        network = self.model.network
+        found = rigid(network)
+        if found is None:
+            return None
+        mass = sum((point.mass * q * q for point, q in zip(network.points, found, strict=True)), fmpq(0))
+        for bar in network.bars:
+            mass += bar.impedance * bar.delay * (found[bar.left] * bar.ratios[0]) ** 2
+        return found.__getitem__, mass
+
+    def _of_shape(self, probe: Probe, shape: Callable[[int], fmpq]) -> fmpq:
+        """What an output is of a motion without strain."""
+        if probe.quantity in ("strain", "force", "drift"):
+            return fmpq(0)
+        if probe.point is not None:
+            return probe.factor * shape(probe.point)
+        bar = self.model.network.bars[probe.rod - 1]
+        return probe.factor * shape(bar.left) * bar.ratios[0]
+
+
+def output_amplitude(network: Network, probe: Probe, amplitudes: Amplitudes) -> Quantity:
+    """What an output is of amplitudes, its factor included, but not differentiated in time."""
+    bar = probe.rod - 1
+    match probe.quantity:
+        case "strain":
+            moved = amplitudes.slope(bar, probe.place) / network.bars[bar].speed
+        case "force":
+            moved = amplitudes.slope(bar, probe.place) * network.bars[bar].impedance
+        case "drift":
+            moved = amplitudes.displacement(bar, fmpq(1)) - amplitudes.displacement(bar, fmpq(0))
+        case _:
+            moved = (
+                amplitudes.point(probe.point) if probe.point is not None else amplitudes.displacement(bar, probe.place)
+            )
+            if probe.quantity == "relative":
+                moved = moved - amplitudes.point(ground(network))
+    return moved * probe.factor
+
+
+def angular(model: Model, frequency: float) -> arb:
+    """w in rad per tau of a frequency as users give it, which stands for its shortest decimal, at the set precision."""
+    exact = arb(rational(Fraction(repr(frequency))))
+    return exact if model.clock is None else 2 * arb.pi() * exact * model.clock.seconds
