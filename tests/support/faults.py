@@ -15,7 +15,7 @@ BODIES = [
 BLOCKS = [
     ("now[i] = one - (real)(k == 0 ? 2 : 1) * now[i]", "now[i] = one - (real)(k == 0 ? 2.0000001 : 1) * now[i]"),
     ("half * ((k == 1 ? (num)(2 * f[i][0])", "half * ((k == 1 ? (num)(1.9999999 * f[i][0])"),
-    ("(joint, k), y, n, -1, now);", "(joint, k), y, n, k == 3 ? -1.0000001 : -1, now);"),
+    ("m->stride, y, n, -1, now);", "m->stride, y, n, k == 3 ? -1.0000001 : -1, now);"),
     (
         "ratio[port] * q[point_of[port]][k] - a[k]",
         "ratio[port] * q[point_of[port]][k] - (k == 1 ? 1.0000001 : 1) * a[k]",

@@ -4,7 +4,7 @@
 #ifndef num
 #include "one.c"
 #endif
-#include "../matrix.c"
+#include "../elimination.c"
 
 #ifndef STEPS
 #define STEPS
@@ -14,10 +14,6 @@ enum { RATIO = 0, SUM_FIRST = 1, SUM_LAST = 2, SLACK = 0, LOSS = 1, RATE = 2 };
 
 /* Bodies are stepped side by side: each step of a recurrence waits for the one before. */
 enum { ABREAST_BODIES = 2 };
-
-/* The matrices of a block for each degree, and two more: x_k = SOLVE r_k + DOWN y_(k+1) - DOWN x_(k-1), FIRST and LAST sum
- * to the state at both ends; START and END belong to x_0. */
-enum { SOLVE = 0, DOWN = 1, FIRST = 2, LAST = 3, START = 0, END = 1 };
 
 /* Where each track has what is sent into it on a window, and what arrives from it: the oldest that it has. */
 typedef struct {
@@ -42,43 +38,17 @@ static void OF(add)(num *y, const num *factor, const num *a, int degree)
     }
 }
 
-/* With x' = rates x + f on a panel, x and f series, 2 k x_k + G (x_(k-1) - x_(k+1)) = r_k, G = -half the length times
- * rates: eliminated from the highest k down, where x_0 counts twice. */
-static void OF(tabulate_block)(OF(march_tables) *m, const OF(laws) *law, int joint, int panel, int degree)
+/* Where the matrices of a block are. */
+static void OF(locate_block)(OF(march_tables) *m, int joint, int panel, OF(block_tables) *block)
 {
-    const int n = states_of(joint);
-    num g[NAME_WIDEST * NAME_WIDEST], d[NAME_WIDEST * NAME_WIDEST];
-    for (int i = 0; i < n * n; ++i) {
-        g[i] = -half_length[panel] * law->rates[at_rates[joint] + i];
-        for (int kind = SOLVE; kind <= LAST; ++kind) {
-            m->solver[panel][kind][square_at(joint, degree + 1) + (size_t)i] = ZERO;
-        }
-    }
-    for (int k = degree; k >= 0; --k) {
-        const size_t here = square_at(joint, k), above = square_at(joint, k + 1);
-        const num *const down = m->solver[panel][DOWN] + above;
-        for (int end = FIRST; end <= LAST; ++end) {
-            num *const now = m->solver[panel][end] + here;
-            OF(multiply)(m->solver[panel][end] + above, down, n, now);
-            for (int i = 0; i < n * n; ++i) {
-                const real one = i % (n + 1) > 0 ? (real)0 : end == FIRST && k % 2 ? (real)-1 : (real)1;
-                now[i] = one - (real)(k == 0 ? 2 : 1) * now[i];
-            }
-        }
-        if (k > 0) {
-            OF(multiply)(g, down, n, d);
-            for (int i = 0; i < n; ++i) {
-                d[i * n + i] += (real)(2 * k);
-            }
-            OF(invert)(d, n, m->solver[panel][SOLVE] + here);
-            OF(multiply)(m->solver[panel][SOLVE] + here, g, n, m->solver[panel][DOWN] + here);
-        }
-    }
-    for (int i = 0; i < n * n; ++i) {
-        d[i] = m->solver[panel][FIRST][square_at(joint, 0) + (size_t)i];
-        m->edge[panel][END][at_square[joint] + i] = m->solver[panel][LAST][square_at(joint, 0) + (size_t)i];
-    }
-    OF(invert)(d, n, m->edge[panel][START] + at_square[joint]);
+    block->n = states_of(joint);
+    block->stride = NAME_SQUARES;
+    block->solve = m->solver[panel][0] + at_square[joint];
+    block->down = m->solver[panel][1] + at_square[joint];
+    block->first = m->solver[panel][2] + at_square[joint];
+    block->last = m->solver[panel][3] + at_square[joint];
+    block->start = m->edge[panel][0] + at_square[joint];
+    block->end = m->edge[panel][1] + at_square[joint];
 }
 
 /* Tables of `count` bodies: with q' = -g q + g s on panels of some lengths, and x_k = g length / (4 k), the elimination of
@@ -134,7 +104,9 @@ static void OF(tabulate)(OF(march_tables) *all, const OF(laws) *law, int sets, i
         }
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
             for (int set = 0; set < sets && is_block(joint); ++set) {
-                OF(tabulate_block)(all + set, law + set, joint, panel, degree);
+                OF(block_tables) block;
+                OF(locate_block)(all + set, joint, panel, &block);
+                OF(tabulate_block)(&block, law[set].rates + at_rates[joint], half_length[panel], degree);
             }
         }
     }
@@ -378,53 +350,6 @@ static void OF(add_series)(const num *matrix, int rows, int columns, num (*serie
     }
 }
 
-/* How the states of a block move on a panel under f: the series x; `state` goes from its start to its end. */
-static void OF(step_block)(const OF(march_tables) *m, int joint, int panel, int degree, num (*f)[NAME_ROW], num *state,
-                           num (*x)[NAME_ROW])
-{
-    const int n = states_of(joint);
-    const real half = half_length[panel];
-    num y[NAME_WIDEST], r[NAME_WIDEST], now[NAME_WIDEST], at_first[NAME_WIDEST], at_last[NAME_WIDEST];
-    for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
-        y[i] = now[i] = at_last[i] = ZERO;
-        at_first[i] = i < n ? state[i] : ZERO;
-    }
-    for (int k = degree; k > 0; --k) {
-        const size_t here = square_at(joint, k);
-        for (int i = 0; i < n; ++i) {
-            r[i] = half * ((k == 1 ? (num)(2 * f[i][0]) : f[i][k - 1]) - f[i][k + 1]);
-            now[i] = ZERO;
-        }
-        OF(add_product)(m->solver[panel][SOLVE] + here, r, n, 1, now);
-        OF(add_product)(m->solver[panel][DOWN] + here, y, n, 1, now);
-        OF(add_product)(m->solver[panel][FIRST] + here, now, n, -1, at_first);
-        OF(add_product)(m->solver[panel][LAST] + here, now, n, 1, at_last);
-        for (int i = 0; i < n; ++i) {
-            y[i] = x[i][k] = now[i];
-        }
-    }
-    for (int i = 0; i < n; ++i) {
-        y[i] = ZERO;
-    }
-    OF(add_product)(m->edge[panel][START] + at_square[joint], at_first, n, 1, y);
-    OF(add_product)(m->edge[panel][END] + at_square[joint], y, n, 1, at_last);
-    for (int i = 0; i < n; ++i) {
-        x[i][0] = y[i];
-        x[i][degree + 1] = ZERO;
-        state[i] = at_last[i];
-        y[i] = 2 * y[i];
-    }
-    for (int k = 1; k <= degree; ++k) {
-        for (int i = 0; i < n; ++i) {
-            now[i] = x[i][k];
-        }
-        OF(add_product)(m->solver[panel][DOWN] + square_at(joint, k), y, n, -1, now);
-        for (int i = 0; i < n; ++i) {
-            y[i] = x[i][k] = now[i];
-        }
-    }
-}
-
 /* The truncation error of a block: the one term of x' = rates x + f that does not fit, as velocities. What a spring misses
  * of its length counts by the acceleration that it makes, for half a panel. */
 static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree, num (*f)[NAME_ROW],
@@ -449,7 +374,7 @@ static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree
 }
 
 /* Any joint that is no body. */
-static void OF(march_joint)(OF(march_state) *m, const OF(march_tables) *table, const OF(laws) *law, int joint, int panel,
+static void OF(march_joint)(OF(march_state) *m, OF(march_tables) *table, const OF(laws) *law, int joint, int panel,
                             const places *now, int degree, const OF(forcing) *by, num *size, num *missed)
 {
     num s[NAME_WIDEST][NAME_ROW], f[NAME_WIDEST][NAME_ROW], q[NAME_WIDEST][NAME_ROW];
@@ -464,7 +389,9 @@ static void OF(march_joint)(OF(march_state) *m, const OF(march_tables) *table, c
         for (int i = 0; i < n && forced; ++i) {
             OF(add)(f[i], &one, by->moving[panel][first + i], degree);
         }
-        OF(step_block)(table, joint, panel, degree, f, m->state[1] + first, x);
+        OF(block_tables) block;
+        OF(locate_block)(table, joint, panel, &block);
+        OF(solve_block)(&block, half_length[panel], degree, f, m->state[1] + first, x);
         OF(add_missed)(law, joint, panel, degree, f, x, missed);
         OF(add_series)(law->shown + at_shown[joint], points, n, x, degree, 1, q);
     }

@@ -8,6 +8,9 @@ enum { BLOCK = 16 };
 /* How many numbers of a wave follow its series: zeros. */
 enum { SPARE = NAME_ROW - NAME_DEGREE };
 
+/* Of series and of states of a block there is room for so many. */
+enum { ROW = NAME_ROW, MOST_STATES = NAME_WIDEST };
+
 /* A lane of a vector. */
 #if VECTOR
 #define AT(x, lane) ((x)[lane])
@@ -89,12 +92,6 @@ static int points_of(int joint)
 static int is_block(int joint)
 {
     return NAME_SQUARES > 0 && at_square[joint + 1] > at_square[joint];
-}
-
-/* Where those matrices begin, of those of a degree. */
-static size_t square_at(int joint, int k)
-{
-    return (size_t)k * NAME_SQUARES + (size_t)at_square[joint];
 }
 
 /* The time since a load changed, at the start of a panel. */

@@ -1,4 +1,5 @@
 /* tables.h: stands for what runtime.c.j2 writes above the text of joints.c, where that is read by itself. */
+#define TABLES
 #include <stddef.h>
 
 #ifdef SINGLE

@@ -139,7 +139,7 @@ class CRuntimeSelfTest:
 
 def files(scene: Description, program: Program) -> dict[str, str]:
     """NAME.h, NAME.c and NAME_selftest.c of a program."""
-    march = ("matrix.c", *(f"runtime/{name}.c" for name in ("march", "outputs", "build")))
+    march = ("elimination.c", *(f"runtime/{name}.c" for name in ("march", "outputs", "build")))
     texts = RuntimeTexts(
         kernel=kernels(scene, *(f"runtime/{name}.c" for name in ("series", "reach", "one")), *march, "runtime/model.c"),
         read=kernel("runtime/read.c", scene),

@@ -9,7 +9,7 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.program import Program, SteppedValues
 from wavesym.programs.stream.parameters import MADE
 from wavesym.rendering import render
-from wavesym.targets.c.kernel import kernel, kernels
+from wavesym.targets.c.kernel import kernel
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, multiplied, parameter_fields
 from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description, constants
@@ -90,7 +90,7 @@ def source(scene: Description, program: Program) -> str:
         terms=str(len(laws.functions["gain"])) if laws else "",
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",
-        elimination=kernels(scene, "matrix.c", "elimination.c") if laws else "",
+        elimination=kernel("elimination.c", scene) if laws else "",
         made=kernel("stream/made.c", scene) if laws else "",
     )
     return render("c/stream/stream.c.j2", context)
