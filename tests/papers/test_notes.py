@@ -12,7 +12,6 @@ from flint import fmpq
 from tests.papers.falsified import ENTRIES
 from wavesym.mechanics.node import Parameters
 from wavesym.papers.exact_tables import Exact, collision, drive, with_parameters
-from wavesym.papers.pielorz1979.forms import rates
 from wavesym.papers.pielorz1979.transcript import paper
 
 REFERENCE = re.compile(r"\(\d\.\d+\)(?:\.\w+)?|III\.\d+|text\.\w+(?:\.\w+)*|def\.\w|Table \d")
@@ -83,10 +82,10 @@ def test_what_notes_say_of_other_places_stands_there(id: str, said: str, places:
 
 def _compared(usual: Exact, special: Exact) -> set[int]:
     """How the highest powers differ from those of a chain in which nothing cancels."""
-    bodies = rates(usual)
+    bodies = usual.rates
     places = product("fg", range(1, usual.m + 1), range(1, 8), special.responses, bodies)
     return {
-        special.degree(letter, rod, number, rates(special)[body], source)
+        special.degree(letter, rod, number, special.rates[body], source)
         - usual.degree(letter, rod, number, bodies[body], source)
         for letter, rod, number, source, body in places
     }
@@ -106,7 +105,7 @@ def test_the_special_values_of_notes_make_powers_lower_and_none_higher(
     kappa, inertia = ({i: fmpq(value) for i, value in given.items()} if given else None for given in special)
     given = Parameters(kappa=kappa, inertia=inertia, velocity=usual.chain.parameters.velocity)
     changed = with_parameters(usual, given)
-    assert len(set(rates(changed).values())) == len(rates(changed))
+    assert len(set(changed.rates.values())) == len(changed.rates)
     differences = _compared(usual, changed)
     assert min(differences) < 0 == max(differences)
     assert all(said in f"{ENTRIES[id].slip.note if ENTRIES[id].slip else ''} {ENTRIES[id].note}" for id in ids)

@@ -13,11 +13,20 @@ from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.mechanics.chain import Chain
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.exact_tables import INTERVALS, Exact, building, collision, drive
-from wavesym.papers.pielorz1979.forms import FORMS, FormScope, form_cases, moved, rates, right_form, shown
+from wavesym.papers.pielorz1979.forms import (
+    ALPHA,
+    FORMS,
+    HALVES,
+    FormScope,
+    driven_form,
+    form_cases,
+    functions,
+    right_form,
+    shown,
+)
 from wavesym.papers.pielorz1979.listed import AT, Words
 from wavesym.papers.pielorz1979.meetings import most_meetings
-from wavesym.papers.pielorz1979.remarks import moments
-from wavesym.papers.pielorz1979.tabled import ALPHA, HALVES, functions
+from wavesym.papers.pielorz1979.tables import moments
 from wavesym.papers.pielorz1979.truth import EXAMPLES
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Reproduction, case
@@ -28,7 +37,7 @@ def lengths(words: Words) -> Iterator[Case]:
     """Where functions gain anything."""
     steps = {"even": (0, 2), "odd": (1, 2), "whole": (0, 1)}[words["numbers"]]
     for name in words["examples"].removeprefix("examples ").removeprefix("example ").split(" and "):
-        for exact in [moved(name, m).exact for m in (4, 6)[: 2 if name == "I" else 1]]:
+        for exact in [driven_form(name, m).exact for m in (4, 6)[: 2 if name == "I" else 1]]:
             gains = {
                 exact.interval * (number - 1)
                 for response in exact.responses.values()
@@ -81,7 +90,7 @@ def unlisted(words: Words) -> Iterator[Case]:
 
 def masses(words: Words) -> Iterator[Case]:
     """Whether a heavier body changes exponents."""
-    for example, exact in (("I", collision(6)), ("II", drive(2)), ("III", moved("III", 2).exact)):
+    for example, exact in (("I", collision(6)), ("II", drive(2)), ("III", driven_form("III", 2).exact)):
         p = exact.chain.parameters
         for body in sorted(p.inertia if example == "II" else p.kappa):
             kappa = {i: value / (2 if i == body else 1) for i, value in p.kappa.items()}
@@ -102,7 +111,7 @@ def _exponents(chain: Chain) -> frozenset[fmpq]:
 def series(words: Words) -> Iterator[Case]:
     """The time since an interval began and a load came."""
     for example, form in FORMS.items():
-        driven = moved(example, 4)
+        driven = driven_form(example, 4)
         for n in (0, 1, 2):
             scope = FormScope(right_form(example), driven, "f")
             time = driven.loads[{"II": "M2", "III": "a"}[example]][1].time if example != "I" else 0
@@ -131,7 +140,7 @@ def _counted(*, reflected_only: bool) -> Iterator[tuple[dict[str, object], int, 
     for example, sizes in (("I", (4, 6)), ("II", (1, 2, 3)), ("III", (2, 3))):
         for m in sizes:
             exact = EXAMPLES[example].tables(m)
-            for source, (body, rate) in product(exact.responses, rates(exact).items()):
+            for source, (body, rate) in product(exact.responses, exact.rates.items()):
                 node = body - (exact.interval == 1)
                 count = most_meetings(exact, source, node, reflected_only=reflected_only)
                 for (letter, rod), interval in product(functions(example, m), range(1, 7)):
@@ -145,7 +154,7 @@ def earlier(words: Words) -> Iterator[Case]:
     """A solution put together from the gains that its form gives it in intervals."""
     for example in FORMS:
         m = {"I": 4}.get(example, 2)
-        driven = moved(example, m)
+        driven = driven_form(example, m)
         step, number = driven.exact.interval, 4
         for letter, rod in functions(example, m):
             scope = FormScope(right_form(example), driven, letter)
@@ -176,7 +185,7 @@ def _stays(example: str, exact: Exact, said: Mapping[int, str]) -> Iterator[Case
     """How long the power at a body's rate stays, from its first change to its last."""
     for (body, step), (letter, rod) in product(said.items(), functions(example, exact.m)):
         numbers = range(1, INTERVALS[example] + 1)
-        degrees = (exact.degree(letter, rod, number, rates(exact)[body]) for number in numbers)
+        degrees = (exact.degree(letter, rod, number, exact.rates[body]) for number in numbers)
         runs = [len(list(run)) for _, run in groupby(degree for degree in degrees if degree >= 0)]
         if lengths := {exact.interval * run for run in runs[1:-1]}:
             at = {"m": exact.m, "function": f"{letter}_{rod}", "body": body}
@@ -199,9 +208,9 @@ def slopes(words: Words) -> Iterator[Case]:
     alpha = {"first": 1, "second": 2}[words["group"]]
     slopes = {"rise": 1, "are equal": 0, "fall": -1}
     for m in range(1, 6):
-        exact, known = drive(m), rates(drive(m))
+        exact, known = drive(m), drive(m).rates
         for half, (letter, i) in ((h, f) for h in HALVES for f in functions("II", m)):
-            scope = FormScope(right_form("II"), moved("II", m), letter)
+            scope = FormScope(right_form("II"), driven_form("II", m), letter)
             for r, s in moments(scope, half, i, alpha):
                 with scope.binding({"n": 0, "half": half, "i": i, "r": r, ALPHA: alpha}):
                     ends = [0, *(scope.whole(read_formula(f"L_{beta}")) for beta in (1, 2, 3))]
@@ -220,7 +229,7 @@ def by_4_2(words: Words) -> Iterator[Case]:
     order = {"derivatives": 1, "integrals of the derivatives": 0}[words["orders"]]
     strained = words["quantities"] == "velocities and strains"
     for example, m in (("I", 4), ("II", 2), ("III", 3)):
-        driven = moved(example, m)
+        driven = driven_form(example, m)
         for x, tau in product(range(m + 1), (fmpq(k) + fmpq(3, 7) for k in range(5))):
             node, at = driven.exact.chain.nodes[x], {"example": example, "m": m, "x": x, "tau": tau}
             found: list[Any] = []

@@ -1,4 +1,4 @@
-"""(4.9), (4.10) and (4.12): the forms of the solutions, run as recurrences and compared with the motion.
+"""(4.9), (4.10) and (4.12): the forms of the solutions, run as recurrences with the limits of Tables 2 to 4.
 
 A form says how a function goes on in an interval: F'_{i,n+1} from F'_{i,n}, from F'_{i,0} = 0 on. Its coefficients are
 those of the exact tables, its limits the cells of Tables 2 to 4, corrected where they need it; all else is as it reads.
@@ -8,46 +8,133 @@ A coefficient beyond the highest power does not exist, so that a limit may be ne
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from copy import copy
 from dataclasses import dataclass
 from functools import cache
-from itertools import tee
 from typing import Any
 
 from flint import fmpq
 
-from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, items, places, sides
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
 from wavesym.papers.exact_tables import Exact, building, collision, drive
-from wavesym.papers.pielorz1979 import tabled
 from wavesym.papers.pielorz1979.scenes import example
-from wavesym.papers.pielorz1979.tabled import Tried
-from wavesym.papers.pielorz1979.transcript import settled
+from wavesym.papers.pielorz1979.transcript import entries, ids, settled
 from wavesym.papers.pielorz1979.truth import DrivenChain, loads
-from wavesym.papers.record import Case, Reading, Reproduction, Test, by_size, case
-from wavesym.papers.tree import Call, Progression, Symbol, Tree, latex
+from wavesym.papers.record import Case, Reading, Reproduction, by_size, case
+from wavesym.papers.tree import Blank, Call, Minus, Number, Progression, Symbol, Tree, latex
 
 FORMS = {"I": "(4.9)", "II": "(4.10)", "III": "(4.12)"}
 """The form of each example's solutions."""
+TABLE = {"I": "T2", "II": "T3", "III": "T4"}
+EXACT: Mapping[str, Callable[[int], Exact]] = {"I": collision, "II": drive, "III": building}
 INTERVALS = {"I": 4, "II": 2, "III": 4}
-"""The numbers n = 0, 1, ... that are tried; for each, example II has two intervals."""
+"""The numbers n = 0, 1, ... that forms are tried with; for each, example II has two intervals."""
 SIZES = {"I": (4, 6, 8), "II": (1, 2, 3), "III": (2, 3, 4)}
-TABLES: Mapping[str, Callable[[int], Exact]] = {"I": collision, "II": drive, "III": building}
 WITHIN = (fmpq(0), fmpq(5, 7))
 """Where formulas are compared, as parts of an interval: at its start and inside."""
+HALVES = ("even", "odd")
+"""The halves of Table 3, in the order of their intervals."""
+ALPHA = r"\alpha"
+
+Changed = Mapping[str, Reading]
+"""Records that are taken otherwise than they are right, by id."""
+Function = tuple[str, int]
+"""f or g, and the number of its rod."""
+Indices = tuple[int, ...]
 
 
 @cache
-def moved(name: str, m: int) -> DrivenChain:
+def driven_form(name: str, m: int) -> DrivenChain:
     """An example under loads of several pieces; the building has equal floors, as (4.12) says."""
-    exact = TABLES[name](m)
+    exact = EXACT[name](m)
     return DrivenChain(exact, loads(exact))
 
 
-def rates(exact: Exact) -> dict[int, fmpq]:
-    """The rates of the bodies, by the number that kappa or gamma has for them: half of what both rods do to a body."""
-    first = 1 if exact.interval == 1 else 0
-    return {x + first: fmpq(node.radiation) for x, node in enumerate(exact.chain.nodes) if node.inertia}
+# the tables as they should be
+
+
+def reading_of(id: str, changed: Changed) -> Reading:
+    """A record as it is changed, or as it is right; KeyError, MeaninglessError."""
+    return changed[id] if id in changed else settled(id)
+
+
+def rows(group: str, m: int, changed: Changed) -> dict[str, list[Function]]:
+    """The functions that rows or columns of a table are for, by the ids of their heads."""
+    found: dict[str, list[Function]] = {}
+    for id in ids("function", group):
+        head, block, scope = reading_of(id, changed), id.rpartition(".")[0], Scope({"m": m})
+        function = head.formula
+        if not isinstance(function, Symbol) or len(function.below) != 1:
+            raise MeaninglessError(f"{latex(function)} is no function")
+        sizes = (reading_of(block, changed).formula,) if block in entries() else ()
+        found[id] = []
+        for place in places((*sizes, *head.ranges), scope):
+            with scope.binding(place):
+                found[id].append((function.name, *scope.indices(function)))  # type: ignore[arg-type]
+    return found
+
+
+@cache
+def right_rows(group: str, m: int) -> dict[str, list[Function]]:
+    """The same as they are right."""
+    return rows(group, m, {})
+
+
+@cache
+def functions(name: str, m: int) -> dict[Function, str]:
+    """The functions f, g of rods that the table of an example is about, each with the id of its row or column."""
+    group = f"{TABLE[name]}.{'even.' if name == 'II' else ''}"
+    return {function: id for id, row in right_rows(group, m).items() for function in row}
+
+
+_WITHOUT_BRACES = str.maketrans("", "", "{}")
+_DEFINED: Mapping[tuple[str, Indices], str] = {
+    ("L", (0,)): "(4.10).L_0",
+    ("r", (0,)): "(4.11).r_0",
+    ("r", (1,)): "(4.11).r_1",
+}
+
+
+def _cell(name: str, m: int, letter: str, symbol: str, indices: Indices, bound: Mapping[str, Any]) -> str:
+    """The id of the cell that a letter of a form is, for a function of some rod."""
+    if name == "II":
+        below = "_".join([symbol, *map(str, indices)])
+        half = bound.get("half")
+        return f"T3.{half}.{below}" if below in ("d", "w") else f"T3.{half}.{letter}.alpha{bound.get(ALPHA)}.{below}"
+    row = functions(name, m).get((letter, bound.get("i", 0)))
+    lasts = {1: "1", m - 1: "m-1"} if name == "I" else {1: "1", m: "2" if m == 2 else "m"}
+    if symbol == "K" and len(indices) == 1:
+        return f"{row}.K_{lasts.get(indices[0])}"
+    first = "j" if symbol == "K" else indices[0] if indices else ""
+    return f"{row}.{symbol}_{','.join(map(str, (first, *indices[1:])))}"
+
+
+def _limit(id: str, scope: Scope, changed: Changed) -> Tree:
+    """A cell where its ranges hold; where not, no power. A dash is an empty range."""
+    if id in _DEFINED.values():
+        left, right = sides(reading_of(id, changed).formula)
+        if latex(left).translate(_WITHOUT_BRACES) != id.rpartition(".")[2]:
+            raise KeyError(id)
+        return right
+    cell, (row, _, name) = reading_of(id, changed), id.rpartition(".")
+    formula: Tree = cell.formula
+    names = [f"{one}{name[-1]}" for one in ("j_0,", "j_", "K_j,")] if name.startswith(("j_", "K_j")) else [name]
+    if len({isinstance(reading_of(f"{row}.{one}", changed).formula, Blank) for one in names}) > 1:
+        raise MeaninglessError("a part is given whole or not at all")
+    if not all(holds(range_, scope) for range_ in cell.ranges if isinstance(range_, Progression)):
+        if ".K_" not in id:
+            raise MeaninglessError(f"{id} is not given for n = {scope.bound.get('n')}")
+        return Minus(Number("1"))
+    if isinstance(formula, Blank):
+        return Number("1" if ".j_0," in id else "0")
+    return formula
+
+
+@cache
+def _right_limit(id: str, m: int, i: int, n: int) -> Tree:
+    return _limit(id, Scope({"m": m, "i": i, "n": n}), {})
+
+
+# forms
 
 
 @dataclass(frozen=True)
@@ -77,19 +164,19 @@ def right_form(name: str) -> Form:
 class FormScope(Scope):
     """What the letters of a form mean for the functions f or g of a chain under loads.
 
-    `tried` are cells and definitions that are not taken as they are right.
+    `changed` are cells and definitions that are not taken as they are right.
     """
 
     def __init__(
-        self, form: Form, driven: DrivenChain, letter: str, tried: Tried | None = None, most_n: int | None = None
+        self, form: Form, driven: DrivenChain, letter: str, changed: Changed | None = None, most_n: int | None = None
     ) -> None:
         super().__init__({"m": driven.exact.m})
-        self._form, self._driven, self._letter, self._tried = form, driven, letter, tried or {}
+        self._form, self._driven, self._letter, self._changed = form, driven, letter, changed or {}
         self._most_n = INTERVALS[form.name] if most_n is None else most_n
-        self._places: dict[int, list[tuple[tuple[int, ...], Tree, Tree, dict[str, Any]]]] = {}
+        self._stated: dict[int, list[tuple[Indices, Tree, Tree, dict[str, Any]]]] = {}
         self._totals: dict[tuple[int, int, int, int], Any] = {}
-        self._limits: dict[tuple[Any, ...], tabled.Limit] = {}
-        self._rates = rates(driven.exact)
+        self._limits: dict[tuple[Any, ...], Tree] = {}
+        self._rates = driven.exact.rates
 
     def total(self, rod: int, number: int, z: fmpq) -> Any:
         """F' of a rod at z as the form of interval 1, 2, ... has it; MeaninglessError."""
@@ -102,11 +189,11 @@ class FormScope(Scope):
         return self._totals[key]
 
     def _total(self, rod: int, number: int, z: fmpq) -> Any:
-        if rod not in self._places:
-            self._places[rod] = list(self._given(rod))
+        if rod not in self._stated:
+            self._stated[rod] = list(self._statements(rod))
         found = []
-        for given, argument, right, place in self._places[rod]:
-            if given == (rod, number):
+        for indices, argument, right, place in self._stated[rod]:
+            if indices == (rod, number):
                 with self.binding({**place, "z": z}):
                     if self.value(argument) == z:
                         found.append((right, self.bound))
@@ -116,9 +203,9 @@ class FormScope(Scope):
         with self.binding(bound):
             return self.value(right)
 
-    def _given(self, rod: int) -> Iterator[tuple[tuple[int, ...], Tree, Tree, dict[str, Any]]]:
-        """What the form gives for a rod: the indices of an F', its argument, what it is, and at which n."""
-        halves = tabled.HALVES if self._form.name == "II" else (None,)
+    def _statements(self, rod: int) -> Iterator[tuple[Indices, Tree, Tree, dict[str, Any]]]:
+        """What the form says of a rod: the indices of an F', its argument, what it is, and at which n."""
+        halves = HALVES if self._form.name == "II" else (None,)
         numbers = places([self._form.numbers], self, self._most_n)
         steps = [(self._form.step, {**place, "half": half}) for place in numbers for half in halves]
         for equation, place in ((self._form.start, self.bound), *steps):
@@ -133,38 +220,42 @@ class FormScope(Scope):
 
     def symbol(self, symbol: Symbol) -> Any:
         """Coefficients, loads, rates, and the cells of the tables."""
-        name, indices = symbol.name, self.indices(symbol)
+        name, indices, is_drive = symbol.name, self.indices(symbol), self._form.name == "II"
         if name == "F" and symbol.above:
             return self.coefficient(indices, self.upper(symbol))
         if symbol.accent == r"\bar" and name == "M" and len(indices) == 2:
             return self._driven.piece(f"M{indices[0]}", indices[1]).weight
         if symbol.accent or symbol.above or symbol.primes:
             return super().symbol(symbol)
-        if name == r"\kappa" and len(indices) == 1 and self._form.name != "II":
-            return known(self._driven.exact.chain.parameters.kappa, indices[0], r"\kappa")
-        if name == r"\gamma" and len(indices) == 1 and self._form.name == "II":
-            return known(self._rates, indices[0], r"\gamma")
+        if len(indices) == 1 and name == (r"\gamma" if is_drive else r"\kappa"):
+            return known(self._rates if is_drive else self._driven.exact.chain.parameters.kappa, indices[0], name)
         if name == r"\tau" and indices:
             source, number = (f"M{indices[0]}", indices[1]) if len(indices) == 2 else ("a", indices[0])
             return self._driven.piece(source, number).time
         if name == "m" and len(indices) == 1:
-            return self.last(f"M{indices[0]}" if self._form.name == "II" else "a" if indices == (1,) else "")
-        key = name, indices, *map(self.bound.get, ("n", "half", "i", tabled.ALPHA))
+            return self.last(f"M{indices[0]}" if is_drive else "a" if indices == (1,) else "")
+        return self.value(self._limit_of(name, indices))
+
+    def _limit_of(self, name: str, indices: Indices) -> Tree:
+        """The right side of a definition, or a cell, that a letter is at this place; MeaninglessError."""
+        bound, m = self.bound, self._driven.exact.m
+        key = name, indices, *map(bound.get, ("n", "half", "i", ALPHA))
         if key not in self._limits:
-            self._limits[key] = tabled.limit(self._form.name, self._letter, name, indices, self, self._tried)
-        limit = self._limits[key]
-        if name == "w":  # depends on loads
-            return self.value(limit.tree)
-        place = tuple(map(self.bound.get, tabled.LETTERS))
-        if place not in limit.known:
-            limit.known[place] = self.value(limit.tree)
-        return limit.known[place]
+            id = _DEFINED.get((name, indices)) or _cell(self._form.name, m, self._letter, name, indices, bound)
+            try:
+                if self._changed:
+                    self._limits[key] = _limit(id, self, self._changed)
+                else:
+                    self._limits[key] = _right_limit(id, m, bound.get("i", 0), bound.get("n", 0))
+            except KeyError:
+                raise MeaninglessError(f"{latex(Symbol(name))}_{indices} is not defined") from None
+        return self._limits[key]
 
     def last(self, source: str) -> int:
         """m_s and m_1: the number of the last piece of a load."""
         return len(known(self._driven.loads, source, "the load")) - 1
 
-    def coefficient(self, lower: tuple[int, ...], upper: tuple[int, ...]) -> Any:
+    def coefficient(self, lower: Indices, upper: Indices) -> Any:
         """The coefficient with these indices; MeaninglessError where there is none."""
         increment = self._driven.gain(self._letter, *self._where(upper))
         if len(lower) < 2:  # of the family with rate 0, where 0 is as good as none
@@ -177,7 +268,7 @@ class FormScope(Scope):
             raise MeaninglessError(f"there is no coefficient of power {power} at the rate of body {body}")
         return powers[power]
 
-    def _where(self, upper: tuple[int, ...]) -> tuple[int, int, str, int | None]:
+    def _where(self, upper: Indices) -> tuple[int, int, str, int | None]:
         """Rod, interval, source and piece by upper indices."""
         match self._form.name, upper:
             case "I", (rod, interval):
@@ -211,27 +302,7 @@ def only(letters: str, ranges: Sequence[Tree]) -> Progression:
     raise MeaninglessError(f"the range of {letters} is not given")
 
 
-def form(entry: PaperEntry) -> Test:
-    """A form whole, for all functions of its table."""
-    name = entry.about["example"]
-
-    def cases(reading: Reading) -> Iterator[Case]:
-        yield from copy(kept_cases(Form.of(name, reading)))
-
-    return Test(
-        "the motion, exact, under loads with several delayed pieces; "
-        f"m = {', '.join(map(str, SIZES[name]))}; coefficients of the exact tables, limits of the corrected tables",
-        cases,
-    )
-
-
-@cache
-def kept_cases(form: Form) -> Iterator[Case]:
-    """The cases of a form; what copies of this iterator reach is kept, as some records differ only as printed."""
-    return tee(form_cases(form), 1)[0]
-
-
-def form_cases(form: Form, tried: Tried | None = None, scope: type[FormScope] = FormScope) -> Iterator[Case]:
+def form_cases(form: Form, changed: Changed | None = None, scope: type[FormScope] = FormScope) -> Iterator[Case]:
     """All functions of the form's table at the starts of the first intervals and inside, then in the last interval.
 
     A value there has the increments of all intervals in it, and exponentials of different exponents are independent.
@@ -239,12 +310,18 @@ def form_cases(form: Form, tried: Tried | None = None, scope: type[FormScope] = 
     scopes: dict[tuple[int, str], FormScope] = {}
     most = INTERVALS[form.name]
     for m, n in by_size((m, n) for m in SIZES[form.name] for n in (0, 1, most)):
-        driven = moved(form.name, m)
-        for letter, rod in tabled.functions(form.name, m):
-            made = scopes.setdefault((m, letter), scope(form, driven, letter, tried))
+        driven = driven_form(form.name, m)
+        for letter, rod in functions(form.name, m):
+            own = scopes.setdefault((m, letter), scope(form, driven, letter, changed))
             for number in numbers(form.name, n)[-1 if n == most else 0 :]:
                 for part in WITHIN if n < most else WITHIN[1:]:
-                    yield compared(made, driven, (letter, rod), number, driven.exact.interval * (number - 1 + part))
+                    yield compared(own, driven, (letter, rod), number, driven.exact.interval * (number - 1 + part))
+
+
+@cache
+def right_form_cases(name: str) -> tuple[Case, ...]:
+    """Those of a form as it is right."""
+    return tuple(form_cases(right_form(name)))
 
 
 def numbers(name: str, n: int) -> tuple[int, ...]:
@@ -252,7 +329,7 @@ def numbers(name: str, n: int) -> tuple[int, ...]:
     return (2 * n + 1, 2 * n + 2) if name == "II" else (n + 1,)
 
 
-def compared(scope: FormScope, driven: DrivenChain, function: tuple[str, int], number: int, z: fmpq) -> Case:
+def compared(scope: FormScope, driven: DrivenChain, function: Function, number: int, z: fmpq) -> Case:
     """A function at z, by the form of an interval and by the motion."""
     letter, rod = function
     true = driven.wave(letter, rod, z)
@@ -260,14 +337,9 @@ def compared(scope: FormScope, driven: DrivenChain, function: tuple[str, int], n
     return case(at, lambda: scope.total(rod, number, z), true, true != 0, shown(driven.exact, function, number))
 
 
-def shown(exact: Exact, function: tuple[str, int], number: int) -> Callable[[], Reproduction]:
+def shown(exact: Exact, function: Function, number: int) -> Callable[[], Reproduction]:
     """The scene of a chain under its loads, and where its table has what a function gains in an interval."""
     letter, rod = function
-    return lambda: example(
-        exact,
-        loads(exact),
-        exact.interval * number + exact.m,
-        {"velocity": [f"{rod - 1}+" if letter == "f" else f"{rod}-"]},
-        "wavesym tables SCENE",
-        f"{letter} of rod {rod}, interval {number}: its rates and coefficients",
-    )()
+    outputs = {"velocity": [f"{rod - 1}+" if letter == "f" else f"{rod}-"]}
+    look = f"{letter} of rod {rod}, interval {number}: its rates and coefficients"
+    return example(exact, loads(exact), exact.interval * number + exact.m, outputs, "wavesym tables SCENE", look)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from flint import fmpq
 
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, places, sides
-from wavesym.papers.pielorz1979.forms import known, moved
+from wavesym.papers.pielorz1979.forms import driven_form, known
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.record import Reading, Reproduction
 from wavesym.papers.tree import Symbol, Tree, latex, symbols
@@ -52,7 +52,7 @@ class TrueCoefficients:
     """The coefficients of (4.12) for a building of m - 1 equal floors under a load, by the exact tables."""
 
     def __init__(self, m: int) -> None:
-        self.driven, self.m = moved("III", m), m
+        self.driven, self.m = driven_form("III", m), m
         self.exact, self.loads = self.driven.exact, self.driven.loads
         self.kappa = {i: fmpq(kappa) for i, kappa in self.exact.chain.parameters.kappa.items()}
         self._powers: dict[Key, list[fmpq]] = {}

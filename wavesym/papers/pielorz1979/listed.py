@@ -12,10 +12,18 @@ from wavesym.derivation.table import Function, Rules
 from wavesym.mechanics.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.exact_tables import building, collision, drive, with_parameters
-from wavesym.papers.pielorz1979.cells import Asked, Counted, Indices, counted
-from wavesym.papers.pielorz1979.forms import INTERVALS, SIZES, FormScope, moved, numbers, rates, right_form
+from wavesym.papers.pielorz1979.forms import (
+    INTERVALS,
+    SIZES,
+    FormScope,
+    Indices,
+    driven_form,
+    functions,
+    numbers,
+    right_form,
+)
+from wavesym.papers.pielorz1979.powers import HighestPowers, RequestScope, highest_powers
 from wavesym.papers.pielorz1979.rates import chains_of_rates
-from wavesym.papers.pielorz1979.tabled import functions
 from wavesym.papers.pielorz1979.truth import DrivenChain
 from wavesym.papers.reader import read_formula
 from wavesym.papers.record import Case, case
@@ -62,9 +70,9 @@ def table(name: str) -> Callable[[Words], Iterator[Case]]:
                 if not 1 <= rod <= exact.m:
                     yield Case({**at, "function": f"{letter}_{rod}", "claim": "there is such a rod"}, True, False)
                     continue
-                scope = Asked(name, chain.driven, letter)
+                scope = RequestScope(name, chain.driven, letter)
                 for number in range(1, numbers(name, INTERVALS[name])[-1] + 1):
-                    yield from chain.cases(scope, letter, rod, number, {**at, "interval": number})
+                    yield from chain.cases(scope, (letter, rod), number, {**at, "interval": number})
         yield from _of_rates(name, words["hypothesis"])
         if "powers" in words:
             letters = {latex(tree) for tree in symbols(right_form("I").step) if tree.name == "K"}
@@ -76,24 +84,24 @@ def table(name: str) -> Callable[[Words], Iterator[Case]]:
 def _of_rates(name: str, hypothesis: str) -> Iterator[Case]:
     """Whether no power is higher than in the table just where the hypothesis holds."""
     for exact, true in chains_of_rates({"I": "T2", "II": "T3", "III": "T4"}[name]):
-        kappa, gamma = exact.chain.parameters.kappa, rates(exact)
+        kappa, gamma = exact.chain.parameters.kappa, exact.rates
         said = "rates" not in hypothesis or len(set(gamma.values())) == len(gamma)
         said = said and ("2" not in hypothesis or 2 * kappa[1] != kappa[exact.m])
         at = {"m": exact.m, "kappa": dict(kappa), "rates": tuple(gamma.values())}
         yield Case({**at, "claim": "no power is higher than in the table"}, said, true)
 
 
-def _chains(name: str, hypothesis: str) -> Iterator[Counted]:
+def _chains(name: str, hypothesis: str) -> Iterator[HighestPowers]:
     """Those for which a hypothesis holds."""
-    yield from (counted(name, m) for m in SIZES[name][: 2 if name == "II" else 3])
+    yield from (highest_powers(name, m) for m in SIZES[name][: 2 if name == "II" else 3])
     if "different" not in hypothesis:
         yield _like(name)
     if name == "I" and "m is at least 4" not in hypothesis:
-        yield counted("I", 2)
+        yield highest_powers("I", 2)
 
 
 @cache
-def _like(name: str) -> Counted:
+def _like(name: str) -> HighestPowers:
     """A chain in which rates are equal."""
     one = fmpq(1)
     exact, parameters = {
@@ -101,7 +109,7 @@ def _like(name: str) -> Counted:
         "II": (drive, Parameters(kappa=dict.fromkeys((1, 2), one), inertia=dict.fromkeys((1, 2, 3), one))),
         "III": (building, Parameters(kappa={0: fmpq(2, 7), 1: fmpq(3, 5), 2: fmpq(6, 5)})),
     }[name]
-    return Counted(name, with_parameters(exact(4 if name == "I" else 2), parameters))
+    return HighestPowers(name, with_parameters(exact(4 if name == "I" else 2), parameters))
 
 
 def index_roles(name: str) -> Callable[[Words], Iterator[Case]]:
@@ -109,10 +117,10 @@ def index_roles(name: str) -> Callable[[Words], Iterator[Case]]:
 
     def cases(words: Words) -> Iterator[Case]:
         m = {"I": 6, "II": 3, "III": 3}[name]
-        driven = moved(name, m)
+        driven = driven_form(name, m)
         for letter, rod in functions(name, m):
-            scope, meant = Asked(name, driven, letter), FormScope(right_form(name), driven, letter)
-            for lower, upper in (pair for number in range(1, 6) for pair in sorted(set(scope.asked(rod, number)))):
+            scope, meant = RequestScope(name, driven, letter), FormScope(right_form(name), driven, letter)
+            for lower, upper in (pair for number in range(1, 6) for pair in sorted(set(scope.requests(rod, number)))):
                 if len(lower) == 2:
                     at = {"m": m, "function": f"{letter}_{rod}", "coefficient": f"F_{lower}^{upper}"}
                     true = _roles(name, driven, lower, upper)

@@ -6,38 +6,29 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import WHOLE, PaperEntry, problems
-from wavesym.papers.pielorz1979 import cells, coefficients, forms, heads, prose, remarks, statements
+from wavesym.papers.pielorz1979 import coefficients, prose, statements
 from wavesym.papers.pielorz1979.equations import GROUPS, equation, solution
 from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
+from wavesym.papers.pielorz1979.tables import TESTS
 from wavesym.papers.pielorz1979.transcript import paper as paper
 from wavesym.papers.record import Adapter, Record, Test, judge
 
 
 def _cell(entry: PaperEntry) -> Test:
     """A cell of a table; those of Table 1 are equations."""
-    return equation(entry) if entry.id.startswith("T1.") else cells.cell(entry)
+    return equation(entry) if entry.id.startswith("T1.") else TESTS["cell"](entry)
 
 
 ADAPTERS: Mapping[str, Adapter] = {
     **dict.fromkeys(GROUPS, equation),
+    **TESTS,
     "bodies": statements.statement,
     "caption": caption_of_figure,
     "cell": _cell,
-    "coefficients": remarks.coefficients,
     "contact": end_of_contact,
-    "factor": remarks.factor,
     "figure": said_of_figure,
-    "form": forms.form,
-    "form constant": cells.definition,
-    "function": heads.function,
-    "group": remarks.group,
-    "heaviside": remarks.heaviside,
-    "interval": heads.interval,
     "line": coefficients.coefficient,
     "makeup": statements.statement,
-    "power": remarks.power,
-    "range": heads.interval_or_size,
-    "rest": remarks.rest,
     "sentence": prose.solution,
     "sizes": coefficients.sizes,
     "solution": solution,

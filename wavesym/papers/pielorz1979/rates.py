@@ -16,8 +16,8 @@ from flint import fmpq
 
 from wavesym.mechanics.node import Parameters
 from wavesym.papers.exact_tables import Exact, collision, with_parameters
-from wavesym.papers.pielorz1979.cells import EXAMPLE
-from wavesym.papers.pielorz1979.forms import TABLES, rates
+from wavesym.papers.pielorz1979.forms import EXACT
+from wavesym.papers.pielorz1979.tables import EXAMPLE
 
 _ONE, _A, _B, _C = fmpq(1), fmpq(2, 3), fmpq(3, 5), fmpq(5, 7)
 _COLLISIONS = (
@@ -72,10 +72,10 @@ def chains_of_rates(table: str) -> tuple[tuple[Exact, bool], ...]:
     """
     found = []
     for m, parameters in _variants(table):
-        usual = TABLES[EXAMPLE[table]](m)
+        usual = EXACT[EXAMPLE[table]](m)
         exact = with_parameters(usual, parameters)
         bodies: dict[fmpq, set[fmpq]] = {}
-        for (_, rate), (_, other) in zip(rates(exact).items(), rates(usual).items(), strict=True):
+        for (_, rate), (_, other) in zip(exact.rates.items(), usual.rates.items(), strict=True):
             bodies.setdefault(rate, set()).add(other)
         functions = product("fg", range(1, m + 1), range(1, INTERVALS + 1))
         same = all(
