@@ -121,6 +121,12 @@ def test_fast_math_is_refused_unless_it_is_asked_for(kernel):
     assert complaint(kernel, C, "-ffast-math", "-DNAME_ALLOW_FAST_MATH") == ""
 
 
+def test_no_function_has_a_name_that_a_compiler_knows():
+    """From version 18 on clang warns of calls of these under -ffast-math, whoever declared them."""
+    for file in C.rglob("*.c"):
+        assert not re.search(r"\b(infinity|isinf|isnan|isfinite|isunordered)\(", file.read_text()), file.name
+
+
 @pytest.mark.skipif(platform.machine() != "x86_64" or not at_hand(("gcc",)), reason="no gcc for x86-64 here")
 @pytest.mark.parametrize("flag", ["-funsafe-math-optimizations", "-freciprocal-math", "-mfpmath=387"])
 def test_arithmetic_that_is_not_that_of_the_bounds_is_refused(flag, monkeypatch):

@@ -140,7 +140,7 @@ def test_a_mistake_is_seen(change, case, tmp_path):
     assert missed(made, scene_with(scene, given)) > 10 * made.estimate
 
 
-SANITIZED = ("-O0", "-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all")
+SANITIZED = ("-O0", "-fsanitize=undefined,float-cast-overflow", "-fsanitize-undefined-trap-on-error")
 
 
 def test_a_bad_number_is_refused(tmp_path):

@@ -62,7 +62,7 @@ static real root(real x)
 {
     real y = 1;
     if (!(x > 0) || !finite_number(x)) {
-        return x > 0 ? infinity() : 0;
+        return x > 0 ? positive_infinity() : 0;
     }
     while (y < x / y) {
         y *= 2;
@@ -197,7 +197,7 @@ static void start_errors(march_state *m, const laws *law, errors *w)
                                              law->passed[at_passed[joint] + point_of[port] * points_of(joint) + j]);
             }
             w->all += w->passes[port] * w->beyond[port];
-            w->thins[port] = law->impedance[port] > 0 ? w->passes[port] / law->impedance[port] : infinity();
+            w->thins[port] = law->impedance[port] > 0 ? w->passes[port] / law->impedance[port] : positive_infinity();
             w->moves[port] = 0;
             for (int i = 0; i < n; ++i) {
                 const real shown = law->shown[at_shown[joint] + point_of[port] * n + i];
@@ -384,7 +384,7 @@ static void add_window(const progress *b, errors *w)
             }
             const real all = w->thins[port] * w->instant;
             error = all < error ? all : error;
-            w->energy = finite_number(error) ? w->energy : infinity();
+            w->energy = finite_number(error) ? w->energy : positive_infinity();
             w->wave[now.sent[send[port]]] = larger(w->wave[slot(send[port], window, 1)], error);
         }
     }
@@ -507,7 +507,7 @@ int name_error_bound_with(
         /* a hundredth for what is of second order in a rounding, and for the roundings of this here */
         const real error = output_error(&law, &w, summed, output, now.degree) * (real)1.01;
         const real size = largest_found(m, model, &w, output);
-        const real known = error < size && finite_number(w.energy) ? error / (size - error) * (1 + 4 * unit) : infinity();
+        const real known = error < size && finite_number(w.energy) ? error / (size - error) * (1 + 4 * unit) : positive_infinity();
         bound[output] = is_zero[output] ? 0 : known;
     }
     return status;

@@ -143,7 +143,7 @@ static real relative_slope(const laws *law, const laws *slope, int lane, int out
     if (error < largest) {
         return error / (largest - error);
     }
-    return !(error <= 0) && (largest > 0 || reached(law, slope, lane, output)) ? infinity() : (real)0;
+    return !(error <= 0) && (largest > 0 || reached(law, slope, lane, output)) ? positive_infinity() : (real)0;
 }
 
 /* The same of an output. */

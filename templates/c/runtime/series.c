@@ -34,7 +34,7 @@ static int finite_number(real x)
     return x >= -largest_number && x <= largest_number;
 }
 
-static real infinity(void)
+static real positive_infinity(void)
 {
     const volatile real zero = 0;
     return 1 / zero;
