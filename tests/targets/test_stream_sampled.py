@@ -6,7 +6,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from flint import fmpq
+from flint import arb, fmpq
 
 import wavesym
 from tests.support.drives import DRIVE, EVERY
@@ -256,3 +256,29 @@ def test_what_is_moved_to_an_edge_counts_as_lost():
     wrong = np.max(np.abs(np.array(found).T - true) / np.abs(true), axis=0)
     assert np.max(wrong) > 1e-13
     assert np.all(wrong <= lost)
+
+
+@pytest.mark.parametrize("early", [1e-13, pytest.param(3e-14, marks=pytest.mark.slow)])
+def test_what_is_read_just_before_an_edge_is_known_as_well(early):
+    """There a panel is over already: an integral goes on to the edge, a kink there is in what is read."""
+    damped = {"type": "chain", "parts": ["fixed", {"rod": 1}, {"mass": 1, "dashpot": 2, "name": "disc"}]}
+    scene = wavesym.Scene(
+        name="near",
+        system=damped,
+        load=[{"at": "disc", "times": [0], "steps": [1]}],
+        output={"until": 3, "tolerance": TOLERANCE, "displacement": ["disc"], "force": ["1-", "1/2"]},
+    )
+    step = 0.125 - early
+    stream = built(scene).start()
+    stream.step(0.0, [1.0])
+    _, out = stream.step(step, [1.0])
+    rate = arb(3)  # until the wave comes back v' + 3 v = 1
+    time = arb(fmpq(*step.as_integer_ratio()))
+    true = float((time - (1 - (-rate * time).exp()) / rate) / rate)
+    assert abs(out[0] - true) < 0.1 * early * 0.1
+    # the front arrives at the edge: nothing is true of what is read before
+    other = built(scene).start()
+    other.step(0.0, [1.0])
+    _, out = other.step(4 * step + 3 * early, [1.0])
+    assert 0 < abs(out[2])
+    assert other.lost >= 1

@@ -7,7 +7,8 @@
     name_real lost_energy; /* what polynomials have missed so far: the root of an energy, */
     name_real lost_wave;   /* how large waves are that are wrong at once, */
     name_real lost_slope;  /* and how steep all others; velocities times roots of impedances */
-    name_real rounded;     /* about how wrong rounding makes waves */
+    name_real rounded;     /* about how wrong rounding makes waves, */
+    name_real misread;     /* and what is read of them so near to the end of a panel that it is read there */
     name_real size;        /* the largest wave that all this is small against, */
     name_real due;         /* or what loads that change on this panel make within one */
     int alarm;             /* whether step has returned 2 */

@@ -132,9 +132,9 @@ static real read_wave(const stream *state, int number, int panels, int as_integr
 /* The integral of term k of an output from the start of the current panel to t. */
 static real integral_since(const stream *state, int k, real t)
 {
-    const real early = t < rest[k] ? t : rest[k];
+    const real early = rest[k] > 0 && t < rest[k] ? t : rest[k];
     real sum = read_wave(state, track[k], late[k], 1, 0, t - early);
-    if (early > 0) {
+    if (rest[k] > 0) {
         sum += read_wave(state, track[k], late[k] + 1, 1, panel - rest[k], panel - rest[k] + early);
     }
     return sum;
@@ -535,6 +535,7 @@ void name_init(stream *state)
     state->lost_wave = 0;
     state->lost_slope = 0;
     state->rounded = 0;
+    state->misread = 0;
     state->size = 0;
     state->due = 0;
     state->alarm = 0;
@@ -587,6 +588,33 @@ static void advance_loads(stream *state, real span, real done, const real *befor
     }
 }
 
+/* No series on a panel is steeper. */
+static real steepness(const real *c)
+{
+    real sum = 0;
+    for (int k = 0; k < SIZE; ++k) {
+        sum += absolute(c[k]) * (real)k * (real)k * scale;
+    }
+    return sum;
+}
+
+/* No wave that outputs read on this panel is. */
+static real steepest_wave(const stream *state)
+{
+    real most = 0;
+    for (int k = 0; k < first_term[OUTPUTS]; ++k) {
+        int windows;
+        int after = state->first_breakpoint[phase_before(state, late[k], &windows)];
+        real sum = shown_force[k] >= 0 ? (real)0 : steepness(state->waves[slot_of(state, track[k], late[k])]);
+        for (; after >= 0 && shown_force[k] < 0; after = state->next_breakpoint[after]) {
+            sum += steepness(state->waves[slot_after(state, after, track[k], windows)]);
+        }
+        sum *= root_impedance[track[k]];
+        most = sum > most ? sum : most;
+    }
+    return most;
+}
+
 /* A step in which loads go straight. */
 static void advance(stream *state, real dtau, const real *load)
 {
@@ -599,6 +627,10 @@ static void advance(stream *state, real dtau, const real *load)
     then = plus(then, dtau, 0);
     state->age += dtau;
     while ((then.high - panel) + (then.low - panel_low) >= -nearness(state)) {
+        /* so long before its end: outputs are read as if what happens there had happened */
+        const real early = panel - then.high;
+        const int is_moved = early > rounding * panel;
+        real steepest = is_moved ? steepest_wave(state) : (real)0;
         past += panel - state->time;
         advance_loads(state, panel - state->time, past / dtau, before, load);
         end_panel(state);
@@ -606,6 +638,8 @@ static void advance(stream *state, real dtau, const real *load)
         state->time_low = 0;
         start_panel(state);
         then = plus(then, -panel, -panel_low);
+        steepest += is_moved ? steepest_wave(state) : (real)0;
+        state->misread = early * steepest > state->misread ? early * steepest : state->misread;
     }
     advance_loads(state, then.high - state->time, 1, before, load);
     state->time = then.high;
@@ -693,7 +727,8 @@ real name_lost(const stream *state)
 {
     const real energy = state->lost_energy + root_panel * (real)1.5 * state->lost_wave;
     const real slope = state->lost_slope + growth * state->lost_energy;
-    const real wave = state->lost_wave + root(energy) * root(energy / step_length + 2 * slope) + state->rounded;
+    const real wave =
+        state->lost_wave + root(energy) * root(energy / step_length + 2 * slope) + state->rounded + state->misread;
     const real gathering = (state->lost_energy * root(step_length) + state->rounded) * (state->age / step_length + 1);
     real most = energy + wave;
     most = is_number(most) ? (real)0 : most;
