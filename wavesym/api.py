@@ -5,7 +5,7 @@
     read      Scene.from_toml            TOML              Scene: what the user wrote        scene/, systems/
     lower     lower                      Scene             Model: exact, nodes and loads     scene/ -> mechanics/
     derive    node_law, recurrence       nodes, a system   laws of coefficients              derivation/   SymPy
-    solve     full_table, signals, ...   Model, laws       tables, waves, reference values   exact/
+    solve     network_table, signals ... Model, laws       tables, waves, reference values   exact/
     choose    program                    Model, Request    Program: tables and bounds        programs/
     write     generate                   Program           C, NumPy, FMU, manifest           targets/
 
@@ -572,14 +572,14 @@ def _files(scene: Scene, directory: str | PathLike[str] | None, request: Request
 
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system, exact; errors as of `tables`."""
-    from wavesym.derivation.table import full_table
+    from wavesym.documents.named_table import named_table
     from wavesym.exact.tables.network_table import network_table
     from wavesym.numbers.doubles import rational
 
     lowered = lower(scene)
     lowered.refuse_damping()
-    until, chain = rational(lowered.horizon()), named_chain(scene)
-    return full_table(chain, intervals, until) if chain else network_table(lowered.network, intervals, until)
+    network, until, chain = lowered.network, rational(lowered.horizon()), named_chain(scene)
+    return named_table(chain, network, intervals, until) if chain else network_table(network, intervals, until)
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:

@@ -20,6 +20,7 @@ from tests.support.drawn import scenes
 from tests.support.laplace import Laplace, Ratio
 from wavesym.derivation.increments import Increment, combined
 from wavesym.derivation.table import Function, full_table
+from wavesym.documents.named_table import named_table
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.tables.ball import Balls, segments
@@ -73,6 +74,10 @@ def test_any_named_system_has_one_table(scene: Scene) -> None:
     chain = named_chain(scene)
     assert chain is not None
     assert network_rows(model) == named_rows(model, chain)
+    for intervals, until in ((None, model.until), (3, NOWHERE), (0, NOWHERE), (None, fmpq(1, 2))):
+        ours, theirs = named_table(chain, model.network, intervals, until), full_table(chain, intervals, until)
+        assert ours.interval == theirs.interval
+        assert ours.responses == theirs.responses  # those of empty intervals, too
 
 
 @pytest.mark.parametrize("name", NAMED)

@@ -111,9 +111,13 @@ def _programs(scene: Scene) -> dict[str, Callable[[], str]]:
     def made(kind: str) -> Callable[[], str]:
         return lambda: tables(make(model, Request(evaluator=kind)))
 
+    def symbolic() -> list[str]:
+        return list(api.symbolic_tables(scene, 3, "csv")[1])
+
     name = "kappa" if scene is NAMED else "mass"
     return {
-        **({"`tables`": lambda: repr(table_rows(scene))} if scene is NAMED else {}),
+        "`tables`": lambda: repr(table_rows(scene)),
+        **({"`tables --symbolic`": lambda: repr(symbolic())} if scene is NAMED else {}),
         "`run`": lambda: repr(wavesym.evaluator(scene)([0.3, 1.7, 2.9]).tolist()),
         **{kind: made(kind) for kind in KINDS},
         "runtime": lambda: repr(files(runtime_program(model, Request(runtime=(name,)), ()), "c")),

@@ -179,6 +179,20 @@ def _increment(rule: Rule, source: str, response: Mapping[Function, list[Increme
     return solve(rule.own, right, jump)
 
 
+def served(chain: Chain, interval: int, intervals: int | None, until: fmpq, most: float = inf) -> dict[Function, int]:
+    """How many intervals of each function a table has; CostError as of `full_table`."""
+    wanted = {}
+    for rod in range(1, chain.m + 1):
+        for function in "fg":
+            # the argument is latest at the end towards which the wave came
+            latest = until - chain.leaves(function, rod, 0)
+            wanted[Function(function, rod)] = (
+                intervals if intervals is not None else max(0, int((fmpq(latest) / interval).floor()) + 1)
+            )
+    refuse_large(chain, interval, wanted, chain.sources, "output.until" if intervals is None else "--intervals", most)
+    return wanted
+
+
 def full_table(chain: Chain, intervals: int | None, until: fmpq, most: float = inf) -> Table:
     """All functions of all rods, all sources: `intervals` of each, or those that reach its rod until tau = `until`.
 
@@ -186,18 +200,7 @@ def full_table(chain: Chain, intervals: int | None, until: fmpq, most: float = i
     chain's kind: exact, or symbolic (`symbolic`).
     """
     rules = Rules(chain)
-    wanted = {}
-    for rod in range(1, chain.m + 1):
-        clock = chain.rod(rod)
-        for function, sign in (("f", 1), ("g", -1)):
-            # the argument is latest at the end towards which the wave came: x = rod - 1 for f, x = rod for g
-            end = rod - 1 if sign == 1 else rod
-            latest = until - clock.tau0 - sign * (end - clock.x0)
-            wanted[Function(function, rod)] = (
-                intervals if intervals is not None else max(0, int((fmpq(latest) / rules.interval).floor()) + 1)
-            )
-    asked = "output.until" if intervals is None else "--intervals"
-    refuse_large(chain, rules.interval, wanted, chain.sources, asked, most)
+    wanted = served(chain, rules.interval, intervals, until, most)
     responses = {}
     for source in chain.sources:
         response = unit_response(rules, source, wanted)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from wavesym.derivation.table import Table, full_table
+from wavesym.derivation.table import Table
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.documents.named_table import named_table
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.network_table import NetworkTable, network_table
@@ -48,7 +49,7 @@ def _made(model: Model, chain: Chain | None) -> Table | NetworkTable:
     until = rational(model.horizon())
     if chain is None:
         return network_table(model.network, None, until, most=MOST_COUNTED)
-    return full_table(chain, None, until, most=MOST_COUNTED)
+    return named_table(chain, model.network, None, until, most=MOST_COUNTED)
 
 
 def _sizes(table: Table | NetworkTable) -> Iterator[Section]:

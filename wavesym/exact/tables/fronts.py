@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from heapq import heapify, heappop, heappush
-from typing import TypeVar
+from itertools import count
+from typing import Any, TypeVar
 
 from flint import fmpq
 
@@ -22,21 +23,26 @@ def departures(
 
     `last` has the joints that matter, each with the tau until which it does.
     """
-    arriving: dict[tuple[fmpq, int], dict[End, T]] = {(fmpq(0), number): {} for number in begun}
-    coming = list(arriving)
+    # in the order of time, joints and what came first: an fmpq is slow to hash
+    order = count()
+    coming: list[tuple[fmpq, int, int, End | None, Any]] = [
+        (fmpq(0), number, next(order), None, None) for number in begun
+    ]
     heapify(coming)
     while coming:
-        time, number = at = heappop(coming)
-        for end, wave in answer(number, time, arriving.pop(at)):
+        time, number, *_ = coming[0]
+        arriving: dict[End, T] = {}
+        while coming and coming[0][1] == number and coming[0][0] == time:
+            *_, arrived, wave = heappop(coming)
+            if arrived is not None:
+                arriving[arrived] = wave
+        for end, wave in answer(number, time, arriving):
             yield time, end, wave
             there = network.beyond(end)
             other = network.joint_of[network.point_at(there)]
-            late = time + network.bars[end.bar].delay, other
-            if last is None or (other in last and late[0] <= last[other]):
-                if late not in arriving:
-                    arriving[late] = {}
-                    heappush(coming, late)
-                arriving[late][there] = wave
+            late = time + network.bars[end.bar].delay
+            if last is None or (other in last and late <= last[other]):
+                heappush(coming, (late, other, next(order), there, wave))
 
 
 def reachable(network: Network, begun: Iterable[End], passes: Callable[[int], Mapping[End, Iterable[End]]]) -> set[End]:

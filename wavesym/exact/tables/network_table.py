@@ -88,14 +88,15 @@ class RuledNetwork:
         return total
 
     def responses(
-        self, source: str, reach: Mapping[Function, fmpq], most: float = inf, asked: str = "output.until"
+        self, source: str, reach: Mapping[Function, fmpq], most: float | None = inf, asked: str = "output.until"
     ) -> dict[Function, Timed]:
         """The increments that a unit of `source` gives each function until the tau that is wanted of it, with theirs.
 
-        CostError where they would have more than `most` coefficients.
+        CostError where they would have more than `most` coefficients; None where that is known not to be so.
         """
         last = self._last(reach)
-        refuse_size(self.foreseen.size(source, last, most, asked), asked, most, "fewer parts")
+        if most is not None:
+            refuse_size(self.foreseen.size(source, last, most, asked), asked, most, "fewer parts")
         found: dict[Function, list[tuple[fmpq, Increment]]] = {function: [] for function in reach}
 
         def answer(number: int, time: fmpq, waves: Mapping[End, Increment]) -> Iterator[tuple[End, Increment]]:
