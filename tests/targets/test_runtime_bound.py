@@ -1,11 +1,17 @@
 """The proved bound of a model: no error is larger, whatever the parameters, and whatever is wrong on the way."""
 
+import ctypes
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
-from tests.support.built_model import BuiltModel
+import wavesym
+from tests.support.builds import LANGUAGES
+from tests.support.built_model import BuiltModel, written
 from tests.support.faults import BODIES
 from tests.targets.test_runtime_c import BUILDING, CASES, DRIVE, drawn, flat, scene_with
+from wavesym.running.toolchain import compiler
 
 
 def in_doubles(given):
@@ -99,3 +105,49 @@ def test_a_mistake_in_the_bound_is_seen(changes, tmp_path):
     made = BuiltModel(DRIVE, list(CASES["drive"][1]), tmp_path, changes)
     with pytest.raises(AssertionError):
         check(made, DRIVE, {name: choices[0] for name, choices in CASES["drive"][1].items()})
+
+
+STEPS = 150
+STEPPED = wavesym.Scene(
+    name="stepped",
+    system={"type": "chain", "parts": [{"mass": 1, "name": "m"}, {"rod": 1}, "fixed"]},
+    load=[{"at": "m", "times": list(range(STEPS)), "steps": [k % 2 + 1 for k in range(STEPS)]}],
+    output={"until": STEPS, "tolerance": "1e-6", "velocity": ["m"]},
+)
+LOADS = """
+#include "stepped.c"
+int loads(const double *change, double *load, double *error);
+int loads(const double *change, double *load, double *error)
+{
+    static march_state m;
+    static errors w;
+    int since[STEPPED_FORCES + 1][2] = {{0}}, event = 0;
+    for (int k = 0; k < STEPPED_EVENTS; ++k) {
+        m.change[k] = change[k];
+    }
+    start_loads(&w);
+    for (int window = 0; window < STEPPED_WINDOWS; ++window) {
+        const int first = event;
+        event = apply_loads(&m, 1, since, window, event);
+        bound_loads(&w, m.change, window, first);
+        load[window] = m.force[0][0][0];
+        error[window] = w.force[0][0];
+    }
+    return event;
+}
+"""
+
+
+@pytest.mark.parametrize("change", [None, ("w->roundings[f]) + 8;", "w->roundings[f]) + 0;")])
+def test_a_load_of_many_steps_is_wrong_by_no_more_than_its_bound(change, tmp_path):
+    """Each step but the first is just below half a rounding of the sum, which therefore never grows: all are lost."""
+    written(STEPPED, ["load"], tmp_path, [change] if change else [], parts=["bound"])
+    (tmp_path / "loads.c").write_text(LOADS)
+    compiler().run([*LANGUAGES["c99"], "-O0", "-fPIC", "-shared", "loads.c", "-o", "loads.so"], tmp_path)
+    changes = np.array([1.0, *[0.99 * 2.0**-53] * (STEPS - 1)])
+    load, error = np.empty(STEPS + 1), np.empty(STEPS + 1)
+    places = (ctypes.c_void_p(array.ctypes.data) for array in (changes, load, error))
+    assert ctypes.CDLL(str(tmp_path / "loads.so")).loads(*places) == STEPS
+    lost = [sum(map(Fraction, changes[: k + 1])) - Fraction(load[k]) for k in range(STEPS)]
+    assert lost[-1] > 60 * Fraction(2) ** -52
+    assert all(lost[k] <= Fraction(error[k]) for k in range(STEPS)) == (change is None)
