@@ -17,8 +17,7 @@ from wavesym.programs.runtime import degree as choosing
 from wavesym.programs.runtime.degree import LEAST, degrees
 from wavesym.programs.runtime.making import runtime_program
 from wavesym.programs.runtime.network import free_network
-from wavesym.programs.runtime.plan import runtime_plan
-from wavesym.programs.runtime.pushes import as_one
+from wavesym.programs.runtime.plan import as_one_load, runtime_plan
 from wavesym.programs.schemes.march import Marching
 from wavesym.scene import lower
 
@@ -111,7 +110,7 @@ def test_a_window_misses_what_is_said_of_it():
 
 def planned(scene, names):
     model = lower(scene)
-    return runtime_plan(model, free_network(model, names, ()), as_one(model), DOUBLE)
+    return runtime_plan(model, free_network(model, names, ()), as_one_load(model), DOUBLE)
 
 
 @pytest.mark.parametrize(

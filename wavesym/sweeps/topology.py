@@ -13,8 +13,7 @@ from typing import Any
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
-from wavesym.programs.runtime.network import free_network
-from wavesym.programs.runtime.request import NAMES, RuntimeField
+from wavesym.programs.runtime.network import NAMES, RuntimeField, free_network
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes
 

@@ -17,8 +17,7 @@ from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import fraction, nearest
-from wavesym.programs.runtime.network import free_network
-from wavesym.programs.runtime.request import NAMES, RuntimeField
+from wavesym.programs.runtime.network import NAMES, RuntimeField, free_network
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes
 from wavesym.verification.independent import independent_model

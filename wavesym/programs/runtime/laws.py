@@ -1,14 +1,29 @@
-"""What a program of parameters at run time has beside its tables: the parameters, and what they make of a chain."""
+"""What parameters that come at run time make of a chain: functions, and how exactly they are computed.
+
+What is multiplied and added up on the way to a law has to be a number with all its digits. A product beyond the
+largest number makes a quotient 0, one below the smallest normal number loses digits, and nothing tells afterwards: what
+would be wrong is the chain itself. So such parameters are refused.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from functools import cached_property
 
+from flint import fmpq, fmpq_mpoly
+
 from wavesym.numbers.ratio import Ratio
-from wavesym.programs.runtime.request import RuntimeField
-from wavesym.programs.runtime.units import Function
+from wavesym.programs.runtime.network import RuntimeField
+
+Function = Ratio | fmpq
+"""Of the parameters."""
+
+Product = tuple[fmpq_mpoly, ...]
+"""Its factors, which are sums of products of symbols."""
+
+OPEN = 1e30
+"""So many roundings where nothing is known: terms that may cancel."""
 
 
 @dataclass(frozen=True)
@@ -55,3 +70,58 @@ class RuntimeLaws:
     def positive(self) -> frozenset[str]:
         """The symbols of numbers that have to be."""
         return frozenset(label for field in self.fields if field.positive for label in field.labels)
+
+
+def products(function: Ratio, positive: Set[str]) -> Iterator[Product]:
+    """Those of a law, in the order in which it is computed. `positive` are the symbols that have to be; what others are
+    in may be 0.
+    """
+    names = function.ring.names
+    forms = [(function.ring.forms[form], power) for form, power in sorted(function.denominator.items())]
+    below = tuple(form for form, power in forms for _ in range(power))
+    for polynomial in (function.numerator, *(form for form, _ in forms)):
+        if {names[place] for place, power in enumerate(polynomial.degrees()) if power} <= positive:
+            yield from _parts(polynomial)
+    for count in range(2, len(below) + 1):
+        yield below[:count]
+
+
+def _parts(polynomial: fmpq_mpoly) -> Iterator[Product]:
+    """Each term factor by factor; and the sum, where nothing cancels."""
+    terms = {tuple(map(int, powers)): fmpq(value) for powers, value in polynomial.to_dict().items()}
+    for powers, value in terms.items():
+        letters = [place for place, power in enumerate(powers) for _ in range(power)]
+        for count in range(1 if abs(value) != 1 else 2, len(letters) + 1):
+            factors = tuple(letters[:count].count(place) for place in range(len(powers)))
+            yield (polynomial.context().from_dict({factors: value}),)
+    if len(terms) > 1 and len({value > 0 for value in terms.values()}) == 1:
+        yield (polynomial,)
+
+
+def most_roundings(laws: Mapping[str, Iterable[Function]], positive: Iterable[str]) -> float:
+    """How often a law is rounded in floating-point numbers, at most. `positive` are the symbols that are positive; sums
+    of what they are in have terms of one sign.
+
+    Each number in a law is rounded, each operation, and each parameter that is the scene's decimal.
+    """
+    given = frozenset(positive)
+    return max((_roundings(function, given) for functions in laws.values() for function in functions), default=1.0)
+
+
+def _roundings(function: Function, positive: frozenset[str]) -> float:
+    if not isinstance(function, Ratio):
+        return 1.0
+    names = function.ring.names
+    below = [(function.ring.forms[form], power) for form, power in function.denominator.items()]
+    sums = [(function.numerator, 1), *below]
+    return sum(power * (1 + _of_sum(polynomial, names, positive)) for polynomial, power in sums)
+
+
+def _of_sum(polynomial: fmpq_mpoly, names: tuple[str, ...], positive: frozenset[str]) -> float:
+    terms = {powers: fmpq(value) for powers, value in polynomial.to_dict().items()}
+    if len(terms) > 1:
+        signed = {value > 0 for value in terms.values()}
+        of = {name for powers in terms for name, power in zip(names, powers, strict=True) if power}
+        if len(signed) > 1 or not of <= positive:
+            return OPEN
+    return len(terms) + max((2.0 + sum(map(int, powers)) for powers in terms), default=0.0)

@@ -20,13 +20,9 @@ from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
-from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.laws import Function, RuntimeLaws, most_roundings
 from wavesym.programs.runtime.network import free_network
-from wavesym.programs.runtime.plan import RuntimePlan, runtime_plan
-from wavesym.programs.runtime.pushes import as_one
-from wavesym.programs.runtime.readings import reading_tables
-from wavesym.programs.runtime.roundings import most_roundings
-from wavesym.programs.runtime.units import Function
+from wavesym.programs.runtime.plan import RuntimePlan, as_one_load, reading_tables, runtime_plan
 
 FINEST = {"double": fmpq(1, 10**13), "single": fmpq(1, 10**5)}
 """The smallest tolerance that numbers keep, by precision."""
@@ -67,7 +63,7 @@ def _program(
 ) -> Program:
     free = free_network(model, request.runtime, amplitudes)
     chosen = "load" in request.runtime
-    loads = [load for _, load in amplitudes] if chosen else as_one(model)
+    loads = [load for _, load in amplitudes] if chosen else as_one_load(model)
     made = runtime_plan(model, free, loads, real)
     _refuse_large(made)
     share = max(nearest(tolerance / (_MARGIN * made.plan.windows)), 2 * nearest(real.roundoff))
@@ -144,7 +140,7 @@ def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
         "weight": tuple(value for space in spaces for value in space.weights),
         "impedance": tuple(port.impedance for space in spaces for port in space.ports),
         "strength": _strengths(made),
-        "gain": tuple(wave.gain for _, wave in made.heard),
+        "gain": tuple(wave.gain for _, wave in made.output_terms),
     }
     return RuntimeLaws(made.free.fields, functions, amplitudes)
 
@@ -156,7 +152,7 @@ def _flat(matrix: Any) -> list[Any]:
 
 
 def _strengths(made: RuntimePlan) -> tuple[Function, ...]:
-    return tuple(dict.fromkeys(push.strength for push in made.pushes))
+    return tuple(dict.fromkeys(event.strength for event in made.events))
 
 
 def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, float]:
@@ -177,9 +173,9 @@ def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, fl
         "tracks": len(plan.tracks),
         "slots": sum(track.steps + 1 for track in plan.tracks),
         "forces": plan.forces,
-        "gains": len(made.heard),
+        "gains": len(made.output_terms),
         "strands": len(made.strands),
-        "events": len(made.pushes),
+        "events": len(made.events),
         "lanes": sum(len(field.values) for field in laws.fields),
         "sections": len(made.sections) - 1,
         "groups": (len(made.sections) - 1) * len(plan.outputs),
@@ -192,13 +188,13 @@ def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, fl
 
 def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[float, ...]]:
     """Joints and their ends, rings, panels, changes of loads, sections, strands and the waves they are made of."""
-    plan, pushes = made.plan, made.pushes
+    plan, events = made.plan, made.events
     spaces = [joint.space for joint in plan.joints]
     strengths = _strengths(made)
     terms = [term for strand in made.strands for term in strand.terms]
     sections, outputs = len(made.sections) - 1, len(plan.outputs)
-    heard = [[made.listening(section, output) for output in range(outputs)] for section in range(sections)]
-    listening = [strands for section in heard for strands in section]
+    strands = [[made.strands_of(section, output) for output in range(outputs)] for section in range(sections)]
+    groups = [group for section in strands for group in section]
     windows = [plan.step * phase for phase in range(plan.cycle[0])]
     starts = [begin + strand.start for begin in windows for strand in made.strands]
 
@@ -226,34 +222,34 @@ def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple
         "half_length": reals(panel.length / 2 for panel in plan.panels),
         "since_panel": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
         "force_on": tuple(force for joint in plan.joints for force in joint.forces),
-        "event_window": tuple(push.window for push in pushes),
-        "event_panel": tuple(push.panel for push in pushes),
-        "event_force": tuple(push.force for push in pushes),
-        # of a load that is told anew 3 more
-        "event_power": tuple(push.power + 3 * push.anew for push in pushes),
-        "event_weight": reals(push.weight for push in pushes),
-        "event_strength": tuple(strengths.index(push.strength) for push in pushes),
-        "event_load": tuple(push.load for push in pushes),
+        "event_window": tuple(event.window for event in events),
+        "event_panel": tuple(event.panel for event in events),
+        "event_force": tuple(event.force for event in events),
+        # 3 more where it replaces what acts
+        "event_power": tuple(event.power + 3 * event.replaces for event in events),
+        "event_weight": reals(event.weight for event in events),
+        "event_strength": tuple(strengths.index(event.strength) for event in events),
+        "event_load": tuple(event.load for event in events),
         "from": (
             *(real.not_below(begin + at) for begin in windows for at in made.sections[:-1]),
             real.nearest(fmpq(plan.cycle[1])),
         ),
-        "first_strand": firsts(map(len, listening)),
-        "strand_at": tuple(strand for group in listening for strand in group),
-        **reading_tables(made.strands, heard),
+        "first_strand": firsts(map(len, groups)),
+        "strand_at": tuple(strand for group in groups for strand in group),
+        **reading_tables(made.strands, strands),
         "strand_start": reals(starts),
         "strand_excess": reals(rational(real.nearest(start)) - start for start in starts),
         "strand_scale": reals(1 / strand.half for strand in made.strands),
         "first_term": firsts(len(strand.terms) for strand in made.strands),
-        "term_gain": tuple(term.heard for term in terms),
+        "term_gain": tuple(term.number for term in terms),
         "term_track": tuple(term.wave.track for term in terms),
         "term_back": tuple(term.stretch.back for term in terms),
         "term_panel": tuple(term.stretch.panel for term in terms),
         "term_summed": tuple(int(term.wave.summed) for term in terms),
         "term_low": reals(term.low for term in terms),
         "term_high": reals(term.high for term in terms),
-        "gain_output": tuple(output for output, _ in made.heard),
-        "is_zero": tuple(map(int, made.silent)),
+        "gain_output": tuple(output for output, _ in made.output_terms),
+        "is_zero": tuple(map(int, made.is_zero)),
     }
 
 

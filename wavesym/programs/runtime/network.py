@@ -1,22 +1,57 @@
-"""A model's network as functions: what a scene says becomes symbols, where it is given at run time."""
+"""A model's network as functions: what a scene says becomes symbols, where it is given at run time.
+
+kappa is a ratio of masses. Loads and velocities are given in the units of results, inertias and the numbers of a
+chain's parts in SI base units. In collisions and buildings rods stay, so that kappa changes bodies; in a drive discs
+have inertias of their own, so that kappa changes shafts. The time that a wave takes through a rod stays everywhere, and
+so does a load: 5 N*m are 5 N*m.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from hashlib import sha256
 
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import Applied, AppliedRecord
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import Factors
 from wavesym.numbers.ratio import Ring
-from wavesym.programs.request import refuse_others
-from wavesym.programs.runtime.quiet import drawn
-from wavesym.programs.runtime.request import RuntimeField, field_of
-from wavesym.programs.runtime.units import unit_of, unit_of_load
+from wavesym.programs.request import POSITIVE, refuse_others
+
+NAMES = ("kappa", "inertia", "velocity", "load")
+
+
+@dataclass(frozen=True)
+class ParameterUnit:
+    """`size` is what a dimensionless 1 is in the unit."""
+
+    size: fmpq
+    text: str
+
+
+PLAIN = ParameterUnit(fmpq(1), "")
+
+
+@dataclass(frozen=True)
+class RuntimeField:
+    """A field of the parameters: its name, what each of its numbers is called, what they are in the scene, in which
+    units (those of results, none where a scene has none), and what each is for people.
+    """
+
+    name: str
+    labels: tuple[str, ...]
+    values: tuple[fmpq, ...]
+    units: tuple[ParameterUnit, ...]
+    told: tuple[str, ...]
+
+    @property
+    def positive(self) -> bool:
+        """Whether its numbers have to be."""
+        return self.name in POSITIVE
 
 
 @dataclass(frozen=True)
@@ -70,3 +105,36 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
         replace(model, network=parameters.network(some), preset=None),
         parameters.factors(free) if model.clock else Factors(),
     )
+
+
+def field_of(name: str, numbers: Sequence[tuple[str, fmpq, ParameterUnit]], told: Sequence[str] = ()) -> RuntimeField:
+    """A field of numbers, each with its label and unit; `told` says what each is, where labels do not."""
+    labels, values, units = zip(*numbers, strict=True)
+    sized = tuple(value * unit.size for value, unit in zip(values, units, strict=True))
+    return RuntimeField(name, labels, sized, units, tuple(told) or labels)
+
+
+def unit_of(model: Model, name: str) -> ParameterUnit:
+    """That of the numbers of a field other than `load`."""
+    return ParameterUnit(*model.inputs[name]) if name in model.inputs else PLAIN
+
+
+def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
+    """That of an amplitude: of a step, or of a ramp per unit of time; the factor of a record has none."""
+    if model.clock is None or isinstance(load, AppliedRecord):
+        return PLAIN
+    size, text = model.inputs[load.source]
+    unit = next(unit for point in model.network.points for unit in point.loads if unit.source == load.source)
+    if not unit.is_ramp:
+        return ParameterUnit(size, text)
+    return ParameterUnit(size / model.clock.per_tau, f"{text}/{model.clock.unit}")
+
+
+def drawn(fields: Sequence[RuntimeField]) -> Mapping[str, fmpq]:
+    """A number for each parameter: what is 0 with them is 0 with all of them, but for a chance of one in 2**60."""
+    return {label: drawn_number(label) for field in fields for label in field.labels}
+
+
+def drawn_number(label: str) -> fmpq:
+    """A positive number that depends on a label alone."""
+    return fmpq(int(sha256(label.encode()).hexdigest()[:16], 16) + 1, 1 << 62)

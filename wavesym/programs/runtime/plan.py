@@ -1,4 +1,5 @@
-"""What is marched when parameters come at run time: the plan of a march over functions, and where outputs listen.
+"""What is marched when parameters come at run time: the plan of a march over functions, the changes
+of its loads, and which waves outputs are sums of.
 
 Lengths, speeds and the instants of loads stay, so panels, delays and stretches are numbers. What a joint makes of
 waves, what it starts with, how strong a load is and what an output weighs are rational functions of the parameters.
@@ -9,34 +10,55 @@ sent at the same instant, on panels of the same length, are added up once, to a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
+from typing import Any, NamedTuple
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.mechanics.loads import Applied, merged
+from wavesym.errors import UnservedError
+from wavesym.exact.arrivals import identically_zero
+from wavesym.mechanics.loads import Applied, AppliedRecord, merged
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Point
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
+from wavesym.programs.flat import firsts
 from wavesym.programs.march.plan import MarchPlan, OutputTerm, Stretch, march_plan, moved_by
 from wavesym.programs.march.space import joint_rows
-from wavesym.programs.runtime.network import FreeNetwork
-from wavesym.programs.runtime.pushes import Push, ordered, told
-from wavesym.programs.runtime.quiet import quiet
-from wavesym.programs.runtime.units import Function
+from wavesym.programs.runtime.laws import Function
+from wavesym.programs.runtime.network import FreeNetwork, drawn_number
 
 HELPS = "in tau, to which samples may be interpolated in a scene without units"
 """Beside another spacing, where loads leave too many panels."""
 
 
 @dataclass(frozen=True)
-class StrandTerm:
-    """A wave on one of its stretches. `low` and `high` are where, on [-1, 1], its integral begins and ends."""
+class LoadEvent:
+    """A change of a load: from panel `panel` of window `window` on, `strength` and `weight` times amplitude `load`
+    times the `power` of the time since acts as load `force` (in the units of a law that is divided by g): added to what
+    acts there, or, where it `replaces` that, in its place.
+    """
 
-    heard: int
+    window: int
+    panel: int
+    force: int
+    power: int
+    strength: Function
+    load: int
+    weight: fmpq = field(default_factory=lambda: fmpq(1))
+    replaces: bool = False
+
+
+@dataclass(frozen=True)
+class StrandTerm:
+    """A wave, the output term of this `number`, on one of its stretches. `low` and `high` are where, on [-1, 1], its
+    integral begins and ends.
+    """
+
+    number: int
     wave: OutputTerm
     stretch: Stretch
     low: fmpq
@@ -53,44 +75,56 @@ class Strand:
     terms: tuple[StrandTerm, ...]
 
 
+class SharedReading(NamedTuple):
+    """So many strands from one on, each of another output; `more` where one before is of these outputs, too."""
+
+    strand: int
+    strands: int
+    more: bool
+
+
 @dataclass(frozen=True)
 class RuntimePlan:
     """`plan` has joints that are functions, and no loads that matter; `own` is that of the scene's numbers.
 
-    Of each output `silent` says whether it is 0 whatever the parameters are.
+    `output_terms` are the waves in outputs, each with the number of its output; `is_zero` says of each output whether
+    it is 0 whatever the parameters are.
     """
 
     model: Model
     plan: MarchPlan
     own: MarchPlan
     free: FreeNetwork
-    pushes: tuple[Push, ...]
-    heard: tuple[tuple[int, Any], ...]
+    events: tuple[LoadEvent, ...]
+    output_terms: tuple[tuple[int, Any], ...]
     strands: tuple[Strand, ...]
-    silent: tuple[bool, ...]
+    is_zero: tuple[bool, ...]
 
     @property
     def sections(self) -> tuple[fmpq, ...]:
         """Where they begin in a window, and its end."""
         return (*sorted({max(strand.start, fmpq(0)) for strand in self.strands} | {fmpq(0)}), self.plan.step)
 
-    def listening(self, section: int, output: int) -> list[int]:
+    def strands_of(self, section: int, output: int) -> list[int]:
         """The strands that are an output on a section."""
         at = self.sections[section]
         return [n for n, s in enumerate(self.strands) if s.output == output and s.start <= at < s.start + 2 * s.half]
 
 
 def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real: Real) -> RuntimePlan:
-    """The plan of a chain; each of `loads` has an amplitude. CostError as for a march, UnservedError as `ordered`."""
+    """The plan of a chain; each of `loads` has an amplitude.
+
+    CostError as for a march, UnservedError as `ordered_events`.
+    """
     until = rational(model.horizon(real))
     acting = [[change for change in load.changes if change.time <= until] for load in loads]
     # as if each weighed 1, so that none of them is left out
     changes = {(change.time, change.source) for load in acting for change in load}
-    felt = tuple(Applied(source, time, fmpq(1)) for time, source in sorted(changes))
+    units = tuple(Applied(source, time, fmpq(1)) for time, source in sorted(changes))
     # which points loads act on is all that counts of them here
     points = zip(free.network.points, model.network.points, strict=True)
     network = replace(free.network, points=tuple(replace(point, loads=own.loads) for point, own in points))
-    plan = march_plan(replace(model, network=network, loads=felt), real, joint_rows, HELPS)
+    plan = march_plan(replace(model, network=network, loads=units), real, joint_rows, HELPS)
     # in the scene each counts as it says, or, where that is 0, once
     known = (
         replace(change, weight=change.weight * (load.weight or 1))
@@ -98,29 +132,31 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real
         for change in changes
     )
     own = march_plan(replace(model, loads=merged(known)), real, helps=HELPS)
-    silent = quiet(free.some, loads, real)
+    is_zero = zero_outputs(free.some, loads, real)
     kept: list[Any] = [free.factors.force if probe.quantity == "force" else fmpq(1) for probe in model.probes]
-    heard = tuple(
-        (number, replace(wave, gain=fmpq(0) if silent[number] else wave.gain * kept[number]))
+    output_terms = tuple(
+        (number, replace(wave, gain=fmpq(0) if is_zero[number] else wave.gain * kept[number]))
         for number, output in enumerate(plan.outputs)
         for wave in output.heard
     )
     chosen = [unit.size for field in free.fields if field.name == "load" for unit in field.units]
-    pushes = ordered(_pushes(plan, free, acting, chosen or [fmpq(1)] * len(loads)))
-    return RuntimePlan(model, plan, own, free, pushes, heard, tuple(_strands(plan, heard)), tuple(silent))
+    events = ordered_events(_events(plan, free, acting, chosen or [fmpq(1)] * len(loads)))
+    strands = tuple(_strands(plan, output_terms))
+    return RuntimePlan(model, plan, own, free, events, output_terms, strands, tuple(is_zero))
 
 
-def _pushes(
+def _events(
     plan: MarchPlan, free: FreeNetwork, acting: Sequence[Sequence[Applied]], sizes: Sequence[fmpq]
-) -> Iterator[Push]:
+) -> Iterator[LoadEvent]:
     places = {panel.start: number for number, panel in enumerate(plan.panels)}
     for force, number in enumerate(plan.pushed):
         powers, size = _unit_loads(plan.model.network.points[number], free.network.points[number])
         for load, changes in enumerate(acting):
-            for time, power, weight, anew in told(changes, powers):
+            for time, power, weight, replaces in load_changes(changes, powers):
                 window = int((time / plan.step).floor())
                 panel = places[time - window * plan.step]
-                yield Push(window, panel, force, power, size * free.factors.load / sizes[load], load, weight, anew)
+                strength = size * free.factors.load / sizes[load]
+                yield LoadEvent(window, panel, force, power, strength, load, weight, replaces)
 
 
 def _unit_loads(own: Point, free: Point) -> tuple[dict[str, fmpq_poly], Function]:
@@ -134,9 +170,9 @@ def _unit_loads(own: Point, free: Point) -> tuple[dict[str, fmpq_poly], Function
     return {source: power / known for source, power in powers.items()}, size
 
 
-def _strands(plan: MarchPlan, heard: Sequence[tuple[int, OutputTerm]]) -> Iterator[Strand]:
+def _strands(plan: MarchPlan, output_terms: Sequence[tuple[int, OutputTerm]]) -> Iterator[Strand]:
     groups: dict[tuple[fmpq, fmpq, int], list[StrandTerm]] = {}
-    for number, (output, wave) in enumerate(heard):
+    for number, (output, wave) in enumerate(output_terms):
         for stretch in plan.stretches(wave.delay):
             half = plan.panels[stretch.panel].length / 2
             low = max(-stretch.start / half - 1, fmpq(-1))
@@ -145,3 +181,82 @@ def _strands(plan: MarchPlan, heard: Sequence[tuple[int, OutputTerm]]) -> Iterat
     # in the order of time, so that integrals go on from stretch to stretch; what is read at the same instants together
     for (start, half, output), terms in sorted(groups.items(), key=lambda group: group[0]):
         yield Strand(output, start, half, tuple(terms))
+
+
+def as_one_load(model: Model) -> list[Applied]:
+    """All loads of a model, none of which has an amplitude of its own."""
+    loads = tuple(load for load in model.loads if load.source != "impact")
+    return [AppliedRecord(loads[0].source, loads[0].time, fmpq(1), loads)] if loads else []
+
+
+def load_changes(changes: Sequence[Applied], powers: Mapping[str, fmpq_poly]) -> Iterator[tuple[fmpq, int, fmpq, bool]]:
+    """When a load changes, which power, how much of it, and whether it replaces what acts: at each change all that acts
+    is said again, so that nothing adds up.
+    """
+    since, acts, started = fmpq(0), fmpq_poly(), False
+    for time, same in groupby(changes, key=lambda change: change.time):
+        new = sum((change.weight * powers[change.source] for change in same if change.source in powers), fmpq_poly())
+        if new:
+            since, acts = time, acts(fmpq_poly([time - since, 1])) + new
+            terms = [(power, acts[power]) for power in range(3) if acts[power]] or [(0, fmpq(0))]
+            for place, (power, weight) in enumerate(terms):
+                yield time, power, weight, started and place == 0
+            started = True
+
+
+def ordered_events(events: Iterable[LoadEvent]) -> tuple[LoadEvent, ...]:
+    """In the order of time. UnservedError where samples, which replace each other, have an amplitude beside another."""
+    found = tuple(sorted(events, key=lambda event: (event.window, event.panel)))
+    for force in {event.force for event in found if event.replaces}:
+        if len({event.load for event in found if event.force == force}) > 1:
+            raise UnservedError(
+                "--runtime: load given where samples act beside another load on the same body, one load expected "
+                "there (samples that are added up, or loads as in the scene, help)"
+            )
+    return found
+
+
+def zero_outputs(model: Model, loads: Sequence[Applied], real: Real) -> list[bool]:
+    """Whether each output of a model that has the numbers drawn is 0 up to the horizon, whatever `loads` amount to.
+
+    Of each source the first is enough: others do the same later.
+    """
+    until = rational(model.horizon(real))
+    first: dict[str, fmpq] = {}
+    for change in (change for load in loads for change in load.changes if change.time <= until):
+        first[change.source] = min(change.time, first.get(change.source, until))
+    acting = (Applied(source, time, drawn_number(source)) for source, time in first.items())
+    return identically_zero(replace(model, loads=tuple(sorted(acting, key=lambda load: load.time))), until)
+
+
+def shared_readings(strands: Sequence[Strand], numbers: Sequence[int]) -> Iterator[SharedReading]:
+    """Those of a section, whose strands have these numbers, in order: those at the same instants follow each other, so
+    that all share the T_k(u) there.
+    """
+    outputs: set[int] = set()
+    instants = []
+    for number in numbers:
+        strand = strands[number]
+        instants.append((strand.start, strand.half, strand.output in outputs))
+        outputs.add(strand.output)
+    for (*_, more), group in groupby(zip(instants, numbers, strict=True), key=lambda each: each[0]):
+        together = [number for _, number in group]
+        yield SharedReading(together[0], len(together), more)
+
+
+def reading_tables(
+    strands: Sequence[Strand], sections: Sequence[Sequence[Sequence[int]]]
+) -> dict[str, tuple[int, ...]]:
+    """Tables of the readings of all sections, of which each is the strands of every output."""
+    found = [
+        list(shared_readings(strands, sorted(number for output in outputs for number in output)))
+        for outputs in sections
+    ]
+    every = [reading for section in found for reading in section]
+    return {
+        "strand_output": tuple(strand.output for strand in strands),
+        "first_reading": firsts(map(len, found)),
+        "reading_strand": tuple(reading.strand for reading in every),
+        "reading_strands": tuple(reading.strands for reading in every),
+        "reading_more": tuple(int(reading.more) for reading in every),
+    }

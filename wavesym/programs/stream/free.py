@@ -20,8 +20,7 @@ from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import MarchedJoint, MarchOutput, MarchPlan, march_plan
 from wavesym.programs.march.space import JointRows, JointSpace, Rows, joint_rows
-from wavesym.programs.runtime.network import free_network
-from wavesym.programs.runtime.request import RuntimeField
+from wavesym.programs.runtime.network import RuntimeField, free_network
 from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, breakpoints, paneled, steps_of
 
 QUICKER = fmpq(10)

@@ -15,8 +15,7 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
 from wavesym.programs.march.tables import matrix_size
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.units import Function
+from wavesym.programs.runtime.laws import Function, RuntimeLaws
 from wavesym.programs.stream.free import FreeStream
 from wavesym.programs.stream.plan import StreamPlan
 from wavesym.programs.stream.tables import StreamTables, slip_size

@@ -12,9 +12,8 @@ from flint import fmpq, fmpq_mpoly
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program, ReferenceValues
-from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.products import products
-from wavesym.programs.runtime.units import Function, ParameterUnit
+from wavesym.programs.runtime.laws import Function, RuntimeLaws, products
+from wavesym.programs.runtime.network import ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.memory import Memory

@@ -9,7 +9,7 @@ from flint import fmpq
 
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.request import RuntimeField
+from wavesym.programs.runtime.network import RuntimeField
 from wavesym.targets.literals import literal
 
 
