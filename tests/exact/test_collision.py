@@ -15,8 +15,9 @@ import wavesym
 from tests.support.drawn import systems
 from tests.support.truth import Truth
 from wavesym.errors import CostError
-from wavesym.exact.contacts import schedule
+from wavesym.exact.contacts import cost, schedule
 from wavesym.exact.contacts.events import contact_ends
+from wavesym.exact.contacts.search import Search, UndecidedError
 from wavesym.numbers.doubles import fraction, middle, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.scene import lower
@@ -68,21 +69,21 @@ def test_rates_that_nearly_meet_move_the_end_no_further_than_they_differ():
 
 
 def undecided(search):
-    raise schedule._Undecided(0, True, fmpq(1))
+    raise UndecidedError(0, True, fmpq(1))
 
 
 def test_a_contact_of_which_no_number_of_bits_tells_is_refused(monkeypatch):
     model = lower(wavesym.Scene.from_toml("collision_m4"))
     assert contact_ends(model)
     schedule.first_opening.cache_clear()
-    monkeypatch.setattr(schedule._Search, "opening", undecided)
+    monkeypatch.setattr(Search, "steps", undecided)
     with pytest.raises(schedule.GrazingError, match=r"contact at 2: 896 bits do not show the sign of its force"):
         contact_ends(model)
 
 
 def test_a_search_that_would_take_long_is_refused(monkeypatch):
     schedule.first_opening.cache_clear()
-    monkeypatch.setattr(schedule, "MOST_MOVES", 10)
+    monkeypatch.setattr(cost, "MOST_MOVES", 10)
     with pytest.raises(CostError, match=r"contacts are looked for 4.4e.01 times, at most 10 expected"):
         contact_ends(lower(wavesym.Scene.from_toml("collision_m4")))
 

@@ -14,10 +14,14 @@ from tests.support.touching import FIXED, at, body, contact, line, q, rod, seen,
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.breakpoints import Breakpoints
+from wavesym.exact.contacts import branches, cost
 from wavesym.exact.contacts import schedule as room
+from wavesym.exact.contacts.branches import BranchEnd
 from wavesym.exact.contacts.cluster import Cluster
 from wavesym.exact.contacts.events import events
 from wavesym.exact.contacts.schedule import GrazingError
+from wavesym.exact.contacts.search import Search
+from wavesym.exact.joints.enclosed import Enclosed
 from wavesym.exact.reference import Reference
 from wavesym.pictures.field import Field
 
@@ -145,13 +149,13 @@ def test_a_gap_of_the_wrong_sign_is_seen(monkeypatch):
 
 
 def test_an_event_that_is_late_is_seen(monkeypatch):
-    end = room._Search._end
+    end = Search._end
 
     def late(*arguments):
         found = end(*arguments)
-        return found and room._End(found.length + fmpq(1, 1000), found.spread)
+        return found and BranchEnd(found.length + fmpq(1, 1000), found.spread)
 
-    monkeypatch.setattr(room._Search, "_end", late)
+    monkeypatch.setattr(Search, "_end", late)
     assert differs()
 
 
@@ -227,14 +231,14 @@ def test_a_gap_that_is_touched_exactly_stays_open():
 
 def test_a_contact_that_no_bits_decide_is_refused_with_the_instant(monkeypatch):
     """The same where nothing is known exactly."""
-    monkeypatch.setattr(room, "first_fall", lambda p, low, high: (low, high) if p(high) < p(low) else None)
-    monkeypatch.setattr(room, "_BITS", 384)
+    monkeypatch.setattr(branches, "first_fall", lambda p, low, high: (low, high) if p(high) < p(low) else None)
+    monkeypatch.setattr(room, "_ATTEMPTS", ((384, True), (768, False)))
     model = line([body(1, velocity=1, force=-1), contact("1/2"), rod()], "3/2")
-    inexact = room.Enclosed.of
+    inexact = Enclosed.of
 
     def blurred(exact):
         known = inexact(exact)
-        return room.Enclosed(known.polynomial, arb(2) ** -300) if exact.length() > 1 else known
+        return Enclosed(known.polynomial, arb(2) ** -300) if exact.length() > 1 else known
 
     monkeypatch.setattr("wavesym.exact.contacts.touching_joint.Enclosed.of", blurred)
     with pytest.raises(
@@ -273,14 +277,14 @@ def test_energy_is_lost_where_a_body_strikes_only_at_fronts_and_never_grows():
 
 def test_bouncing_ever_faster_ends_with_the_count(monkeypatch):
     """A body that is pressed on a bar comes back sooner each time, and fronts of all bounces go on for ever."""
-    monkeypatch.setattr(room, "MOST_SERIES", 90)
+    monkeypatch.setattr(cost, "MOST_SERIES", 90)
     with pytest.raises(CostError, match=r"openings and closings of contacts make more than 90 stretches by tau = "):
         events(line([body(1, velocity=1, force=3), contact("1/10"), rod(), FIXED], 400))
 
 
 def test_what_swings_too_fast_is_foretold(monkeypatch):
     """What nothing damps swings on: each stretch bears exp(20) of its rate."""
-    monkeypatch.setattr(room, "_FORETOLD", 32)
+    monkeypatch.setattr(cost, "_RECKONED", 32)
     parts = [body(1, velocity=1, stiffness=10**12), contact("1/4"), rod()]
     with pytest.raises(CostError, match=r"at a rate of 1e\+06, .* make 32 stretches .* would be 4.* by tau = 8, at"):
         events(line(parts, 8))
@@ -297,7 +301,7 @@ def test_waves_that_contacts_were_found_with_are_those_of_the_chain_moved_anew()
     model = line([body(1, velocity=1, force="1/2"), contact("1/10"), rod(), rod("1/2", 2), FIXED], 6)
     last = tuple(model.reached(model.until).items())
     known = room.schedule(model.network, model.loads, last)
-    assert known.found
+    assert known.changes
     with ctx.workprec(2 * known.bits):
         anew = room.replayed(model.network, known.stages, known.ends, model.loads)
     for bits in (64, 256):

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.exact.test_contact_truth import wrong
+from tests.support.cushioned import seeded
 from wavesym.exact.contacts import schedule as room
 from wavesym.exact.contacts.events import events, scheduled
 from wavesym.exact.joints.enclosed import Enclosed
@@ -163,6 +164,14 @@ def test_a_stiff_cushion_lifts_off_when_it_should(spring: int, dashpot: str, cap
     table = cushioned(spring, dashpot, "4.7", **cap)
     assert wrong(table) == []
     assert {event.kind for event in events(lower(Scene(**table)))} == {"opens", "closes"}
+
+
+@pytest.mark.parametrize(
+    "seed", [3, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (0, 1, 2, *range(4, 58)))]
+)
+def test_what_is_stiff_beside_contacts_moves_as_it_should(seed: int) -> None:
+    """Cushions, light masses, thin layers and twins, drawn."""
+    assert wrong(seeded(seed)) == []
 
 
 def stretches(table: dict[str, Any]) -> int:

@@ -47,7 +47,7 @@ def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
     seen = model.contacts(until)
     return tuple(
         ContactEvent(model.network.links[each.link].place, "closes" if each.closes else "opens", each.instant)
-        for each in known.found
+        for each in known.changes
         if each.link in seen and each.low <= until
     )
 

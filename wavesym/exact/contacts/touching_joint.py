@@ -71,7 +71,8 @@ class Moved:
     """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
     `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
-    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts.
+    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts. Its series, where it is one,
+    bears exp(`swing` length); it is `fleeting` where what decays fast keeps it short, until that has died away.
     """
 
     length: fmpq
@@ -84,6 +85,7 @@ class Moved:
     pushes: dict[int, Enclosed] = field(default_factory=dict)
     bare: set[int] = field(default_factory=set)
     swing: fmpq = _NOTHING
+    fleeting: bool = False
 
 
 class SwingError(Exception):
@@ -210,7 +212,10 @@ class TouchingJoint:
                 moving = motion.moved(waves, prescribed, result.length, terms)
             q = [[(_ONE, each)] for each in self._begun(cluster, pushed, prescribed, moving, result.length)]
             result.state |= self._after(cluster, motion)
-            result.swing = max(result.swing, rate)
+            if rate > result.swing:
+                result.swing = rate
+                cut = 2 * rate * result.length > MOST_SWING
+                result.fleeting = cut and any(each.slow < rate for each in cluster.relaxations)
             self._energy = self._energy.max(motion.energy(motion.velocity, motion.displacement))
         for k, (group, ratio) in zip(points, law.moves, strict=True):
             result.velocities[k] = scaled(q[group], ratio)

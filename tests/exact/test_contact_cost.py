@@ -1,0 +1,103 @@
+"""What contacts cost is seen before it is spent: how fronts are counted, and when stretches are refused."""
+
+from __future__ import annotations
+
+from heapq import heappop, heappush
+from typing import Any
+
+import pytest
+from flint import fmpq
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.support.touching import FIXED, contact, line, q, rod
+from wavesym.errors import CostError
+from wavesym.exact.contacts import cost
+from wavesym.exact.contacts.events import events, scheduled
+from wavesym.exact.joints.fronts import front_sources, front_times
+from wavesym.scene import Scene, lower
+
+LAYERS = ["0.0003925", "0.0018971"]
+
+
+def layered(until: object, layers: list[str]) -> list[Any]:
+    """A striker, a bar, two thin layers whose delays have no common measure, and a bar behind a contact."""
+    thin = [rod(layers[0], "0.222"), rod(layers[1], "0.0306")]
+    return line([rod("0.2", velocity=1), contact(), rod(), *thin, rod(), contact(), rod("0.2")], until)
+
+
+def test_a_layered_specimen_is_refused_after_a_thousand_stretches() -> None:
+    """Its fronts would make some 100 000: every sum of multiples of two delays."""
+    with pytest.raises(CostError, match=r"make 1024 stretches by tau = 1\.\d+, which would be .*e\+0[45] by"):
+        events(layered("3", LAYERS))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("until", "least"), [("2.1", 6000), ("2.17", 19000)])
+def test_what_comes_near_the_limit_is_served(until: str, least: int) -> None:
+    model = layered(until, LAYERS)
+    known = scheduled(model, model.until)
+    assert known is not None
+    assert least < sum(map(len, known.stages.values())) <= cost.MOST_STAGES
+
+
+def test_layers_with_a_common_measure_are_served() -> None:
+    assert events(layered("3", ["1/400", "1/200"]))
+
+
+def test_fronts_that_send_nothing_back_are_not_counted_for_stretches() -> None:
+    """Equal impedances in many pieces: fronts that are counted grow with the square of time, stretches do not."""
+    parts = [rod("0.2", velocity=1), contact(), *(rod(length) for length in ("0.0317", "0.0411", "0.0523")), FIXED]
+    assert events(line(parts, 9))
+
+
+@settings(max_examples=30)
+@given(st.lists(st.sampled_from(["1", "1/2", "0.7", "1.001", "1/3"]), min_size=1, max_size=4), st.integers(0, 3))
+def test_fronts_meet_joints_as_they_do_in_fractions(lengths: list[str], until: int) -> None:
+    network = line([rod(lengths[0], velocity=1), *(rod(length, 2) for length in lengths[1:])], until + 1).network
+    last = {number: q(until) + fmpq(number, 7) for number in range(len(network.joints))}
+    sources = front_sources(network, (), last)
+    met: set[tuple[fmpq, int]] = set()
+    coming = list(sources)
+    while coming:
+        time, number = heappop(coming)
+        if time <= last[number] and (time, number) not in met:
+            met.add((time, number))
+            for end, _ in network.joints[number].ends:
+                other = network.joint_of[network.point_at(network.beyond(end))]
+                heappush(coming, (time + network.bars[end.bar].delay, other))
+    assert list(front_times(network, sources, last)) == sorted(met)
+
+
+def specimen(until: str) -> dict[str, Any]:
+    """A striker, a bar, two thin layers and a bar with a contact, in units."""
+    steel = {"A": "314.16 mm^2", "E": "200 GPa", "rho": "7800 kg/m^3"}
+    parts = [
+        {"rod": "200 mm", "velocity": "10 m/s", **steel},
+        "contact",
+        {"rod": "1 m", **steel},
+        {"rod": "2 mm", "A": "200 mm^2", "E": "70 GPa", "rho": "2700 kg/m^3"},
+        {"rod": "3 mm", "A": "200 mm^2", "E": "3 GPa", "rho": "1200 kg/m^3"},
+        {"rod": "1 m", **steel},
+        "contact",
+        {"rod": "200 mm", **steel},
+    ]
+    return {
+        "name": "specimen",
+        "units": {"time": "us"},
+        "system": {"type": "chain", "parts": parts},
+        "output": {"until": until, "tolerance": 1e-6, "strain": ["0.7 m"]},
+    }
+
+
+def test_a_hopkinson_specimen_in_layers_is_refused_before_it_is_computed() -> None:
+    with pytest.raises(CostError, match=r"make 1024 stretches .*springs in place of thin rods help"):
+        events(lower(Scene(**specimen("600 us"))))
+    assert events(lower(Scene(**specimen("250 us")))) == ()
+
+
+def test_without_the_count_it_goes_on_to_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cost, "_GROWN", 10**9)
+    monkeypatch.setattr(cost, "MOST_STAGES", 3000)
+    with pytest.raises(CostError, match="make more than 3000 stretches"):
+        events(layered("3", LAYERS))

@@ -1,0 +1,134 @@
+"""What contacts cost: how many stretches there are, and would be by the end; too many are refused early."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from itertools import islice
+from math import log
+
+from flint import fmpq
+
+from wavesym.errors import CostError
+from wavesym.exact.contacts.touching_joint import MOST_SWING, Moved
+from wavesym.exact.joints.fronts import front_sources, front_times
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import Network
+from wavesym.numbers.doubles import nearest
+
+# stretches in all, and those whose motion is a series: half a minute
+MOST_STAGES, MOST_SERIES = 20_000, 10_000
+# how often joints are moved: half a minute
+MOST_MOVES = 500_000
+# after so many series, half a second, it is reckoned how many there would be; the margin of that, which gets less
+_RECKONED, _MARGIN = 96, 3
+# after so many times that count what happened lately is more than all that did, and what dies away counts
+_LATELY = 8
+# stretches after which, and after each doubling, it is reckoned how they grow with the fronts; fronts that are counted
+_GROWN, _MOST_FRONTS = 1024, 100_000
+
+
+class Cost:
+    """Counts the stretches of joints as they begin. CostError where there are too many, or would be by the end."""
+
+    def __init__(self, network: Network, loads: Sequence[Applied], last: Mapping[int, fmpq]) -> None:
+        self._network, self._loads, self._last = network, loads, last
+        self._until = max(last.values(), default=fmpq(0))
+        self._starts: list[fmpq] = []
+        self._series: list[fmpq] = []
+        self._lasting: list[fmpq] = []
+        self._stretches: Counter[int] = Counter()
+        self._swings: dict[int, fmpq] = {}
+
+    def refuse_many_moves(self, shortest: Mapping[int, fmpq]) -> None:
+        """CostError where joints, which are moved no further at once than their `shortest`, would be too often."""
+        moves = sum((tau / shortest[number] for number, tau in self._last.items()), fmpq(0))
+        if moves > MOST_MOVES:
+            raise CostError(
+                f"output.until: waves cross the shortest rod in {nearest(min(shortest.values())):g}, contacts are "
+                f"looked for {nearest(moves):.1e} times, at most {MOST_MOVES:g} expected (a shorter horizon or longer "
+                "rods help)"
+            )
+
+    def add(self, number: int, start: fmpq, moved: Moved, events: int) -> None:
+        """A stretch of a joint; so many events have been found."""
+        self._stretches[number] += 1
+        self._swings[number] = moved.swing
+        self._starts.append(start)
+        if moved.swing > 0:
+            self._series.append(start)
+            if not moved.fleeting:
+                self._lasting.append(start)
+        for starts, most in ((self._starts, MOST_STAGES), (self._series, MOST_SERIES)):
+            if len(starts) > most:
+                raise CostError(
+                    f"output.until: {self._causes(events)} make more than {most} stretches by tau = "
+                    f"{nearest(start):g}, at most {most} expected ({self._helps} help)"
+                )
+        if moved.swing > 0:
+            self._refuse_series(self._lasting, _RECKONED, events)
+            self._refuse_series(self._series, _RECKONED * _LATELY, events)
+        if len(self._starts) % _GROWN == 0 and (len(self._starts) // _GROWN).bit_count() == 1:
+            self._refuse_growth(start, events)
+
+    def _refuse_series(self, starts: Sequence[fmpq], first: int, events: int) -> None:
+        """Where these, at their rate so far, would be too many."""
+        count = len(starts)
+        if count < first or count % _RECKONED or starts[-1] == 0:
+            return
+        since, counted = (starts[count // 2], count - count // 2) if count >= _RECKONED * _LATELY else (fmpq(0), count)
+        if since == starts[-1]:
+            return
+        reckoned = count + counted * (self._until - starts[-1]) / (starts[-1] - since)
+        if reckoned > MOST_SERIES * (1 + fmpq(_MARGIN * _RECKONED, count)):
+            raise self._refusal(count, starts[-1], reckoned, MOST_SERIES, events)
+
+    def _refuse_growth(self, start: fmpq, events: int) -> None:
+        """Where all, as a power of the number of fronts that they grew like since half of them, would be too many."""
+        count, fronts = len(self._starts), self._fronts
+        now, then = (bisect_right(fronts, time) for time in (start, self._starts[count // 2]))
+        if not then < now < len(fronts):
+            return
+        reckoned = fmpq(int(count * (len(fronts) / now) ** min(1.0, log(2) / log(now / then))))
+        if reckoned > 2 * MOST_STAGES:
+            raise self._refusal(count, start, reckoned, MOST_STAGES, events)
+
+    @cached_property
+    def _fronts(self) -> Sequence[fmpq]:
+        """When fronts would meet joints if all contacts were closed, as far as they are counted."""
+        sources = front_sources(self._network, self._loads, self._last)
+        return [time for time, _ in islice(front_times(self._network, sources, self._last), _MOST_FRONTS)]
+
+    def _refusal(self, count: int, start: fmpq, reckoned: fmpq, most: int, events: int) -> CostError:
+        return CostError(
+            f"output.until: {self._causes(events)} make {count} stretches by tau = {nearest(start):g}, which would be "
+            f"{nearest(reckoned):.1e} by tau = {nearest(self._until):g}, at most {most} expected ({self._helps} help)"
+        )
+
+    def _causes(self, events: int) -> str:
+        """What makes stretches."""
+        other = f"fronts and {events} openings and closings of contacts"
+        if not self._is_fast(number := self._busiest):
+            return other
+        place = self._network.points[self._network.joints[number].points[0]].place
+        rate = nearest(self._swings[number])
+        return f"what swings or decays{place and ' at '}{place} at a rate of {rate:.3g}, {other}"
+
+    @property
+    def _helps(self) -> str:
+        if self._is_fast(self._busiest):
+            return "heavier bodies, or joints with dashpots in place of light ones, softer springs or a shorter horizon"
+        return "a shorter horizon, lengths with a larger common measure, or springs in place of thin rods"
+
+    @property
+    def _busiest(self) -> int:
+        """The joint with most stretches."""
+        return max(self._last, key=lambda number: self._stretches[number])
+
+    def _is_fast(self, number: int) -> bool:
+        """Whether stretches of a joint are cut short by what swings, not by fronts."""
+        ends = self._network.joints[number].ends
+        longest = min((self._network.bars[end.bar].delay for end, _ in ends), default=self._last[number])
+        return self._swings.get(number, fmpq(0)) * longest > MOST_SWING

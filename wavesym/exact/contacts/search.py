@@ -1,0 +1,260 @@
+"""Contacts as time goes on: joints are moved one after another, and what ends a branch of a contact cuts the stretch.
+
+Joints are moved as in `network_waves`, but breakpoints become known only as time goes on: a joint is moved no further
+than to the next one that is known, nor further than the shortest delay beside it reaches. As nobody has read beyond
+that, a contact that opens or closes on the way cuts the stretch there. `docs/contacts.md` has the argument.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+
+from flint import arb, ctx, fmpq
+
+from wavesym.exact.contacts.branches import BranchEnd, Contact
+from wavesym.exact.contacts.cluster import Closed, subsets
+from wavesym.exact.contacts.cost import Cost
+from wavesym.exact.contacts.course import Course, Doubt
+from wavesym.exact.contacts.touching_joint import MOST_SWING, Moved, SwingError
+from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import Network
+
+# an instant is known this closely, in shortest delays
+_WIDTH = fmpq(1, 2**230)
+# bits with which instants are had
+_INSTANT_BITS = 320
+# how much longer each next stretch is on which it is left open what a contact does, in bits
+_LONGER = 3
+# how much of the working precision is beyond the first of these stretches
+_SPARE = 128
+
+
+@dataclass(frozen=True)
+class Change:
+    """A contact (the number of its link) goes to its other branch between two instants, or at one."""
+
+    link: int
+    closes: bool
+    low: fmpq
+    high: fmpq
+
+    @property
+    def instant(self) -> arb:
+        """The ball between these, to as many digits as are had."""
+        with ctx.workprec(_INSTANT_BITS):
+            return arb(self.low) if self.low == self.high else arb(self.low).union(arb(self.high))
+
+
+class UndecidedError(Exception):
+    """A contact whose branch so many bits do not show."""
+
+    def __init__(self, link: int, closed: bool, tau: fmpq) -> None:
+        super().__init__()
+        self.link, self.closed, self.tau = link, closed, tau
+
+
+class Search:
+    """The joints of a network until their `last` instants, at the working precision.
+
+    `changes` are those of branches so far. No stretch on which it is left open what a contact does is longer than
+    `width`. Where it is `relaxing`, what decays fast is left out as soon as it is lost among rounding errors.
+    UndecidedError where bits do not show what a contact does.
+    """
+
+    def __init__(self, network: Network, loads: Sequence[Applied], last: Mapping[int, fmpq], relaxing: bool) -> None:
+        shortest = min(bar.delay for bar in network.bars)
+        self.waves = TouchingWaves(network, last, loads)
+        self.changes: list[Change] = []
+        self.width = shortest * _WIDTH
+        self._network, self._relaxing = network, relaxing
+        # the first stretch on which it is left open what a contact does
+        self._least = shortest / fmpq(2) ** (ctx.prec - _SPARE)
+        self._resolution = self._least / 4
+        # a joint is not moved after its last instant: its last series has to bear what neighbours read of it later
+        rates = [joint.law.fastest for joint in self.waves.joints.values()]
+        self._beyond = min([shortest, *(MOST_SWING / rate for rate in rates if rate != 0)])
+        self.courses = {number: self._course(number, until, loads) for number, until in last.items()}
+        self._cost = Cost(network, loads, last)
+        self._cost.refuse_many_moves({number: course.shortest for number, course in self.courses.items()})
+
+    def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> Course:
+        network, joint = self._network, self._network.joints[number]
+        far = [network.bars[end.bar].delay for end, _ in joint.ends]
+        contacts = tuple(Contact.of(n, network.links[n].gap) for n in self.waves.joints[number].touches)
+        shortest = min(far, default=last + 1)
+        course = Course(number, last, last + self._beyond, shortest, contacts, fmpq(0), fmpq(0))
+        sources = {unit.source for point in joint.points for unit in network.points[point].loads}
+        for load in loads:
+            if load.source in sources and 0 < load.time <= last:
+                heappush(course.breakpoints, load.time)
+        return course
+
+    def steps(self) -> Iterator[None]:
+        """Joints are moved in order of time."""
+        coming = [(fmpq(0), number) for number in self.courses]
+        while coming:
+            time, number = heappop(coming)
+            course = self.courses[number]
+            if time <= course.last:
+                self._advance(course, time)
+                yield
+                heappush(coming, (course.reached, number))
+
+    def _advance(self, course: Course, time: fmpq) -> None:
+        """From where a joint's motion is known up to the next limit, or to where a contact may change."""
+        breakpoint, limit = course.pass_breakpoints(time), course.limit(time)
+        if course.moved is not None:
+            if not breakpoint and self._extend(course, time, limit):
+                return
+            self._take(course, course.moved)
+            course.moved = None
+        self._begin(course, time, limit)
+
+    def _extend(self, course: Course, time: fmpq, limit: fmpq) -> bool:
+        """Go on with a stretch beyond `time`, unless its series would have to bear too much."""
+        assert course.moved is not None
+        since, known = course.since, time - course.since
+        if course.moved.swing * (limit - since) > MOST_SWING:
+            return False
+        moved = self._move(course, since, limit - since, course.moved.closed)
+        if moved.length <= known:
+            return False
+        moved, end = self._cut(course, since, moved, known)
+        if moved.length <= known and end is None:
+            return False
+        self._keep(course, moved, end)
+        return True
+
+    def _move(self, course: Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
+        """On a stretch, or on as much of it as a series bears."""
+        joint = self.waves.joints[course.number]
+        try:
+            arriving = self.waves.arriving(course.number, start, length)
+            return joint.moved(arriving, start, length, closed, relaxing=self._relaxing)
+        except SwingError as error:
+            return self._move(course, start, error.longest, closed)
+
+    def _cut(self, course: Course, start: fmpq, moved: Moved, low: fmpq) -> tuple[Moved, BranchEnd | None]:
+        """As much of a stretch as all contacts are certainly on their branches, as they are up to `low`."""
+        end = self._end(course, moved, low)
+        if end is None or end.length == 0:
+            return moved, end
+        moved = self._move(course, start, end.length, moved.closed)
+        return moved, end if moved.length == end.length else None
+
+    def _end(self, course: Course, moved: Moved, low: fmpq) -> BranchEnd | None:
+        """How long all contacts are certainly on their branches; None: all the way."""
+        found = (contact.end(moved, low, self._resolution) for contact in course.contacts)
+        ends = [end for end in found if end is not None]
+        if not ends:
+            return None
+        first = min(ends, key=lambda end: end.length)
+        if first.spread is not None:  # an instant with a short denominator
+            grid = self._resolution / 4
+            aligned = ((course.since + first.length) / grid).floor() * grid - course.since
+            if aligned > low:
+                return BranchEnd(fmpq(aligned), max(end.spread or first.spread for end in ends))
+        return first
+
+    def _begin(self, course: Course, start: fmpq, limit: fmpq) -> None:
+        """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
+        begun = self._decide(course, start, limit) if course.spread is None else None
+        if begun is None:
+            course.reached = self._drift(course, start, limit, course.spread or fmpq(0))
+            course.spread = None
+            return
+        moved, end = begun
+        for contact in course.contacts:
+            closed = contact.link in moved.closed
+            if closed != contact.closed:
+                doubt = course.doubt
+                low = doubt.low if doubt is not None and doubt.high == start else start
+                self.changes.append(Change(contact.link, closed, low, start))
+                contact.closed = closed
+        course.since = start
+        self._add_stage(course, Stage(start, moved.closed), moved)
+        self._keep(course, moved, end)
+
+    def _decide(self, course: Course, start: fmpq, limit: fmpq) -> tuple[Moved, BranchEnd | None] | None:
+        """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
+        shut = [contact.link for contact in course.contacts if contact.shut]
+        for closed in sorted(subsets(shut), key=len, reverse=True):
+            moved = self._move(course, start, limit - start, closed)
+            if all(contact.begins(moved) for contact in course.contacts):
+                moved, end = self._cut(course, start, moved, fmpq(0))
+                return (moved, end) if end is None or end.length > 0 else None
+        return None
+
+    def _add_stage(self, course: Course, stage: Stage, moved: Moved) -> None:
+        course.stages.append(stage)
+        self._cost.add(course.number, stage.start, moved, len(self.changes))
+
+    def _keep(self, course: Course, moved: Moved, end: BranchEnd | None) -> None:
+        """A stretch all the way, or up to its `end`, where a contact may change."""
+        since = course.since
+        if end is None:
+            course.moved, course.reached = moved, since + moved.length
+            self._send(course, since, moved)
+            return
+        if end.length > 0:
+            self._send(course, since, moved)
+            self._take(course, moved)
+        course.moved, course.reached, course.spread = None, since + end.length, end.spread
+
+    def _take(self, course: Course, moved: Moved) -> None:
+        """The joint goes to the end of its stretch; gaps become what they are there."""
+        self.waves.joints[course.number].take(moved)
+        for contact in course.contacts:
+            contact.advance(moved, moved.length)
+
+    def _send(self, course: Course, start: fmpq, moved: Moved) -> None:
+        """What a joint sends is kept; what begins there is a breakpoint at the other ends of its bars."""
+        network = self._network
+        begun = self.waves.record(course.number, start, moved)
+        for (end, _), new in zip(network.joints[course.number].ends, begun, strict=True):
+            other = self.courses.get(network.joint_of[network.point_at(network.beyond(end))])
+            time = start + network.bars[end.bar].delay
+            if new and other is not None and time <= other.last:
+                heappush(other.breakpoints, time)
+
+    # where it is left open what contacts do
+
+    def _drift(self, course: Course, start: fmpq, limit: fmpq, spread: fmpq) -> fmpq:
+        """Over a short stretch, on which it is left open what some contacts do; its end."""
+        length = limit - start
+        doubt = course.doubt
+        if doubt is None or start - doubt.high > 16 * (doubt.high - doubt.low):
+            doubt = course.doubt = Doubt(start, start, max(self._least, 4 * spread))
+        if length > self.width:
+            if doubt.next > self.width:
+                unclear = (contact for contact in course.contacts if not contact.shut and not contact.wide)
+                worst = next(unclear, course.contacts[0])
+                raise UndecidedError(worst.link, worst.closed, start)
+            length = min(length, doubt.next)
+            doubt.next *= 1 << _LONGER
+        else:  # what is not known came with a front: it takes about as long again
+            doubt.next = max(doubt.next, 4 * length)
+        moved = self._move_vague(course, start, length)
+        for contact in course.contacts:
+            contact.advance(moved, length)
+        self._add_stage(course, Stage(start, moved.closed, moved.vague), moved)
+        self._send(course, start, moved)
+        self.waves.joints[course.number].take(moved)
+        doubt.high = start + length
+        return doubt.high
+
+    def _move_vague(self, course: Course, start: fmpq, length: fmpq) -> Moved:
+        """The motion, with all contacts vague that are not certainly open or closed all the time."""
+        joint, arriving = self.waves.joints[course.number], self.waves.arriving(course.number, start, length)
+        vague = frozenset(contact.link for contact in course.contacts if not contact.shut and not contact.wide)
+        while True:
+            closed = frozenset(contact.link for contact in course.contacts if contact.shut) - vague
+            moved = joint.moved(arriving, start, length, closed, vague)
+            steady = (contact for contact in course.contacts if contact.link not in vague)
+            wrong = frozenset(contact.link for contact in steady if not contact.lasts(moved, length))
+            if not wrong:
+                return moved
+            vague |= wrong
