@@ -305,7 +305,7 @@ def modes(scene: Scene | str | PathLike[str], count: int = 10, below: float | No
     from wavesym.results.modes import modes as modes_of
 
     chain = scene if isinstance(scene, Scene) else Scene.chain_from_toml(scene)
-    return modes_of(lower(chain), count, below)
+    return modes_of(lower(chain, loads=False), count, below)
 
 
 def frf(
@@ -351,7 +351,7 @@ def frf(
     from wavesym.results.frequency_response import equally_spaced, frequency_response
     from wavesym.results.transfer import harmonic_load
 
-    lowered = lower(scene)
+    lowered = lower(scene, loads=False)
     acting = harmonic_load(lowered, sources(scene), load)
     at = equally_spaced(lowered, low, high, points) if frequencies is None else frequencies
     return frequency_response(lowered, acting, at)
@@ -372,7 +372,10 @@ def plot_modes(scene: Scene, found: Modes, path: Path) -> None:
     from wavesym.pictures.saving import picture_format, save
 
     picture_format(path)
-    save(draw(found, lower(scene), {name: line for name, line in scene.system.lines.items() if line[-1].x}), path)
+    save(
+        draw(found, lower(scene, loads=False), {name: line for name, line in scene.system.lines.items() if line[-1].x}),
+        path,
+    )
 
 
 def unexpected_lines(scene: Scene) -> list[str]:

@@ -23,6 +23,7 @@ class Dimension(NamedTuple):
 DIMENSIONS: Mapping[str, Dimension] = {
     "length": Dimension(1, 0, 0, "3.5 m"),
     "time": Dimension(0, 0, 1, "20 ms"),
+    "frequency": Dimension(0, 0, -1, "2 Hz"),
     "mass": Dimension(0, 1, 0, "350 t"),
     "velocity": Dimension(1, 0, -1, "5 m/s"),
     "acceleration": Dimension(1, 0, -2, "0.3 g"),

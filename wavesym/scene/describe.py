@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wavesym.fields.loads import Load, SampledLoad
+from wavesym.fields.shapes import ShapedLoad
 from wavesym.numbers.doubles import rational
 from wavesym.records.load import RecordedLoad
 
@@ -37,6 +38,8 @@ def _parts(scene: Scene) -> Iterator[str]:
 def _load(load: Load) -> str:
     if isinstance(load, RecordedLoad):
         return f"record of {len(load.record.samples)} samples"
+    if isinstance(load, ShapedLoad):
+        return f"{load.shape} load"
     if isinstance(load, SampledLoad):
         return f"load of {len(load.samples)} samples"
     changes = len({unit.time for unit in load.units()})

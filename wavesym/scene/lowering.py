@@ -13,6 +13,7 @@ from flint import fmpq
 
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load, SampledLoad, TimedLoad
+from wavesym.fields.shapes import ShapedLoad
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.loads import Applied, AppliedRecord, merged
@@ -31,31 +32,45 @@ _KEPT = "lowered"  # beside the fields of a scene
 _USUAL_DAMPING = fmpq(1, 5)  # of critical; above it a ratio is more often a slip than meant
 
 
-def lower(scene: Scene) -> Model:
+def lower(scene: Scene, *, loads: bool = True) -> Model:
     """The model of a scene; every number in it is an fmpq.
 
     It is made once and kept with the scene, so that whoever asks again gets the same one.
 
     Args:
         scene: what the user wrote, validated.
+        loads: whether its loads act; frequencies and frequency responses take no notice of what they do over time.
 
     Raises:
         SceneError: for what is no Scene: a path, say.
+        CostError: for loads that would take too many samples.
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
     parts = (scene.name, scene.system, scene.load, scene.output)
     kept = vars(scene).get(_KEPT)  # a copy of a scene with other parts has the model of the first
     if kept is None or any(one is not other for one, other in zip(kept.parts, parts, strict=True)):
-        kept = vars(scene)[_KEPT] = _Lowered(parts, _lowered(scene))
-    return kept.model
+        kept = vars(scene)[_KEPT] = _Lowered(parts, {})
+    if True not in kept.models and loads not in kept.models:
+        kept.models[loads] = _lowered(scene if loads else _unloaded(scene))
+    return kept.models.get(True) or kept.models[loads]
 
 
 class _Lowered(NamedTuple):
     """A model, and the parts of the scene that it was made from."""
 
     parts: tuple[object, ...]
-    model: Model
+    models: dict[bool, Model]
+
+
+def _unloaded(scene: Scene) -> Scene:
+    """The same scene, its loads never changing: they act where they do, by nothing."""
+    still = tuple(
+        load.within(Fraction(0), Fraction(1)) if isinstance(load, ShapedLoad) else load for load in scene.load
+    )
+    other = scene.model_copy()
+    vars(other)["load"] = still
+    return other
 
 
 def _lowered(scene: Scene) -> Model:
@@ -107,7 +122,7 @@ def drifts(scene: Scene) -> tuple[Probe, ...]:
 
 def sample_comb(scene: Scene) -> tuple[fmpq, fmpq] | None:
     """When the samples of the load that has the finest begin, and how far they are apart, in tau; None without any."""
-    combs = [(load.begin, load.step) for load in scene.load if isinstance(load, RecordedLoad)]
+    combs = [(load.begin, load.step) for load in scene.load if isinstance(load, RecordedLoad | ShapedLoad)]
     combs += [(Fraction(0), load.spacing) for load in scene.load if isinstance(load, SampledLoad)]
     if not combs:
         return None
@@ -124,7 +139,7 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
         loads=scene.physical.loads if scene.physical else tuple(load.told for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
-        notes=(*_damping_notes(scene), *_record_notes(scene)),
+        notes=(*_damping_notes(scene), *_record_notes(scene), *_shape_notes(scene)),
         size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
         dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",
     )
@@ -145,6 +160,13 @@ def _record_notes(scene: Scene) -> Iterator[str]:
                 f"load[{k}].record: the first sample is not 0, and modes take no jump: the load rises to it from 0 "
                 f"over one spacing, so that the record begins {_spacing(scene, load)} later"
             )
+
+
+def _shape_notes(scene: Scene) -> Iterator[str]:
+    """A line for each load that has a shape: as what it acts."""
+    for k, load in enumerate(scene.load):
+        if isinstance(load, ShapedLoad):
+            yield f"load[{k}]: {load.shape} {load.sampling}, one every {_spacing(scene, load)}"
 
 
 def _loads(scene: Scene) -> tuple[Applied, ...]:

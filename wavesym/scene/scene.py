@@ -23,6 +23,7 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
+from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import SceneTable, first_error, key_path, shown, wrong
 from wavesym.scene.describe import describe
 from wavesym.scene.loads import loads
@@ -176,6 +177,10 @@ class Scene(SceneTable):
     @model_validator(mode="after")
     def _watches_the_chain(self) -> Self:
         _ = self.outputs
+        if any(isinstance(load, ShapedLoad) for load in self.load):
+            until, tolerance = self.output.until, self.output.tolerance
+            each = (load.within(until, tolerance) if isinstance(load, ShapedLoad) else load for load in self.load)
+            vars(self)["load"] = tuple(each)
         return self
 
     @cached_property

@@ -16,6 +16,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, field_validator, mode
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Numbers, Positives
+from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import shown, wrong
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
@@ -80,6 +81,10 @@ class RecordedAcceleration(OfBase, RecordedLoad):
     """A base acceleration that is a record."""
 
 
+class ShapedAcceleration(OfBase, ShapedLoad):
+    """A base acceleration of one shape."""
+
+
 def known_base(base: object) -> str:
     """Which of the two bases. Raises the error of `table.wrong`."""
     if base in ("force", "ground"):
@@ -93,7 +98,7 @@ class Building(Preset):
     variants: ClassVar[tuple[System, ...]] = (BUILDING_FORCE, BUILDING_GROUND)
     counts: ClassVar[Mapping[str, str]] = {"kappa": "m + 1"}
     fewest: ClassVar[int | None] = 1  # no floor, but a roof
-    load_kinds: ClassVar[LoadKinds] = (Acceleration, SampledAcceleration, RecordedAcceleration)
+    load_kinds: ClassVar[LoadKinds] = (Acceleration, SampledAcceleration, RecordedAcceleration, ShapedAcceleration)
 
     type: Literal["building"] = Field(description='"building"')
     kappa: Positives = Field(description="a list of m + 1 positive numbers")

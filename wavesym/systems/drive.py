@@ -12,6 +12,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Integer, Numbers, Positives
+from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import shown
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
@@ -94,13 +95,17 @@ class RecordedMoment(OnBody, RecordedLoad):
     """A moment that is a record."""
 
 
+class ShapedMoment(OnBody, ShapedLoad):
+    """A moment of one shape."""
+
+
 class Drive(Preset):
     """m shafts between m + 1 rigid discs at x = 0, 1, ... m."""
 
     variants: ClassVar[tuple[System, ...]] = (DRIVE,)
     beside: ClassVar[tuple[System, ...]] = (DRIVE_RAMPS,)
     counts: ClassVar[Mapping[str, str]] = {"kappa": "m", "inertia": "m + 1"}
-    load_kinds: ClassVar[LoadKinds] = (Moment, SampledMoment, RecordedMoment)
+    load_kinds: ClassVar[LoadKinds] = (Moment, SampledMoment, RecordedMoment, ShapedMoment)
 
     type: Literal["drive"] = Field(description='"drive"')
     kappa: Positives = Field(description="a list of m positive numbers")

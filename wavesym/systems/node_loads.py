@@ -8,6 +8,7 @@ from pydantic import Field, PlainValidator
 
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import LONGEST, Numbers, exact, written
+from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import shown, wrong
 from wavesym.records.load import RecordedLoad
 from wavesym.systems.place import PlaceInUnits, position_of
@@ -52,4 +53,8 @@ class RecordedNodeLoad(OnNode, RecordedLoad):
     """A load that is a record."""
 
 
-NODE_LOADS: LoadKinds = (NodeLoad, SampledNodeLoad, RecordedNodeLoad)
+class ShapedNodeLoad(OnNode, ShapedLoad):
+    """A load of one shape."""
+
+
+NODE_LOADS: LoadKinds = (NodeLoad, SampledNodeLoad, RecordedNodeLoad, ShapedNodeLoad)

@@ -23,6 +23,7 @@ from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load, TimedLoad
+from wavesym.fields.shapes import ShapedLoad
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
@@ -159,6 +160,8 @@ def changes(load: Load) -> Iterator[tuple[Fraction, Fraction, Fraction]]:
         values = [load.scale * Fraction(sample) for sample in load.record.samples] + [Fraction(0)]
         if load.begin:
             begin, values = load.begin - step, [Fraction(0), *values]
+    elif isinstance(load, ShapedLoad):
+        begin, values = load.start, [fraction(sample) for sample in load.polyline]
     else:
         values = list(load.samples)  # type: ignore[attr-defined]
     slopes = [Fraction(0), *((after - before) / step for before, after in pairwise(values)), Fraction(0)]

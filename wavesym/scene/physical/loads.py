@@ -39,6 +39,12 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
                 table[new] = _all(value, acting.dimension, acting.size)
             elif key in _SLOPES:
                 table[new] = _all(value, acting.slope, acting.size / seconds)
+            elif key == "amplitude":
+                table[new] = measured(value, acting.dimension) / acting.size
+            elif key == "frequency":
+                table[new] = measured(value, "frequency", 1) * seconds
+            elif key == "duration" or (key == "start" and "shape" in load):
+                table[new] = measured(value, "time", int(key == "duration")) / seconds
             elif key == "spacing":
                 table[new] = measured(value, "time", 1) / seconds
             elif key not in said:

@@ -1,0 +1,154 @@
+"""Loads of a given shape: how far their lines are from the shape, and what comes out of a chain."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import exp, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wavesym
+from wavesym.errors import CostError, SceneError
+from wavesym.fields.shapes import ShapedLoad
+from wavesym.scene import Scene, lower
+
+PACE = {"sine": "frequency", "half-sine": "duration", "exponential": "duration", "ricker": "frequency"}
+
+
+def scene(tolerance: object = "1/1000000", until: object = 3, **load: object) -> Scene:
+    """A rod without end, so that the force in it is the load a while ago."""
+    parts = [{"joint": True, "name": "head"}, {"rod": 1}, "absorbing"]
+    return Scene(
+        name="rod",
+        system={"type": "chain", "parts": parts},
+        load=[{"at": "head", **load}],
+        output={"until": until, "force": ["1/2"], "tolerance": tolerance},
+    )
+
+
+def value(shape: str, pace: float, t: float) -> float:
+    """A load of amplitude 1 at a time after its start, written down once more."""
+    match shape:
+        case "sine":
+            return sin(2 * pi * pace * t)
+        case "half-sine":
+            return sin(pi * t / pace) if t < pace else 0.0
+        case "exponential":
+            return exp(-t / pace)
+    a = pi * pace * (t - 2 / pace)
+    return (1 - 2 * a * a) * exp(-a * a)
+
+
+@given(
+    st.sampled_from(sorted(PACE)),
+    st.sampled_from(["1/3", "1", "7/2", "0.3000001"]),
+    st.sampled_from(["0", "1/7", "1"]),
+    st.sampled_from([Fraction(1, 100), Fraction(1, 10_000)]),
+)
+def test_the_force_in_a_rod_is_the_shape_within_what_it_says(
+    shape: str, pace: str, start: str, tolerance: Fraction
+) -> None:
+    made = scene(tolerance, **{"shape": shape, "amplitude": -2, PACE[shape]: pace, "start": start})
+    (load,) = made.load
+    assert isinstance(load, ShapedLoad)
+    assert load.error <= tolerance / 2
+    begin = 0.5 + float(Fraction(start))
+    tau = np.linspace(0, 3, 1201)
+    # on the way to where an exponential jumps, rounding of tau decides
+    tau = tau[np.abs(tau - begin) > 1e-9]
+    expected = [2 * value(shape, float(Fraction(pace)), t - begin) if t > begin else 0.0 for t in tau]
+    off = np.abs(wavesym.run(made, tau).values[0] - expected)
+    assert off.max() <= 2 * float(load.error) + 1e-13
+
+
+def test_lines_too_far_apart_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With half as many samples the error is above what is said."""
+    made = scene("1/100", shape="sine", amplitude=1, frequency=1)
+    (load,) = made.load
+    assert isinstance(load, ShapedLoad)
+    said, parts = float(load.error), load._parts
+    monkeypatch.setattr(ShapedLoad, "_parts", property(lambda self: (parts + 1) // 2))
+    coarse = scene("1/100", shape="sine", amplitude=1, frequency=1)
+    tau = np.linspace(0.5, 3, 2000)
+    off = np.abs(wavesym.run(coarse, tau).values[0] + np.sin(2 * pi * (tau - 0.5)))
+    assert off.max() > said
+
+
+def test_a_pile_under_half_a_sine() -> None:
+    """PileWave.jl, "Simple sine wave": c = 5000 m/s, radius 0.2 m, 20 MPa for 1 ms at the head, the toe fixed.
+
+    At 4 ms the force is F sin(pi z/5) for z < 5 m: 1 477 265.464392366 N at 1 m and 4 m, F = 2 513 274.1228718353 N.
+    """
+    rod = {"rod": "10 m", "A": "0.12566370614359172 m^2", "E": "30 GPa", "rho": "1200 kg/m^3"}
+    pile = Scene(
+        name="pile",
+        units={},
+        system={"type": "chain", "parts": [{"joint": True, "name": "head"}, rod, "fixed"]},
+        load=[{"at": "head", "shape": "half-sine", "amplitude": "2513274.1228718353 N", "duration": "1 ms"}],
+        output={"until": "5 ms", "force": ["1 m", "2.5 m", "4 m"], "tolerance": "1/1000000"},
+    )
+    forces = wavesym.run(pile, [0.004]).values[:, 0]
+    assert np.abs(forces) == pytest.approx([1477265.464392366, 2513274.1228718353, 1477265.464392366], rel=2.5e-7)
+    (note,) = lower(pile).labels.notes
+    assert note == "load[0]: half-sine as 2223 samples, within 2.5e-07 of its amplitude, one every 4.50045005e-07 s"
+
+
+@pytest.mark.parametrize(
+    ("load", "message"),
+    [
+        (
+            {"shape": "saw", "amplitude": 1},
+            'load[0].shape: "saw" given, "sine", "half-sine", "exponential" or "ricker"',
+        ),
+        ({"shape": "sine", "amplitude": 1}, "load[0].frequency: missing, a positive number expected (of a sine)"),
+        ({"shape": "sine", "amplitude": 1, "frequency": 0}, "load[0].frequency: 0 given, a positive number expected"),
+        (
+            {"shape": "sine", "amplitude": 1, "frequency": 1, "duration": 1},
+            "load[0].duration: given, none expected (a sine has a frequency)",
+        ),
+        ({"shape": "sine", "frequency": 1}, "load[0].amplitude: missing"),
+        (
+            {"shape": "sine", "amplitude": 1, "frequency": 1, "start": -1},
+            "load[0].start: -1 given, a time of at least 0",
+        ),
+    ],
+)
+def test_a_wrong_shape_gets_one_line(load: dict[str, object], message: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        scene(**load)
+    assert message in str(caught.value)
+
+
+def test_too_many_samples_are_refused_where_they_would_act_alone() -> None:
+    fine = scene("1e-10", shape="sine", amplitude=1, frequency=1)
+    with pytest.raises(
+        CostError, match=r"load: 1332868 samples of a sine .* \(output.tolerance = 1.8e-08 or more helps\)"
+    ):
+        wavesym.run(fine)
+    assert wavesym.frf(fine, [2.0])["force@1/2"] == pytest.approx(-np.exp(-1j), rel=1e-15)
+
+
+def test_a_shape_is_kept_as_it_was_written() -> None:
+    made = scene("1/1000", shape="ricker", amplitude="1/3", frequency="5/2")
+    again = Scene(**made.model_dump())
+    assert again == made
+    assert lower(again).labels.sha256 == lower(made).labels.sha256
+    assert repr(made) == "Scene('rod', chain, 1 rod, ricker load, until tau = 3)"
+    louder = made.with_({"load[0].amplitude": "2/3"})
+    tau = np.linspace(0, 3, 50)
+    assert wavesym.run(louder, tau).values == pytest.approx(2 * wavesym.run(made, tau).values)
+
+
+@pytest.mark.parametrize("shape", sorted(PACE))
+def test_drives_and_buildings_take_shapes(shape: str) -> None:
+    drive = Scene.from_toml("drive_m1").model_dump()
+    drive["load"] = [{"body": 1, "shape": shape, "amplitude": 1, PACE[shape]: 1}]
+    drive["output"]["tolerance"] = "1/100"
+    assert np.isfinite(wavesym.run(Scene(**drive), [2.0]).values).all()
+    building = Scene.from_toml("building_m2").model_dump()
+    building["load"] = [{"shape": shape, "amplitude": 1, PACE[shape]: 1}]
+    building["output"]["tolerance"] = "1/100"
+    assert np.isfinite(wavesym.run(Scene(**building), [2.0]).values).all()

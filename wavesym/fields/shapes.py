@@ -1,0 +1,181 @@
+"""Loads of a given shape: a sine, half of one, a decay, Ricker's pulse; as straight lines between samples.
+
+A line between two samples is off by at most h^2/8 times the greatest second derivative, h the time between them. That
+is kept below a part of the tolerance, in parts of the amplitude. Each sample is rounded once, to far less than that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from functools import cached_property
+from math import ceil, sqrt
+from typing import Annotated, Self
+
+from flint import arb, ctx, fmpq
+from pydantic import Field, PlainValidator, PrivateAttr, model_validator
+
+from wavesym.errors import CostError
+from wavesym.fields.loads import Load, linear
+from wavesym.fields.numbers import Exact, Positive, exact
+from wavesym.fields.table import shown, wrong
+from wavesym.mechanics.loads import Applied
+from wavesym.numbers.doubles import fraction, middle, rational
+
+SHAPES = {"sine": "frequency", "half-sine": "duration", "exponential": "duration", "ricker": "frequency"}
+"""Each shape, and what says how fast it is."""
+MOST_SAMPLES = 100_000
+_SHARE = Fraction(1, 4)  # of the tolerance
+_BITS, _DIGITS = 192, 96  # of samples, in balls and behind the point
+_RICKER = 2  # periods from the start to the top, and from there to the end
+_RICKER_ENDS = Fraction(1, 10**15)  # of its amplitude, which is left out before and after: 78 exp(-4 pi^2) is 5.6e-16
+
+
+def _shape(value: object) -> str:
+    if isinstance(value, str) and value in SHAPES:
+        return value
+    *others, last = (f'"{shape}"' for shape in SHAPES)
+    raise wrong(f"{shown(value)} given, {', '.join(others)} or {last} expected")
+
+
+def _start(value: object) -> Fraction:
+    start = exact(value)
+    if start < 0:
+        raise wrong(f"{shown(value)} given, a time of at least 0 expected")
+    return start
+
+
+class ShapedLoad(Load):
+    """A load of one shape, times its amplitude A, from its start on (t is the time since then), and 0 before:
+
+    sine          A sin(2 pi f t)                                            until the horizon
+    half-sine     A sin(pi t/D)                                              for the duration D
+    exponential   A exp(-t/D), which jumps to A
+    ricker        A (1 - 2 a^2) exp(-a^2), a = pi f (t - 2/f)                for 4/f
+    """
+
+    shape: Annotated[str, PlainValidator(_shape)] = Field(description=", ".join(SHAPES))
+    amplitude: Exact = Field(description="a number")
+    frequency: Positive | None = None
+    duration: Positive | None = None
+    start: Annotated[Exact, PlainValidator(_start)] = Fraction(0)
+
+    _until: Fraction = PrivateAttr(default=Fraction(1))
+    _tolerance: Fraction = PrivateAttr(default=Fraction(1, 10**10))
+
+    @model_validator(mode="after")
+    def _one_pace(self) -> Self:
+        needed = SHAPES[self.shape]
+        other = "duration" if needed == "frequency" else "frequency"
+        if getattr(self, needed) is None:
+            raise wrong(f"missing, a positive number expected (of a {self.shape})", needed)
+        if getattr(self, other) is not None:
+            raise wrong(f"given, none expected (a {self.shape} has a {needed})", other)
+        return self
+
+    def within(self, until: Fraction, tolerance: Fraction) -> Self:
+        """The same load as far as it matters to a horizon and a tolerance."""
+        other = self.model_copy()
+        other._until, other._tolerance = until, tolerance
+        return other
+
+    @property
+    def begin(self) -> Fraction:
+        """The time of the first sample."""
+        return self.start
+
+    @property
+    def period(self) -> Fraction:
+        """The time in which it changes: 1/f, or D."""
+        period = self.duration if self.frequency is None else 1 / self.frequency
+        assert period is not None  # or the load was refused
+        return period
+
+    @property
+    def error(self) -> Fraction:
+        """How far it is from its lines at most, in parts of its amplitude: proved."""
+        left_out = {"exponential": self._tolerance * _SHARE, "ricker": _RICKER_ENDS}.get(self.shape, Fraction(0))
+        lines = fraction(middle(self._bend)) / 8 / self._parts**2
+        return lines + left_out + Fraction(1, 2**_DIGITS)
+
+    @property
+    def step(self) -> Fraction:
+        """The time between samples: a whole part of the period."""
+        return self.period / self._parts
+
+    @cached_property
+    def _bend(self) -> arb:
+        """The greatest second derivative for amplitude and period 1: not below it."""
+        pi = arb.pi()
+        bends = {"sine": 4 * pi * pi, "half-sine": pi * pi, "exponential": arb(1), "ricker": 6 * pi * pi}
+        return bends[self.shape].upper()
+
+    @cached_property
+    def _parts(self) -> int:
+        return max(2, ceil(sqrt(float(self._bend) / (8 * float(self._tolerance * _SHARE)))))
+
+    @property
+    def _last(self) -> Fraction:
+        """How long it lasts, in periods; what comes after the horizon does not matter."""
+        left = max(self._until - self.start, Fraction(0)) / self.period
+        # a decay is below the tolerance after so many
+        ends = {"half-sine": Fraction(1), "ricker": Fraction(2 * _RICKER), "exponential": Fraction(self._decays)}
+        return min(left, ends.get(self.shape, left))
+
+    @property
+    def _decays(self) -> int:
+        return ceil(float((_SHARE * self._tolerance).denominator.bit_length()) * 0.7 + 1)
+
+    @cached_property
+    def samples(self) -> tuple[fmpq, ...]:
+        """Its values, one `step` apart; after the last it is of no matter. CostError for too many."""
+        count = ceil(self._last * self._parts) + 1
+        if count > MOST_SAMPLES:
+            enough = float(self._tolerance) * (count / MOST_SAMPLES) ** 2
+            raise CostError(
+                f"load: {count} samples of a {self.shape} for a tolerance of {float(self._tolerance):.1e}, at most "
+                f"{MOST_SAMPLES} expected (output.tolerance = {enough:.1e} or more helps)"
+            )
+        size = rational(self.amplitude)
+        with ctx.workprec(_BITS):
+            values = [size * _rounded(self._value(arb(fmpq(k, self._parts)))) for k in range(count)]
+        if self.shape == "ricker":
+            values[0] = fmpq(0)  # no jump
+        return tuple(values)
+
+    def _value(self, t: arb) -> arb:
+        """Of amplitude 1, after so many periods."""
+        match self.shape:
+            case "sine":
+                return (2 * t).sin_pi()
+            case "half-sine":
+                return (t if t < arb(0.5) else 1 - t).sin_pi()  # exactly 0 at its end
+            case "exponential":
+                return (-t).exp()
+        a = (arb.pi() * (t - _RICKER)) ** 2
+        return (1 - 2 * a) * (-a).exp()
+
+    def units(self) -> Iterator[Applied]:
+        """The load as unit responses."""
+        return linear(self.start, self.step, self.polyline, self.sources)
+
+    @property
+    def polyline(self) -> tuple[fmpq, ...]:
+        """Its samples, and the 0 that ends a decay."""
+        return self.samples if self.shape in ("sine", "half-sine") else (*self.samples, fmpq(0))
+
+    @property
+    def told(self) -> str:
+        """In a line."""
+        pace = f"{SHAPES[self.shape]} {getattr(self, SHAPES[self.shape])}"
+        return f"{self.shape} of amplitude {self.amplitude}, {pace}, from tau = {self.start}, {self.sampling}"
+
+    @property
+    def sampling(self) -> str:
+        """How it is sampled, for people."""
+        return f"as {len(self.samples)} samples, within {float(self.error):.1e} of its amplitude"
+
+
+def _rounded(value: arb) -> fmpq:
+    """The nearest fraction of so many binary digits."""
+    return fmpq(int((value.mid() * 2**_DIGITS + fmpq(1, 2)).floor().unique_fmpz()), 2**_DIGITS)
