@@ -19,7 +19,7 @@ import wavesym
 from tests.support.scenes import NAMED
 from wavesym.cli import inspect as command
 from wavesym.cli import main
-from wavesym.derivation.exact_rule import Linear
+from wavesym.derivation.rules import Linear
 from wavesym.documents.inspection import document, laws, modelled
 from wavesym.documents.inspection.document import inspection
 from wavesym.documents.inspection.section import Facts, Listing, Told

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Rational, Symbol, exp, expand
 
-from wavesym.derivation.exact_rule import DERIVATIVE, Linear, Weights
 from wavesym.derivation.increments import add, apply, combined, integrated, solve, start
+from wavesym.derivation.rules import DERIVATIVE, Linear, Weights
 
 W = Symbol("w")
 ONE, ZERO = fmpq(1), fmpq(0)

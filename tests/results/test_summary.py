@@ -18,8 +18,8 @@ import wavesym
 from wavesym.cli import main
 from wavesym.cli.run import DEFAULT_SAMPLES
 from wavesym.errors import CostError
-from wavesym.exact.arrivals import first_arrivals, light_arrivals
 from wavesym.exact.extremes import extremes
+from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
 from wavesym.programs.making import make

@@ -18,8 +18,8 @@ import wavesym
 from wavesym import api
 from wavesym.api import tables as table_rows
 from wavesym.derivation import delay, recurrence
-from wavesym.derivation.exact_rule import JointRule, Linear, Rule, Weights
 from wavesym.derivation.node_law import NodeLaw
+from wavesym.derivation.rules import JointRule, Linear, Rule, Weights
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.programs.making import make
 from wavesym.programs.request import KINDS, Request

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from flint import fmpq
 
-from wavesym.derivation.exact_rule import DERIVATIVE, Weights
+from wavesym.derivation.rules import DERIVATIVE, Weights
 
 Increment = dict[fmpq, list[fmpq]]
 _ZERO, _ONE = fmpq(0), fmpq(1)

@@ -19,9 +19,9 @@ from sympy import Expr, Integer, Symbol, exp
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Operator
-from wavesym.derivation.exact_rule import JointRule, Linear, LoadTerm, Rule, Term, Weights
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, NodeLaw, node_law
 from wavesym.derivation.numbers import number
+from wavesym.derivation.rules import JointRule, Linear, LoadTerm, Rule, Term, Weights
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters, System
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from wavesym.derivation.exact_rule import Rule
 from wavesym.derivation.increments import Increment, add, apply, solve, start
+from wavesym.derivation.rules import Rule
 from wavesym.derivation.table_size import refuse_large
 from wavesym.mechanics.chain import Chain
 

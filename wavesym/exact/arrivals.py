@@ -11,17 +11,12 @@ Computed modulo a prime at a random t, a sum that is not 0 is taken for 0 with a
 rational function of t its numerator has a degree below 2**50, and t is one of 2**127 numbers.
 
 Of what arrives at the end of the horizon only the jump is seen, and that is the sum at t = 0.
-
-Where contacts open and close no transform tells; there it is the start of the first piece that, in balls, certainly is
-not 0. What is at rest until loads that do not jump act on it needs no transform: the light cone tells, but for outputs
-that are 0 throughout.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 from heapq import heappop, heappush
 from math import factorial
 
@@ -29,15 +24,12 @@ from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
 
 from wavesym.derivation.exact_rule import joint_rule
 from wavesym.exact.joints.joint import JointLaw, joint_ends
-from wavesym.exact.tables.ball import Segment
 from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
-from wavesym.numbers.doubles import rational
 
 _PRIME = 2**127 - 1
 _FIELD = fmpz_mod_ctx(_PRIME)
-_MOST = 200_000  # fronts that are followed: some seconds
 _T = 0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357 % _PRIME  # drawn once, so that the same scene makes the same files
 
 
@@ -79,61 +71,6 @@ _Sums = Mapping[fmpq, int]
 def _gains(model: Model, until: fmpq) -> Iterator[tuple[_Sums, _Sums]]:
     """What each output gains at each instant, and by how much it jumps there; both in transforms."""
     return zip(_Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums(), strict=True)
-
-
-def first_arrivals(model: Model) -> list[fmpq | None]:
-    """The tau of each output; None where nothing arrives on the horizon (or within the first _MOST fronts).
-
-    CostError where contacts open and close too often.
-    """
-    until = rational(model.horizon())
-    if model.network.contacts:
-        from wavesym.exact.motion import Motion  # which asks here when outputs begin
-
-        motion = Motion(model, until)
-        return [_begins(motion.segments(probe, motion.first_bits), until) for probe in model.probes]
-    found: list[fmpq | None] = [None] * len(model.probes)
-    shortest = min(bar.delay for bar in model.network.bars)
-    early, left = shortest, list(range(len(found)))
-    while left:
-        early = min(2 * early, until)
-        beginning = replace(model.watching(model.probes[k] for k in left), loads=model.acting(early))
-        for k, time in zip(left, arrivals(beginning, early), strict=True):
-            found[k] = time
-        left = [k for k in left if found[k] is None]
-        fronts = len(model.network.joints) * (1 + len(beginning.loads)) * early / shortest
-        if early == until or fronts > _MOST:
-            break
-    return found
-
-
-def light_arrivals(model: Model) -> list[fmpq | None]:
-    """When the first load can be felt by each output of a chain that rests until then; None: not on the horizon."""
-    network, last = model.network, rational(model.horizon())
-    begun: dict[int, fmpq] = {}
-    for number, point in enumerate(network.points):
-        sources = {unit.source for unit in point.loads}
-        times = [load.time for load in model.loads if load.source in sources]
-        if times:
-            joint = network.joint_of[number]
-            begun[joint] = min([begun[joint], *times] if joint in begun else times)
-    found: list[fmpq | None] = []
-    for probe in model.probes:
-        readings = [reading for _, reading in model.sums[probe]]
-        places = [(reading.rod - 1, reading.place) for reading in readings if reading.point is None]
-        points = [reading.point for reading in readings if reading.point is not None]
-        distances = network.distances(places, points)
-        times = [time + distances[joint] for joint, time in begun.items() if joint in distances]
-        found.append(min((time for time in times if time <= last), default=None))
-    return found
-
-
-def _begins(segments: Sequence[Segment], until: fmpq) -> fmpq | None:
-    ends = [*(segment.start for segment in segments[1:]), until]
-    for segment, end in zip(segments, ends, strict=True):
-        if any(segment.at((end - segment.start) * fmpq(k, 3)) != 0 for k in range(4)):
-            return segment.start
-    return None
 
 
 class _Fronts:

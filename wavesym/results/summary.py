@@ -13,8 +13,8 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError, did_you_mean
-from wavesym.exact.arrivals import first_arrivals, light_arrivals
 from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes
+from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below, rational

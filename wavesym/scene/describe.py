@@ -2,37 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 from wavesym.fields.loads import Load, SampledLoad
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.numbers.doubles import rational
 from wavesym.records.load import RecordedLoad
-
-if TYPE_CHECKING:
-    from wavesym.scene.scene import Scene
+from wavesym.systems import SystemTable
 
 _ELEMENTS = {"building": ("storey", "storeys"), "drive": ("shaft", "shafts")}
 _RODS = ("rod", "rods")
 _MOST_LOADS = 1  # that are described; of several there is the number
 
 
-def describe(scene: Scene) -> str:
+def describe(name: str, system: SystemTable, loads: Sequence[Load], until: str) -> str:
     """The name, the system and its size, the loads and the horizon of a scene, with commas between."""
-    return ", ".join([repr(scene.name), *_parts(scene)])
+    return ", ".join([repr(name), *_parts(system, loads), f"until {until}"])
 
 
-def _parts(scene: Scene) -> Iterator[str]:
-    yield scene.system.type
-    count = sum(len(stations) - 1 for stations in scene.system.lines.values())
-    yield f"{count} {_ELEMENTS.get(scene.system.type, _RODS)[count != 1]}"
-    if len(scene.load) > _MOST_LOADS:
-        yield f"{len(scene.load)} loads"
+def _parts(system: SystemTable, loads: Sequence[Load]) -> Iterator[str]:
+    yield system.type
+    count = sum(len(stations) - 1 for stations in system.lines.values())
+    yield f"{count} {_ELEMENTS.get(system.type, _RODS)[count != 1]}"
+    if len(loads) > _MOST_LOADS:
+        yield f"{len(loads)} loads"
     else:
-        yield from map(_load, scene.load)
-    until = scene.output.until
-    yield f"until {scene.scale.clock.told(rational(until)) if scene.scale else f'tau = {until}'}"
+        yield from map(_load, loads)
 
 
 def _load(load: Load) -> str:

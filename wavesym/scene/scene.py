@@ -25,6 +25,7 @@ from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import SceneTable, first_error, key_path, shown, wrong
+from wavesym.numbers.doubles import rational
 from wavesym.scene.describe import describe
 from wavesym.scene.loads import loads
 from wavesym.scene.names import Name
@@ -124,7 +125,9 @@ class Scene(SceneTable):
         return type(self)(**fields)
 
     def __repr__(self) -> str:
-        return f"Scene({describe(self)})"
+        until = self.output.until
+        horizon = self.scale.clock.told(rational(until)) if self.scale else f"tau = {until}"
+        return f"Scene({describe(self.name, self.system, self.load, horizon)})"
 
     __str__ = __repr__
 

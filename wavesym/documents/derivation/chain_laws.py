@@ -11,9 +11,9 @@ from sympy import Expr, Indexed, Integer, Symbol
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import exact
-from wavesym.derivation.exact_rule import Linear, Rule, Weights
 from wavesym.derivation.numbers import expression, number, symbol
 from wavesym.derivation.recurrence import POWER, RATE, CoefficientLaw, SymbolicWeights, recurrence
+from wavesym.derivation.rules import Linear, Rule, Weights
 from wavesym.documents.derivation.families import placed
 from wavesym.mechanics.chain import Chain
 

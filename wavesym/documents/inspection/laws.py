@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from wavesym.derivation.exact_rule import Linear, LoadTerm, Rule, Term, Weights
+from wavesym.derivation.rules import Linear, LoadTerm, Rule, Term, Weights
 from wavesym.derivation.table import Function, Rules
 from wavesym.documents.inspection.modelled import cone, nodes_in_reach
 from wavesym.documents.inspection.networked import joint_laws, not_served

@@ -17,8 +17,9 @@ from itertools import product
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from wavesym.derivation.exact_rule import Weights, factor_weights
+from wavesym.derivation.exact_rule import factor_weights
 from wavesym.derivation.increments import Increment, add, solve, trimmed
+from wavesym.derivation.rules import Weights
 from wavesym.exact.joints.joint import JointLaw
 
 Matrix = Mapping[tuple[int, int], fmpq]
