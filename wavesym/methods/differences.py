@@ -122,6 +122,39 @@ def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
     )
 
 
+class GridMotion:
+    """The displacements of a field, `now` and a step before, and of the points."""
+
+    def __init__(self, grid: Grid, points: PointSteps) -> None:
+        self._grid, self._points = grid, points
+        self._placed = np.append(grid.ends, grid.points)
+        self._beside = np.append(grid.ends + np.tile([1, -1], len(grid.cells)), grid.points)
+        self.step = 0
+        self.now = np.zeros_like(grid.start_velocity)
+        self._past = self.now
+        self._u = self._before = np.zeros(grid.problem.points)
+        self._padded = np.zeros(len(self.now) + 2)
+
+    def advance(self) -> None:
+        """One step."""
+        points = self._points
+        if self.step == 0:
+            after, yields = points.first.copy(), points.first_yields
+            self.now = self._grid.h * self._grid.start_velocity
+        else:
+            after, yields = points.near @ self.now[self._beside] - points.past @ self._before, points.yields
+            after += points.loads[self.step]
+            self._padded[1:-1] = self.now
+            self._past, self.now = self.now, self._padded[:-2] + self._padded[2:] - self._past
+        self.step += 1
+        self._before, self._u = self._u, self.settle(after, yields)
+        self.now[self._placed] = self._grid.spread @ self._u
+
+    def settle(self, after: Array, moved: Array) -> Array:
+        """Where points are after a step, from where they would be, `after`, and how far forces on them move them."""
+        return after
+
+
 def _solve(problem: Problem, resolution: float) -> Evaluate:
     least = FEWEST * problem.measure / min(problem.delays)
     parts = ceil(max(problem.measure * Fraction(resolution), least))
@@ -132,21 +165,14 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
     stencils = [grid.stencil(reading) for reading in problem.readings]
     kept = np.unique(np.concatenate([places for places, _ in stencils]))
     stencils = [(np.searchsorted(kept, places), weights) for places, weights in stencils]
-    beside = np.append(grid.ends + np.tile([1, -1], len(grid.cells)), grid.points)
-    placed = np.append(grid.ends, grid.points)
     times: Array = h * np.arange(steps + 1, dtype=np.float64)
 
     def evaluate(taus: Array) -> Array:
         history = np.zeros((steps + 2, len(kept)))
-        past, now = np.zeros_like(grid.start_velocity), h * grid.start_velocity
-        before, u = np.zeros(problem.points), points.first
-        padded = np.zeros(len(now) + 2)
-        for step in range(1, steps + 2):
-            now[placed] = grid.spread @ u
-            history[step] = now[kept]
-            before, u = u, points.near @ now[beside] - points.past @ before + points.loads[min(step, steps)]
-            padded[1:-1] = now
-            past, now = now, padded[:-2] + padded[2:] - past
+        motion = GridMotion(grid, points)
+        for row in history[1:]:
+            motion.advance()
+            row[:] = motion.now[kept]
         velocity = np.empty((steps + 1, len(kept)))
         velocity[0] = grid.start_velocity[kept]
         velocity[1:] = (history[2:] - history[:-2]) / (2 * h)

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
-from wavesym.methods.differences import Grid, point_steps
+from wavesym.methods.differences import Grid, GridMotion, point_steps
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
 from wavesym.verification.problem import Change, ContactProblem, Struck, alike
@@ -139,7 +139,7 @@ class SpaceTimeGrid:
         terms = [list(self._terms(reading)) for reading in self.problem.readings]
         places = np.unique([place for some in terms for _, place, _ in some])
         history = np.zeros((len(kept), len(places)))
-        motion, row, largest = _Motion(self, int(instants[-1]) + 3), 0, 0.0
+        motion, row, largest = _ContactMotion(self, int(instants[-1]) + 3), 0, 0.0
         for step in range(int(instants[-1]) + 2):
             if step == kept[row]:
                 history[row] = motion.now[places]
@@ -235,38 +235,19 @@ def coarsest_grid(problem: ContactProblem, until: Fraction) -> SpaceTimeGrid:
     return SpaceTimeGrid(problem, measure / common / ceil(COARSEST * measure / common / shortest))
 
 
-class _Motion:
-    """The displacements of all bars, one after the other, and of all points after these, now and a step before."""
+class _ContactMotion(GridMotion):
+    """The displacements of all bars and points where contacts open and close, and when these did."""
 
     def __init__(self, grid: SpaceTimeGrid, steps: int) -> None:
+        super().__init__(grid.field, point_steps(grid.problem, float(grid.step), steps))
         problem = self._problem = grid.problem
-        self._h, self._step = float(grid.step), 0
-        self._grid, self._points = grid.field, point_steps(problem, self._h, steps)
-        self._placed = np.append(self._grid.ends, self._grid.points)
-        self._beside = np.append(self._grid.ends + np.tile([1, -1], len(problem.delays)), self._grid.points)
-        self.now = np.zeros_like(self._grid.start_velocity)
-        self._past, self._before = self.now, np.zeros(problem.points)
+        self._h = float(grid.step)
         self._open = problem.gaps > 0
         self._pushed = np.zeros((LATE, len(problem.gaps)))
         self.changes: list[tuple[int, str, int]] = []
         self.missed = 0.0
 
-    def advance(self) -> None:
-        """One step."""
-        points = self._points
-        if self._step == 0:
-            after, yields = points.first.copy(), points.first_yields
-            self.now = self._h * self._grid.start_velocity
-        else:
-            after, yields = points.near @ self.now[self._beside] - points.past @ self._before, points.yields
-            after += points.loads[self._step]
-            self._before = self.now[self._grid.points]
-            following = np.append(self.now[1:], 0.0) + np.append(0.0, self.now[:-1]) - self._past
-            self._past, self.now = self.now, following
-        self._step += 1
-        self.now[self._placed] = self._grid.spread @ self._kept_apart(after, yields)
-
-    def _kept_apart(self, after: Array, moved: Array) -> Array:
+    def settle(self, after: Array, moved: Array) -> Array:
         """Displacements with what contacts push: as little as keeps every gap from being negative."""
         problem, parting = self._problem, self._problem.parting
         if not len(problem.gaps):
@@ -285,8 +266,8 @@ class _Motion:
         for contact in np.flatnonzero(np.where(self._open, pushes > _SIGN * force, gaps > _SIGN * length)).tolist():
             self._open[contact] ^= True
             self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
-            self.changes.append((contact, "opens" if self._open[contact] else "closes", self._step))
-        self._pushed[self._step % LATE] = pushes
+            self.changes.append((contact, "opens" if self._open[contact] else "closes", self.step))
+        self._pushed[self.step % LATE] = pushes
         return after
 
 
