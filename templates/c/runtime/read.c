@@ -34,25 +34,6 @@ static int section_at(real tau)
     return found < end ? found : end - 1;
 }
 
-int name_model_eval(const name_model *model, name_real tau, name_real *out)
-{
-    if (!(model->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX)) {
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            out[output] = not_a_number();
-        }
-        return 1;
-    }
-    const int at = section_at(tau);
-    const int window = at / SECTIONS;
-    const int section = at % SECTIONS;
-    const real t = tau - cycle_begin(window);
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        value(model->series + model->place[window], window, model->degree[window], section * NAME_OUTPUTS + output, t,
-              out + output);
-    }
-    return 0;
-}
-
 /* tau_k, both operations rounded. `one` is 1, which no compiler knows: so the product is rounded by itself, contracted
  * into the next operation or not. */
 static real instant(real tau0, real dtau, real one, real k)
@@ -271,4 +252,9 @@ static int sample_series(const name_model *m, const real *series, real tau0, rea
 int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out)
 {
     return sample_series(model, model->series, tau0, dtau, count, out);
+}
+
+int name_model_eval(const name_model *model, name_real tau, name_real *out)
+{
+    return sample_series(model, model->series, tau, 0, 1, out);
 }
