@@ -8,7 +8,7 @@ from typing import Any
 from wavesym.errors import UnservedError
 from wavesym.programs.program import Program, ReferenceValues, SteppedValues, StreamedValues
 from wavesym.targets.c.header import header
-from wavesym.targets.c.selftest import selftest
+from wavesym.targets.c.selftest import selftest, stepped_selftest
 from wavesym.targets.description import Description
 from wavesym.targets.target import Target
 
@@ -38,7 +38,7 @@ class CTarget:
             case ReferenceValues():
                 made[f"{name}_selftest.c"] = selftest(description, program, program.reference)
             case StreamedValues() | SteppedValues():
-                made[f"{name}_selftest.c"] = kernel.selftest(description, program, program.reference)
+                made[f"{name}_selftest.c"] = stepped_selftest(description, program, program.reference)
         return made
 
 

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from flint import arb
-
-from wavesym.numbers.doubles import bound
-from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.modal_system import LANES
-from wavesym.programs.program import Program, StreamedValues
+from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
 from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description, constants
-from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
+from wavesym.targets.literals import c_constants, c_tables
 
 
 @dataclass(frozen=True)
@@ -39,15 +35,6 @@ class CModesStream:
     constants: dict[str, str]
     sources: tuple[tuple[str, str], ...]
     state: str
-
-
-@dataclass(frozen=True)
-class CModesSelfTest:
-    """templates/c/modes/selftest.c.j2: `expected` by output, then by sample; doubles whatever the program's type is."""
-
-    scene: Description
-    count: str
-    tables: dict[str, Lines]
 
 
 def source(scene: Description, program: Program) -> str:
@@ -75,20 +62,3 @@ def streaming(scene: Description, program: Program) -> str:
         state=kernel("modes/state.h", scene),
     )
     return render("c/modes/modes.h.j2", context)
-
-
-def selftest(scene: Description, program: Program, reference: StreamedValues) -> str:
-    """The program that holds a stream against reference values."""
-    rows = zip(reference.errors, reference.values, strict=True)
-    # the reference is rounded once; two digits are the same on every machine
-    allowed = [bound(arb(error + 2.0**-52 * max(map(abs, row)))) for error, row in rows]
-    context = CModesSelfTest(
-        scene=scene,
-        count=str(len(reference.loads)),
-        tables={
-            "loads": c_literals((value for row in reference.loads for value in row), program.real),
-            "expected": c_literals((value for row in reference.values for value in row), DOUBLE),
-            "allowed": c_literals(allowed, DOUBLE),
-        },
-    )
-    return render("c/modes/selftest.c.j2", context)

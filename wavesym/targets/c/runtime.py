@@ -10,13 +10,14 @@ from itertools import groupby
 from flint import fmpq, fmpq_mpoly
 
 from wavesym.numbers.ratio import Ratio
-from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.numbers.reals import Real
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, products
 from wavesym.programs.runtime.network import ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.memory import Memory
+from wavesym.targets.c.selftest import selftest
 from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
@@ -127,15 +128,6 @@ class CRuntime:
     arrays: tuple[tuple[str, str], ...]
 
 
-@dataclass(frozen=True)
-class CRuntimeSelfTest:
-    """templates/c/runtime/selftest.c.j2: `expected` by output, then by tau."""
-
-    scene: Description
-    count: str
-    tables: dict[str, Lines]
-
-
 def files(scene: Description, program: Program) -> dict[str, str]:
     """NAME.h, NAME.c and NAME_selftest.c of a program."""
     march = ("elimination.c", *(f"runtime/{name}.c" for name in ("march", "outputs", "build")))
@@ -184,7 +176,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     )
     made = {f"{scene.name}.h": render("c/runtime/runtime.h.j2", header), f"{scene.name}.c": source}
     if isinstance(program.reference, ReferenceValues):
-        made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
+        made[f"{scene.name}_selftest.c"] = selftest(scene, program, program.reference)
     return made
 
 
@@ -270,22 +262,6 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     name = f"{scene.name}.c"
     more = kernels(scene, *(f"runtime/{file}" for part, file in _SETS.items() if part in program.parts))
     return {**made, name: f"{made[name]}\n{more}\n"}
-
-
-def runtime_selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
-    """What compares values of the scene's own parameters with reference values."""
-    # errors are estimated: ten times the tolerance is what no program that is right comes near to
-    allowed = [10 * output.bound * output.largest for output in program.outputs]
-    context = CRuntimeSelfTest(
-        scene=scene,
-        count=str(len(reference.taus)),
-        tables={
-            "taus": c_literals(reference.taus, program.real),
-            "expected": c_literals((value for row in reference.values for value in row), DOUBLE),
-            "allowed": c_literals(allowed, DOUBLE),
-        },
-    )
-    return render("c/runtime/selftest.c.j2", context)
 
 
 def parameter_fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import accumulate
 
-from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.program import Program, SteppedValues
+from wavesym.programs.program import Program
 from wavesym.programs.stream.parameters import MADE
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, multiplied, parameter_fields
 from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description, constants
-from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
-
-_ALLOWED = 10  # times the error bound
+from wavesym.targets.literals import Lines, c_constants, c_tables
 
 
 @dataclass(frozen=True)
@@ -58,17 +54,6 @@ class CStreamHeader:
     fields: tuple[CRuntimeField, ...]
     arrays: tuple[tuple[str, str], ...]
     state: str
-
-
-@dataclass(frozen=True)
-class CStreamSelfTest:
-    """templates/c/stream/selftest.c.j2: `expected` by step, then by output; doubles whatever the program's type is;
-    what takes parameters is `built` with the scene's own."""
-
-    scene: Description
-    built: bool
-    count: str
-    tables: dict[str, Lines]
 
 
 def source(scene: Description, program: Program) -> str:
@@ -129,30 +114,3 @@ def _arrays(program: Program) -> tuple[tuple[str, str], ...]:
     more = {"matrix": program.constants["answers"], "slip": program.constants["slips"]}
     more |= {"drive": program.constants["joints"], "root_impedance": tracks, "state_gain": tracks}
     return tuple((name, str(count)) for name, count in (made | more).items())
-
-
-def selftest(scene: Description, program: Program, reference: SteppedValues) -> str:
-    """The program that holds a stream against reference values."""
-    rows = reference.rows
-    sizes = [
-        max(map(abs, column), default=0.0) for column in zip(*(row.values for row in rows if row.values), strict=True)
-    ]
-    least = 2 * program.constants["tolerance"]
-    allowed = [
-        max(_ALLOWED * output.bound, least) * max(size, output.largest)
-        for output, size in zip(program.outputs, sizes, strict=True)
-    ]
-    places = accumulate((len(row.values) for row in rows), initial=0)
-    context = CStreamSelfTest(
-        scene=scene,
-        built=program.laws is not None,
-        count=str(len(rows)),
-        tables={
-            "dtau": c_literals((row.dtau for row in rows), program.real),
-            "loads": c_literals((load for row in rows for load in row.loads), program.real),
-            "looked": c_literals((at if row.values else -1 for row, at in zip(rows, places, strict=False)), DOUBLE),
-            "expected": c_literals((value for row in rows for value in row.values), DOUBLE),
-            "allowed": c_literals(allowed, DOUBLE),
-        },
-    )
-    return render("c/stream/selftest.c.j2", context)
