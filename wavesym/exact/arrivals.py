@@ -176,7 +176,7 @@ class _Answer:
                 for unit in network.points[point].loads:
                     if unit.source == load.source:
                         k = place[point]
-                        value = self._transformed(unit.coefficients, network.points[point].motion == "acceleration")
+                        value = self._transformed(network.points[point].action(unit))
                         here = self._loads[load.time]
                         here[k] = (here.get(k, 0) + _modular(load.weight) * value) % _PRIME
 
@@ -197,10 +197,8 @@ class _Answer:
             return (c + k * t) % _PRIME
         return ((_modular(law.mass[a]) if a == b else 0) + c * t + k * t * t) % _PRIME
 
-    def _transformed(self, coefficients: tuple[fmpq, ...], integrated: bool) -> int:
-        return sum(
-            _modular(c) * factorial(n) * pow(self._t, n + integrated, _PRIME) for n, c in enumerate(coefficients)
-        )
+    def _transformed(self, coefficients: tuple[fmpq, ...]) -> int:
+        return sum(_modular(c) * factorial(n) * pow(self._t, n, _PRIME) for n, c in enumerate(coefficients))
 
     def to(self, came: Mapping[End, int], time: fmpq) -> tuple[dict[End, int], dict[int, int]]:
         """What it sends into its ends when this arrives, and the velocities of its points; as changes of both."""

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from heapq import heapify, heappop, heappush
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from flint import fmpq
 
@@ -40,6 +40,12 @@ class Point:
     place: str = field(default="", compare=False)
     absorbing: bool = field(default=False, compare=False)
     glued: bool = field(default=False, compare=False)
+
+    def action(self, unit: UnitLoad) -> tuple[Any, ...]:
+        """The force that a unit load makes here, or the velocity that it prescribes: coefficients by powers of tau."""
+        if self.motion != "acceleration":
+            return unit.coefficients
+        return (_ZERO, *(coefficient / (power + 1) for power, coefficient in enumerate(unit.coefficients)))
 
 
 @dataclass(frozen=True)

@@ -154,16 +154,14 @@ class Acting:
     """What acts on a point (or prescribes its velocity), as an exact polynomial in the time since some instant."""
 
     def __init__(self, network: Network, point: int, loads: Sequence[Applied]) -> None:
-        units = {unit.source: fmpq_poly(list(unit.coefficients)) for unit in network.points[point].loads}
-        motion = network.points[point].motion
+        here = network.points[point]
+        units = {unit.source: fmpq_poly(list(here.action(unit))) for unit in here.loads}
         self._coming = sorted(
             ((load.time, load.weight * units[load.source]) for load in loads if load.source in units),
             key=lambda x: x[0],
         )
-        if motion == "acceleration":
-            self._coming = [(time, polynomial.integral()) for time, polynomial in self._coming]
         self._coming.reverse()
-        begin = network.points[point].velocity if motion is not None else fmpq(0)
+        begin = here.velocity if here.motion is not None else fmpq(0)
         self._since, self._total = fmpq(0), fmpq_poly([begin])
 
     def on(self, start: fmpq) -> fmpq_poly:

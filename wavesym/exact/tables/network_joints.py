@@ -6,7 +6,7 @@ from functools import cache, cached_property
 
 from flint import fmpq
 
-from wavesym.derivation.increments import Increment, add, integrated
+from wavesym.derivation.increments import Increment, add
 from wavesym.errors import UnservedError
 from wavesym.exact.joints.joint import JointEnd, JointLaw, joint_ends
 from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, rates, written
@@ -23,8 +23,7 @@ def unit_at(point: Point, source: str) -> Increment:
     total: Increment = {}
     for load in point.loads:
         if load.source == source:
-            unit = {fmpq(0): list(load.coefficients)}
-            add(total, integrated(unit) if point.motion == "acceleration" else unit)
+            add(total, {fmpq(0): list(point.action(load))})
     return total
 
 

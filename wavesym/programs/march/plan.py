@@ -317,9 +317,8 @@ class _Loads:
 
 def moved_by(point: Point, unit: UnitLoad) -> tuple[Any, ...]:
     """The force that a unit load makes of itself at a point, or the velocity that it prescribes, by powers of tau."""
-    if point.motion == "acceleration":
-        return (_ZERO, *(coefficient / (power + 1) for power, coefficient in enumerate(unit.coefficients)))
-    return unit.coefficients if point.motion else tuple(joint_rule().load * each for each in unit.coefficients)
+    action = point.action(unit)
+    return action if point.motion else tuple(joint_rule().load * each for each in action)
 
 
 def _heard(

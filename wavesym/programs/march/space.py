@@ -21,8 +21,7 @@ import numpy as np
 from flint import fmpq, fmpq_mat
 from numpy.typing import NDArray
 
-from wavesym.derivation.exact_rule import joint_rule
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint import JointLaw, joint_ends
 from wavesym.mechanics.network import Joint, Network
 from wavesym.numbers.doubles import nearest
 
@@ -287,14 +286,9 @@ def _springs(network: Network, joint: Joint, law: JointLaw) -> Iterator[tuple[fm
 
 
 def _ports(network: Network, joint: Joint) -> Iterator[Port]:
-    rule = joint_rule()
-    place = {point: k for k, point in enumerate(joint.points)}
-    for end, point in joint.ends:
-        bar = network.bars[end.bar]
-        ratio = bar.ratios[end.side]
-        free = network.points[point].motion is None
-        push = rule.arrives[1 - end.side] * ratio * bar.impedance if free else _ZERO
-        yield Port(place[point], bar.impedance, ratio, push)
+    for each in joint_ends(network, joint):
+        free = network.points[joint.points[each.place]].motion is None
+        yield Port(each.place, network.bars[each.end.bar].impedance, each.ratio, each.force if free else _ZERO)
 
 
 def _norm(matrix: NDArray[np.float64]) -> float:
