@@ -41,7 +41,7 @@ def answer(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 0)
 
 
 def test_the_formats_are_those_that_there_are() -> None:
-    assert FORMATS == published.FORMATS
+    assert tuple(published.FORMATS) == FORMATS
 
 
 @pytest.mark.parametrize("format", FORMATS)

@@ -8,7 +8,7 @@ from wavesym.papers.entries import About, Aside, PaperEntry, Passage, Slip, pass
 from wavesym.papers.entries import Paper as EntriesPaper
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.mutations import mutations
-from wavesym.papers.pages.findings import Findings
+from wavesym.papers.pages.document import Findings
 from wavesym.papers.record import Case, Reading, Record, Reproduction, Test, case, judge
 from wavesym.papers.tables import PrintedTable, TableHead
 from wavesym.papers.tree import Relation

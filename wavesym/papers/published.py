@@ -2,25 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
 
 from wavesym.papers.asked import asked
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.pages import as_json, html, latex, markdown, text
-from wavesym.papers.pages.findings import Findings
+from wavesym.papers.pages.document import Findings
+from wavesym.papers.pages.formats import FORMATS
 from wavesym.papers.pielorz1979 import paper
 from wavesym.papers.record import VERDICTS
 from wavesym.programs.request import refuse_unknown
-
-_PAGES: Mapping[str, Callable[[Findings], str]] = {
-    "text": text.page,
-    "json": as_json.page,
-    "markdown": markdown.page,
-    "html": html.page,
-    "latex": latex.page,
-}
-FORMATS = tuple(_PAGES)
 
 
 def published(
@@ -47,5 +37,4 @@ def published(
     data = paper.paper()
     wanted = asked(tuple(data.entries.values()), names) if names else None
     findings = Findings(data, paper.records(wanted, watch), not (names or only), reproduce, only)
-    page = findings if format == "text" else replace(findings, records=findings.shown)
-    return _PAGES[format](page), findings.passed
+    return FORMATS[format](findings), findings.passed

@@ -1,31 +1,19 @@
-"""The verdicts as a document to read and cite, before its markup: what the templates of HTML and LaTeX go through."""
+"""The verdicts on a paper as one list of sections, which every format renders: tables, and records with fields."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
-from math import sqrt
 from operator import attrgetter
 
 from wavesym import __version__
-from wavesym.papers.entries import About
-from wavesym.papers.pages.findings import (
-    Findings,
-    ScanEdit,
-    Survivor,
-    Unjudged,
-    by_place,
-    difference,
-    faults_tried,
-    lines,
-    origin,
-    titles,
-)
-from wavesym.papers.pages.reproduction import ReproducedPage, reproduction
-from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed, readable, words
-from wavesym.papers.record import VERDICTS, Record
+from wavesym.papers.entries import Paper, PaperEntry
+from wavesym.papers.pages.lines import Code, Line, correction, formula, joined, prose, readable, statement
+from wavesym.papers.record import VERDICTS, Record, Verdict
 from wavesym.papers.tables import PrintedTable, TableHead, places
 
 SIGNS = {
@@ -39,200 +27,402 @@ SIGNS = {
     "untested": "!",
 }
 """Of verdicts, beside their colours: nothing is said by colour alone."""
-
-LONGEST = 90
-"""Characters of a formula that may stand beside another one."""
-SHORTEST = 16
-"""Characters that every column of a table has room for."""
+ORIGINS = {
+    "print": "The text itself proves the slip.",
+    "scan": "The scan is garbled at this place beyond doubt.",
+    "unknown": "Whether the print or the scan is at fault cannot be told from the text.",
+}
 
 
 @dataclass(frozen=True)
-class Judged:
-    """A record as it is shown; `right` where what is printed does not hold, below it where both are `wide`.
+class Findings:
+    """The verdicts on a paper, or on the records of it that were requested; `reproduce`: with their examples.
 
-    Of prose `words` are printed, and `printed` says so in English.
+    `whole`: all of it was requested; `only` is the verdict of those that are shown, empty for all of them.
     """
+
+    paper: Paper
+    records: tuple[Record, ...]
+    whole: bool = False
+    reproduce: bool = False
+    only: str = ""
+
+    @property
+    def shown(self) -> tuple[Record, ...]:
+        """The records that are shown, of which the others are counted alone."""
+        return tuple(record for record in self.records if self.only in ("", record.verdict))
+
+    @property
+    def passed(self) -> bool:
+        """Whether everything could be tested."""
+        return all(record.verdict != "untested" for record in self.records)
+
+    @property
+    def counts(self) -> list[tuple[Verdict, int]]:
+        """How many records have each verdict, those that occur."""
+        found = Counter(record.verdict for record in self.records)
+        return [(verdict, found[verdict]) for verdict in VERDICTS if found[verdict]]
+
+    @property
+    def faults(self) -> tuple[int, int]:
+        """How many faults were put in, and seen."""
+        mutations = [record.mutations for record in self.records]
+        return sum(each.tried for each in mutations), sum(each.turned for each in mutations)
+
+    @property
+    def errors(self) -> list[tuple[Record, ...]]:
+        """What does not hold, in groups that are one error: one note in one place, or one line of a table."""
+        groups: defaultdict[object, list[Record]] = defaultdict(list)
+        for record in self.shown:
+            if record.verdict != "holds":
+                groups[self._error(record)].append(record)
+        return [tuple(group) for group in groups.values()]
+
+    @cached_property
+    def _cells(self) -> frozenset[str]:
+        return frozenset[str]().union(*(table.ids for table in self.paper.tables))
+
+    def _error(self, record: Record) -> object:
+        """What one error is distinguished from others by."""
+        if record.id in self._cells:
+            return record.id.split(".")[0], record.id.rsplit(".", 1)[-1], record.verdict
+        note = record.entry.slip.note if record.entry.slip else ""
+        return _place(record.entry), note or record.id, record.verdict
+
+
+# the parts of a document
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table; `verdict` where it is a record."""
+
+    line: Line
+    verdict: str = ""
+    anchor: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: heads of its columns, and rows; `widths` are the shares of its columns in a line, in tenths."""
+
+    heads: tuple[Cell, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    widths: tuple[int, ...] = ()
+    is_grid: bool = False
+
+
+@dataclass(frozen=True)
+class Field:
+    """What is said of a record under a name, in a line or, of a formula with ranges, in several; or a `listing`."""
+
+    name: str
+    lines: tuple[Line, ...] = ()
+    listing: str = ""
+
+    @property
+    def line(self) -> Line:
+        """All of it in one line."""
+        return joined(self.lines)
+
+
+@dataclass(frozen=True)
+class JudgedEntry:
+    """A record with all that is said of it."""
 
     id: str
     anchor: str
     verdict: str
-    sign: str
-    where: str
-    lines: str
-    words: Shown | None
-    printed: Stated
-    right: Stated | None
-    wide: bool
-    size: int
-    inferred: tuple[Shown, ...]
-    note: str
-    evidence: str
-    difference: str
-    origin: str
-    against: str
-    faults: str
-    problems: tuple[str, ...]
-    reproduction: ReproducedPage | None
+    fields: tuple[Field, ...]
 
 
 @dataclass(frozen=True)
-class Mistake:
-    """One error, in all places where it is printed."""
+class Block:
+    """A part of a section, perhaps with a title: some lines, a table, or records."""
 
-    number: int
+    title: str = ""
+    verdict: str = ""
+    text: str = ""
+    table: Table | None = None
+    entries: tuple[JudgedEntry, ...] = ()
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section of a document; the first one has no title."""
+
     title: str
-    verdict: str
-    sign: str
-    note: str
-    records: tuple[Judged, ...]
-
-
-@dataclass(frozen=True)
-class Head:
-    """The head of a row or column: a formula, or words, or both; `judged` where it is a record."""
-
-    formula: Shown | None
-    words: str
-    judged: Judged | None = None
-
-
-@dataclass(frozen=True)
-class Laid:
-    """A table as the paper prints it; a cell that is no record is what it names, or None.
-
-    `widths` are parts of the whole, of the heads of rows and of each column.
-    """
-
-    name: str
-    caption: str
-    columns: tuple[Head, ...]
-    rows: tuple[tuple[Head, tuple[Judged | Head | None, ...]], ...]
-    widths: tuple[float, ...]
+    anchor: str
+    blocks: tuple[Block, ...]
 
 
 @dataclass(frozen=True)
 class Document:
     """All of it, in the order in which it is read."""
 
-    about: About
-    version: str
-    command: str
-    whole: bool
-    records: int
-    counts: Sequence[tuple[str, str, int, str]]
-    statistics: Sequence[tuple[str, Sequence[int]]]
-    tried: int
-    turned: int
-    mistakes: Sequence[Mistake]
-    tables: Sequence[Laid]
-    holding: Mapping[str, Sequence[tuple[str, Sequence[Judged]]]]
-    edits: Sequence[ScanEdit]
-    unjudged: Sequence[tuple[str, Unjudged]]
-    survivors: Sequence[Survivor]
+    title: str
+    source: Line
+    introduction: str
+    sections: tuple[Section, ...]
+    signs: Mapping[str, str]
 
 
 def document(findings: Findings, format: str) -> Document:
-    """The document of some findings."""
-    judged = {record.id: _judged(record, findings.reproduce) for record in findings.records}
-    mistakes = [
-        Mistake(
-            number,
-            titles(group),
-            group[0].verdict,
-            SIGNS[group[0].verdict],
-            _note(group),
-            tuple(judged[record.id] for record in group),
-        )
-        for number, group in enumerate(findings.errors, 1)
+    """What pages in a format show.
+
+    Args:
+        findings: the verdicts.
+        format: its name; markdown has no tables of the paper.
+    """
+    about, (tried, turned) = findings.paper.about, findings.faults
+    errors = [
+        Block(_titles(group), group[0].verdict, entries=tuple(_entry(record, findings) for record in group))
+        for group in findings.errors
     ]
-    tried, turned = findings.faults
-    used = [verdict for verdict, _ in findings.counts]
+    printed = [] if format == "markdown" else _printed_tables(findings)
+    held = [record for record in findings.shown if record.verdict == "holds"]
+    sections = [
+        Section("", "", (counts(findings), statistics(findings))),
+        Section("What does not hold as printed", "errors", tuple(errors)),
+        Section("The tables, cell by cell", "tables", tuple(printed)),
+        Section("What holds", "holds", tuple(_held(held))),
+        *appendices(findings),
+    ]
     return Document(
-        findings.paper.about,
-        __version__,
-        f"wavesym verify --published --format {format}",
-        findings.whole,
-        len(findings.records),
-        [(verdict, SIGNS[verdict], count, VERDICTS[verdict]) for verdict, count in findings.counts],
-        [(name, [counts[verdict] for verdict in used]) for name, counts in findings.statistics],
-        tried,
-        turned,
-        mistakes,
-        [_laid(table, findings, judged) for table in findings.paper.tables if table.ids & judged.keys()],
-        {name: _by_test([judged[record.id] for record in group]) for name, group in by_place(findings.holding).items()},
-        findings.edits,
-        [(lines(part.lines), part) for part in findings.unjudged],
-        findings.survivors,
+        f"Errata to a paper by {about.author}",
+        (f"{about.author}, {about.title} ({about.english}), {about.date}. {about.transcription}",),
+        "Every formula, table cell, range and testable sentence was evaluated as it is printed and compared, in exact "
+        "arithmetic (statements about curves on samples of the exact motion), with the derived laws of the same "
+        f"systems. {len(findings.records)} records were judged. What holds, as printed or as corrected, was tried "
+        f"again with {tried} faults put in, one at a time; {turned} of them made a comparison fail. Written by wavesym "
+        f"{__version__}, verify --published --format {format}; verdicts and evidence are computed, notes and reasons "
+        "are our reading.",
+        tuple(section for section in sections if section.blocks),
+        SIGNS,
     )
 
 
-def _judged(record: Record, reproduce: bool) -> Judged:
-    entry = record.entry
-    one, other = compared(record) or (printed(record), None)
-    return Judged(
-        record.id,
-        re.sub(r"[^\w.-]+", "_", record.id.strip("(")),
-        record.verdict,
-        SIGNS[record.verdict],
-        entry.where.removesuffix(f", {record.id}"),
-        lines(entry.lines),
-        words(record),
-        one,
-        other,
-        max(len(entry.statement), len(record.corrected or "")) > LONGEST,
-        len(entry.printed),
-        inferred(record),
-        readable(record.note),
-        readable(" ".join(record.evidence)),
-        difference(record),
-        origin(record),
-        record.against,
-        faults_tried(record),
-        record.problems,
-        reproduction(record) if reproduce else None,
+def _words(*texts: str) -> tuple[Cell, ...]:
+    return tuple(Cell((text,)) for text in texts)
+
+
+def counts(findings: Findings) -> Block:
+    """How many records have each verdict."""
+    rows = [(Cell((name,), name), *_words(str(count), VERDICTS[name])) for name, count in findings.counts]
+    return Block(table=Table(_words("verdict", "records", "meaning"), tuple(rows), (2, 1, 7)))
+
+
+def statistics(findings: Findings) -> Block:
+    """The counts of each section and table, in the order of print."""
+    used = [verdict for verdict, _ in findings.counts]
+    rows = []
+    for name, records in by_place(findings.records).items():
+        counts = Counter(record.verdict for record in records)
+        rows.append(_words(name, *(str(counts[verdict] or "") for verdict in used)))
+    return Block("By section and table", table=Table(_words("", *used), tuple(rows)))
+
+
+def appendices(findings: Findings) -> list[Section]:
+    """What was edited, what was not judged, and what no case turns."""
+    edits = tuple(
+        (Cell((record.id,)), Cell((Code(before),)), Cell((Code(after),) if after else ("nothing",)), Cell((why,)))
+        for record in findings.shown
+        for before, after, why in record.entry.edits
     )
+    survivors = tuple(
+        (Cell((record.id,)), Cell((Code(change),)), Cell((because or "unknown",)))
+        for record in findings.shown
+        for change, because in record.mutations.survived
+    )
+    unjudged = tuple(
+        (Cell((span(lines), f", {where}" if where else "")), Cell((Code(" ".join(scan.split())),)), Cell((why,)))
+        for lines, where, scan, why in _unjudged(findings)
+    )
+    parts = [
+        ("What is read otherwise than the scan has it", "edits", ("id", "scan", "read as", "why"), edits, (2, 3, 3, 2)),
+        ("What was not judged, and why", "unjudged", ("source", "text", "why"), unjudged, (2, 4, 4)),
+        ("Faults that no case turns, and why", "survivors", ("id", "fault", "why"), survivors, (2, 4, 4)),
+    ]
+    return [
+        Section(title, anchor, (Block(table=Table(_words(*heads), rows, widths)),) if rows else ())
+        for title, anchor, heads, rows, widths in parts
+    ]
 
 
-def _by_test(records: Sequence[Judged]) -> list[tuple[str, list[Judged]]]:
-    """Records one after another, put together where they are compared with the same."""
-    return [(against, list(group)) for against, group in groupby(records, attrgetter("against"))]
+def _unjudged(findings: Findings) -> Iterable[tuple[tuple[int, int], str, str, str]]:
+    for passage in findings.paper.passages if findings.whole else ():
+        if passage.why:
+            yield passage.lines, passage.where, passage.text, passage.why
+        for aside in passage.asides:
+            yield passage.lines, passage.where, aside.scan, aside.why
 
 
-def _note(group: Sequence[Record]) -> str:
-    """The note that an error's records share, if they do."""
-    notes = {record.note for record in group}
-    return readable(notes.pop()) if len(notes) == 1 else ""
+def _held(records: Sequence[Record]) -> list[Block]:
+    """What holds, by place and by what it was compared with."""
+    blocks = []
+    for name, group in by_place(records).items():
+        for against, same in groupby(group, attrgetter("against")):
+            rows = [
+                (
+                    Cell((record.id,), anchor=_anchor(record)),
+                    Cell((f"{record.entry.where}, {span(record.entry.lines)}",)),
+                    Cell(_full_statement(record)),
+                    Cell((f"{' '.join(record.evidence)} {_faults(record)}.", *_note(record))),
+                )
+                for record in same
+            ]
+            table = Table(_words("id", "source", "printed", "evidence"), tuple(rows), (2, 2, 3, 3))
+            blocks.append(Block(name, text=f"Compared with {against}:", table=table))
+            name = ""
+    return blocks
 
 
-def _laid(table: PrintedTable, findings: Findings, judged: Mapping[str, Judged]) -> Laid:
-    columns = tuple(_head(column, findings, judged.get(table.column_id(column))) for column in table.columns)
+def _note(record: Record) -> Line:
+    return (f" Note: {readable(record.note)}",) if record.note else ()
+
+
+def _full_statement(record: Record) -> Line:
+    """What is printed, in English too, and the ranges that are not printed."""
+    parts = [*((prose(record.entry.printed), ("in English: ",)) if record.entry.english else ()), *statement(record)]
+    line = joined(parts) if not record.entry.english else (*joined(parts[:2]), *joined(parts[2:]))
+    inferred = joined([(formula(range_),) for range_ in record.entry.inferred])
+    return (*line, " (not printed: ", *inferred, ")") if inferred else line
+
+
+def _entry(record: Record, findings: Findings) -> JudgedEntry:
+    return JudgedEntry(record.id, _anchor(record), record.verdict, tuple(fields(record, findings)))
+
+
+def fields(record: Record, findings: Findings) -> Iterable[Field]:
+    """All that is said of a record."""
+    entry, slip = record.entry, record.entry.slip
+    yield Field("where", ((f"{entry.where}, {span(entry.lines)} of the source",),))
+    if entry.english:
+        yield Field("printed", (prose(entry.printed),))
+        yield Field("in English", statement(record))
+    else:
+        yield Field("printed", statement(record))
+    if entry.inferred:
+        yield Field("not printed", tuple((formula(range_),) for range_ in entry.inferred))
+    for before, after, why in entry.edits:
+        yield Field("read", ((Code(before), " as ", Code(after) if after else "nothing", f": {why}"),))
+    if slip:
+        yield Field("corrected", correction(record))
+    if record.difference:
+        yield Field("difference", ((Code(record.difference),),))
+    yield Field("evidence", ((readable(" ".join(record.evidence)),),))
+    if record.note:
+        yield Field("note", ((readable(record.note),),))
+    if slip and slip.verdict in ("misprint", "unreadable"):
+        yield Field("origin", ((ORIGINS[slip.origin],),))
+    yield Field("tested", ((f"Compared with {record.against}; {_faults(record)}.",),))
+    for change, because in record.mutations.survived if not findings.whole else ():
+        yield Field("survived", ((Code(change), f": {because}"),))
+    for problem in record.problems:
+        yield Field("problem", ((problem,),))
+    if findings.reproduce:
+        yield from _reproduction(record)
+
+
+def _reproduction(record: Record) -> Iterable[Field]:
+    """How to see a counterexample: its scene as a file, the command that shows it, and what to look at."""
+    wrong = record.counterexample
+    if wrong is None:
+        return
+    if wrong.example is None:
+        words = "There is no chain behind it to run: these are all its numbers."
+        yield Field("reproduce", ((f"{wrong}. {words}",),))
+        return
+    example, file = wrong.example(), scene_file(record)
+    yield Field("reproduce", (("Save this scene as ", Code(file), ":"),), example.scene)
+    yield Field("then type", ((Code(example.command.replace("SCENE", file)),),))
+    yield Field("look at", ((example.look,),))
+
+
+def scene_file(record: Record) -> str:
+    """The name of a file for a record, without what a shell would read."""
+    return re.sub(r"[^\w.-]+", "_", re.sub(r"[()]", "", record.id)) + ".toml"
+
+
+# the tables of the paper
+
+
+def _printed_tables(findings: Findings) -> list[Block]:
+    judged = {record.id: record for record in findings.shown}
     scans = {
-        place.id: Head(formula(place.scan.strip("$")), "")
+        place.id: place.scan.strip("$")
         for passage in findings.paper.passages
         for place in places(passage.table, passage.text, passage.lines[0])
-        if place.column.name in place.table.unjudged
     }
-    rows = []
-    for row in table.rows:
-        ids = [table.cell_id(row, column) for column in table.columns]
-        head = _head(row, findings, judged.get(table.row_id(row)))
-        rows.append((head, tuple(judged.get(id) or scans.get(id) for id in ids)))
-    return Laid(table.name, table.caption, columns, tuple(rows), _widths(rows))
+    return [
+        Block(table.name, text=table.caption, table=_printed(table, judged, scans, findings))
+        for table in findings.paper.tables
+        if table.ids & judged.keys()
+    ]
 
 
-def _widths(rows: Sequence[tuple[Head, Sequence[Judged | Head | None]]]) -> tuple[float, ...]:
-    """By the longest cell of a column; a cell twice as long takes two lines of a column that is not twice as wide."""
-    columns = zip(*(cells for _, cells in rows), strict=True)
-    longest = [max(cell.size if isinstance(cell, Judged) else 0 for cell in column) for column in columns]
-    sizes = [sqrt(max(SHORTEST, size)) for size in (max(len(head.words) for head, _ in rows), *longest)]
-    return tuple(round(size / sum(sizes), 3) for size in sizes)
+def _printed(table: PrintedTable, judged: Mapping[str, Record], scans: Mapping[str, str], findings: Findings) -> Table:
+    """A table as it is printed; each cell with its verdict."""
+
+    def cell(row: TableHead, column: TableHead) -> Cell:
+        id = table.cell_id(row, column)
+        if id in judged:
+            return Cell(statement(judged[id])[0], judged[id].verdict, _anchor(judged[id]))
+        if column.name in table.unjudged:
+            return Cell((formula(scans[id]),))
+        return Cell(("not requested" if id in findings.paper.entries else "",))
+
+    def head(head: TableHead, id: str) -> Cell:
+        """A record with its ranges, or a label."""
+        known = findings.paper.entries
+        more = [known[head.record].printed] if head.record in known else []
+        if id not in known:
+            line: Line = (formula(head.label.strip("$").replace("\N{GREEK SMALL LETTER ALPHA}", r"\alpha")),)
+        else:
+            line = (formula(known[id].printed),)
+            more += known[id].ranges
+        line = (*line, " ", readable(", ".join(more))) if more else line
+        return Cell(line, judged[id].verdict, _anchor(judged[id])) if id in judged else Cell(line)
+
+    heads = (Cell(("",)), *(head(column, table.column_id(column)) for column in table.columns))
+    rows = [(head(row, table.row_id(row)), *(cell(row, column) for column in table.columns)) for row in table.rows]
+    return Table(heads, tuple(rows), is_grid=True)
 
 
-def _head(head: TableHead, findings: Findings, judged: Judged | None) -> Head:
-    """A head as it is printed: a record with its ranges, or a label."""
-    known = findings.paper.entries
-    other = (known[head.record].printed,) if head.record in known else ()
-    if judged is None:
-        label = head.label.strip("$").replace("\N{GREEK SMALL LETTER ALPHA}", r"\alpha")
-        return Head(formula(label), readable(", ".join(other)))
-    return Head(judged.printed.formula, readable(", ".join((*other, *known[judged.id].ranges))), judged)
+# small things
+
+
+def _place(entry: PaperEntry) -> str:
+    """The section or table of an entry."""
+    name = entry.where.split(",")[0].strip() or "elsewhere"
+    return name[0].upper() + name[1:]
+
+
+def by_place(records: Iterable[Record]) -> dict[str, list[Record]]:
+    """The records of each section and table."""
+    found: dict[str, list[Record]] = {}
+    for record in records:
+        found.setdefault(_place(record.entry), []).append(record)
+    return found
+
+
+def span(lines: tuple[int, int]) -> str:
+    """Lines of the source in words."""
+    first, last = lines
+    return f"line {first}" if first == last else f"lines {first}-{last}"
+
+
+def _anchor(record: Record) -> str:
+    return re.sub(r"[^\w.-]+", "_", record.id.strip("("))
+
+
+def _faults(record: Record) -> str:
+    """How many faults were tried, in words."""
+    tried = record.mutations.tried
+    return f"{tried} fault{'' if tried == 1 else 's'} put in, {record.mutations.turned} of them seen"
+
+
+def _titles(group: Sequence[Record]) -> str:
+    """The ids of an error's records: all of a few, the first and how many more of many."""
+    ids = [record.id for record in group]
+    return ", ".join(ids) if len(ids) <= 3 else f"{ids[0]} and {len(ids) - 1} more"

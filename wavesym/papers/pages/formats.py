@@ -1,0 +1,339 @@
+"""The formats of a document: text, JSON, markdown, HTML and LaTeX, each a rendering of the same list."""
+
+from __future__ import annotations
+
+import json
+import unicodedata
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from textwrap import fill, indent
+
+from wavesym.papers.entries import Slip
+from wavesym.papers.pages.document import (
+    Block,
+    Cell,
+    Document,
+    Field,
+    Findings,
+    Table,
+    appendices,
+    document,
+    fields,
+    scene_file,
+    statistics,
+)
+from wavesym.papers.pages.lines import Code, Different, Formula, Inline, Line
+from wavesym.papers.pages.mathml import mathml
+from wavesym.papers.record import VERDICTS, Record
+from wavesym.papers.tree import latex
+from wavesym.rendering import render
+
+WIDTH = 120
+
+
+# text
+
+
+def text(findings: Findings) -> str:
+    """Counts, a line for each record, what does not hold in full, and of the whole paper what was not judged.
+
+    Records that were requested by name are all shown in full.
+    """
+    shown, whole = findings.shown, findings.whole
+    is_list = whole or len(findings.records) > 1
+    tried, turned = findings.faults
+    parts = []
+    if is_list or findings.only:
+        parts.append("\n".join([*_text_counts(findings), f"{tried} faults put in, {turned} turned by a case"]))
+    if is_list:
+        rows = tuple(
+            tuple(Cell((word,)) for word in (record.id, record.verdict, str(record.cases), record.entry.where))
+            for record in shown
+        )
+        parts.append(_text_table(Table(tuple(Cell((head,)) for head in ("id", "verdict", "cases", "where")), rows)))
+    for record in shown:
+        if record.verdict != "holds" or not whole:
+            head = f"{record.id}: {record.verdict}, {VERDICTS[record.verdict]}"
+            parts.append(
+                "\n".join([head, *(line for field in fields(record, findings) for line in _text_field(field))])
+            )
+    if whole:
+        blocks = [statistics(findings), *(block for section in appendices(findings) for block in section.blocks)]
+        titles = ["By section and table", *(section.title for section in appendices(findings) if section.blocks)]
+        parts += [
+            f"{title}:\n{_text_table(block.table)}" for title, block in zip(titles, blocks, strict=True) if block.table
+        ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _text_counts(findings: Findings) -> Iterator[str]:
+    for name, count in findings.counts:
+        yield fill(f"{count:4} {name}: {VERDICTS[name]}", WIDTH, subsequent_indent=" " * 5)
+
+
+def _text_field(field: Field) -> Iterator[str]:
+    for number, line in enumerate(field.lines):
+        name = "range" if number and field.name in ("printed", "corrected", "in English") else field.name
+        yield fill(
+            f"{name:11}{plain(line)}", WIDTH, initial_indent="    ", subsequent_indent=" " * 15, break_long_words=False,
+            break_on_hyphens=False,
+        )  # fmt: skip
+    if field.listing:
+        yield f"\n{indent(field.listing.rstrip(), ' ' * 4)}\n"
+
+
+def _text_table(table: Table) -> str:
+    """Columns as wide as their cells, the last one as wide as need be; rows that do not fit are wrapped."""
+    rows = [[plain(cell.line) for cell in row] for row in (table.heads, *table.rows)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)][:-1]
+    if sum(widths) > WIDTH // 2:
+        lines = (": ".join(filter(None, row)) for row in rows[1:])
+        return "\n".join(fill(line, WIDTH, initial_indent="    ", subsequent_indent=" " * 8) for line in lines)
+    padded = (
+        "  ".join([*(f"{cell:{width}}" for cell, width in zip(row, widths, strict=False)), row[-1]]) for row in rows
+    )
+    return "\n".join(line.rstrip() for line in padded)
+
+
+def plain(line: Line) -> str:
+    """A line as words, formulas as they stand in the data."""
+    return "".join(map(_plain, line))
+
+
+def _plain(part: Inline) -> str:
+    match part:
+        case Code(words) | Formula(words):
+            return " ".join(words.split())
+        case Different(inner):
+            return _plain(inner)
+    return part
+
+
+# JSON
+
+
+def as_json(findings: Findings) -> str:
+    """A list of objects, one for each record in the order of print."""
+    return json.dumps([_object(record, findings) for record in findings.shown], ensure_ascii=False, indent=1) + "\n"
+
+
+def _object(record: Record, findings: Findings) -> dict[str, object]:
+    entry, slip, mutations = record.entry, record.entry.slip, record.mutations
+    by_name = {field.name: plain(field.line) for field in fields(record, findings)}
+    found: dict[str, object] = {
+        "id": record.id,
+        "where": entry.where,
+        "lines": list(entry.lines),
+        "scan": entry.scan,
+        "edits": [{"scan": before, "read": after, "because": why} for before, after, why in entry.edits],
+        "printed": entry.printed,
+        "english": entry.english or None,
+        "ranges": list(entry.ranges),
+        "inferred": list(entry.inferred),
+        "corrected": record.corrected,
+        "corrected_ranges": _corrected_ranges(entry.ranges, slip),
+        "verdict": record.verdict,
+        "origin": slip.origin if slip else None,
+        "origin_meaning": by_name.get("origin"),
+        "note": record.note,
+        "against": record.against,
+        "evidence": " ".join(record.evidence),
+        "cases": record.cases,
+        "counterexample": f"{record.counterexample}." if record.counterexample else None,
+        "difference": record.difference,
+        "mutations": {
+            "tried": mutations.tried,
+            "turned": mutations.turned,
+            "survived": [{"change": change, "because": because} for change, because in mutations.survived],
+        },
+        "problems": list(record.problems),
+    }
+    if findings.reproduce:
+        found["reproduce"] = _json_reproduction(record)
+    return found
+
+
+def _corrected_ranges(ranges: Sequence[str], slip: Slip | None) -> list[str] | None:
+    return None if slip is None else list(ranges if slip.ranges is None else slip.ranges)
+
+
+def _json_reproduction(record: Record) -> dict[str, str] | None:
+    wrong = record.counterexample
+    if wrong is None:
+        return None
+    if wrong.example is None:
+        return {"file": "", "scene": "", "command": "", "look": "", "said": f"{wrong}."}
+    example, file = wrong.example(), scene_file(record)
+    command = example.command.replace("SCENE", file)
+    return {"file": file, "scene": example.scene, "command": command, "look": example.look, "said": f"{wrong}."}
+
+
+# markdown
+
+
+def markdown(findings: Findings) -> str:
+    """A document that lies beside the code: the errata that are kept in generated/."""
+    made = document(findings, "markdown")
+    parts = ["# Errata", f"{marked_down(made.source)} {made.introduction}"]
+    for section in made.sections:
+        parts += [f"## {section.title}"] * bool(section.title)
+        for block in section.blocks:
+            parts += _markdown_block(block)
+    return "\n\n".join(parts) + "\n"
+
+
+def _markdown_block(block: Block) -> Iterator[str]:
+    if block.title:
+        yield f"### {block.title}{f': {block.verdict}' if block.verdict else ''}"
+    if block.text:
+        yield block.text
+    if block.table:
+        heads, *rows = ([marked_down(cell.line) for cell in row] for row in (block.table.heads, *block.table.rows))
+        lines = [heads, ["---"] * len(heads), *rows]
+        yield "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
+    for entry in block.entries:
+        yield f"**{entry.id}**"
+        yield "\n".join(f"- {field.name}: {marked_down(field.line)}" for field in entry.fields)
+        yield from (f"```toml\n{field.listing.rstrip()}\n```" for field in entry.fields if field.listing)
+
+
+def marked_down(line: Line) -> str:
+    """A line as markdown."""
+    return "".join(f"`{_plain(part)}`" if isinstance(part, (Code, Formula)) else _plain(part) for part in line)
+
+
+# HTML and LaTeX
+
+
+@dataclass(frozen=True)
+class _HtmlContext:
+    document: Document
+    line: Callable[[Line], str]
+
+
+def html(findings: Findings) -> str:
+    """One file: MathML, no script, nothing from the network. WavesymError without the library that writes MathML."""
+    return render("papers/errata.html.j2", _HtmlContext(document(findings, "html"), html_line))
+
+
+def html_line(line: Line) -> str:
+    """A line as HTML."""
+    return "".join(map(_html, line))
+
+
+def _html(part: Inline) -> str:
+    match part:
+        case Formula(_, tree):
+            return f'<span class="formula">{mathml(tree)}</span>'
+        case Code(words):
+            return f"<code>{escape(words)}</code>"
+        case Different(inner):
+            return f"<mark>{_html(inner)}</mark>"
+    return escape(part)
+
+
+@dataclass(frozen=True)
+class _LatexContext:
+    document: Document
+    line: Callable[[Line], str]
+    tex: Callable[[str], str]
+
+
+def as_latex(findings: Findings) -> str:
+    """An appendix that can be cited, for pdfLaTeX and LuaLaTeX; pure ASCII."""
+    return render("papers/errata.tex.j2", _LatexContext(document(findings, "latex"), latex_line, tex))
+
+
+def latex_line(line: Line) -> str:
+    """A line as LaTeX."""
+    return "".join(map(_latex, line))
+
+
+def _latex(part: Inline) -> str:
+    match part:
+        case Formula(_, tree):
+            return f"$\\displaystyle {latex(tree)}$"
+        case Code(words):
+            return rf"\texttt{{{tex(' '.join(words.split()))}}}"
+        case Different(inner):
+            return rf"\markedtext{{{_latex(inner)}}}"
+    return tex(part)
+
+
+CHARACTERS: Mapping[str, str] = {
+    "\\": r"\textbackslash{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    '"': r"\textquotedbl{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    "'": r"\textquotesingle{}",
+    "`": r"\textasciigrave{}",
+    **{character: f"\\{character}" for character in "#$%&_{}"},
+    "ł": r"\l{}",
+    "Ł": r"\L{}",
+    "\N{EN DASH}": r"\textendash{}",
+    "—": r"\textemdash{}",
+    "…": r"\ldots{}",
+    "“": "``",
+    "”": "''",
+    "„": r"\quotedblbase{}",
+    "⟨": r"\ensuremath{\langle}",
+    "⟩": r"\ensuremath{\rangle}",
+    "≤": r"\ensuremath{\leq}",
+    "≥": r"\ensuremath{\geq}",
+    "≈": r"\ensuremath{\approx}",
+    "≠": r"\ensuremath{\neq}",
+    "±": r"\ensuremath{\pm}",
+    "\N{MULTIPLICATION SIGN}": r"\ensuremath{\times}",
+    "·": r"\ensuremath{\cdot}",
+    "\N{MINUS SIGN}": r"\ensuremath{-}",
+}
+"""What LaTeX would read as commands, and what is no ASCII."""
+_RUSSIAN = {
+    **dict(zip("абвгдеёзийклмнопрстуфыэ", "abvgdeeziiklmnoprstufye", strict=True)),
+    "ж": "zh",
+    "\N{CYRILLIC SMALL LETTER HA}": "kh",
+    "ц": "ts",
+    "ч": "ch",
+    "ш": "sh",
+    "щ": "shch",
+    "ъ": "''",
+    "ь": "'",
+    "ю": "yu",
+    "я": "ya",
+}
+"""As it is transliterated: what LaTeX needs for Cyrillic is not everywhere."""
+_ACCENTS = {"\u0301": "'", "\u0300": "`", "\u0307": ".", "\u0328": "k", "\u0308": '"', "\u0302": "^", "\u030c": "v"}
+
+
+def tex(text: str) -> str:
+    """Text as LaTeX sets it: what it would read as commands is written out, and so is what is no ASCII."""
+    return "".join(map(_character, unicodedata.normalize("NFC", text))).replace("--", "-{}-")
+
+
+def _character(character: str) -> str:
+    if character in CHARACTERS:
+        return CHARACTERS[character]
+    if character.isascii():
+        return character
+    if character.lower() in _RUSSIAN:
+        latin = _RUSSIAN[character.lower()].replace("'", CHARACTERS["'"])
+        return latin if character.islower() else latin.capitalize()
+    parts = unicodedata.normalize("NFD", character)
+    if len(parts) == 2 and parts[0].isascii() and parts[1] in _ACCENTS:
+        return f"\\{_ACCENTS[parts[1]]}{{{parts[0]}}}"
+    name = unicodedata.name(character, f"U+{ord(character):04X}")
+    greek = name.removeprefix("GREEK SMALL LETTER ").lower()
+    return rf"\ensuremath{{\{greek}}}" if name.startswith("GREEK SMALL LETTER ") else f"[{name.lower()}]"
+
+
+FORMATS: Mapping[str, Callable[[Findings], str]] = {
+    "text": text,
+    "json": as_json,
+    "markdown": markdown,
+    "html": html,
+    "latex": as_latex,
+}

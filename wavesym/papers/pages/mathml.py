@@ -1,0 +1,69 @@
+"""Trees as MathML, by the library latex2mathml."""
+
+from __future__ import annotations
+
+from wavesym.errors import WavesymError
+from wavesym.papers.tree import Addition, Group, Listed, Marked, Minus, Product, Relation, Series, Tree, latex
+
+LONGEST = 90
+"""Characters of LaTeX that are not broken: about what a line of a phone holds."""
+
+
+_REPLACED = (
+    (' xmlns="http://www.w3.org/1998/Math/MathML"', ""),
+    ('style="marked"', 'class="marked"'),
+    ('display="inline"', 'displaystyle="true"'),
+)
+
+
+def mathml(tree: Tree) -> str:
+    """The formula as <math> elements: one, or, where it is long, pieces of it between which a line may be broken.
+
+    WavesymError where the library is not installed.
+    """
+    try:
+        from latex2mathml.converter import convert
+    except ImportError:
+        raise WavesymError("latex2mathml is not installed; `pip install 'wavesym[papers]'` brings it") from None
+    found = []
+    for piece in pieces(tree):
+        made = convert(piece.replace(r"\marked{", r"\style{marked}{"))
+        for before, after in _REPLACED:
+            made = made.replace(before, after)
+        found.append(made)
+    return " ".join(found)
+
+
+def pieces(tree: Tree) -> list[str]:
+    """A formula as LaTeX, cut before its signs where it is long; within brackets too."""
+    text = latex(tree)
+    if len(text) <= LONGEST:
+        return [text]
+    match tree:
+        case Relation(sides, signs):
+            return _parts(sides, [f"{sign} " for sign in signs])
+        case Listed(items):
+            found = [pieces(item) for item in items]
+            return [part for item in found[:-1] for part in (*item[:-1], f"{item[-1]},")] + found[-1]
+        case Addition(terms) if not any(isinstance(term, Marked) for term in terms):
+            bodies = [term.of if place and isinstance(term, Minus) else term for place, term in enumerate(terms)]
+            return _parts(bodies, ["- " if isinstance(term, Minus) else "+ " for term in terms[1:]])
+        case Product((*before, last)):
+            return _after(f"{latex(Product(tuple(before)))} ", pieces(last))
+        case Series(body=body):
+            return _after(text.removesuffix(latex(body)), pieces(body))
+        case Minus(of):
+            return _after("-", pieces(of))
+        case Group(_, inner):
+            opening, closing = text.split(latex(inner))
+            first, *rest = _after(opening, pieces(inner))
+            return [*[first, *rest][:-1], [first, *rest][-1] + closing]
+    return [text]
+
+
+def _parts(parts: tuple[Tree, ...] | list[Tree], signs: list[str]) -> list[str]:
+    return [piece for sign, part in zip(["", *signs], parts, strict=True) for piece in _after(sign, pieces(part))]
+
+
+def _after(first: str, later: list[str]) -> list[str]:
+    return [first + later[0], *later[1:]]
