@@ -15,7 +15,7 @@ PACKAGE = Path(wavesym.__file__).parent
 COSTS = {"CostError", "_TooLarge"}
 KEY = (
     r"(output|output\.until|load|frequency|system|system\.(m|parts)|"
-    r"--below|--count|--intervals|--peaks|--points|--to|\{asked\})"
+    r"--below|--count|--intervals|--peaks|--points|--to|--until|\{asked\})"
 )
 FORM = re.compile(rf"{KEY}: .+ expected.* \(.+ helps?\)")
 PASSED_ON = re.compile(r".*\{error\} \(.+ helps?\)")  # the sentence of another error, which says how much

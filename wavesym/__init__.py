@@ -13,6 +13,7 @@
     generate    its C and NumPy programs, written to files
     verify      these programs, compared with direct integration
     tables      the exact coefficients of its wave functions; `derive` has the equations that give them
+    formula     one of its outputs in closed form: as text, LaTeX, SymPy or C
 
 A request that cannot be carried out raises a WavesymError: SceneError, ToleranceError, CostError, UnservedError,
 CompilerError or RangeError.
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from wavesym.api import (
         derive,
         evaluator,
+        formula,
         frf,
         generate,
         model,
@@ -67,6 +69,7 @@ __all__ = [
     "__version__",
     "derive",
     "evaluator",
+    "formula",
     "frf",
     "generate",
     "model",

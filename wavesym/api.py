@@ -638,6 +638,53 @@ def symbolic_tables(scene: Scene, intervals: int | None, format: str) -> tuple[l
     return merged, symbolic_lines(made, symbols, scene.name, format)
 
 
+def formula(
+    scene: Scene, output: str, until: float | Fraction | None = None, format: str = "text", *, symbolic: bool = False
+) -> str:
+    """An output in closed form between its breakpoints, with exact coefficients.
+
+    Args:
+        scene: whose contacts do not open, and whose modes are not damped.
+        output: its name, such as "strain@0.5".
+        until: in the time unit of the results, or tau; None for the horizon.
+        format: "text", "latex", "sympy" (one expression in `tau`) or "c" (a function).
+        symbolic: whether coefficients are functions of the parameters: of the paper's systems only.
+
+    Returns:
+        The text, which ends with a line break.
+
+    Raises:
+        WavesymError: for an output, a format or a time that is none.
+        UnservedError: where there is no closed form.
+        CostError: for a formula of too many terms.
+
+    >>> import wavesym
+    >>> print(wavesym.formula(wavesym.Scene.from_toml("drive_m1"), "strain@0", 1), end="")
+    strain@0 of drive_m1, tau from 0 to 1: the sum of
+    from tau = 0 on, w = tau:
+        -1 + exp(-w)
+    """
+    from wavesym.documents.formula import output_formula, symbolic_formula
+    from wavesym.numbers.doubles import rational
+
+    refuse_unknown("format", format, ("text", "latex", "sympy", "c"))
+    model = lower(scene)
+    if until is not None:
+        last = rational(Fraction(repr(float(until)) if isinstance(until, float) else until)) / (
+            model.clock.per_tau if model.clock else 1
+        )
+        if not 0 < last <= model.until:
+            raise WavesymError(f"--until: {float(until):g} is not between 0 and the horizon of the scene")
+        model = model.shortened(last)
+    if not symbolic:
+        return output_formula(model, output).written(format)
+    from wavesym.derivation.rate_letters import in_rates
+    from wavesym.mechanics.symbolic import symbolic as in_letters
+
+    chain = _paper_chain(scene, model, "--symbolic", "formula")
+    return symbolic_formula(model, output, in_rates(in_letters(chain)), chain.nodes[-1].velocity).written(format)
+
+
 def derive(source: str | Scene, m: int | None = None, format: str = "text") -> str:
     """The derivation of a system, or of a scene: boundary conditions, delay equations, coefficient recurrences.
 

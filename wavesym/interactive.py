@@ -35,6 +35,10 @@ class Scene(scene.Scene):
         """The outputs under one unit of a harmonic load; arguments, value and errors are those of `wavesym.frf`."""
         return api.frf(self, frequencies, load)
 
+    def formula(self, output: str, until: float | None = None, format: str = "text", *, symbolic: bool = False) -> str:
+        """An output in closed form; arguments, value and errors are those of `wavesym.formula`."""
+        return api.formula(self, output, until, format, symbolic=symbolic)
+
     def plot(self, path: str | PathLike[str] | None = None, kind: str = "history") -> Any:
         """A matplotlib Figure of the scene; arguments and errors are those of `wavesym.plot`."""
         return api.plot(self, path, kind)

@@ -23,7 +23,7 @@ GROUPS = {
     "Compute": ("run", "summary", "modes", "frf", "spectrum", "sweep"),
     "Show": ("plot", "report"),
     "Generate": ("generate",),
-    "Understand": ("inspect", "advise", "derive", "tables", "verify"),
+    "Understand": ("inspect", "advise", "derive", "tables", "formula", "verify"),
     "Measure": ("chart", "stability"),
 }
 """The commands as people meet them."""

@@ -1,0 +1,71 @@
+"""`wavesym formula`."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from wavesym.cli.parameters import PATH, SCENE, put, refuse_scene, refuse_unwritable
+from wavesym.cli.progress import progress
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+
+class TimeParameter(click.ParamType[Any]):
+    """A time, exact: a decimal or a ratio."""
+
+    name = "time"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Fraction:
+        """The time as a fraction."""
+        from pydantic_core import PydanticCustomError
+
+        from wavesym.fields.numbers import exact
+
+        try:
+            return exact(value)
+        except PydanticCustomError as error:
+            self.fail(str(error), param, ctx)
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option("--output", required=True, metavar="NAME", help='Which output, such as "strain@0.5".')
+@click.option(
+    "--until", type=TimeParameter(), metavar="T", help="An earlier end, in tau; with [units] in that of results."
+)
+@click.option("--symbolic", is_flag=True, help="Coefficients as functions of the parameters: of the paper's systems.")
+@click.option(
+    "--format",
+    type=click.Choice(["text", "latex", "sympy", "c"]),
+    default="text",
+    show_default=True,
+    help="How it is written; sympy: one expression in tau, c: a function.",
+)
+@click.option("-o", "out", type=PATH, metavar="FILE", help="Where it goes.  [default: standard output]")
+def formula(scene: Scene, output: str, until: Fraction | None, symbolic: bool, format: str, out: Path | None) -> None:
+    """Print an output as a formula, exact.
+
+    Print an output in closed form: what it gains at each breakpoint, exponentials times powers with exact coefficients,
+    in numbers or, with --symbolic, in the letters of the paper.
+
+    \b
+    Example:
+      wavesym formula drive_m1 --output strain@0 --until 3
+    """
+    from wavesym import api
+    from wavesym.writing import write_whole
+
+    if out is not None:
+        refuse_unwritable(out)
+        refuse_scene(out)
+    with progress(f"formula {scene.name}"):
+        text = api.formula(scene, output, until, format, symbolic=symbolic)
+        if out is not None:
+            write_whole({out: text})
+    if out is None:
+        put(text)

@@ -1,0 +1,335 @@
+"""An output as a formula: what it gains at each breakpoint, an exponential polynomial in the time since then.
+
+The coefficients are exact: fractions, or rational functions of the parameters (`symbolic`). As text, as LaTeX, as one
+expression for SymPy, or as a function in C, whose numbers are the nearest doubles.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from flint import fmpq
+
+from wavesym.derivation.increments import Increment, add, integrated, trimmed
+from wavesym.derivation.increments import start as begin
+from wavesym.derivation.table import Function, Rules, unit_response
+from wavesym.errors import CostError, UnservedError, WavesymError, did_you_mean
+from wavesym.exact.tables.signal import signals
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.symbolic import SymbolicChain
+from wavesym.numbers.doubles import nearest, not_below
+from wavesym.numbers.ratio import Ratio
+from wavesym.rendering import render
+
+MOST_TERMS = 2000
+_POWER = re.compile(r"(\w+|\([^()]*\))\*\*(\d+)")
+_INTEGER = re.compile(r"(?<![\w.])\d+(?![\w.])")
+
+Number = fmpq | Ratio
+
+
+class Gain(NamedTuple):
+    """What an output gains at tau = `start`: sum_g exp(-g w) sum_k increment[g][k] w^k, w = tau - start."""
+
+    start: fmpq
+    increment: Increment
+
+
+@dataclass(frozen=True)
+class Formula:
+    """An output until tau = `until`.
+
+    Attributes:
+        scene: the scene's name.
+        name: the output's; `unit` its unit, empty without [units].
+        until: the horizon.
+        gains: in order of time.
+        letters: what the coefficients are functions of, each with its value in the scene; empty where they are numbers.
+        seconds: what one tau is; None without [units].
+    """
+
+    scene: str
+    name: str
+    unit: str
+    until: fmpq
+    gains: tuple[Gain, ...]
+    letters: Mapping[str, fmpq]
+    seconds: fmpq | None
+
+    def written(self, format: str) -> str:
+        """As text. `format` is "text", "latex", "sympy" or "c"."""
+        return {"text": self._text, "latex": self._latex, "sympy": self._sympy, "c": self._c}[format]()
+
+    @property
+    def title(self) -> str:
+        """What it is, in a line."""
+        unit = f" [{self.unit}]" if self.unit else ""
+        clock = f", tau = time/({self.seconds} s)" if self.seconds is not None else ""
+        letters = "; ".join(f"{name} is {value} in the scene" for name, value in self.letters.items())
+        return f"{self.name}{unit} of {self.scene}, tau from 0 to {self.until}{clock}{letters and '; '}{letters}"
+
+    def _text(self) -> str:
+        if not self.gains:
+            return f"{self.title}\n0\n"
+        lines = [f"from tau = {g.start} on, {_since(g.start)}:\n    {_sum(g, _plain)}\n" for g in self.gains]
+        return f"{self.title}: the sum of\n" + "".join(lines)
+
+    def _latex(self) -> str:
+        rows = [rf"H(\tau{_latex_ago(g.start)})\left[{_sum(g, _latex_term, g.start)}\right]" for g in self.gains]
+        body = " \\\\\n  &\\quad + ".join(rows) or "0"
+        return f"% {self.title}\n\\begin{{aligned}}\n  &{body}\n\\end{{aligned}}\n"
+
+    def _sympy(self) -> str:
+        terms = (f"Heaviside({_ago(g.start)}, 1)*({_sum(g, _sympy_term, g.start)})" for g in self.gains)
+        return " + ".join(terms) + "\n" if self.gains else "Integer(0)\n"
+
+    def _c(self) -> str:
+        gains = tuple(
+            CGain(repr(not_below(g.start)), repr(nearest(g.start)), tuple(_terms(g, _c_term))) for g in self.gains
+        )
+        function = f"{self.scene}_{_identifier(self.name)}"
+        return render("c/formula.c.j2", CFormula(self.title, function, tuple(self.letters.items()), gains))
+
+
+@dataclass(frozen=True)
+class CGain:
+    """What is added from a tau on: the first double that counts, the nearest one, and the terms."""
+
+    first: str
+    start: str
+    terms: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CFormula:
+    """templates/c/formula.c.j2."""
+
+    title: str
+    function: str
+    letters: tuple[tuple[str, fmpq], ...]
+    gains: tuple[CGain, ...]
+
+
+Term = Callable[[Number, Number, int], str]
+
+
+def _terms(gain: Gain, term: Term) -> Iterator[str]:
+    for rate in sorted(gain.increment, key=lambda rate: (rate != 0, str(rate))):
+        for power, value in enumerate(gain.increment[rate]):
+            if value != 0:
+                yield term(value, rate, power)
+
+
+def _sum(gain: Gain, term: Callable[..., str], *more: object) -> str:
+    joined = " + ".join(_terms(gain, lambda value, rate, power: term(value, rate, power, *more)))
+    return joined.replace("+ -", "- ")
+
+
+def _factor(value: object) -> str:
+    text = str(value)
+    return f"({text})" if " " in text or (not isinstance(value, fmpq) and "/" in text) else text
+
+
+def _since(since: fmpq) -> str:
+    return f"w = tau - {since}" if since != 0 else "w = tau"
+
+
+def _plain(value: Number, rate: Number, power: int) -> str:
+    bare = power == 0 and rate == 0
+    number = "" if value == 1 and not bare else "-" if value == -1 and not bare else f"{_factor(value)} "
+    parts = ["w" if power == 1 else f"w^{power}"] if power else []
+    if rate != 0:
+        parts.append("exp(-w)" if rate == 1 else f"exp(-{_factor(rate)} w)")
+    return f"{number}{' '.join(parts)}".rstrip().replace("**", "^")
+
+
+def _rational(value: object) -> str:
+    if isinstance(value, fmpq):
+        return f"Rational({value.p}, {value.q})" if value.q != 1 else f"Integer({value.p})"
+    # a rational function with integers: one of them over another would be a float
+    return "(" + _INTEGER.sub(lambda found: f"Integer({found[0]})", str(value)) + ")"
+
+
+def _ago(since: fmpq) -> str:
+    return f"tau - {_rational(since)}" if since != 0 else "tau"
+
+
+def _sympy_term(value: Number, rate: Number, power: int, since: fmpq) -> str:
+    w = f"({_ago(since)})" if since != 0 else "tau"
+    parts = [_rational(value), *([w if power == 1 else f"{w}**{power}"] if power else [])]
+    return "*".join([*parts, *([f"exp(-{_rational(rate)}*{w})"] if rate != 0 else [])])
+
+
+def _latex(value: object) -> str:
+    if isinstance(value, fmpq):
+        size = abs(value)
+        text = str(size.p) if size.q == 1 else rf"\tfrac{{{size.p}}}{{{size.q}}}"
+        return f"-{text}" if value < 0 else text
+    above, below = value.factored.parts if isinstance(value, Ratio) else (str(value), "1")
+    above, below = (re.sub(r"_(\w+)", r"_{\1}", each.replace("**", "^").replace("*", r"\,")) for each in (above, below))
+    above, below = (each.replace("kappa", r"\kappa") for each in (above, below))
+    return above if below == "1" else rf"\frac{{{above}}}{{{below}}}"
+
+
+def _latex_ago(since: fmpq) -> str:
+    return f" - {_latex(since)}" if since != 0 else ""
+
+
+def _latex_term(value: Number, rate: Number, power: int, since: fmpq) -> str:
+    w = rf"(\tau{_latex_ago(since)})" if since != 0 else r"\tau"
+    bare = power == 0 and rate == 0
+    number = "" if value == 1 and not bare else "-" if value == -1 and not bare else _latex(value)
+    number = rf"\left({number}\right)" if " + " in number or " - " in number else number
+    once = "" if isinstance(rate, fmpq) and rate == 1 else _latex(rate)
+    once = rf"\left({once}\right)" if " + " in once or " - " in once else once
+    parts = [number, *([w + (f"^{{{power}}}" if power > 1 else "")] if power else [])]
+    return r"\,".join(each for each in [*parts, *([f"e^{{-{once}{w}}}"] if rate != 0 else [])] if each)
+
+
+def _c_number(value: object) -> str:
+    if isinstance(value, fmpq):
+        return repr(nearest(value))
+    text, found = str(value), 1
+    while found:
+        text, found = _POWER.subn(r"pow(\1, \2)", text)
+    return "(" + _INTEGER.sub(lambda found: f"{found[0]}.0", text) + ")"
+
+
+def _c_term(value: Number, rate: Number, power: int) -> str:
+    parts = [_c_number(value), *["w"] * power]
+    return " * ".join([*parts, *([f"exp(-{_c_number(rate)} * w)"] if rate != 0 else [])])
+
+
+def _identifier(name: str) -> str:
+    """`strain_1_plus` for strain@1+."""
+    sided = name.removesuffix(name[-1]) + {"+": "_plus", "-": "_minus"}.get(name[-1], name[-1])
+    return re.sub(r"[^A-Za-z0-9]+", "_", sided)
+
+
+def output_formula(model: Model, name: str) -> Formula:
+    """An output of a model, its coefficients in numbers.
+
+    Args:
+        model: with the horizon that is wanted.
+        name: the output's.
+
+    Raises:
+        WavesymError: for an output that there is not.
+        UnservedError: for contacts that open, damped modes, and joints whose polynomial does not split.
+        CostError: for a formula of too many terms.
+    """
+    probe = _probe(model, name)
+    (signal,) = signals(model.watching([probe]), most=50 * MOST_TERMS)
+    gains = tuple(Gain(arrival.time, arrival.increment) for arrival in signal.arrivals)
+    return _formula(model, probe, gains, {})
+
+
+def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmpq) -> Formula:
+    """An output of one of the paper's systems, its coefficients functions of the parameters; loads stay numbers.
+
+    Args:
+        model: with the horizon that is wanted.
+        name: the output's: a strain, a velocity, a displacement, a drift, or a displacement relative to the ground.
+        symbols: the chain of the model with symbols for its numbers; its last body rests.
+        frame: how fast that body moves in the model at first.
+
+    Raises:
+        WavesymError, CostError: as for `output_formula`.
+        UnservedError: for other outputs.
+    """
+    probe = _probe(model, name)
+    rules = Rules(symbols.chain)
+    chain, parts = symbols.chain, list(_wave_parts(probe))
+    gains: dict[fmpq, list[tuple[fmpq, Increment, bool]]] = {}
+    for source in dict.fromkeys(load.source for load in model.loads):
+        wanted: dict[Function, int] = {}
+        for _, function, place, _ in parts:
+            delay = _delay(symbols, function, place)
+            count = int(((model.until - delay) / rules.interval).floor()) + 1
+            wanted[function] = max(count, wanted.get(function, 0))
+        response = unit_response(rules, source, {function: count for function, count in wanted.items() if count > 0})
+        for factor, function, place, integral in parts:
+            delay = _delay(symbols, function, place)
+            for load in (load for load in model.loads if load.source == source):
+                for n, increment in enumerate(response.get(function, ())):
+                    time = load.time + delay + rules.interval * n
+                    if increment and time <= model.until:
+                        gains.setdefault(time, []).append((probe.factor * factor * load.weight, increment, integral))
+    for sign, rod, integral in _moving_parts(probe):
+        velocity = chain.rod(rod).velocity + frame
+        if velocity != 0:
+            held: Increment = {fmpq(0): [velocity]}
+            gains.setdefault(fmpq(0), []).append((probe.factor * sign, held, integral))
+    made = []
+    for time in sorted(gains):
+        total: Increment = {}
+        for weight, increment, integral in gains[time]:
+            add(total, integrated(increment) if integral else increment, weight)
+        whole = trimmed(total)
+        if whole and not (time == model.until and begin(whole) == 0):
+            made.append(Gain(time, whole))
+    return _formula(model, probe, tuple(made), symbols.values)
+
+
+def _wave_parts(probe: Probe) -> Iterator[tuple[int, Function, fmpq, bool]]:
+    """The derivatives of wave functions in an output, or their integrals: a factor, and where on the rod."""
+    right, left = Function("f", probe.rod), Function("g", probe.rod)
+    match probe.quantity:
+        case "strain":
+            yield from ((-1, right, probe.place, False), (1, left, probe.place, False))
+        case "velocity":
+            yield from ((1, right, probe.place, False), (1, left, probe.place, False))
+        case "displacement":
+            yield from ((1, right, probe.place, True), (1, left, probe.place, True))
+        case "drift":
+            for factor, place in ((1, fmpq(1)), (-1, fmpq(0))):
+                yield from ((factor, right, place, True), (factor, left, place, True))
+        case "relative":
+            yield from ((1, right, probe.place, True), (1, left, probe.place, True))
+            yield from ((-1, Function("f", 1), fmpq(0), True), (-1, Function("g", 1), fmpq(0), True))
+        case _:
+            raise UnservedError(
+                f"--symbolic: {probe.name} is no sum of waves without parameters; a strain, velocity, displacement, "
+                "drift or relative displacement is"
+            )
+
+
+def _moving_parts(probe: Probe) -> Iterator[tuple[int, int, bool]]:
+    """The velocities of rods in an output: a factor, the rod, and whether it is their integral."""
+    if probe.quantity in ("velocity", "displacement", "relative"):
+        yield 1, probe.rod, probe.quantity != "velocity"
+    if probe.quantity == "relative":
+        yield -1, 1, True
+
+
+def _delay(symbols: SymbolicChain, function: Function, place: fmpq) -> fmpq:
+    """When the first interval of a function begins at a place of its rod."""
+    way = place if function.function == "f" else 1 - place
+    return way + symbols.chain.leaves(*function, 0)
+
+
+def _probe(model: Model, name: str) -> Probe:
+    found = [probe for probe in model.probes if probe.name == name]
+    if not found:
+        names = [probe.name for probe in model.probes]
+        hint = did_you_mean(name, names)
+        raise WavesymError(
+            f"--output: {name} is no output of {model.name}; it has {', '.join(names)}{hint and '. '}{hint}"
+        )
+    return found[0]
+
+
+def _formula(model: Model, probe: Probe, gains: Sequence[Gain], letters: Mapping[str, fmpq]) -> Formula:
+    count = sum(len(powers) for gain in gains for powers in gain.increment.values())
+    if count > MOST_TERMS:
+        raise CostError(
+            f"--until: {count} terms, at most {MOST_TERMS} expected (an earlier one or fewer changes of loads help)"
+        )
+    seconds = model.clock.seconds if model.clock else None
+    text = " ".join(str(each) for g in gains for rate, row in g.increment.items() for each in (rate, *row))
+    met = {name: value for name, value in letters.items() if name in set(re.findall(r"[a-z]\w*", text))}
+    return Formula(model.name, probe.name, probe.unit, model.until, tuple(gains), met, seconds)
