@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE, Real
-from wavesym.programs.pieces import Pieces, _Cuts
+from wavesym.programs.piece_grid import Pieces
+from wavesym.programs.pieces import _Cuts
 
 FORMATS = {DOUBLE: np.float64, SINGLE: np.float32}
 both = pytest.mark.parametrize("real", FORMATS, ids=lambda real: real.name)

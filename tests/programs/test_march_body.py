@@ -13,7 +13,7 @@ from tests.support.marches import all_windows, scheme_of
 from tests.support.rounded import Rounded
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.march.bound import _LOADED, Losses
+from wavesym.programs.march.losses import _LOADED, Losses
 from wavesym.programs.march.plan import march_plan
 from wavesym.programs.march.responses import BodyOperator, _norm, block_response, body_operator, body_roundings
 from wavesym.programs.march.space import BODY

@@ -26,7 +26,6 @@ from wavesym.programs.march import bound as bounds
 from wavesym.programs.march.bound import (
     READING,
     Verdict,
-    block_loss,
     judge,
     largest_wave,
     reading_weights,
@@ -34,6 +33,7 @@ from wavesym.programs.march.bound import (
     smoothness,
 )
 from wavesym.programs.march.evaluator import march
+from wavesym.programs.march.losses import block_loss
 from wavesym.programs.march.plan import MarchPlan, largest_number, march_plan, power_of_two
 from wavesym.programs.march.responses import block_response
 from wavesym.programs.march.space import JointSpace, joint_space

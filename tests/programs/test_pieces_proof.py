@@ -14,7 +14,8 @@ from tests.support.counted import Counted
 from wavesym.exact.tables.ball import Segment
 from wavesym.numbers import chebyshev
 from wavesym.numbers.reals import DOUBLE, SINGLE
-from wavesym.programs.pieces import Pieces, _cut_off, _Cuts, _Fits, _shortened, _underflow
+from wavesym.programs.piece_grid import Pieces
+from wavesym.programs.pieces import _cut_off, _Cuts, _Fits, _shortened, _underflow
 from wavesym.programs.program import ProgramOutput
 from wavesym.scene import lower
 

@@ -13,7 +13,8 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form
-from wavesym.programs.pieces import Pieces, pieces
+from wavesym.programs.piece_grid import Pieces
+from wavesym.programs.pieces import pieces
 from wavesym.programs.request import unmet
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from wavesym.programs.closed import ClosedForm
 from wavesym.programs.hats.evaluator import HatMarch
 from wavesym.programs.march.evaluator import March
 from wavesym.programs.modes.evaluator import ModesEvaluator
-from wavesym.programs.pieces import Pieces
+from wavesym.programs.piece_grid import Pieces
 
 # To fit pieces whose tables are so large once more, in floats or the smallest ones, takes some seconds.
 MOST_BYTES = 64 << 10
