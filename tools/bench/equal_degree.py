@@ -17,7 +17,7 @@ from wavesym.lab.timing import medians
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
-from wavesym.programs.pieces import Pieces
+from wavesym.programs.piece_grid import Pieces
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import sources
 

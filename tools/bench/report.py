@@ -24,7 +24,7 @@ from wavesym.lab.timing import least, medians
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import choose
 from wavesym.programs.making import make
-from wavesym.programs.pieces import Pieces
+from wavesym.programs.piece_grid import Pieces
 from wavesym.programs.request import Request
 from wavesym.running.compiled import imported
 from wavesym.running.native import FAST
