@@ -1,11 +1,16 @@
 """The sentences of section 4: every word in a place is evaluated."""
 
+from pathlib import Path
+
 import pytest
 
+from wavesym.papers.pielorz1979 import solutions
 from wavesym.papers.pielorz1979.paper import ADAPTERS
-from wavesym.papers.pielorz1979.prose import CASES, sayings
+from wavesym.papers.pielorz1979.solutions import SOLUTIONS
+from wavesym.papers.pielorz1979.statements import STATEMENTS
 from wavesym.papers.pielorz1979.transcript import entry
 from wavesym.papers.record import judge
+from wavesym.papers.sentences import read_patterns
 
 
 def verdict(id: str, before: str = "", after: str = "") -> str:
@@ -22,8 +27,9 @@ def verdict(id: str, before: str = "", after: str = "") -> str:
     return judge(told, ADAPTERS[told.kind](told)).verdict
 
 
-def test_every_saying_has_cases() -> None:
-    assert sayings().keys() == CASES.keys()
+def test_every_pattern_has_cases() -> None:
+    patterns = read_patterns(Path(solutions.__file__).with_name("sentences.toml"))
+    assert {pattern.name for pattern in patterns} == STATEMENTS.keys() | SOLUTIONS.keys()
 
 
 @pytest.mark.parametrize(

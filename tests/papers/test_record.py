@@ -9,7 +9,7 @@ from wavesym.papers.evaluation import MeaninglessError, Scope, holds, sides, spa
 from wavesym.papers.reader import read_range
 from wavesym.papers.record import Case, Nothing, Reading, Test, case, judge
 from wavesym.papers.record import reading as read_reading
-from wavesym.papers.sentences import SentencePattern, sentence_reader
+from wavesym.papers.sentences import SentencePattern, SentenceReader
 
 
 def _cases(reading):
@@ -161,7 +161,7 @@ RISES = SentencePattern(
 
 
 def test_sentences_are_read_by_their_words():
-    reader = sentence_reader([RISES])
+    reader = SentenceReader([RISES])
     read = reader.read("the strain rises, at x = 1", ())
     assert read.formula.words == {"quantity": "strain", "turn": "rises", "where": ", at x = 1"}
     assert [change for change, _ in reader.faults(read)] == [

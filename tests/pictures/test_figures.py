@@ -12,7 +12,7 @@ from tests.pictures.clear import texts_keep_clear
 from wavesym.papers.pielorz1979 import figures as section_5
 from wavesym.papers.pielorz1979.figure_scenes import Array, contact_end, figure, loads
 from wavesym.papers.pielorz1979.measures import Finding
-from wavesym.papers.record import Record
+from wavesym.papers.record import Record, Sentence
 from wavesym.scene import lower
 
 pytest.importorskip("matplotlib")
@@ -58,7 +58,7 @@ def marked(figure: Figure) -> set[str]:
     return {text for text in texts if text.isdigit()}
 
 
-def measured(number: int, statement: section_5.FigureStatement) -> Finding:
+def measured(number: int, statement: Sentence) -> Finding:
     """What is measured under the load drawn."""
     return section_5.finding(figure(number), figures.drawn(number), statement)
 
@@ -83,7 +83,7 @@ def test_every_statement_is_listed_and_marked(drawn: dict[int, Figure], records:
 
 
 def test_a_statement_left_out_is_missed(monkeypatch: pytest.MonkeyPatch, records: Mapping[str, Record]) -> None:
-    def all_but_one(number: int) -> dict[str, section_5.FigureStatement]:
+    def all_but_one(number: int) -> dict[str, Sentence]:
         return {id: statement for id, statement in section_5.statements(number).items() if id != "text.27"}
 
     monkeypatch.setattr(figures, "statements", all_but_one)

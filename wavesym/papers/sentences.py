@@ -9,9 +9,10 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds
@@ -21,6 +22,8 @@ from wavesym.papers.record import Adapter, Case, Reading, Sentence, Test
 from wavesym.papers.tree import latex
 
 Words = Mapping[str, str]
+LIST = "; "
+"""What stands between the words of a list."""
 
 
 @dataclass(frozen=True)
@@ -28,12 +31,16 @@ class SentencePattern:
     """A sentence with places in braces, such as "the {quantity} at x = {place} rises", and the words for each.
 
     A place whose words include "" may be left out, with a space or comma of its own inside the words. One for which no
-    words are given takes a formula.
+    words are given takes a formula. After a sentence may stand `more`, and a list of some words. `about` is what else
+    is known of it.
     """
 
     name: str
     text: str
     words: Mapping[str, Sequence[str]]
+    more: str = ""
+    listed: Sequence[str] = ()
+    about: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     @cached_property
     def _expression(self) -> re.Pattern[str]:
@@ -45,12 +52,17 @@ class SentencePattern:
                 pattern += f"(?P<{part}>{choices or '.+'})"
             else:
                 pattern += re.escape(part)
-        return re.compile(pattern)
+        return re.compile(pattern + (f"({re.escape(self.more)}(?P<listed>.*))?" if self.more else ""))
 
     def match(self, sentence: str) -> Sentence | None:
-        """The sentence with its words, where it is one of this pattern."""
+        """The sentence with its words, where it is one of this pattern; UnreadableError for a list of other words."""
         found = self._expression.fullmatch(sentence)
-        return Sentence(self.name, found.groupdict()) if found else None
+        if not found:
+            return None
+        words = {place: word for place, word in found.groupdict().items() if word is not None}
+        if unknown := sorted(set(words.get("listed", "").split(LIST)) - {*self.listed, ""}):
+            raise UnreadableError(f"nothing is called {', '.join(unknown)}")
+        return Sentence(self.name, words)
 
     def others(self, sentence: Sentence) -> Iterator[tuple[str, Sentence]]:
         """The same sentence with one word changed, by what was changed."""
@@ -62,41 +74,57 @@ class SentencePattern:
                 if word != sentence.words[place]:
                     change = f"{word or 'nothing'} for {sentence.words[place] or 'nothing'}"
                     yield change, Sentence(self.name, {**sentence.words, place: word})
+        own = sentence.words.get("listed")
+        for word in self.listed if own is not None else ():
+            names = own.split(LIST) if own else []
+            change = f"not under {word}" if word in names else f"under {word} too"
+            names = [name for name in names if name != word] if word in names else [*names, word]
+            yield change, Sentence(self.name, {**sentence.words, "listed": LIST.join(names)})
 
 
-def sentence_reader(patterns: Iterable[SentencePattern]) -> _Reader:
+class SentenceReader:
     """What reads sentences of some patterns, and puts faults into them."""
-    return _Reader(tuple(patterns))
 
+    def __init__(self, patterns: Iterable[SentencePattern]) -> None:
+        self.patterns = {pattern.name: pattern for pattern in patterns}
 
-class _Reader:
-    def __init__(self, patterns: Sequence[SentencePattern]) -> None:
-        self._patterns = {pattern.name: pattern for pattern in patterns}
+    def sentence(self, text: str) -> Sentence:
+        """A sentence with its words; UnreadableError where no pattern has it."""
+        for pattern in self.patterns.values():
+            if sentence := pattern.match(text):
+                return sentence
+        raise UnreadableError(f"no pattern has the sentence: {text}")
 
     def read(self, printed: str, ranges: Iterable[str]) -> Reading:
         """The reading of a sentence; UnreadableError where no pattern has it."""
-        for pattern in self._patterns.values():
-            if sentence := pattern.match(printed):
-                return Reading(sentence, tuple(map(read_range, ranges)))
-        raise UnreadableError(f"no pattern has the sentence: {printed}")
+        return Reading(self.sentence(printed), tuple(map(read_range, ranges)))
 
     def faults(self, right: Reading) -> Iterator[tuple[str, Reading]]:
         """Every other word in every place, and both ends of every range."""
-        for change, sentence in self._patterns[right.formula.pattern].others(right.formula):
+        for change, sentence in self.patterns[right.formula.pattern].others(right.formula):
             yield change, Reading(sentence, right.ranges)
         for place, range_ in enumerate(right.ranges):
             for change, wrong in ends(range_):
                 yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
 
+    def about(self, sentence: Sentence) -> Mapping[str, Any]:
+        """What else is known of a sentence's pattern."""
+        return self.patterns[sentence.pattern].about
 
-def sayings(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Case]]]) -> Adapter:
-    """How sentences are tried: their patterns, with what they are compared with, are in a file, `cases` goes by name.
 
-    Of the cases those count that are within the ranges of a sentence.
+def read_patterns(path: Path) -> list[SentencePattern]:
+    """The patterns of a TOML file, by name: `text`, `words`, and what else is said of them."""
+    data = tomllib.loads(path.read_text(encoding="utf-8"))
+    return [SentencePattern(name, known["text"], known["words"], about=known) for name, known in data.items()]
+
+
+def sentence_test(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Case]]]) -> Adapter:
+    """How the sentences of a file are tried: `cases` go by the names of their patterns.
+
+    Of the cases those count that are within the ranges of a sentence. A pattern says what it is compared with, and may
+    have a convention: other words that the text may mean.
     """
-    known = tomllib.loads(path.read_text(encoding="utf-8"))
-    patterns = [SentencePattern(name, told["text"], told["words"]) for name, told in known.items()]
-    reader = sentence_reader(patterns)
+    reader = SentenceReader(read_patterns(path))
 
     def tried(reading: Reading) -> Iterator[Case]:
         none = True
@@ -107,8 +135,22 @@ def sayings(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Case]]]) 
         if none:
             raise MeaninglessError("nothing is within its ranges")
 
-    def adapter(entry: PaperEntry) -> Test:
-        said = next((p for p in patterns if p.match(entry.settled[0])), None)
-        return Test(known[said.name]["against"] if said else "nothing known", tried, reader.read, reader.faults)
+    def test(entry: PaperEntry) -> Test:
+        against = _about(reader, entry.settled[0]).get("against", "nothing known")
+        meant = _about(reader, entry.statement).get("convention")
 
-    return adapter
+        def as_meant(reading: Reading) -> Iterator[Case]:
+            words = {**reading.formula.words, **(meant["words"] if meant else {})}
+            return tried(Reading(Sentence(reading.formula.pattern, words), reading.ranges))
+
+        conventions = {meant["meaning"]: as_meant} if meant else {}
+        return Test(against, tried, reader.read, reader.faults, conventions=conventions)
+
+    return test
+
+
+def _about(reader: SentenceReader, sentence: str) -> Mapping[str, Any]:
+    try:
+        return reader.about(reader.sentence(sentence))
+    except UnreadableError:
+        return {}

@@ -18,7 +18,6 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads
 from wavesym.papers.pielorz1979.figures import (
-    FigureStatement,
     finding,
     findings,
     meaning,
@@ -29,7 +28,7 @@ from wavesym.papers.pielorz1979.figures import (
 from wavesym.papers.pielorz1979.measures import Finding
 from wavesym.papers.pielorz1979.paper import records
 from wavesym.papers.pielorz1979.transcript import entries
-from wavesym.papers.record import Record, shown
+from wavesym.papers.record import Record, Sentence, shown
 from wavesym.pictures.groups import Mark, PlotPanel, axis_title
 from wavesym.pictures.histories import Histories, histories
 from wavesym.pictures.loads import load_histories
@@ -141,7 +140,7 @@ def _list(number: int, load: TriedLoad, verdicts: Mapping[str, Record]) -> Itera
         yield from _indented("; ".join(_measured(number, load, statement)))
 
 
-def _measured(number: int, load: TriedLoad, statement: FigureStatement) -> Iterator[str]:
+def _measured(number: int, load: TriedLoad, statement: Sentence) -> Iterator[str]:
     found = findings(number, statement)
     yield f"{meaning(statement)}; measured: {shown(finding(figure(number), load, statement).value)}"
     if len(found) > 1:

@@ -7,9 +7,8 @@ sentences are in figure_sentences.toml.
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache, partial
@@ -36,8 +35,8 @@ from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding
 from wavesym.papers.pielorz1979.scenes import written
 from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.reader import UnreadableError, read_formula
-from wavesym.papers.record import Case, Nothing, Reading, Reproduction, Sentence, Test, case, shown
-from wavesym.papers.sentences import SentencePattern, sentence_reader
+from wavesym.papers.record import Case, Nothing, Reproduction, Sentence, Test, case, shown
+from wavesym.papers.sentences import LIST, SentenceReader, read_patterns
 from wavesym.papers.tree import Number, Relation, Tree, latex
 from wavesym.scene import lower
 from wavesym.scene.lowering import named_chain
@@ -45,93 +44,68 @@ from wavesym.scene.lowering import named_chain
 NEAR = 0.01
 """How far a time that is read off a figure may be out, as a part of itself."""
 ONLY = ", of the loads tried under these: "
-_KINDS: Mapping[str, Any] = tomllib.loads(Path(__file__).with_name("figure_sentences.toml").read_text(encoding="utf-8"))
-_READERS = {
-    number: sentence_reader(
-        SentencePattern(name, kind["text"], kind["words"]) for name, kind in _KINDS.items() if kind["figure"] == number
+_PATTERNS = read_patterns(Path(__file__).with_name("figure_sentences.toml"))
+READERS = {
+    number: SentenceReader(
+        replace(pattern, more=ONLY, listed=tuple(load.name for load in loads(number)))
+        for pattern in _PATTERNS
+        if pattern.about["figure"] == number
     )
     for number in PLOTTED
 }
+"""What reads the sentences about each figure; the loads of which one is said alone stand after it."""
 
 
-@dataclass(frozen=True)
-class FigureStatement:
-    """A sentence, and the loads that it is said of; None: of all."""
-
-    sentence: Sentence
-    only: tuple[str, ...] | None = None
-
-    @property
-    def bound(self) -> str:
-        """The word that it is judged by."""
-        judged = _KINDS[self.sentence.pattern]["bound"]
-        return self.sentence.words.get(judged, judged)
+def statements(number: int) -> dict[str, Sentence]:
+    """What is printed of a figure, by id."""
+    return {entry.id: READERS[number].sentence(entry.statement) for entry in _of(number, "figure")}
 
 
-def read(number: int, printed: str) -> FigureStatement:
-    """The statement of a sentence about a figure; UnreadableError."""
-    said, only, names = printed.partition(ONLY)
-    sentence = _READERS[number].read(said, ()).formula
-    chosen = tuple(names.split("; ")) if only else None
-    if unknown := set(chosen or ()) - {load.name for load in loads(number)}:
-        raise UnreadableError(f"no load is called {', '.join(sorted(unknown))}")
-    return FigureStatement(sentence, chosen)
+def _known(sentence: Sentence) -> Mapping[str, Any]:
+    return next(pattern.about for pattern in _PATTERNS if pattern.name == sentence.pattern)
 
 
-def _faults(number: int, right: Reading) -> Iterator[tuple[str, Reading]]:
-    """Every other word in every place, and every load in or out of those named."""
-    said: FigureStatement = right.formula
-    for change, wrong in _READERS[number].faults(Reading(said.sentence)):
-        yield change, Reading(FigureStatement(wrong.formula, said.only))
-    for load in loads(number) if said.only is not None else ():
-        others = tuple(name for name in said.only or () if name != load.name)
-        named = load.name in (said.only or ())
-        change = f"not under {load.name}" if named else f"under {load.name} too"
-        yield change, Reading(FigureStatement(said.sentence, others if named else (*others, load.name)))
+def _bound(sentence: Sentence) -> tuple[str, Callable[[float], bool]]:
+    """When what is measured is as a sentence says, in words and as a test."""
+    judged = _known(sentence)["bound"]
+    return BOUNDS[sentence.words.get(judged, judged)]
 
 
-def meaning(statement: FigureStatement) -> str:
-    """The same in words."""
-    told: str = _KINDS[statement.sentence.pattern]["meaning"]
-    return told.format(**{**statement.sentence.words, "bound": BOUNDS[statement.bound][0]})
+def meaning(sentence: Sentence) -> str:
+    """What a sentence says of a measure, in words."""
+    words: str = _known(sentence)["meaning"].format(**{**sentence.words, "bound": _bound(sentence)[0]})
+    return words
 
 
-def tried(number: int, statement: FigureStatement) -> tuple[TriedLoad, ...]:
-    """The loads that a statement is tried under."""
-    return loads(number, SENSES[statement.sentence.words.get("sense", "M_1 = M_2")])
+def tried(number: int, sentence: Sentence) -> tuple[TriedLoad, ...]:
+    """The loads that a sentence is tried under."""
+    return loads(number, SENSES[sentence.words.get("sense", "M_1 = M_2")])
 
 
-def finding(scene: Described, load: TriedLoad, statement: FigureStatement) -> Finding:
+def finding(scene: Described, load: TriedLoad, sentence: Sentence) -> Finding:
     """What is measured under a load. MeaninglessError where there is nothing to measure."""
-    (drawn,) = (drawn for drawn in tried(scene.figure, statement) if drawn.name == load.name)
-    return _measured(scene, drawn, statement.sentence)
+    (drawn,) = (drawn for drawn in tried(scene.figure, sentence) if drawn.name == load.name)
+    words = {place: word for place, word in sentence.words.items() if place != "listed"}
+    return _measured(scene, drawn, Sentence(sentence.pattern, words))
 
 
 @cache
 def _measured(scene: Described, load: TriedLoad, sentence: Sentence) -> Finding:
-    return MEASURES[_KINDS[sentence.pattern]["measure"]](sentence.words, partial(scene.curve, load))
+    return MEASURES[_known(sentence)["measure"]](sentence.words, partial(scene.curve, load))
 
 
-def true(scene: Described, load: TriedLoad, statement: FigureStatement) -> bool:
+def true(scene: Described, load: TriedLoad, sentence: Sentence) -> bool:
     """Whether what a sentence says is so under a load. MeaninglessError."""
-    return BOUNDS[statement.bound][1](finding(scene, load, statement).value)
+    return _bound(sentence)[1](finding(scene, load, sentence).value)
 
 
-def statements(number: int) -> dict[str, FigureStatement]:
-    """What is printed of a figure, by id."""
-    return {entry.id: read(number, entry.statement) for entry in _of(number, "figure")}
-
-
-def findings(number: int, statement: FigureStatement) -> list[tuple[TriedLoad, Finding]]:
+def findings(number: int, sentence: Sentence) -> list[tuple[TriedLoad, Finding]]:
     """What is measured under each load."""
-    return [(load, finding(figure(number), load, statement)) for load in tried(number, statement)]
+    return [(load, finding(figure(number), load, sentence)) for load in tried(number, sentence)]
 
 
 def _of(number: int, kind: str) -> Iterable[PaperEntry]:
     return (entry for entry in entries().values() if entry.about.get("figure") == number and entry.kind == kind)
-
-
-# The adapters
 
 
 def said_of_figure(entry: PaperEntry) -> Test:
@@ -140,45 +114,45 @@ def said_of_figure(entry: PaperEntry) -> Test:
     base = " (the base of (4.5))" if number == 8 else ""
     return Test(
         f"the exact motion of the scene of the caption{base}, at {SAMPLES} instants",
-        lambda said: _cases(figure(number), said.formula),
-        lambda printed, _: Reading(read(number, printed)),
-        partial(_faults, number),
+        lambda reading: _cases(figure(number), reading.formula),
+        READERS[number].read,
+        READERS[number].faults,
         varied="loads",
         observed=lambda: _observed(figure(number), entry),
     )
 
 
-def _cases(scene: Described, said: FigureStatement) -> Iterator[Case]:
-    for load in tried(scene.figure, said):
-        claimed = said.only is None or load.name in said.only
+def _cases(scene: Described, sentence: Sentence) -> Iterator[Case]:
+    listed = sentence.words.get("listed")
+    for load in tried(scene.figure, sentence):
+        claimed = listed is None or load.name in listed.split(LIST)
         try:
-            found, is_so = finding(scene, load, said), true(scene, load, said)
+            found, is_so = finding(scene, load, sentence), true(scene, load, sentence)
         except MeaninglessError as error:
             yield Case({"load": load.name}, claimed, Nothing(str(error)))
             continue
-        at = {"load": load.name, "measured": found.value, "said": meaning(said)}
+        at = {"load": load.name, "measured": found.value, "said": meaning(sentence)}
         yield Case(at, claimed, is_so, example=partial(_example, scene, load, found))
 
 
 def _observed(scene: Described, entry: PaperEntry) -> str:
     """Every load with its outcome."""
     try:
-        said = read(scene.figure, entry.statement)
+        sentence = READERS[scene.figure].sentence(entry.statement)
     except UnreadableError as error:
         return f"Nothing was measured: {error}."
-    told = [f"Measured ({meaning(said)}): {_outcomes(scene, said)}."]
-    words = said.sentence.words
-    for sense in SENSES if "sense" in words else ():
-        if sense != words["sense"]:
-            other = FigureStatement(Sentence(said.sentence.pattern, {**words, "sense": sense}))
-            told.append(f"With {sense}: {_outcomes(scene, other)}.")
-    return " ".join(told)
+    parts = [f"Measured ({meaning(sentence)}): {_outcomes(scene, sentence)}."]
+    for sense in SENSES if "sense" in sentence.words else ():
+        if sense != sentence.words["sense"]:
+            other = Sentence(sentence.pattern, {**sentence.words, "sense": sense})
+            parts.append(f"With {sense}: {_outcomes(scene, other)}.")
+    return " ".join(parts)
 
 
-def _outcomes(scene: Described, said: FigureStatement) -> str:
+def _outcomes(scene: Described, sentence: Sentence) -> str:
     outcomes: dict[bool, list[str]] = {True: [], False: []}
-    for load in tried(scene.figure, said):
-        outcomes[true(scene, load, said)].append(f"{load.name} ({shown(finding(scene, load, said).value)})")
+    for load in tried(scene.figure, sentence):
+        outcomes[true(scene, load, sentence)].append(f"{load.name} ({shown(finding(scene, load, sentence).value)})")
     return "; ".join(f"{'true' if so else 'false'} under {', '.join(names)}" for so, names in outcomes.items() if names)
 
 
@@ -222,10 +196,10 @@ def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
 
     def under_some_load(printed: str) -> bool:
         try:
-            said = read(number, printed)
+            sentence = READERS[number].sentence(printed)
         except UnreadableError as error:
             raise MeaninglessError(str(error)) from None
-        return any(true(scene, load, said) for load in tried(number, said))
+        return any(true(scene, load, sentence) for load in tried(number, sentence))
 
     for entry in _of(number, "contact"):
         yield case({"said": entry.printed, "allowed": f"{NEAR:.0%}"}, partial(near, printed_end(entry)), True)

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 
 from wavesym.papers.entries import WHOLE, PaperEntry, problems
-from wavesym.papers.pielorz1979 import coefficients, prose, statements
+from wavesym.papers.pielorz1979 import coefficients
 from wavesym.papers.pielorz1979.equations import GROUPS, equation, solution
 from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
+from wavesym.papers.pielorz1979.solutions import SOLUTIONS
+from wavesym.papers.pielorz1979.statements import STATEMENTS
 from wavesym.papers.pielorz1979.tables import TESTS
 from wavesym.papers.pielorz1979.transcript import paper as paper
 from wavesym.papers.record import Adapter, Record, Test, judge
+from wavesym.papers.sentences import sentence_test
 
 
 def _cell(entry: PaperEntry) -> Test:
@@ -22,18 +26,14 @@ def _cell(entry: PaperEntry) -> Test:
 ADAPTERS: Mapping[str, Adapter] = {
     **dict.fromkeys(GROUPS, equation),
     **TESTS,
-    "bodies": statements.statement,
     "caption": caption_of_figure,
     "cell": _cell,
     "contact": end_of_contact,
     "figure": said_of_figure,
     "line": coefficients.coefficient,
-    "makeup": statements.statement,
-    "sentence": prose.solution,
+    "sentence": sentence_test(Path(__file__).with_name("sentences.toml"), {**STATEMENTS, **SOLUTIONS}),
     "sizes": coefficients.sizes,
     "solution": solution,
-    "systems": statements.statement,
-    "waves": statements.statement,
 }
 
 

@@ -1,6 +1,6 @@
 """What is said of the examples: what they are made of, where waves run, what equations they obey, and while what holds.
 
-The patterns of the sentences are in statements.toml.
+The patterns of the sentences are in sentences.toml.
 """
 
 from __future__ import annotations
@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 from flint import arb, fmpq
 
@@ -27,7 +26,7 @@ from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, instants, loads
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case
-from wavesym.papers.sentences import Words, sayings
+from wavesym.papers.sentences import Words
 
 UNTIL = 12
 """How far in tau collisions are followed: some contacts of them have opened."""
@@ -190,7 +189,7 @@ def _first_opening(velocities: tuple[int, ...]) -> arb:
     return min((end.tau for end in ends), default=arb.pos_inf(), key=float)
 
 
-_CASES: Mapping[str, Callable[[Words], Iterator[Case]]] = {
+STATEMENTS: Mapping[str, Callable[[Words], Iterator[Case]]] = {
     "count": _count,
     "parts": _count,
     "sizes": _sizes,
@@ -204,5 +203,4 @@ _CASES: Mapping[str, Callable[[Words], Iterator[Case]]] = {
     "while": _follows,
     "given": _given,
 }
-statement = sayings(Path(__file__).with_name("statements.toml"), _CASES)
-"""A sentence about the examples."""
+"""What is tried for the words of a sentence, by its pattern."""
