@@ -55,6 +55,26 @@ def test_a_dashpot_makes_frequencies_complex() -> None:
         assert mode.damping == pytest.approx(w.imag / abs(w), rel=1e-12)
 
 
+def test_many_layers_are_as_one() -> None:
+    """A rod in 80 pieces, held at one end, half its impedance as a dashpot at the other: as in one piece."""
+    found = wavesym.modes(
+        chain("fixed", *[{"rod": 1}, {"joint": True}] * 79, {"rod": 1}, {"joint": True, "dashpot": "1/2"}), 3
+    )
+    decay = -np.log(1 / 3) / 2
+    for n, mode in enumerate(found, 1):
+        w = complex((2 * n - 1) * pi / 2, decay) / 80
+        assert mode.omega == pytest.approx(abs(w), rel=1e-12)
+        assert mode.damping == pytest.approx(w.imag / abs(w), rel=1e-12)
+
+
+def test_what_only_a_dashpot_holds_has_no_mode_at_rest() -> None:
+    """A free rod of impedance 1 with a dashpot of 2: exp(2 i w) = (1 - 2)/(1 + 2), beside the rest at w = 0."""
+    found = wavesym.modes(chain("free", {"rod": 1}, {"joint": True, "dashpot": 2}), 3)
+    for n, mode in enumerate(found):
+        w = complex(pi * (n + 0.5), np.log(3) / 2)
+        assert mode.omega == pytest.approx(abs(w), rel=1e-12)
+
+
 def test_in_units_they_are_per_second() -> None:
     """A mass on a column that weighs nothing to speak of."""
     parts = ["fixed", {"rod": "1 m", "A": "1 cm^2", "E": "210 GPa", "rho": "1e-6 kg/m^3"}, {"mass": "100 kg"}]

@@ -133,7 +133,7 @@ class Modes:
             table = [["node", *(f"mode {mode.number}" for mode in self.modes)]]
             table += [[node, *(_shown(mode.shape[node]) for mode in self.modes)] for node in nodes]
             lines += ["", *_aligned(table)]
-        radius = max(mode.radius for mode in self.modes)
+        radius = max((mode.radius for mode in self.modes), default=0.0)
         return "\n".join([*lines, "", f"right to {radius:.1e} {per}, proved; {self.why}"]) + "\n"
 
     def _repr_html_(self) -> str:

@@ -29,13 +29,14 @@ from wavesym.mechanics.network import Network
 Complex = NDArray[np.complex128]
 
 _BITS = 224
-_BITS_A_ROW = 8
-_BALL = 80  # bits
-_NEWTON = 8
+_BITS_A_ROW = 12
+_BALL, _BALL_A_ROW = 80, 4  # bits: what is not known of a frequency grows from row to row
+_NEWTON = 12
 _MEETING = 1e-5  # frequencies that no step tells apart
 _BESIDE, _FEW = 1e-9, 64  # modes that are so near each other, and at most how many
 _SHARP = arb(2) ** -60  # shapes
 _OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it
+_RESTING = 1e-10  # spacings of frequencies from 0: what only dashpots hold may rest anywhere, and that is no mode
 _STRAIGHT = 1e-9  # of what creeps, which has no real part
 _MORE = 1.15  # as many are sought, as those at the edge are pushed off by fewer
 _ROUNDS = 400
@@ -118,7 +119,7 @@ def sought(stiffness: Stiffness, count: int) -> Complex:
             break
     done = np.setdiff1d(np.arange(len(w)), moving)
     found = w[done]
-    found = found[found.real > -1e-9 * np.abs(found)]
+    found = found[(found.real > -1e-9 * np.abs(found)) & (np.abs(found) > _RESTING * np.pi / float(stiffness.delay))]
     found = found[np.argsort(np.abs(found), kind="stable")]
     return np.asarray(found[:count])
 
@@ -149,6 +150,7 @@ def _pull(stiffness: Stiffness, w: Complex) -> Complex:
 def _proved(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -> Mode | None:
     """The mode near a guess, in which row `root` moves much; None where that cannot be proved."""
     creeps = abs(guess.real) < _STRAIGHT * abs(guess)
+    small = arb(2) ** -(_BALL + _BALL_A_ROW * len(stiffness.points))
     w = acb(0.0 if creeps else guess.real, guess.imag)
     for _ in range(_NEWTON):
         tried = trial(stiffness, law, w, root, _I * w)
@@ -158,11 +160,11 @@ def _proved(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -
         if creeps:
             better = acb(0, better.imag)
         off, w = abs(better - w), better
-        if off < abs(w) * arb(2) ** -_BALL:
+        if off < abs(w) * small:
             break
     else:
         return None
-    radius = (abs(w) * arb(2) ** -_BALL).upper()
+    radius = (abs(w) * small).upper()
     ball = acb(arb(w.real, radius), arb(w.imag, radius))
     here, around = (trial(stiffness, law, v, root, _I * v) for v in (w, ball))
     slope = -2 * ball * around.mass / around.rows[root] ** 2
