@@ -22,7 +22,7 @@ from fractions import Fraction
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.programs.request import KINDS, Request, refuse_unknown
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
     from wavesym.results.frequency_response import FrequencyResponse
+    from wavesym.results.mode_ranges import ModeRanges
     from wavesym.results.modes import Modes
     from wavesym.results.response import Response
     from wavesym.results.result import Result
@@ -282,13 +283,33 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     return RuntimeModel(sets_program(lowered, runtime, amplitudes(scene) if "load" in runtime else ()))
 
 
-def modes(scene: Scene | str | PathLike[str], count: int = 10, below: float | None = None) -> Modes:
+@overload
+def modes(scene: Scene | str | PathLike[str], count: int = 10, below: float | None = None) -> Modes: ...
+@overload
+def modes(
+    scene: Scene | str | PathLike[str],
+    count: int = 10,
+    below: float | None = None,
+    *,
+    ranges: Mapping[str, tuple[str, str]],
+) -> ModeRanges: ...
+
+
+def modes(
+    scene: Scene | str | PathLike[str],
+    count: int = 10,
+    below: float | None = None,
+    *,
+    ranges: Mapping[str, tuple[str, str]] | None = None,
+) -> Modes | ModeRanges:
     """The modes of vibration of a scene: frequencies, none missed, damping, effective masses and shapes.
 
     Args:
         scene: a Scene; or a file, or the name of a built-in scene, which needs neither loads nor outputs.
         count: how many, where `below` is None; rigid modes come first.
         below: all up to this frequency: in Hz, or in rad per tau for a scene without units.
+        ranges: of paths, as of `scene.with_`, the least and the greatest value: for the range of each frequency over
+            the box, in place of modes; `below` does not matter then.
 
     Returns:
         A sequence of modes with `number`, `omega`, `hz`, `period`, `damping`, `radius` (proved), `effective_mass` and
@@ -302,9 +323,12 @@ def modes(scene: Scene | str | PathLike[str], count: int = 10, below: float | No
     >>> wavesym.modes("drive_m1", 3)
     Modes('drive_m1', 3 modes: 0, 0.18084, 0.565872 1/tau)
     """
+    from wavesym.results.mode_ranges import mode_ranges
     from wavesym.results.modes import modes as modes_of
 
     chain = scene if isinstance(scene, Scene) else Scene.chain_from_toml(scene)
+    if ranges is not None:
+        return mode_ranges(chain, count, ranges)
     return modes_of(lower(chain, loads=False), count, below)
 
 

@@ -21,12 +21,27 @@ COUNT = 10
 @click.argument("scene", type=SceneParameter(needs_output=False))
 @click.option("--count", type=click.IntRange(min=1), help=f"How many modes.  [default: {COUNT}]")
 @click.option("--below", type=float, metavar="F", help="All below a frequency, in Hz; without [units] in rad per tau.")
+@click.option(
+    "--range",
+    "ranges",
+    multiple=True,
+    metavar="PATH=A..B",
+    help="The range of each frequency where a mass, spring, modulus or density goes from A to B; any number.",
+)
 @click.option("--shapes", is_flag=True, help="How far each node moves, too.")
 @click.option(
     "--format", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True, help="How it is written."
 )
 @click.option("-o", "out", type=PATH, metavar="FILE|PICTURE", help="Where it goes; .svg, .png, .pdf: shapes, drawn.")
-def modes(scene: Scene, count: int | None, below: float | None, shapes: bool, format: str, out: Path | None) -> None:
+def modes(
+    scene: Scene,
+    count: int | None,
+    below: float | None,
+    ranges: tuple[str, ...],
+    shapes: bool,
+    format: str,
+    out: Path | None,
+) -> None:
     """Print the frequencies of a chain, none missed.
 
     Each with its damping ratio, its period, and what of the mass moves with the supports. A scene needs neither loads
@@ -37,6 +52,7 @@ def modes(scene: Scene, count: int | None, below: float | None, shapes: bool, fo
       wavesym modes building_m2 --count 3
     """
     from wavesym import api
+    from wavesym.results.mode_ranges import read_range
     from wavesym.writing import write_whole
 
     context = click.get_current_context()
@@ -45,13 +61,18 @@ def modes(scene: Scene, count: int | None, below: float | None, shapes: bool, fo
     drawn = out is not None and out.suffix.lower() in PICTURES
     if drawn and not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+    if ranges and (below is not None or shapes or drawn):
+        raise click.UsageError("--range and --below, --shapes or a picture given, one of them expected", context)
     if out is not None:
         refuse_unwritable(out)
         refuse_scene(out)
     with progress(f"modes {scene.name}"):
-        found = api.modes(scene, count or COUNT, below)
-        written = found.text if format == "text" else found.json if format == "json" else found.csv
-        text = written(shapes=shapes)
+        if ranges:
+            box = api.modes(scene, count or COUNT, ranges=dict(map(read_range, ranges)))
+            text = {"text": box.text, "json": box.json, "csv": box.csv}[format]()
+        else:
+            found = api.modes(scene, count or COUNT, below)
+            text = {"text": found.text, "json": found.json, "csv": found.csv}[format](shapes=shapes)
         if drawn and out is not None:
             api.plot_modes(scene, found, out)
         elif out is not None:

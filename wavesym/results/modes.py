@@ -185,7 +185,7 @@ def modes(model: Model, count: int = COUNT, below: float | None = None) -> Modes
         raise WavesymError(f"modes: {count if below is None else below} is not positive")
     if count > _MOST:
         raise CostError(f"--count: {count} modes, at most {_MOST} expected (fewer modes help)")
-    damped = _is_damped(model.network)
+    damped = is_damped(model.network)
     spectrum = DyingSpectrum(model.network) if damped else Spectrum(model.network)
     found = list(spectrum.first(count if below is None else _FIRST_GUESS))
     per_tau = 1.0 if model.clock is None else nearest(model.clock.seconds)
@@ -206,7 +206,7 @@ def modes(model: Model, count: int = COUNT, below: float | None = None) -> Modes
     )
 
 
-def _is_damped(network: Network) -> bool:
+def is_damped(network: Network) -> bool:
     """Whether a dashpot or an absorbing end makes frequencies complex."""
     return any(point.damping != 0 and point.motion is None for point in network.points) or any(
         link.damping != 0 and not link.contact for link in network.links
