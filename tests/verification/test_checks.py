@@ -32,7 +32,7 @@ from wavesym.targets.c import kernel
 from wavesym.verification import checks, integrations, programs
 from wavesym.verification.independent import independent_model
 from wavesym.verification.programs import compare_programs
-from wavesym.verification.reference import known
+from wavesym.verification.reference import known_outputs
 
 DRIVE = Scene(
     name="small",
@@ -66,7 +66,7 @@ def compared(scene, truth, evaluator="auto"):
 
 @pytest.mark.parametrize("scene", [DRIVE, BUILDING, COLLISION], ids=["drive", "building", "collision"])
 def test_all_is_well(scene):
-    truth = known(lower(scene))
+    truth = known_outputs(lower(scene))
     for check in checks.CHECKS:
         assert all(verdicts(check.run, truth)), check.title
     assert all(compared(scene, truth))
@@ -81,7 +81,7 @@ def test_of_a_long_horizon_the_beginning_is_compared(monkeypatch):
         name="far", system=DRIVE.system, load=DRIVE.load, output=DRIVE.output.model_copy(update={"until": 40})
     )
     whole = lower(scene)
-    truth = known(whole)
+    truth = known_outputs(whole)
     assert 1 < truth.until == float(truth.model.until) < float(truth.whole.until)
     assert truth.whole is whole
     assert truth.notes == [f"far: compared to tau = {truth.until:g}; exact values of all of it would take too long"]
@@ -96,8 +96,8 @@ def test_beyond_that_an_integration_looks(monkeypatch):
     monkeypatch.setattr(reference, "_QUICK", 200_000)
     monkeypatch.setattr(reference, "_SHORTEST", fmpq(1))
     scene = DRIVE.with_({"output.until": 40, "output.tolerance": "1e-6"})
-    truth = known(lower(scene), independent_model(scene, lower(scene)))
-    integrals = [outcome.integral for outcome in integrations.beyond(truth)]
+    truth = known_outputs(lower(scene), independent_model(scene, lower(scene)))
+    integrals = [outcome.integral for outcome in integrations.collocation_beyond(truth)]
     assert all(outcome.passed for outcome in compare_programs(scene, truth, integrals, [Request("march")]))
     right_module = programs.imported
 
@@ -132,7 +132,7 @@ def changed_files(monkeypatch, change):
     ],
 )
 def test_a_sign_in_the_arithmetic_is_seen(file, right, wrong, monkeypatch, tmp_path):
-    truth = known(lower(DRIVE))
+    truth = known_outputs(lower(DRIVE))
     evaluator, language = file.split(".")
     monkeypatch.setattr(checks, "make", lambda model: make(model, Request(evaluator)))
     assert all(compared(DRIVE, truth, evaluator) + verdicts(checks.invariants, truth))
@@ -166,7 +166,7 @@ def a_digit_changed(text, file, which):
 @pytest.mark.parametrize("file", ["small.c", "small.py"])
 @pytest.mark.parametrize("evaluator", ["closed", "pieces", pytest.param("march", marks=pytest.mark.slow)])
 def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
-    truth = known(lower(BUILDING))
+    truth = known_outputs(lower(BUILDING))
     which = 0 if evaluator == "march" else -1  # the last of a march is of a high degree
     changed_files(
         monkeypatch,
@@ -176,7 +176,7 @@ def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
 
 
 def test_a_digit_in_a_program_breaks_the_balances(monkeypatch):
-    truth = known(lower(DRIVE))
+    truth = known_outputs(lower(DRIVE))
     right = checks.make
 
     def changed(model):
@@ -214,7 +214,7 @@ def test_a_wrong_law_of_joints_is_seen_by_all_that_is_not_derived(scene, monkeyp
         return {point: combined([(1 + fmpq(1, 100000), velocity)]) for point, velocity in moved.items()}
 
     monkeypatch.setattr(RuledNetwork, "_velocities", wrong)
-    truth = known(lower(scene))
+    truth = known_outputs(lower(scene))
     assert not all(verdicts(integrations.collocation, truth))
     assert not all(verdicts(integrations.differences, truth))
     assert not all(verdicts(checks.invariants, truth))
@@ -237,7 +237,7 @@ def test_what_only_the_last_number_sees_is_not_left_out(first, monkeypatch):
     load = {"at": "a", "times": [0, "2.3"], "steps": [first, 1]}
     output = {"until": "2.3", "force": ["0"]}
     scene = Scene(name="pressed", system={"type": "chain", "parts": parts}, load=[load], output=output)
-    truth = known(lower(scene))
+    truth = known_outputs(lower(scene))
     assert truth.until in truth.taus
     assert verdicts(checks.peaks, truth) == [True]
     assert all(compared(scene, truth))
@@ -252,7 +252,7 @@ def test_what_only_the_last_number_sees_is_not_left_out(first, monkeypatch):
 
 @pytest.mark.parametrize("side", [0, 1])
 def test_an_extreme_that_is_none_is_seen(side, monkeypatch):
-    truth = known(lower(COLLISION))
+    truth = known_outputs(lower(COLLISION))
     right = checks.peaks(truth)
     assert all(outcome.passed for outcome in right)
 
@@ -267,7 +267,7 @@ def test_an_extreme_that_is_none_is_seen(side, monkeypatch):
 
 
 def test_a_refusal_is_no_failure(monkeypatch):
-    truth = known(lower(DRIVE))
+    truth = known_outputs(lower(DRIVE))
 
     def refuse(model, *_, **__):
         raise ToleranceError("cannot be met")

@@ -20,7 +20,7 @@ from wavesym.scene import Scene, lower
 from wavesym.verification import integrations
 from wavesym.verification.collocation import integrate
 from wavesym.verification.problem import problem_of
-from wavesym.verification.reference import known
+from wavesym.verification.reference import known_outputs
 
 ORACLE = Path(__file__).parents[2].parent / "shared" / "oracles" / "rigid_mass_on_fixed_bar.json"
 
@@ -108,7 +108,7 @@ def test_delays_without_a_common_measure_and_long_horizons_are_no_trouble():
     load = [{"at": "hammer", "spacing": "0.37", "samples": [0, 3, 1, -4, 1, -5, 9, 2, -6, 5, 3, -5, 0]}]
     output = {"until": 12, "velocity": ["anvil", "1/2"], "strain": ["1-", "1+"]}
     made = lower(Scene(name="scene", system={"type": "chain", "parts": parts}, load=load, output=output))
-    outcomes = integrations.collocation(known(made))
+    outcomes = integrations.collocation(known_outputs(made))
     assert all(outcome.passed and float(outcome.cells["at 4N"]) < 1e-12 for outcome in outcomes)
 
 
@@ -166,7 +166,7 @@ def scenes(draw):
 @settings(max_examples=12)
 @given(scenes())
 def test_agreement_with_the_reference(scene):
-    for outcome in integrations.collocation(known(lower(scene))):
+    for outcome in integrations.collocation(known_outputs(lower(scene))):
         assert outcome.passed, outcome
 
 
@@ -199,9 +199,9 @@ def turned(loads):
     ],
 )
 def test_a_wrong_network_is_caught(scene, change, monkeypatch):
-    truth = known(lower(scene))
+    truth = known_outputs(lower(scene))
     assert all(outcome.passed for outcome in integrations.collocation(truth))
     wrong = problem_of(replace(lower(scene), network=change(lower(scene).network)))
     monkeypatch.setattr(integrations, "problem_of", lambda model: wrong)
-    truth = known(lower(scene))
+    truth = known_outputs(lower(scene))
     assert not all(outcome.passed for outcome in integrations.collocation(truth))

@@ -18,7 +18,7 @@ from wavesym.verification import integrations
 from wavesym.verification.differences import SpaceTimeGrid
 from wavesym.verification.integrations import _grid as grid
 from wavesym.verification.problem import problem_of
-from wavesym.verification.reference import known
+from wavesym.verification.reference import known_outputs
 
 
 def building(load, until=6, base="ground", **outputs):
@@ -75,7 +75,7 @@ def test_the_order_is_two(scene):
 
 @FOUR
 def test_what_is_extrapolated_is_of_order_four(scene):
-    assert all(outcome.passed for outcome in integrations.differences(known(lower(scene))))
+    assert all(outcome.passed for outcome in integrations.differences(known_outputs(lower(scene))))
     first = grid(lower(scene))
     instants = first.instants(6.0)
     truth = np.array(Reference(lower(scene)).values([first.tau(k) for k in instants.tolist()]))
@@ -127,7 +127,7 @@ def test_fronts_off_the_grid_are_kept_away_from_and_allowed_for():
     assert not first.aligned
     front = 517 / 1009 + 0.5
     assert min(abs(first.tau(k) - front) for k in first.instants(5.0)) >= 1 / first.cells
-    for outcome in integrations.differences(known(lower(scene))):
+    for outcome in integrations.differences(known_outputs(lower(scene))):
         assert outcome.passed
         assert "extrapolated" not in outcome.cells
 
@@ -136,7 +136,7 @@ def test_places_off_the_grid_are_read_off_a_polynomial():
     scene = building(
         {"times": [0], "a": [1], "b": [0]}, strain=["0.1234"], velocity=["0.4321"], displacement=["1.9877"]
     )
-    for outcome in integrations.differences(known(lower(scene))):
+    for outcome in integrations.differences(known_outputs(lower(scene))):
         assert outcome.passed
         assert float(outcome.cells["extrapolated"]) < 1e-7
         assert outcome.cells["order"] == "2.0"
@@ -145,7 +145,7 @@ def test_places_off_the_grid_are_read_off_a_polynomial():
 @settings(max_examples=20)
 @given(scenes())
 def test_agreement_with_the_reference(scene):
-    for outcome in integrations.differences(known(lower(scene))):
+    for outcome in integrations.differences(known_outputs(lower(scene))):
         assert outcome.passed, outcome
 
 
@@ -161,7 +161,7 @@ def test_agreement_with_the_reference(scene):
     ],
 )
 def test_a_wrong_network_is_caught(scene, change, monkeypatch):
-    truth = known(lower(scene))
+    truth = known_outputs(lower(scene))
     assert all(outcome.passed for outcome in integrations.differences(truth))
     monkeypatch.setattr(
         integrations, "problem_of", lambda model: problem_of(replace(model, network=change(model.network)))
@@ -170,7 +170,7 @@ def test_a_wrong_network_is_caught(scene, change, monkeypatch):
 
 
 def test_what_would_take_too_long_is_said(monkeypatch):
-    truth = known(lower(DRIVE))
+    truth = known_outputs(lower(DRIVE))
     monkeypatch.setattr(integrations, "MOST_MOVED", 5e6)
     shorter = integrations.differences(truth)
     assert all(outcome.passed and float(outcome.cells["to"]) < 7 for outcome in shorter)

@@ -16,7 +16,7 @@ from wavesym.scene import Scene, lower
 from wavesym.verification.integrations import _grid, collocation, differences
 from wavesym.verification.invariants import Balance, Balancing
 from wavesym.verification.problem import problem_of
-from wavesym.verification.reference import known
+from wavesym.verification.reference import known_outputs
 
 GEARED = {
     "type": "chain",
@@ -42,7 +42,7 @@ def model(**changes: object) -> Model:
 
 
 def test_central_differences_are_of_order_2_and_agree() -> None:
-    outcomes = differences(known(model()))
+    outcomes = differences(known_outputs(model()))
     assert all(outcome.passed and not outcome.note for outcome in outcomes)
     assert {outcome.cells["order"] for outcome in outcomes} <= {"2.0", "-"}
 
@@ -54,7 +54,8 @@ def test_motion_that_is_prescribed() -> None:
     output = {"until": 5, "velocity": ["base", "1-"], "displacement": ["base", "1-", "1+"]}
     moved = model(system=system, load=loads, output=output)
     assert all(
-        outcome.passed and not outcome.note for outcome in (*differences(known(moved)), *collocation(known(moved)))
+        outcome.passed and not outcome.note
+        for outcome in (*differences(known_outputs(moved)), *collocation(known_outputs(moved)))
     )
     assert all(balance.error <= balance.allowed < 1e-12 for balance in balances(moved))
 
@@ -62,16 +63,16 @@ def test_motion_that_is_prescribed() -> None:
 def test_delays_without_a_reasonable_common_measure_are_refused_in_a_line_by_a_grid() -> None:
     system = {"type": "chain", "parts": [{"mass": 1, "name": "hammer"}, {"rod": 1}, {"rod": "1.414213562"}]}
     other = model(system=system, output={"until": 5, "velocity": ["hammer"]})
-    (outcome,) = differences(known(other))
+    (outcome,) = differences(known_outputs(other))
     assert outcome.passed
     assert "refused" in outcome.cells.values()
     assert "a step" in outcome.note
-    assert all(outcome.passed and "at 4N" in outcome.cells for outcome in collocation(known(other)))
+    assert all(outcome.passed and "at 4N" in outcome.cells for outcome in collocation(known_outputs(other)))
     assert all(balance.error <= balance.allowed < 1e-12 for balance in balances(other))
 
 
 def test_collocation_agrees_to_rounding() -> None:
-    outcomes = collocation(known(model()))
+    outcomes = collocation(known_outputs(model()))
     assert all(outcome.passed and not outcome.note for outcome in outcomes)
     assert all(float(outcome.cells["allowed"]) < 2e-12 for outcome in outcomes)
 
@@ -124,8 +125,8 @@ def test_faults_of_a_network_are_found(fault: Callable[[Network], Network], monk
     wrong = replace(right, network=fault(right.network))
     assert any(balance.error > balance.allowed for balance in balances(right, wrong))
     monkeypatch.setattr("wavesym.verification.integrations.Reference", lambda _: Reference(wrong))
-    assert not all(outcome.passed for outcome in differences(known(right)))
-    assert not all(outcome.passed for outcome in collocation(replace(known(wrong), model=right)))
+    assert not all(outcome.passed for outcome in differences(known_outputs(right)))
+    assert not all(outcome.passed for outcome in collocation(replace(known_outputs(wrong), model=right)))
 
 
 def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -139,8 +140,8 @@ def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(JointLaw, "of", wrong)
     right = model()
     assert any(balance.error > balance.allowed for balance in balances(right))
-    assert not all(outcome.passed for outcome in differences(known(right)))
-    assert not all(outcome.passed for outcome in collocation(known(right)))
+    assert not all(outcome.passed for outcome in differences(known_outputs(right)))
+    assert not all(outcome.passed for outcome in collocation(known_outputs(right)))
 
 
 def test_the_matrices_are_those_of_the_engine_less_the_bars() -> None:

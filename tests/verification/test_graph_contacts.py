@@ -22,11 +22,11 @@ from wavesym.verification.integrations import (
     _grid,
     collocation,
     compare_events,
+    contact_changes,
     differences,
-    happening,
 )
-from wavesym.verification.problem import Change, alike, problem_of
-from wavesym.verification.reference import known
+from wavesym.verification.problem import Change, match_changes, problem_of
+from wavesym.verification.reference import known_outputs
 
 MANY = 2e8
 
@@ -91,14 +91,14 @@ def test_collocation_is_exact_where_all_is_polynomial(points: int) -> None:
 
 
 def test_all_checks_hold_where_contacts_open_and_close() -> None:
-    seen = known(on_a_bar("3.3"))
-    outcomes = [*collocation(seen), *happening(seen), *differences(seen), *invariants(seen)]
+    seen = known_outputs(on_a_bar("3.3"))
+    outcomes = [*collocation(seen), *contact_changes(seen), *differences(seen), *invariants(seen)]
     assert [outcome for outcome in outcomes if not outcome.passed] == []
     assert {"0 opens", "momentum", "energy", "contacts"} <= {outcome.subject for outcome in outcomes}
 
 
 def test_what_happens_is_found_by_both_integrations() -> None:
-    outcomes = happening(known(on_a_bar()))
+    outcomes = contact_changes(known_outputs(on_a_bar()))
     assert [outcome.subject for outcome in outcomes] == ["0 opens", "0 closes", "0 opens"]
     assert all(outcome.passed and float(outcome.cells["fronts"]) < 1e-9 for outcome in outcomes)
     assert all(float(outcome.cells["grid"]) < float(outcome.cells["grid allowed"]) < 0.2 for outcome in outcomes)
@@ -114,7 +114,7 @@ def train() -> Model:
 
 def test_a_contact_without_force_may_part_by_nothing_on_a_grid() -> None:
     """But no method may part it that is exact there, nor the grid where it is alone."""
-    outcomes = happening(known(train()))
+    outcomes = contact_changes(known_outputs(train()))
     assert all(outcome.passed for outcome in outcomes)
     parted = [outcome for outcome in outcomes if outcome.cells["tau"] == "-"]
     assert parted
@@ -131,8 +131,8 @@ def test_a_contact_without_force_may_part_by_nothing_on_a_grid() -> None:
 
 def test_too_many_fronts_are_refused_in_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("wavesym.verification.integrations._MOST_PANELS", 3)
-    seen = known(on_a_bar())
-    outcomes = [*collocation(seen), *happening(seen)]
+    seen = known_outputs(on_a_bar())
+    outcomes = [*collocation(seen), *contact_changes(seen)]
     assert all(outcome.passed for outcome in outcomes)
     assert any("3 panels end at tau" in outcome.note for outcome in outcomes)
     with pytest.raises(Undecided):
@@ -142,9 +142,9 @@ def test_too_many_fronts_are_refused_in_a_line(monkeypatch: pytest.MonkeyPatch) 
 def test_solutions_are_alike_where_the_same_happens_at_each_contact() -> None:
     one = [Change(0, "opens", 1.0), Change(1, "closes", 1.0)]
     other = [Change(1, "closes", 0.75), Change(0, "opens", 1.25)]
-    assert alike(one, other) == [(one[0], 0.25), (one[1], 0.25)]
-    assert alike(one, one[:1]) is None
-    assert alike(one[:1], [Change(0, "closes", 1.0)]) is None
+    assert match_changes(one, other) == [(one[0], 0.25), (one[1], 0.25)]
+    assert match_changes(one, one[:1]) is None
+    assert match_changes(one[:1], [Change(0, "closes", 1.0)]) is None
 
 
 # ---- faults
@@ -213,14 +213,16 @@ def test_faults_of_a_network_with_contacts_are_found(
 ) -> None:
     right = geared()
     wrong = replace(right, network=fault(right.network))
-    seen = replace(known(wrong), model=right)
+    seen = replace(known_outputs(wrong), model=right)
     claimed = events(wrong)
     monkeypatch.setattr("wavesym.verification.integrations.events", lambda _: claimed)
     monkeypatch.setattr("wavesym.verification.integrations.Reference", lambda _: Reference(wrong))
     found = [
-        check for check in (collocation, happening, differences) if not all(outcome.passed for outcome in check(seen))
+        check
+        for check in (collocation, contact_changes, differences)
+        if not all(outcome.passed for outcome in check(seen))
     ]
-    assert {collocation, happening} <= {*found}
+    assert {collocation, contact_changes} <= {*found}
     assert differences in found or fault is wider  # that comes too late for the outputs
 
 
@@ -242,8 +244,8 @@ def test_an_event_that_is_late_on_one_side_is_found(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("wavesym.verification.reference.Reference", OneSideLate)
     monkeypatch.setattr("wavesym.verification.checks.Reference", OneSideLate)
     monkeypatch.setattr("wavesym.verification.integrations.Reference", OneSideLate)
-    seen = known(right)
-    assert all(outcome.passed for outcome in happening(seen))
+    seen = known_outputs(right)
+    assert all(outcome.passed for outcome in contact_changes(seen))
     assert [outcome.passed for outcome in collocation(seen)] == [True, False]
     for check in (differences, invariants):
         assert not all(outcome.passed for outcome in check(seen)), check.__name__
@@ -251,7 +253,7 @@ def test_an_event_that_is_late_on_one_side_is_found(monkeypatch: pytest.MonkeyPa
 
 def test_a_gear_ratio_squared_is_out_of_balance(monkeypatch: pytest.MonkeyPatch) -> None:
     right = geared()
-    seen = known(right)
+    seen = known_outputs(right)
     monkeypatch.setattr(
         "wavesym.verification.checks.Reference", lambda m: Reference(replace(m, network=squared(m.network)))
     )

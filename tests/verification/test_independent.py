@@ -21,7 +21,7 @@ from wavesym.verification.collocation import integrate
 from wavesym.verification.independent import READERS, independent_model
 from wavesym.verification.integrations import collocation
 from wavesym.verification.problem import Problem, problem_of
-from wavesym.verification.reference import known
+from wavesym.verification.reference import known_outputs
 
 EVERY_PART: dict[str, Any] = {
     "name": "parts",
@@ -213,8 +213,8 @@ def test_what_programs_start_from_is_not_what_integrators_do(fault: str, monkeyp
     fields = put_in(fault, monkeypatch)
     scene = Scene(**fields)
     model = lower(scene)
-    assert not all(outcome.passed for outcome in collocation(known(model, independent_model(scene, model))))
-    assert all(outcome.passed for outcome in collocation(known(model)))  # from the same wrong nodes
+    assert not all(outcome.passed for outcome in collocation(known_outputs(model, independent_model(scene, model))))
+    assert all(outcome.passed for outcome in collocation(known_outputs(model)))  # from the same wrong nodes
 
 
 def test_verify_exits_with_1(

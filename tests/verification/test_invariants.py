@@ -17,7 +17,7 @@ from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.invariants import Balancing
-from wavesym.verification.reference import known
+from wavesym.verification.reference import known_outputs
 
 COLLISION = Scene(
     name="scene",
@@ -168,7 +168,7 @@ def test_one_wrong_output_is_seen():
 
 
 def test_what_is_not_looked_at_is_said(monkeypatch):
-    truth = known(lower(DRIVE))
+    truth = known_outputs(lower(DRIVE))
     monkeypatch.setattr(checks, "_MOST_VALUES", 2000)
     assert {float(outcome.cells["to"]) < 6 for outcome in checks.invariants(truth)} == {True}
     monkeypatch.setattr(checks, "_MOST_VALUES", 20)

@@ -14,7 +14,7 @@ from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
 from wavesym.scene import Scene, lower
 from wavesym.verification import integrations
-from wavesym.verification.reference import known
+from wavesym.verification.reference import known_outputs
 
 DRIVE = {
     "name": "drive",
@@ -64,7 +64,7 @@ def model(scene: dict[str, Any]) -> Model:
 
 @EACH
 def test_what_is_right_passes(scene: dict[str, Any], judge: Any) -> None:
-    outcomes = judge(known(model(scene)))
+    outcomes = judge(known_outputs(model(scene)))
     assert len(outcomes) == len(model(scene).probes)
     assert all(outcome.passed for outcome in outcomes)
     assert any("at 4N" in outcome.cells for outcome in outcomes)
@@ -82,4 +82,4 @@ def test_a_term_that_is_a_little_wrong_is_seen(
 
     for module in ("mechanics.model", "exact.tables.signal"):
         monkeypatch.setattr(f"wavesym.{module}.readings", wrong)
-    assert not any(outcome.passed for outcome in judge(known(model(scene))))
+    assert not any(outcome.passed for outcome in judge(known_outputs(model(scene))))

@@ -159,7 +159,7 @@ def test_an_output_that_no_integration_judges_is_not_verified(monkeypatch: pytes
 def test_an_output_that_does_not_move_before_an_integration_ends_is_not_judged_by_it() -> None:
     """A wave that comes after tau = 2 to where an integration saw nothing until then."""
     late = DRIVE.with_({"output.displacement": [], "output.velocity": [1], "load": [{"body": 1, **SAMPLES}]})
-    truth = report.known(lower(late))
+    truth = report.known_outputs(lower(late))
     outcomes = [check.run(truth) for check in report.CHECKS if check.run.__name__ == "differences"]
     (integral,) = (outcome.integral for found in outcomes for outcome in found)
     assert integral is not None

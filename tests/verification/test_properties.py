@@ -23,7 +23,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
 from wavesym.verification.programs import compare_programs
-from wavesym.verification.reference import known
+from wavesym.verification.reference import known_outputs
 
 UNTIL = 5
 TAUS = [k / 16 for k in range(16 * UNTIL + 1)]
@@ -87,7 +87,7 @@ def test_tables_and_the_node_law_have_the_same_values(scene):
 
 
 def check_generated(scene):
-    truth = known(lower(scene))
+    truth = known_outputs(lower(scene))
     for outcome in compare_programs(scene, truth, [None] * len(truth.outputs), [Request()]):
         assert outcome.passed, outcome
 

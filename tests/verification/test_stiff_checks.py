@@ -10,7 +10,7 @@ from wavesym.verification import integrations
 from wavesym.verification import invariants as balances
 from wavesym.verification.checks import invariants
 from wavesym.verification.integrations import collocation, differences
-from wavesym.verification.reference import Known, known
+from wavesym.verification.reference import Known, known_outputs
 
 
 def made(stiffness: int) -> Known:
@@ -18,7 +18,7 @@ def made(stiffness: int) -> Known:
     load = [{"at": "body", "times": [0], "steps": [1]}]
     output = {"until": 2, "tolerance": 1e-9, "velocity": ["body"]}
     scene = wavesym.Scene(name="stiff", system={"type": "chain", "parts": parts}, load=load, output=output)
-    return known(lower(scene))
+    return known_outputs(lower(scene))
 
 
 def test_balances_of_a_stiff_spring_are_sharp() -> None:

@@ -83,7 +83,7 @@ class DiscreteModel:
         for load, point in enumerate(self._loaded):
             if point in prescribed:
                 # unknowns count from what is dragged along: the ground may go far, and drifts are small
-                shape = dragged[:, load] = elements.dragged(point)
+                shape = dragged[:, load] = elements.imposed_shape(point)
                 influence[:, load, :3] = -np.stack([elements.forces(shape), damping @ shape, mass @ shape], axis=1)
             else:
                 influence[point, load, 1] = 1.0

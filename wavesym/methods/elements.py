@@ -135,7 +135,7 @@ class Elements:
         shares[: self.problem.points] += self.problem.mass * self.problem.velocity
         return np.asarray(shares)
 
-    def dragged(self, point: int) -> Array:
+    def imposed_shape(self, point: int) -> Array:
         """How all moves with a prescribed point that moves by 1 where no rod is strained: (size,).
 
         What no rod ties to it stays, and other prescribed points do.

@@ -169,7 +169,7 @@ class Problem:
         """The ratio of each end: (2 bars,)."""
         return self.ratios.ravel()
 
-    def carried(self, point: int, *, bars: bool = False, springs: bool = False) -> tuple[Array, Array]:
+    def rigid_motion(self, point: int, *, bars: bool = False, springs: bool = False) -> tuple[Array, Array]:
         """How fast points (points,) and bars (bars,) move with a point of velocity 1, all contacts closed.
 
         With `bars` these are rigid, with `springs` springs and dashpots are, too. What is not reached has velocity 0.
@@ -417,7 +417,7 @@ def _acceleration(problem: Problem, probe: Probe) -> Iterator[tuple[float, Gauge
     if point is None:
         end = 2 * (probe.rod - 1) + int(probe.place)
         point, ratio = int(problem.end_points[end]), float(problem.end_ratios[end])
-    speeds = problem.carried(point)[0] * (ratio / float(problem.mass[point]))
+    speeds = problem.rigid_motion(point)[0] * (ratio / float(problem.mass[point]))
     stiffness = np.repeat(problem.impedance * problem.speed, 2) * np.tile([1.0, -1.0], len(problem.speed))
     for end, force in enumerate((speeds @ problem.onto * stiffness).tolist()):
         if speeds[problem.end_points[end]]:

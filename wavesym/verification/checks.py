@@ -15,9 +15,9 @@ from wavesym.exact.extremes import extremes
 from wavesym.exact.reference import Reference
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
-from wavesym.verification.integrations import beyond, collocation, differences, elements, happening
+from wavesym.verification.integrations import collocation, collocation_beyond, contact_changes, differences, elements
 from wavesym.verification.invariants import Balance, Balancing
-from wavesym.verification.outcome import FINE, REFUSED, Check, Outcome, refused, shown, too_coarse
+from wavesym.verification.outcome import FINE, REFUSED, Check, Outcome, format_error, refused_outcomes, too_coarse
 from wavesym.verification.reference import Known
 
 # balances are struck as long as that takes no more values
@@ -31,17 +31,17 @@ def invariants(known: Known) -> list[Outcome]:
     """The balances of momentum and energy, in the reference itself and in the program, which generated NumPy is."""
     name = known.model.name
 
-    def refused(reason: object) -> list[Outcome]:
+    def no_balances(reason: object) -> list[Outcome]:
         return [Outcome("momentum, energy", {"to": REFUSED}, True, f"{name}: no balances, as {reason}")]
 
     try:
         books = Balancing(known.model, _MOST_VALUES)
         if not books.struck:
-            return refused("fronts come too often")
+            return no_balances("fronts come too often")
         exact = Reference(books.model)
         right = books.balances(lambda taus: np.array(exact.values(taus.tolist())), None)
     except CostError as error:  # all ends are watched, and not only outputs
-        return refused(error)
+        return no_balances(error)
     note = ""
     ours: Sequence[Balance | None] = [None] * len(right)
     try:
@@ -51,9 +51,9 @@ def invariants(known: Known) -> list[Outcome]:
         note = str(error)
     outcomes = []
     for exactly, found in zip(right, ours, strict=True):
-        cells = {"to": f"{float(books.struck[-1]):.4g}", "reference": shown(exactly.error)}
-        cells |= {"allowed": shown(exactly.allowed), "NumPy": shown(found.error) if found else REFUSED}
-        cells |= {"its bound": shown(found.allowed)} if found else {}
+        cells = {"to": f"{float(books.struck[-1]):.4g}", "reference": format_error(exactly.error)}
+        cells |= {"allowed": format_error(exactly.allowed), "NumPy": format_error(found.error) if found else REFUSED}
+        cells |= {"its bound": format_error(found.allowed)} if found else {}
         passed = all(each.error <= each.allowed for each in (exactly, found) if each)
         coarse = "" if exactly.allowed <= FINE else too_coarse(name, "quadrature of the balances")
         outcomes.append(Outcome(exactly.name, cells, passed, note or coarse))
@@ -72,7 +72,7 @@ def peaks(known: Known) -> list[Outcome]:
         further = known.model.shortened(rational(max(known.until, taus[-1])))  # and just behind the horizon
         rows = Reference(further).values(taus)
     except WavesymError as refusal:
-        return refused(known, "beyond", f"no proved extremes to compare ({refusal})")
+        return refused_outcomes(known, "beyond", f"no proved extremes to compare ({refusal})")
     outcomes = []
     for output, pair, row in zip(known.outputs, found, rows, strict=True):
         at = dict(zip(taus, row, strict=True))
@@ -85,7 +85,7 @@ def peaks(known: Known) -> list[Outcome]:
                 earlier, before, here, after = (at[tau] for tau in near[each.tau])
                 off = max(off, abs(each.value - here) / scale)
                 change = max(change, (abs(before - earlier) + abs(after - here)) / scale)
-        cells = {"beyond": shown(beyond), "at": shown(off), "allowed": shown(_ROUNDED + change)}
+        cells = {"beyond": format_error(beyond), "at": format_error(off), "allowed": format_error(_ROUNDED + change)}
         outcomes.append(Outcome(output.probe.name, cells, beyond <= _ROUNDED and off <= _ROUNDED + change))
     return outcomes
 
@@ -105,7 +105,7 @@ CHECKS = (
     Check(
         "Collocation between fronts beyond what is known exactly, with N, 2N and 4N points a panel. Allowed: the\n"
         "difference from 2N, and rounding. Differences are from 4N:",
-        beyond,
+        collocation_beyond,
     ),
     Check(
         "Collocation between fronts, followed one by one, with N, 2N and 4N points a panel. Allowed at\n"
@@ -120,7 +120,7 @@ CHECKS = (
     Check(
         "When contacts open and close: how far integrations are from it, and what is allowed (between fronts: the\n"
         "difference of N and 2N points; central differences: those of N, 2N and 4N cells, and four steps):",
-        happening,
+        contact_changes,
     ),
     Check(
         "Momentum less impulse and energy less work of the whole chain at parts of the horizon: in the reference, and\n"

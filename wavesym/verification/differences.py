@@ -22,7 +22,7 @@ from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.differences import Grid, GridMotion, point_steps
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
-from wavesym.verification.problem import Change, ContactProblem, Struck, alike
+from wavesym.verification.problem import Change, ContactProblem, KnownChanges, match_changes
 
 Instants = NDArray[np.int_]
 
@@ -119,13 +119,13 @@ class SpaceTimeGrid:
                     free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
         return instants[free]
 
-    def struck(self, until: float, most: float) -> tuple[SpaceTimeGrid, Struck] | None:
+    def struck(self, until: float, most: float) -> tuple[SpaceTimeGrid, KnownChanges] | None:
         """The coarsest grid which, halved twice, has the same happen at contacts, and that; None if it costs more."""
         grid = self
         while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
             last = np.array([int(until / float(grid.step))])
             changes = [grid.finer(k).integrate(k * last).changes for k in (1, 2, 4)]
-            first, then = alike(changes[2], changes[1]), alike(changes[1], changes[0])
+            first, then = match_changes(changes[2], changes[1]), match_changes(changes[1], changes[0])
             if first is not None and then is not None:
                 known = [after + before for (_, after), (_, before) in zip(first, then, strict=True)]
                 late = LATE * float(grid.step) / 4

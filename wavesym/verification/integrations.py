@@ -23,9 +23,9 @@ from wavesym.methods.problem import problem_of as damped_problem
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, Undecided, integrate
 from wavesym.verification.differences import LATE, SpaceTimeGrid, coarsest_grid
-from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, refused, shown
-from wavesym.verification.problem import Change, Struck, alike, problem_of
-from wavesym.verification.reference import Known, evenly, spread
+from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
+from wavesym.verification.problem import Change, KnownChanges, match_changes, problem_of
+from wavesym.verification.reference import Known, sample_evenly, spread_taus
 
 # Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them
 _POINTS, _POINTS_OF_CONTACTS = 6, (8, 12)
@@ -65,7 +65,7 @@ def collocation(known: Known) -> list[Outcome]:
     """
     solved = _solved_once(known)
     if isinstance(solved, str):
-        return refused(known, "N", solved)
+        return refused_outcomes(known, "N", solved)
     taus = np.array(known.taus)
     instants = solved.clear(taus)
     truths = [Truth(output.values[clear], output.scale) for output, clear in zip(known.outputs, instants, strict=True)]
@@ -73,18 +73,18 @@ def collocation(known: Known) -> list[Outcome]:
     return method.outcomes(known.whole.name, known.names, truths, {})
 
 
-def beyond(known: Known) -> list[Outcome]:
+def collocation_beyond(known: Known) -> list[Outcome]:
     """Collocation on the whole horizon, where exact values are known of its beginning only."""
     if not known.outputs or known.model.until == known.whole.until:
         return []
     until = known.whole.horizon()
-    method = collocated(known.independent or known.whole, until, sorted({*spread(until), until}))
+    method = collocation_method(known.independent or known.whole, until, sorted({*spread_taus(until), until}))
     if isinstance(method, str):  # as of the beginning
         return []
     return method.outcomes(known.whole.name, known.names, [None] * len(known.outputs), {})
 
 
-def collocated(model: Model, until: float, taus: Sequence[float]) -> Method | str:
+def collocation_method(model: Model, until: float, taus: Sequence[float]) -> Method | str:
     """Collocation of a model without contacts at the same instants for every output, or why there is none."""
     solved = _solved(model, until)
     return solved if isinstance(solved, str) else solved.method([taus] * len(model.probes))
@@ -109,7 +109,7 @@ class _Solved:
             except Undecided as undecided:
                 why = undecided
                 continue
-            if (found := alike(quarter, half)) is not None and alike(half, coarse) is not None:
+            if (found := match_changes(quarter, half)) is not None and match_changes(half, coarse) is not None:
                 self.struck = [(change, slack + _CLOSE) for change, slack in found]
                 return
         raise why
@@ -171,7 +171,7 @@ def differences(known: Known) -> list[Outcome]:
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     if len(first.problem.gaps):
         if (found := first.struck(until, MOST_MOVED)) is None:
-            return refused(known, "to", _NO_GRID)
+            return refused_outcomes(known, "to", _NO_GRID)
         first, struck = found
     while len(first.instants(until, struck)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
         first = first.finer(2)
@@ -180,11 +180,11 @@ def differences(known: Known) -> list[Outcome]:
         finest = finest.finer(2)
     if (swing := first.problem.swings * finest.tau(1) / 4) > _SWING:
         why = f"springs swing {swing:.2g} radians in the shortest step that central differences can take"
-        return refused(known, "to", why)
-    instants = evenly(first.instants(until, struck), _MOST_INSTANTS)
+        return refused_outcomes(known, "to", why)
+    instants = sample_evenly(first.instants(until, struck), _MOST_INSTANTS)
     if not len(instants):
         why = f"to step between the fronts, central differences would take too long (at {first.tau(1):.1g} a step)"
-        return refused(known, "to", why)
+        return refused_outcomes(known, "to", why)
     taus = [first.tau(k) for k in instants.tolist()]
     truths = [
         Truth(np.array(values), output.scale)
@@ -245,7 +245,7 @@ def elements(known: Known) -> list[Outcome]:
 # contacts
 
 
-def happening(known: Known) -> list[Outcome]:
+def contact_changes(known: Known) -> list[Outcome]:
     """When contacts open and close, against collocation between fronts and central differences."""
     model, judged = known.model, known.integrated
     if not judged.network.contacts:
@@ -271,7 +271,7 @@ def happening(known: Known) -> list[Outcome]:
 class Happened:
     """What a method found at contacts, and what it does not see as it does not last as long."""
 
-    struck: Struck
+    struck: KnownChanges
     shortest: float
 
     def at(self, contact: int) -> Happened:
@@ -311,14 +311,14 @@ def compare_events(
             elif (at := visible.index(k)) < len(method.struck):
                 change, slack = method.struck[at]
                 error = abs(change.tau - event.double)
-                rows[k] |= {name: shown(error), f"{name} allowed": shown(slack)}
+                rows[k] |= {name: format_error(error), f"{name} allowed": format_error(slack)}
                 passed[k] &= change.kind == event.kind and error <= slack
             else:
                 rows[k] |= {name: "none"}
                 passed[k] &= event.double > until - _CLOSE
         for change, slack in method.struck[len(visible) :]:
             if change.tau + slack < until:
-                cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": shown(slack)}
+                cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": format_error(slack)}
                 parts_by_nothing = name == "grid" and methods["fronts"] is not None
                 more.append(Outcome(f"{place} {change.kind}", cells, parts_by_nothing))
     for event, row, right in zip(claimed, rows, passed, strict=True):

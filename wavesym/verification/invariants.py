@@ -263,7 +263,7 @@ class _Books:
         points, bars = np.zeros(problem.points), np.zeros(len(problem.delays))
         for first in range(problem.points):
             if points[first] == 0:
-                more = problem.carried(first, bars=True, springs=True)
+                more = problem.rigid_motion(first, bars=True, springs=True)
                 points, bars = points + more[0], bars + more[1]
         return points, bars
 

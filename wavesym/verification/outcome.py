@@ -107,7 +107,7 @@ class Refinement:
     scale: float
 
     @classmethod
-    def of(cls, solutions: Sequence[Solution], truth: Truth | None, rule: Rule) -> Refinement:
+    def compare(cls, solutions: Sequence[Solution], truth: Truth | None, rule: Rule) -> Refinement:
         """Compare an output with N, 2N and 4N steps.
 
         Args:
@@ -145,9 +145,9 @@ class Refinement:
         """The columns of a table, N = `steps`; the order is observed where errors are more than rounding."""
         seen = [error for error in self.errors if error > self.rounding]
         order = f"{math.log2(seen[-2] / seen[-1]):.1f}" if len(seen) > 1 else "-"
-        cells = dict(zip(("at N", "at 2N", "at 4N"), map(shown, self.errors), strict=True))
-        best = {} if self.best == self.errors[-1] else {"extrapolated": shown(self.best)}
-        return {"N": str(steps), **cells, "order": order, **best, "allowed": shown(self.allowed)}
+        cells = dict(zip(("at N", "at 2N", "at 4N"), map(format_error, self.errors), strict=True))
+        best = {} if self.best == self.errors[-1] else {"extrapolated": format_error(self.best)}
+        return {"N": str(steps), **cells, "order": order, **best, "allowed": format_error(self.allowed)}
 
 
 @dataclass(frozen=True)
@@ -165,13 +165,13 @@ class Method:
     instants: Sequence[Sequence[float]]
     clear: bool = False
 
-    def refined(self, truths: Sequence[Truth | None]) -> tuple[int, list[Refinement]]:
+    def refine(self, truths: Sequence[Truth | None]) -> tuple[int, list[Refinement]]:
         """N, and all outputs with N, 2N and 4N steps, compared with their values and scales where these are known."""
         finer = 1
         solved = [self.solve(finer * k) for k in (1, 2, 4)]
         while True:
             outputs = zip(truths, zip(*solved, strict=True), strict=True)
-            found = [Refinement.of(each, truth, self.rule) for truth, each in outputs]
+            found = [Refinement.compare(each, truth, self.rule) for truth, each in outputs]
             if all(each.between <= FINE for each in found) or not self.is_affordable(8 * finer):
                 return self.coarsest * finer, found
             finer *= 2
@@ -181,7 +181,7 @@ class Method:
         self, scene: str, names: Sequence[str], truths: Sequence[Truth | None], cells: Mapping[str, str]
     ) -> list[Outcome]:
         """A row for each output; where there is no truth, one is right that is exact enough to judge others."""
-        steps, refined = self.refined(truths)
+        steps, refined = self.refine(truths)
         outcomes = []
         for name, truth, taus, each in zip(names, truths, self.instants, refined, strict=True):
             integral = IntegratedOutput(taus, each.values, each.allowed * each.scale, self.clear)
@@ -191,7 +191,7 @@ class Method:
         return outcomes
 
 
-def refused(known: Known, column: str, why: str) -> list[Outcome]:
+def refused_outcomes(known: Known, column: str, why: str) -> list[Outcome]:
     """A row for each output that says that it was not tried, and why."""
     return [Outcome(probe.name, {column: REFUSED}, True, f"{known.whole.name}: {why}") for probe in known.whole.probes]
 
@@ -201,7 +201,7 @@ def too_coarse(scene: str, what: str) -> str:
     return f"{scene}: the {what} is too coarse to tell errors below {FINE:.0e}"
 
 
-def shown(error: float) -> str:
+def format_error(error: float) -> str:
     """An error as a cell of a table."""
     return f"{error:.1e}" if error else "0"
 

@@ -24,13 +24,13 @@ class Change:
     tau: float
 
 
-Struck = list[tuple[Change, float]]
+KnownChanges = list[tuple[Change, float]]
 """What happens at contacts in the order of time, and how well it is known when."""
 
 
-def alike(finer: Sequence[Change], coarser: Sequence[Change]) -> Struck | None:
+def match_changes(finer: Sequence[Change], coarser: Sequence[Change]) -> KnownChanges | None:
     """What happens in two solutions, and how far apart in time; None where it is not the same."""
-    found: Struck = []
+    found: KnownChanges = []
     for contact in {change.contact for change in (*finer, *coarser)}:
         both = [[change for change in changes if change.contact == contact] for changes in (finer, coarser)]
         if [change.kind for change in both[0]] != [change.kind for change in both[1]]:

@@ -33,10 +33,10 @@ from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes, sources
 from wavesym.targets.files import files
-from wavesym.verification.integrations import collocated
+from wavesym.verification.integrations import collocation_method
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
-from wavesym.verification.outcome import IntegratedOutput, Outcome, shown
-from wavesym.verification.reference import Known, evenly
+from wavesym.verification.outcome import IntegratedOutput, Outcome, format_error
+from wavesym.verification.reference import Known, sample_evenly
 from wavesym.verification.streams import step_modes, step_stream
 
 FLAGS = ("-std=c99", "-O1")
@@ -195,7 +195,7 @@ def _run_c(scene: Scene, known: Known, integrals: Integrals, program: Program, n
         else:
             some = np.arange(len(taus))
             if program.evaluator == "march":
-                some = evenly(some, _MOST_MARCHED)
+                some = sample_evenly(some, _MOST_MARCHED)
             yield ProgramValues(f"{name}, C", taus[some], built(given[some].tolist()), sizes, bounds, late, note)
 
 
@@ -212,11 +212,11 @@ def _with_parameters(
     yield ProgramValues(f"{name}, C", taus, values, _sizes(known, integrals, program), bounds, late, note)
     numbers, other = draw_parameters(scene, known.whole, program.laws.fields)
     instants = [tau for tau in known.taus if np.float32(tau) == tau][::_SOME]
-    method = collocated(other.shortened(known.model.until), known.until, instants)
+    method = collocation_method(other.shortened(known.model.until), known.until, instants)
     if isinstance(method, str):
         yield ProgramValues(f"{name}, C, others", taus, values, [], [], refused=method)
         return
-    _, refined = method.refined([None] * len(bounds))
+    _, refined = method.refine([None] * len(bounds))
     sizes = [float(np.max(np.abs(each.values))) for each in refined]
     judges = [IntegratedOutput(instants, each.values, each.allowed * each.scale) for each in refined]
     status, estimate, values = built.model(numbers, instants)
@@ -266,16 +266,17 @@ def _compare(known: Known, integrals: Integrals, found: ProgramValues) -> Outcom
     for k, probe in enumerate(known.whole.probes):
         size, integral = found.sizes[k], (found.integrals or integrals)[k]
         stated, unit, parts = found.bounds[k] * size, size or 1.0, []
-        cells = {"of": probe.name, "error": "-", "difference": "-", "allowed": "-", "bound": shown(stated / unit)}
+        cells = {"of": probe.name} | dict.fromkeys(("error", "difference", "allowed"), "-")
+        cells["bound"] = format_error(stated / unit)
         if exact:
             error = _largest(found.values[k][exact.mine] - exact.values[k])
             parts.append(_part(error, stated))
-            cells["error"] = shown(error / unit)
+            cells["error"] = format_error(error / unit)
         if integral and len(pairs := _pairs(found.taus, np.array(integral.taus), found.close)):
             error = _largest(found.values[k][pairs[:, 0]] - integral.values[pairs[:, 1]])
             allowed = integral.allowed + found.late * integral.steepest
             parts.append(_part(error, stated + allowed))
-            cells |= {"difference": shown(error / unit), "allowed": shown(allowed / unit)}
+            cells |= {"difference": format_error(error / unit), "allowed": format_error(allowed / unit)}
         if (part := max(parts, default=inf)) > worst:
             worst, row = part, cells
     return Outcome(found.name, row, not found.note and worst <= 1, found.note)

@@ -79,7 +79,7 @@ class Known:
         return [f"{self.whole.name}: compared to tau = {self.until:g}; exact values of all of it would take too long"]
 
 
-def known(model: Model, independent: Model | None = None) -> Known:
+def known_outputs(model: Model, independent: Model | None = None) -> Known:
     """A model's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after.
 
     Of a long horizon the beginning, as far as it can be known in moderate time. `independent`: see `Known`.
@@ -93,18 +93,18 @@ def known(model: Model, independent: Model | None = None) -> Known:
     return Known(model, exact.model, exact.tau_max, taus, tuple(outputs), frozenset(starts), independent, exact)
 
 
-def unknown(model: Model, independent: Model | None = None) -> Known:
+def unknown_outputs(model: Model, independent: Model | None = None) -> Known:
     """A model whose modes are damped, which balls know nothing of."""
     return Known(model, model, model.horizon(), (), (), independent=independent)
 
 
-def spread(until: float) -> list[float]:
+def spread_taus(until: float) -> list[float]:
     """Instants on [0, until], evenly and on no grid of any evaluator; single precision has them, too."""
     golden = np.array([math.fmod(k * _GOLDEN, 1) * until for k in range(1, _SPREAD + 1)], np.float32)
     return [tau for tau in golden.astype(np.float64).tolist() if tau <= until]
 
 
-def evenly(values: NDArray[T], most: int) -> NDArray[T]:
+def sample_evenly(values: NDArray[T], most: int) -> NDArray[T]:
     """As many of some values as are looked at, evenly spread over their places."""
     count = min(len(values), most)
     return np.asarray(values[np.linspace(0, len(values) - 1, count).round().astype(int)])
@@ -112,7 +112,7 @@ def evenly(values: NDArray[T], most: int) -> NDArray[T]:
 
 def _taus(until: float, starts: Sequence[float]) -> Iterator[float]:
     yield from (0.0, until)
-    yield from spread(until)
+    yield from spread_taus(until)
     for first in starts:
         for tau in (math.nextafter(first, -math.inf), first, math.nextafter(first, math.inf)):
             if 0 <= tau <= until:

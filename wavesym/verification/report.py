@@ -13,7 +13,7 @@ from wavesym.verification.independent import independent_model
 from wavesym.verification.integrations import elements
 from wavesym.verification.outcome import REFUSED, IntegratedOutput, Outcome, Row, table
 from wavesym.verification.programs import compare_programs
-from wavesym.verification.reference import Known, known, unknown
+from wavesym.verification.reference import Known, known_outputs, unknown_outputs
 
 _LATE = 0.05  # parts of the horizon that an integration may leave out at its end
 _LEGEND = "Errors are relative to the output's largest value."
@@ -44,7 +44,7 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
 
     for scene, model in scenes:
         own = independent_model(scene, model)
-        truth = known(model, own) if model.damping is None else unknown(model, own)
+        truth = known_outputs(model, own) if model.damping is None else unknown_outputs(model, own)
         notes += truth.notes
         found: dict[str, IntegratedOutput] = {}
         for number, check in enumerate(CHECKS, 1):

@@ -15,7 +15,7 @@ from wavesym.programs.program import Program
 from wavesym.running.compiled import Compiled
 from wavesym.scene import Scene
 from wavesym.verification.independent import changes
-from wavesym.verification.reference import Known, evenly
+from wavesym.verification.reference import Known, sample_evenly
 
 _CLEAR = 1e-6  # outputs are looked at so far from fronts and from changes of loads, and no closer together
 _MOST_LOOKED = 300
@@ -34,7 +34,7 @@ def step_stream(
     feed = LoadFeed(scene, known.whole, program.sources)
     fronts = np.array([*known.starts, *map(float, feed.times)])
     apart = np.array([tau for tau in taus if np.min(np.abs(fronts - tau), initial=np.inf) > _CLEAR])
-    chosen = evenly(apart[np.diff(apart, prepend=0.0) > _CLEAR], _MOST_LOOKED)
+    chosen = sample_evenly(apart[np.diff(apart, prepend=0.0) > _CLEAR], _MOST_LOOKED)
     stops = [Fraction(tau) for tau in chosen.tolist()]
     looked, columns, before = set(stops), [], 0.0
     own = [nearest(value) for field in program.laws.fields for value in field.values] if program.laws else None
@@ -57,7 +57,7 @@ def step_modes(scene: Scene, known: Known, program: Program, built: Compiled) ->
     stops = [first + k * step for k in range(1, int((fraction(known.model.until) - first) / step) + 1)]
     stream = built.stream()
     columns = [stream.step(program.constants["spacing"], loads) for _, loads, _ in feed.through(stops)]
-    some = evenly(np.arange(len(stops)), _MOST_LOOKED)
+    some = sample_evenly(np.arange(len(stops)), _MOST_LOOKED)
     return np.array([float(stop) for stop in stops])[some], np.array(columns).T[:, some]
 
 
