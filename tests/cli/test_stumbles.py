@@ -142,7 +142,7 @@ def test_a_scene_to_start_from_works_and_is_explained(kind: str, capsys: pytest.
     assert main(["init", kind]) == 0
     text = capsys.readouterr().out
     assert all(len(line) <= 130 for line in text.splitlines())
-    assert text.startswith("# ")
+    assert text.startswith("#:schema scene.schema.json\n# ")
     assert text.count(" # ") >= 7
     Path("first.toml").write_text(text, encoding="utf-8")
     scene = wavesym.Scene.from_toml("first.toml")

@@ -19,7 +19,7 @@ from wavesym import __version__
 from wavesym.errors import WavesymError, did_you_mean, printable
 
 GROUPS = {
-    "Start": ("init", "scenes", "record"),
+    "Start": ("init", "scenes", "record", "schema", "completion"),
     "Compute": ("run", "summary", "modes", "frf", "spectrum", "sweep"),
     "Show": ("plot", "report"),
     "Generate": ("generate",),

@@ -19,6 +19,8 @@ _FIRST = files("wavesym.scene") / "first"
 _USUAL_UNIT = {"frame": "g", "wall": "g", "soil": "g", "drive": "N*m"}
 """Of the samples of a record whose file does not say it."""
 _REPLACED = ("spacing", "samples", "unit", "times", "steps")
+_SCHEMA = "#:schema scene.schema.json"
+"""For editors: the file that `wavesym schema -o scene.schema.json` writes."""
 _CHOICE = "# or record = "
 
 
@@ -36,7 +38,7 @@ def first_text(kind: str, record: str | PathLike[str] | None = None) -> str:
         WavesymError: for a kind that starts by itself, or has no units, and takes no record.
         SceneError: for a file that is no record.
     """
-    text = (_FIRST / f"{kind}.toml").read_bytes().decode()
+    text = f"{_SCHEMA}\n{(_FIRST / f'{kind}.toml').read_bytes().decode()}"
     if record is None:
         return text
     if kind not in _USUAL_UNIT:
