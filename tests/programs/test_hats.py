@@ -28,7 +28,7 @@ from wavesym.programs.hats.evaluator import HatMarch, hat_march
 from wavesym.programs.hats.split import split, still
 from wavesym.programs.making import program
 from wavesym.programs.march.bound import Verdict
-from wavesym.programs.march.evaluator import March, judged, march
+from wavesym.programs.march.evaluator import March, judge_march, march
 from wavesym.programs.march.plan import readable
 from wavesym.programs.schemes.hats import ShiftedHats
 from wavesym.running.compiled import imported
@@ -188,9 +188,9 @@ def allowed(count: int, error: float, height: float, smooth: int) -> tuple[March
     """The march of a hat and what is allowed of `count` of them, all of size 1, each so wrong, so large and level."""
     model = chain([{"at": "a", "spacing": "0.37", "samples": [1, 2, -1, 3, 0, 1, 5]}])
     (record,) = split(model).records
-    of_hat, _ = judged(still(model, record), degree=smooth)
+    of_hat, _ = judge_march(still(model, record), degree=smooth)
     verdict = Verdict(smooth, (error,), (height,), 0.0, 0.0, smooth, (height,), (0.0,))
-    return of_hat, float(hats._added(replace(record, samples=(fmpq(1),) * count), of_hat, verdict)[0, 0])
+    return of_hat, float(hats._superposed(replace(record, samples=(fmpq(1),) * count), of_hat, verdict)[0, 0])
 
 
 def test_rounding_of_hats_that_are_added_one_by_one_is_bounded() -> None:

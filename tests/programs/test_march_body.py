@@ -258,7 +258,7 @@ def test_truncation_is_no_less_than_what_a_step_loses(mass, degree, ratio) -> No
     marching._loads._powers = 0 * marching._loads._powers
     block = marching.block(0, 1)
     losses = Losses(plan, MarchTables(plan, degree, DOUBLE), scheme, 0.0, 0.0)
-    lost, rounded = losses.of(block)
+    lost, rounded = losses.of_block(block)
     assert rounded == 0
     step, (start,) = joint.space.rate, joint.space.weights
     points, gauss = np.polynomial.legendre.leggauss(200)
@@ -304,7 +304,7 @@ def test_a_load_is_as_large_and_as_wrong_as_it_is_said_to_be(steps, ramps, moved
     cuts = [float(panel.start) for panel in plan.panels]
     (point,) = {p for p in range(len(scheme.force_on)) if scheme.force_on[p] == 0}
     compared = 0
-    largest = [sizes.on(window)[:, point] for window in range(plan.windows)]
+    largest = [sizes.on_window(window)[:, point] for window in range(plan.windows)]
     for window, p in np.ndindex(plan.windows, len(cuts)):
         size = largest[window][p]
         begun = [event for event in plan.events if (event.window, event.panel) <= (window, p)]

@@ -305,7 +305,7 @@ def test_a_start_that_is_left_out_is_seen(monkeypatch: pytest.MonkeyPatch) -> No
     """A body that moves into rods at rest: without it nothing would jump, and any degree would do."""
     plan = march_plan(lower(sprung()))
     assert smoothness(plan, 4).degree > 20
-    monkeypatch.setattr(bounds, "started", lambda *_: 0.0)
+    monkeypatch.setattr(bounds, "start_jump", lambda *_: 0.0)
     assert smoothness(plan, 4).degree == 4
 
 

@@ -8,6 +8,7 @@ import pytest
 from tests.support.patience import first_always
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.march import evaluator
 from wavesym.programs.march.bound import judge
 from wavesym.programs.march.evaluator import first_degree
 from wavesym.programs.request import Request
@@ -24,7 +25,9 @@ def test_it_is_the_least_that_will_do_and_few_are_tried(name, monkeypatch) -> No
     model = replace(lower(scene.model_copy(update={"output": output})), endless=True)
     inputs = inputs_of(model, ())
     tried = []
-    monkeypatch.setattr(making, "judge", lambda plan, degree, real: tried.append(degree) or judge(plan, degree, real))
+    monkeypatch.setattr(
+        evaluator, "judge", lambda plan, degree, real: tried.append(degree) or judge(plan, degree, real)
+    )
     degree = int(making.stream_program(model, Request(stream=True), inputs).constants["degree"])
     plan = stream_plan(model, inputs, DOUBLE)
     first = max(first_degree(plan.rings, DOUBLE) - 8, 4)

@@ -136,7 +136,7 @@ def in_numpy(text):
         waves = np.concatenate([both, np.zeros((2, 1, *both.shape[2:]))], axis=1)
         nothing = np.zeros((1, scheme.panels, 1))
         window = module.WindowBlock(scheme, 0, waves, nothing, nothing, np.zeros(scheme.outputs))
-        return window.at(np.zeros(1, int), np.zeros(1, int), np.array([t]))[:, 0]
+        return window.read_places(np.zeros(1, int), np.zeros(1, int), np.array([t]))[:, 0]
 
     return read
 

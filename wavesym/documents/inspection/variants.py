@@ -68,7 +68,7 @@ def _dear(form: Made) -> str:
             f"not tried, nor the smallest tables: to fit {form.bytes} bytes once more takes long, "
             f"at most {MOST_BYTES} expected"
         )
-    if isinstance(form, (March, HatMarch)) and (marched := form.marched) > MOST_MARCHED:
+    if isinstance(form, (March, HatMarch)) and (marched := form.total_work) > MOST_MARCHED:
         return f"not tried: a march would take {marched:.1e} operations, at most {MOST_MARCHED:.1e} expected"
     return ""
 

@@ -20,7 +20,7 @@ from wavesym.numbers.doubles import nearest, rational, relative
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.hats.split import RecordLoad, split, still
 from wavesym.programs.march.bound import Verdict
-from wavesym.programs.march.evaluator import March, judged
+from wavesym.programs.march.evaluator import March, judge_march
 from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
@@ -97,9 +97,9 @@ class HatMarch(Bounded):
         return sum(march.work for march in self.marches)
 
     @property
-    def marched(self) -> float:
+    def total_work(self) -> float:
         """The same of all windows."""
-        return sum(march.marched for march in self.marches)
+        return sum(march.total_work for march in self.marches)
 
     @property
     def summary(self) -> str:
@@ -151,13 +151,13 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
         return None
     moving = [bar.velocity or bar.strain for bar in model.network.bars] + [p.velocity for p in model.network.points]
     try:
-        rest = [judged(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
+        rest = [judge_march(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
     except SpacingError:
         return None
-    hats = [judged(still(model, record)) for record in parts.records]
+    hats = [judge_march(still(model, record)) for record in parts.records]
     made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records, refusal)
     parted = [np.array([verdict.errors, verdict.heights]) for _, verdict in rest]
-    parted += [_added(record, *hat) for record, hat in zip(parts.records, hats, strict=True)]
+    parted += [_superposed(record, *hat) for record, hat in zip(parts.records, hats, strict=True)]
     errors, heights = sum(parted, np.zeros((2, len(model.probes))))
     errors = _MARGIN * (errors + len(parted) * _UNIT * heights)
     spacing = nearest(min(record.spacing for record in parts.records))
@@ -172,7 +172,7 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     )
 
 
-def _added(record: RecordLoad, march: March, hat: Verdict) -> Numbers:
+def _superposed(record: RecordLoad, march: March, hat: Verdict) -> Numbers:
     """Of what hats add up to the largest error and what values do not exceed: (2, outputs)."""
     samples = np.abs([nearest(value) for value in record.samples])
     count, plan = len(samples), march.plan

@@ -113,8 +113,8 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     largest, reading, sums, held, height, slope = (np.zeros(outputs) for _ in range(6))
     shortest = min(nearest(panel.length) for panel in plan.panels)
     one, bent = np.ones(degree + 1), 2 / shortest * np.arange(degree + 1.0) ** 2
-    for block in _blocks(scheme, plan.windows):
-        lost, inexact = losses.of(block)
+    for block in _march_blocks(scheme, plan.windows):
+        lost, inexact = losses.of_block(block)
         truncated += lost
         rounded += inexact
         summed += block.count * (truncated + rounded)
@@ -138,12 +138,12 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     for o, output in enumerate(plan.outputs):
         error = 0.0
         if of := output.part(summed=True):
-            error += _felt(plan, of) * sqrt(step) * summed
+            error += _influence(plan, of) * sqrt(step) * summed
             error += unit * (24 * stretches * step * sums[o] + len(of) * plan.windows * held[o])
             error += plan.windows * stretches * lost_reading * (1 + step) * max(1, len(of) / 2)
             error += _direct(losses, of) * step * plan.windows
         if of := output.part(summed=False):
-            error += _felt(plan, of) * largest_wave(smooth, plan, truncated + rounded)
+            error += _influence(plan, of) * largest_wave(smooth, plan, truncated + rounded)
             error += (READING + max(2, len(output.heard))) * unit * reading[o] + lost_reading * max(1, len(of) / 2)
             error += _direct(losses, of)
         if 0 < len(output.part(summed=True)) < len(output.heard):
@@ -169,7 +169,7 @@ def reading_weights(degree: int, displaced: bool) -> Array:
     return k + 8 + degree / (k + 1.0) if displaced else (k + 1) * (k + 2.0) + degree
 
 
-def _felt(plan: MarchPlan, heard: Iterable[OutputTerm]) -> float:
+def _influence(plan: MarchPlan, heard: Iterable[OutputTerm]) -> float:
     """How large what is heard can be, in L2 over a window, where the norm of energy is 1."""
     return sum(abs(nearest(each.gain)) * size_of(plan, each.track) for each in heard)
 
@@ -179,7 +179,7 @@ def _direct(losses: Losses, heard: Iterable[OutputTerm]) -> float:
     return sum(abs(nearest(each.gain)) * float(losses.direct[each.track]) for each in heard)
 
 
-def _blocks(scheme: MarchScheme, windows: int) -> Iterator[WindowBlock]:
+def _march_blocks(scheme: MarchScheme, windows: int) -> Iterator[WindowBlock]:
     marching = Marching(scheme)
     for first in range(0, windows, marching.most):
         yield marching.block(first, min(marching.most, windows - first))
@@ -230,7 +230,7 @@ def _jumps(plan: MarchPlan, rate: float) -> Iterator[float]:
         for point, force in enumerate(joint.forces):
             if force >= 0:  # where a load is read only it moves nothing
                 strengths[force] = max(strength(joint, point, rate), strengths.get(force, 0.0))
-        begin += started(plan, joint, rate)
+        begin += start_jump(plan, joint, rate)
     loads = [0.0] * 3
     for force, powers in plan.changes():
         for order, c in enumerate(powers):
@@ -247,7 +247,7 @@ def strength(joint: MarchedJoint, point: int, rate: float) -> float:
     return _ABOVE * (sqrt(nearest(state) / rate) / 2 + sqrt(nearest(sent)))
 
 
-def started(plan: MarchPlan, joint: MarchedJoint, rate: float) -> float:
+def start_jump(plan: MarchPlan, joint: MarchedJoint, rate: float) -> float:
     """The same for the start: as if what was held in joint until tau = 0 were let go."""
     space = joint.space
     arriving = [plan.tracks[track].held for track in joint.arrive]

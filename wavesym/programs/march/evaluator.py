@@ -70,7 +70,7 @@ class March(Bounded):
         return 2.0 * _multiplications(self.plan, self.degree)
 
     @property
-    def marched(self) -> float:
+    def total_work(self) -> float:
         """The same of all windows."""
         return self.work * self.plan.windows
 
@@ -115,10 +115,10 @@ def march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> March
         CostError: where it would be long or large.
         OverflowError: where numbers would be beyond those of the format.
     """
-    return judged(model, real, degree)[0]
+    return judge_march(model, real, degree)[0]
 
 
-def judged(model: Model, real: Real = DOUBLE, degree: int | None = None) -> tuple[March, Verdict]:
+def judge_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> tuple[March, Verdict]:
     """The same with all that is known of it."""
     plan = march_plan(model, real)
     if any(0 < abs(value) < real.least for value in least_numbers(plan)) or plan.cycle[1] * real.roundoff > 1:
@@ -139,13 +139,18 @@ def judged(model: Model, real: Real = DOUBLE, degree: int | None = None) -> tupl
         degree += max(2, min(degree // 6, math.ceil(min(missing, 1e6)) + 2))
 
 
-def _made(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
+def judge_degree(plan: MarchPlan, degree: int, real: Real, what: str = "march") -> Verdict:
+    """What a plan at some degree is worth; CostError where the joints of `what` it is take too many bits."""
     try:
-        verdict = judge(plan, degree, real)
+        return judge(plan, degree, real)
     except OverflowError:  # of the numbers' format, which costs have nothing to do with
         raise
     except ArithmeticError as error:
-        raise CostError(f"system.parts: to solve the joints of a march, {error} (softer springs help)") from None
+        raise CostError(f"system.parts: to solve the joints of a {what}, {error} (softer springs help)") from None
+
+
+def _made(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
+    verdict = judge_degree(plan, degree, real)
     outputs = tuple(
         ProgramOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
         for output, error, size in zip(plan.outputs, verdict.bounds, verdict.largest, strict=True)

@@ -67,10 +67,10 @@ class Losses:
         )
         self.direct = np.zeros(len(scheme.held))
 
-    def of(self, block: WindowBlock) -> tuple[float, float]:
+    def of_block(self, block: WindowBlock) -> tuple[float, float]:
         """By truncation and by rounding, in all windows of a block."""
         panels = range(len(self._lengths))
-        loads = np.array([self._loads.on(block.first + n) for n in range(block.count)])
+        loads = np.array([self._loads.on_window(block.first + n) for n in range(block.count)])
         lost = inexact = 0.0
         for panel in panels:
             truncation, rounding = np.zeros(block.count), np.zeros(block.count)

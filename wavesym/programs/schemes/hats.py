@@ -203,7 +203,7 @@ class ShiftedHats:
                 m = low[q] + (pair - (ends - counts)[q])
                 window, place, t = self._places(m, phase[q])
                 here = (window >= block.first) & (window < until)
-                yield q[here], m[here], block.at(window[here], place[here], t[here], outputs)
+                yield q[here], m[here], block.read_places(window[here], place[here], t[here], outputs)
 
     def _places(
         self, m: NDArray[np.int_], phase: NDArray[np.float64]

@@ -174,14 +174,14 @@ class WindowBlock:
         self._limits: dict[tuple[int, int], tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
         n = np.arange(self.count)
         for output in range(scheme.outputs):
-            if np.any(scheme.summed[self._heard(output)]):
-                self.totals[output, 1:] += np.cumsum(self._gathered(output, n, n, None), dtype=scheme.real)
+            if np.any(scheme.summed[self._output_terms(output)]):
+                self.totals[output, 1:] += np.cumsum(self._integral_values(output, n, n, None), dtype=scheme.real)
 
     def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """All outputs at some tau in these windows."""
-        return self.at(*self._scheme.places(tau))
+        return self.read_places(*self._scheme.places(tau))
 
-    def at(
+    def read_places(
         self,
         window: NDArray[np.int_],
         phase: NDArray[np.int_],
@@ -194,23 +194,23 @@ class WindowBlock:
         chosen = range(scheme.outputs) if outputs is None else outputs
         out = np.zeros((len(chosen), len(t)), scheme.real)
         for row, output in zip(out, chosen, strict=True):
-            summed = scheme.summed[self._heard(output)]
+            summed = scheme.summed[self._output_terms(output)]
             if np.any(summed):
-                row[:] = self.totals[output, n] + self._gathered(output, n, phase, t)
+                row[:] = self.totals[output, n] + self._integral_values(output, n, phase, t)
             if not np.all(summed):
-                row += self._arrived(output, n, phase, t)
+                row += self._direct_values(output, n, phase, t)
         return out
 
-    def _heard(self, output: int) -> slice:
+    def _output_terms(self, output: int) -> slice:
         return slice(self._scheme.first_term[output], self._scheme.first_term[output + 1])
 
     def _tracks(self, output: int, *, summed: bool) -> list[tuple[int, float, int]]:
         """Tracks with gains and delays that an output hears, or whose integrals it hears."""
-        scheme, here = self._scheme, self._heard(output)
+        scheme, here = self._scheme, self._output_terms(output)
         heard = zip(scheme.track[here], scheme.gain[here], scheme.delay[here], scheme.summed[here], strict=True)
         return [(track, gain, delay) for track, gain, delay, integral in heard if integral == summed]
 
-    def _arrived(
+    def _direct_values(
         self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """What an output hears at t, on windows n, which are at `phase` in their cycle."""
@@ -248,7 +248,7 @@ class WindowBlock:
             self._limits[track, stretch] = low, high
         return self._limits[track, stretch]
 
-    def _gathered(
+    def _integral_values(
         self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64] | None
     ) -> NDArray[np.float64]:
         """The integral from the start of windows n to t; without t over all of them."""
@@ -294,7 +294,7 @@ class Marching:
         if first > 0:
             self._waves[: scheme.deepest] = self._waves[self.most : self.most + scheme.deepest].copy()
         for n in range(count):
-            acting[n] = self._loads.on(first + n)
+            acting[n] = self._loads.on_window(first + n)
             for group in scheme.groups:
                 group.move(self._waves, scheme.deepest + n, acting[n], self._x, starts[n])
         made = WindowBlock(scheme, first, self._waves, starts, acting, self._totals)
@@ -310,7 +310,7 @@ class RunningLoads:
         self._now: dict[int, tuple[int, int, NDArray[np.float64]]] = {}
         self._event = 0
 
-    def on(self, window: int) -> NDArray[np.float64]:
+    def on_window(self, window: int) -> NDArray[np.float64]:
         """What acts on each point on the panels of a window, (panels, points, 3); windows come in order."""
         scheme = self._scheme
         # one more, for points on which nothing acts

@@ -18,8 +18,8 @@ from wavesym.mechanics.loads import Applied, merged
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
 from wavesym.numbers.reals import REALS, Real
-from wavesym.programs.march.bound import Verdict, judge
-from wavesym.programs.march.evaluator import first_degree, refuse_long
+from wavesym.programs.march.bound import Verdict
+from wavesym.programs.march.evaluator import first_degree, judge_degree, refuse_long
 from wavesym.programs.program import (
     Program,
     ProgramOutput,
@@ -140,7 +140,7 @@ def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
                 raise
             degree = failed[0] + 1  # not as far at once
             continue
-        verdict = _judged(plan, degree, real)
+        verdict = judge_degree(plan.rings, degree, real, "stream")
         excess = _excess(verdict, tolerance)
         if excess > 0:
             if failed:
@@ -157,15 +157,6 @@ def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
             degree = low + min(max(round((high - low) * missing / (missing - spare)), 1), high - low - 1)
         else:
             degree = low + max(1, int(min(missing / gain, low / 4)))
-
-
-def _judged(plan: StreamPlan, degree: int, real: Real) -> Verdict:
-    try:
-        return judge(plan.rings, degree, real)
-    except OverflowError:
-        raise
-    except ArithmeticError as error:
-        raise CostError(f"system.parts: to solve the joints of a stream, {error} (softer springs help)") from None
 
 
 def _excess(verdict: Verdict, tolerance: float) -> float:
