@@ -1,9 +1,11 @@
-/* elimination.c: blocks on a panel, and their square matrices of a few rows, of numbers that come at run time. Where nobody
+/* elimination.c: tables of bodies and blocks on a panel, of numbers that come at run time, and how blocks move. Where nobody
  * says what a number `num` is, with OF(name) for what is called name, it is real. Generated files have what stands below the
  * first empty line. */
 #ifndef TABLES
 #define NAME_RUNTIME
 #include "stream/tables.h"
+#include "series.h"
+#include "joint.c"
 #endif
 
 #ifndef num
@@ -75,6 +77,27 @@ static void OF(invert)(num *a, int n, num *b)
             }
         }
     }
+}
+
+/* A body on a panel of some length: with q' = rate (p - q) and x_k = rate length / (4 k), q_k + x_k (q_(k-1) - q_(k+1)) =
+ * x_k (p_(k-1) - p_(k+1)), q_0 and p_0 counted twice, is eliminated from the highest k down. */
+static void OF(tabulate_body)(num (*table)[3], const num *rate, real length, int degree)
+{
+    const num step = *rate * length;
+    num own = ZERO, first = ZERO, last = ZERO;
+    for (int k = degree; k > 0; --k) {
+        const num above = own;
+        own = step / ((real)(4 * k) + step * above);
+        first = (real)(k % 2 ? -1 : 1) - above * first;
+        last = 1 - above * last;
+        table[k][RATIO] = own;
+        table[k][SUM_FIRST] = first;
+        table[k][SUM_LAST] = last;
+    }
+    const num less = 2 * own * first;
+    table[0][SLACK] = -less / (1 - less);
+    table[0][LOSS] = 2 * own * last;
+    table[0][2] = ZERO;
 }
 
 /* The matrices of a block of n states on a panel, of degree k from k*stride on: x_k = solve r_k + down y_(k+1) - down x_(k-1);

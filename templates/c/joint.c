@@ -42,28 +42,30 @@ static void scatter(int joint, const joint_on_panel *on, const real *acting)
     }
 }
 
+/* The numbers of a body for each degree, k > 0: y_k = RATIO (p_(k-1) - p_(k+1) + y_(k+1)), with p_0 twice, q_k = y_k -
+ * RATIO q_(k-1); FIRST and LAST sum to the velocity at both ends. At k = 0 what q_0 has less, and what the end has. */
+enum { RATIO = 0, SUM_FIRST = 1, SUM_LAST = 2, SLACK = 0, LOSS = 1 };
+
 /* A body: its velocity q from p, with p[SIZE] = 0, and from what it is at the start; gives what it is at the end. */
 static real step_body(const real *rows, const real *p, real initial, real *q)
 {
-    const real *const at_first = rows + SIZE;
-    const real *const at_last = rows + 2 * SIZE;
     real y = 0;
     real first_sum = 0;
     real last_sum = 0;
     for (int k = DEGREE; k > 0; --k) {
-        y = rows[k] * (((k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1]) + y);
+        y = rows[3 * k + RATIO] * (((k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1]) + y);
         q[k] = y;
-        first_sum += at_first[k] * y;
-        last_sum += at_last[k] * y;
+        first_sum += rows[3 * k + SUM_FIRST] * y;
+        last_sum += rows[3 * k + SUM_LAST] * y;
     }
     first_sum = initial - first_sum;
-    q[0] = first_sum - rows[0] * first_sum;
+    q[0] = first_sum - rows[SLACK] * first_sum;
     real before = 2 * q[0];
     for (int k = 1; k <= DEGREE; ++k) {
-        before = q[k] - rows[k] * before;
+        before = q[k] - rows[3 * k + RATIO] * before;
         q[k] = before;
     }
-    return q[0] + (last_sum - at_first[0] * q[0]);
+    return q[0] + (last_sum - rows[LOSS] * q[0]);
 }
 
 /* A block: velocities of its points, followed by x at the end less x, from what acts on them, followed by x. */

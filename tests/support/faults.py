@@ -1,14 +1,14 @@
 """What is computed wrong in C with parameters at run time, errors then far above rounding: the text and another."""
 
 BODIES = [
-    ("const num less = 2 * own[j]", "const num less = 1.9999999 * own[j]"),
-    ("first_own[j] = (real)(k % 2 ? -1 : 1)", "first_own[j] = (real)(k % 2 ? -1.0000001 : 1)"),
-    ("last_own[j] = 1 - above", "last_own[j] = 1.0000001 - above"),
+    ("const num less = 2 * own", "const num less = 1.9999999 * own"),
+    ("first = (real)(k % 2 ? -1 : 1)", "first = (real)(k % 2 ? -1.0000001 : 1)"),
+    ("last = 1 - above", "last = 1.0000001 - above"),
     ("y[j] = q[j][k] - table[j]", "y[j] = q[j][k] * (k == 3 ? 1.0000001 : 1) - table[j]"),
     ("on_right[j] * y[j] - b[j][k];", "on_right[j] * y[j] - (k == 1 ? 1.0000001 : 1) * b[j][k];"),
     ("+ other[j] * b[j][k - 1];", "+ (k == 1 ? 1.0000001 : 1) * other[j] * b[j][k - 1];"),
     ("below += e->drive[j] * e->", "below += 1.0000001 * e->drive[j] * e->"),
-    ("(table[j][0][RATE] * (half", "(0 * table[j][0][RATE] * (half"),
+    ("(e->rate[j] * (half", "(0 * e->rate[j] * (half"),
 ]
 """Of masses between rods; the last one does not see what its polynomials miss."""
 

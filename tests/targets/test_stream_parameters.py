@@ -255,7 +255,7 @@ FAULTS = {
     "what passes": ("to[k] = point >= 0 && power == k % SIZE ?", "to[k] = point < 0 && power == k % SIZE ?"),
     "what goes back": ("- (other == port ? (real)1 : (real)0)", ""),
     "a ratio": ("step / ((real)(4 * k) + step * above)", "step / (real)(4 * k)"),
-    "a loss": ("rows[SIZE] = 2 * above * last;", "rows[SIZE] = 0;"),
+    "a loss": ("table[0][LOSS] = 2 * own * last;", "table[0][LOSS] = 0;"),
     "a drive": ("push[port] *= drive[joint];", ""),
 }
 OF_SCATTERERS, OF_BODIES = ("what goes back",), ("a ratio", "a loss", "a drive")

@@ -32,8 +32,8 @@ extern const int steps[];
 extern const int ring[];
 extern const real held[];
 /* joints: what they do (0 scatter, BODY, BLOCK), where their points, states and ports start in the next tables, how
- * strong loads are on a body; where on each panel their matrix is, by columns: of a body three rows of SIZE, slack and
- * ratios, loss and first, 0 and last */
+ * strong loads are on a body; where on each panel their matrix is, by columns: of a body three numbers for each degree,
+ * slack, loss and 0, then RATIO, SUM_FIRST and SUM_LAST */
 extern const int law[];
 extern const int first_point[];
 extern const int first_state[];

@@ -8,10 +8,6 @@
 
 #ifndef STEPS
 #define STEPS
-/* The numbers of a body for each degree, k > 0: y_k = RATIO (s_(k-1) - s_(k+1) + y_(k+1)), with s_0 twice, q_k = y_k -
- * RATIO q_(k-1); FIRST and LAST sum to the velocity at both ends. At k = 0 what q_0 has less, what the end has, the rate. */
-enum { RATIO = 0, SUM_FIRST = 1, SUM_LAST = 2, SLACK = 0, LOSS = 1, RATE = 2 };
-
 /* Bodies are stepped side by side: each step of a recurrence waits for the one before. */
 enum { ABREAST_BODIES = 2 };
 
@@ -51,67 +47,26 @@ static void OF(locate_block)(OF(march_tables) *m, int joint, int panel, OF(block
     block->end = m->edge[panel][1] + at_square[joint];
 }
 
-/* Tables of `count` bodies: with q' = -g q + g s on panels of some lengths, and x_k = g length / (4 k), the elimination of
- * q_k + x_k (q_(k-1) - q_(k+1)) = x_k (s_(k-1) - s_(k+1)) from the highest k down. One alone is done twice. */
-static void OF(tabulate_bodies)(num (**tables)[3], const real *lengths, int count, int degree)
-{
-    num step[ABREAST_BODIES], own[ABREAST_BODIES], first_own[ABREAST_BODIES], last_own[ABREAST_BODIES];
-    num(*table[ABREAST_BODIES])[3];
-    UNROLLED
-    for (int j = 0; j < ABREAST_BODIES; ++j) {
-        table[j] = tables[j < count ? j : 0];
-        step[j] = table[j][0][RATE] * lengths[j < count ? j : 0];
-        own[j] = first_own[j] = last_own[j] = ZERO;
-    }
-    for (int k = degree; k > 0; --k) {
-        UNROLLED
-        for (int j = 0; j < ABREAST_BODIES; ++j) {
-            const num above = own[j];
-            own[j] = step[j] / ((real)(4 * k) + step[j] * above);
-            first_own[j] = (real)(k % 2 ? -1 : 1) - above * first_own[j];
-            last_own[j] = 1 - above * last_own[j];
-            table[j][k][RATIO] = own[j];
-            table[j][k][SUM_FIRST] = first_own[j];
-            table[j][k][SUM_LAST] = last_own[j];
-        }
-    }
-    for (int j = 0; j < ABREAST_BODIES; ++j) {
-        const num less = 2 * own[j] * first_own[j];
-        table[j][0][SLACK] = -less / (1 - less);
-        table[j][0][LOSS] = 2 * own[j] * last_own[j];
-    }
-}
-
 /* All tables, of so many sets (or vectors of sets). */
 static void OF(tabulate)(OF(march_tables) *all, const OF(laws) *law, int sets, int degree)
 {
-    num(*table[ABREAST_BODIES])[3];
-    real length[ABREAST_BODIES];
-    int count = 0;
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        const real half = half_length[panel];
         for (int body = 0; body < NAME_BODIES; ++body) {
             const int joint = body_joint[body];
             for (int set = 0; set < sets; ++set) {
-                table[count] = all[set].body[panel][body];
-                table[count][0][RATE] = -law[set].rates[at_rates[joint]];
-                all[set].drive[body] = law[set].pushed[at_pushed[joint]] / table[count][0][RATE];
-                length[count] = 2 * half_length[panel];
-                if (++count == ABREAST_BODIES) {
-                    OF(tabulate_bodies)(table, length, count, degree);
-                    count = 0;
-                }
+                const num rate = -law[set].rates[at_rates[joint]];
+                OF(tabulate_body)(all[set].body[panel][body], &rate, 2 * half, degree);
+                all[set].drive[body] = law[set].pushed[at_pushed[joint]] / rate;
             }
         }
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
             for (int set = 0; set < sets && is_block(joint); ++set) {
                 OF(block_tables) block;
                 OF(locate_block)(all + set, joint, panel, &block);
-                OF(tabulate_block)(&block, law[set].rates + at_rates[joint], half_length[panel], degree);
+                OF(tabulate_block)(&block, law[set].rates + at_rates[joint], half, degree);
             }
         }
-    }
-    if (count > 0) {
-        OF(tabulate_bodies)(table, length, count, degree);
     }
 }
 
@@ -151,14 +106,14 @@ static void OF(gather)(OF(march_state) *m, const OF(laws) *law, const OF(forcing
     }
 }
 
-/* Up to ABREAST_BODIES bodies on a panel: their tables, what arrives at the first and the last end, times drives, what acts
- * besides, what goes back, velocities, states, and where sizes of waves and truncation errors are collected. */
+/* Up to ABREAST_BODIES bodies on a panel: their tables and rates, what arrives at the first and the last end, times drives,
+ * what acts besides, what goes back, velocities, states, and where sizes of waves and truncation errors are collected. */
 typedef struct {
     int count;
     num (*table[ABREAST_BODIES])[3];
     const num *a[ABREAST_BODIES], *b[ABREAST_BODIES], *acting[ABREAST_BODIES];
     int most[ABREAST_BODIES];
-    num drive[ABREAST_BODIES], one[ABREAST_BODIES], other[ABREAST_BODIES];
+    num rate[ABREAST_BODIES], drive[ABREAST_BODIES], one[ABREAST_BODIES], other[ABREAST_BODIES];
     num *left[ABREAST_BODIES], *right[ABREAST_BODIES];
     real on_left[ABREAST_BODIES], on_right[ABREAST_BODIES];
     num *q[ABREAST_BODIES], *state[ABREAST_BODIES], *size[ABREAST_BODIES], *missed[ABREAST_BODIES];
@@ -237,7 +192,7 @@ WITHIN void OF(step_abreast)(OF(bodies) *e, int count, real half, int degree)
         }
     }
     for (int j = 0; j < count; ++j) {
-        const num rest = (highest[j] - y[j]) * (table[j][0][RATE] * (half / (real)(2 * (degree + 1))));
+        const num rest = (highest[j] - y[j]) * (e->rate[j] * (half / (real)(2 * (degree + 1))));
         OF(add_magnitude)(e->missed[j], &rest);
     }
 }
@@ -280,6 +235,7 @@ static void OF(march_bodies)(OF(march_state) *all, OF(march_tables) *tables, con
             OF(march_state) *const m = all + set;
             const int j = some.count++;
             some.table[j] = tables[set].body[panel][body];
+            some.rate[j] = -law[set].rates[at_rates[joint]];
             some.drive[j] = tables[set].drive[body];
             some.a[j] = m->waves[now->arrived[arrive[port]]][panel];
             some.b[j] = m->waves[now->arrived[arrive[next]]][panel];

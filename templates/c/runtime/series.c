@@ -11,6 +11,10 @@ enum { SPARE = NAME_ROW - NAME_DEGREE };
 /* Of series and of states of a block there is room for so many. */
 enum { ROW = NAME_ROW, MOST_STATES = NAME_WIDEST };
 
+/* The numbers of a body for each degree, k > 0: y_k = RATIO (p_(k-1) - p_(k+1) + y_(k+1)), with p_0 twice, q_k = y_k -
+ * RATIO q_(k-1); FIRST and LAST sum to the velocity at both ends. At k = 0 what q_0 has less, and what the end has. */
+enum { RATIO = 0, SUM_FIRST = 1, SUM_LAST = 2, SLACK = 0, LOSS = 1 };
+
 /* A lane of a vector. */
 #if VECTOR
 #define AT(x, lane) ((x)[lane])

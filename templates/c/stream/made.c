@@ -84,29 +84,14 @@ static void tabulate_matrix(stream *state, int joint)
     }
 }
 
-/* A body: slack and ratios, loss and first, 0 and last, of q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) - p_(k+1)). */
-static void tabulate_body(stream *state, int joint)
+/* A body. */
+static void tabulate_mass(stream *state, int joint)
 {
     const name_made *const made = &state->made;
     const real rate = -made->rates[at_rates[joint]];
     const real step = rate * panel;
     const real energy = 2 * (root(step) + (1 + step) * (real)0.70711) * root(made->weight[first_state[joint]]);
-    real *const rows = matrix + answer[joint];
-    real above = 0;
-    real first = 0;
-    real last = 0;
-    for (int k = DEGREE; k > 0; --k) {
-        const real ratio_of = step / ((real)(4 * k) + step * above);
-        first = (real)(k % 2 ? -1 : 1) - above * first;
-        last = 1 - above * last;
-        above = ratio_of;
-        rows[k] = ratio_of;
-        rows[SIZE + k] = first;
-        rows[2 * SIZE + k] = last;
-    }
-    rows[0] = -2 * above * first / (1 - 2 * above * first);
-    rows[SIZE] = 2 * above * last;
-    rows[2 * SIZE] = 0;
+    tabulate_body((real(*)[3])(matrix + answer[joint]), &rate, panel, DEGREE);
     drive[joint] = made->pushed[at_pushed[joint]] / rate;
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
         push[port] *= drive[joint];
@@ -217,7 +202,7 @@ static int made_of(stream *state, const name_parameters *parameters)
         const real speed = speed_of(&state->made, joint, 0);
         fastest = speed <= fastest ? fastest : speed;
         if (law[joint] == BODY) {
-            tabulate_body(state, joint);
+            tabulate_mass(state, joint);
         } else if (law[joint] == BLOCK) {
             tabulate_matrix(state, joint);
             fine &= speed_of(&state->made, joint, 1) * panel <= (real)CALM;

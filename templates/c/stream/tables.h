@@ -88,8 +88,8 @@ extern const real held[];
 extern const real root_impedance[];
 extern const real state_gain[];
 /* joints: what they do (0 scatter, BODY, BLOCK), where their points, states and ports start in the next tables, how
- * strong loads are on a body; their matrix, by columns: of a body three rows of SIZE, slack and ratios, loss and first, 0
- * and last */
+ * strong loads are on a body; their matrix, by columns: of a body three numbers for each degree, slack, loss and 0, then RATIO,
+ * SUM_FIRST and SUM_LAST */
 extern const int law[];
 extern const int first_point[];
 extern const int first_state[];

@@ -38,6 +38,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from math import ceil, log2, sqrt
 from typing import NamedTuple
 
@@ -73,8 +74,9 @@ class BodyOperator:
 
     @cached_property
     def rows(self) -> tuple[float, ...]:
-        """As programs have it: slack and ratios, loss and first, 0 and last."""
-        return (self.slack, *self.ratio[1:], self.loss, *self.first[1:], 0.0, *self.last[1:])
+        """As programs have it: slack, loss and 0, then ratio, first and last for each degree from 1 on."""
+        above = zip(self.ratio[1:], self.first[1:], self.last[1:], strict=True)
+        return (self.slack, self.loss, 0.0, *chain.from_iterable(above))
 
     def highest(self, acting: float, start: float) -> float:
         """The highest coefficient of q where p is constant and q is `start` at the start of the panel."""

@@ -25,8 +25,8 @@ class MarchScheme:
         "steps",
         "held",
         # joints: what they do (0 scatter, 1 a body, 2 a block), where their points, states and ports start in the next
-        # tables, how strong loads are on a body, and where on each panel their matrix is: of a body three rows of
-        # degree + 1, slack and ratios, loss and first, 0 and last
+        # tables, how strong loads are on a body, and where on each panel their matrix is: of a body three numbers for
+        # each degree, slack, loss and 0, then ratio, first and last
         "law",
         "first_point",
         "first_state",
@@ -443,7 +443,7 @@ class Bodies(JointGroup):
     ) -> None:
         super().__init__(scheme, tables, joints, answers)
         self.drive = np.array(tables["drive"], scheme.real)[joints, None]
-        rows = self.matrices(3, self.size)
+        rows = np.swapaxes(self.matrices(self.size, 3), 2, 3)
         self.slack, self.loss = rows[:, :, 0, 0].copy(), rows[:, :, 1, 0].copy()
         rows[..., 0] = 0
         self.ratios, self.sums = rows[:, :, 0].copy(), np.moveaxis(rows[:, :, 1:], 2, 1).copy()
