@@ -26,7 +26,7 @@ MOST_MOVES = 500_000
 _RECKONED, _MARGIN = 96, 3
 # after so many times that count what happened lately is more than all that did, and what dies away counts
 _LATELY = 8
-# stretches after which, and after each doubling, it is reckoned how they grow with the fronts; fronts that are counted
+# after each time so many stretches it is reckoned how they grow with the fronts; fronts that are counted
 _GROWN, _MOST_FRONTS = 1024, 100_000
 
 
@@ -70,7 +70,7 @@ class Cost:
         if moved.swing > 0:
             self._refuse_series(self._lasting, _RECKONED, events)
             self._refuse_series(self._series, _RECKONED * _LATELY, events)
-        if len(self._starts) % _GROWN == 0 and (len(self._starts) // _GROWN).bit_count() == 1:
+        if len(self._starts) % _GROWN == 0:
             self._refuse_growth(start, events)
 
     def _refuse_series(self, starts: Sequence[fmpq], first: int, events: int) -> None:
@@ -92,7 +92,7 @@ class Cost:
         if not then < now < len(fronts):
             return
         reckoned = fmpq(int(count * (len(fronts) / now) ** min(1.0, log(2) / log(now / then))))
-        if reckoned > 2 * MOST_STAGES:
+        if reckoned > MOST_STAGES * (1 + fmpq(_MARGIN * _GROWN, count)):
             raise self._refusal(count, start, reckoned, MOST_STAGES, events)
 
     @cached_property

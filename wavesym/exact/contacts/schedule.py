@@ -16,7 +16,8 @@ from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
 
-# what is tried: bits, and whether what decays fast is left out where it is lost among rounding errors
+# what is tried: bits, and whether what decays fast is left out where it is lost among rounding errors (if it was not,
+# the second is the first)
 _ATTEMPTS = ((448, True), (448, False), (896, False))
 
 T = TypeVar("T")
@@ -73,12 +74,18 @@ def _attempt(
     network: Network, loads: Sequence[Applied], last: tuple[tuple[int, fmpq], ...], follow: Callable[[Search], T]
 ) -> T:
     """What a search finds with as many bits as it takes."""
+    tried: list[int] = []
     for bits, relaxing in _ATTEMPTS:
-        try:
-            with ctx.workprec(bits):
-                return follow(Search(network, loads, dict(last), relaxing))
-        except UndecidedError as error:
-            undecided = error
+        if bits in tried:
+            continue
+        with ctx.workprec(bits):
+            search = Search(network, loads, dict(last), relaxing)
+            try:
+                return follow(search)
+            except UndecidedError as error:
+                undecided = error
+        if not search.relaxed:
+            tried.append(bits)
     link = network.links[undecided.link]
     what = "force" if undecided.closed else "gap"
     raise GrazingError(

@@ -80,6 +80,11 @@ class Search:
         self._cost = Cost(network, loads, last)
         self._cost.refuse_many_moves({number: course.shortest for number, course in self.courses.items()})
 
+    @property
+    def relaxed(self) -> bool:
+        """Whether what decays fast has been left out somewhere."""
+        return any(joint.relaxed for joint in self.waves.joints.values())
+
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> Course:
         network, joint = self._network, self._network.joints[number]
         far = [network.bars[end.bar].delay for end, _ in joint.ends]

@@ -97,7 +97,7 @@ class SwingError(Exception):
 
 
 class TouchingJoint:
-    """A joint as time goes on, at the working precision."""
+    """A joint as time goes on, at the working precision; whether what decays fast has been left out."""
 
     def __init__(self, network: Network, number: int, loads: Sequence[Applied]) -> None:
         joint = network.joints[number]
@@ -115,6 +115,7 @@ class TouchingJoint:
         self._bare = {n for n, end in enumerate(self._ends) if end.place in touched and self.law.mass[end.place] == 0}
         self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
         self._energy = arb(0)  # the largest that a set had
+        self.relaxed = False
         # sets of points that have energy: mass or springs
         self._sets = [
             points
@@ -255,6 +256,7 @@ class TouchingJoint:
                 continue
             if shorter < length:
                 raise SwingError(shorter)
+            self.relaxed = True
             motion.lose(missed)
             return relaxation.slow, motion.follow(q, u, waves, length)
         raise SwingError(MOST_SWING / cluster.law.fastest)
@@ -291,15 +293,14 @@ class TouchingJoint:
         if (known := self._known(cluster)) is None:
             return velocities
         forces = [begins for terms in pushed if (begins := together(terms).begins) is not None]
-        given = [begins for p in prescribed if (begins := Onset.of(p)) is not None]
-        if len(forces) < len(pushed) or len(given) < len(prescribed):
+        if len(forces) < len(pushed):
             return velocities
         span = arb(0).union(arb(length))
         begin = onsets(
             cluster.law,
             ([known[leader][0] for leader in cluster.law.leaders], [u for _, u in known]),
             forces,
-            given,
+            [Onset(p) for p in prescribed],
             [abs(each.over(span)).upper() for each in velocities],
             length,
         )

@@ -13,11 +13,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from math import perm, prod
+from math import inf, perm, prod
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-ORDER = 6  # powers that are known of how a function begins
+ORDER = 6  # powers that are known of how a function begins, at first: each mass that it passes makes them one more
 _CHOICES = 8  # of functions, that are told apart
 # of what is shortened: bits that bounds are computed with, and how many of the first powers tell its size
 _COARSE, _FIRST = 32, 8
@@ -25,42 +25,49 @@ _COARSE, _FIRST = 32, 8
 
 @dataclass(frozen=True)
 class Onset:
-    """Up to ORDER powers; the rest is at most `beyond` times the next one."""
+    """How a function begins: f = powers + rests, the derivative of order k of the rest (k, b) being at most k! b.
+
+    The powers below the least order are all there are; of a polynomial, which has no rests, all are.
+    """
 
     powers: fmpq_poly
-    beyond: arb
+    rests: tuple[tuple[int, arb], ...] = ()
 
-    @classmethod
-    def of(cls, exact: fmpq_poly) -> Onset | None:
-        """Of a polynomial; None where it has more powers."""
-        return cls(exact, arb(0)) if exact.length() <= ORDER else None
+    @property
+    def order(self) -> float:
+        """How many powers are known."""
+        return min((order for order, _ in self.rests), default=inf)
 
     def sign(self) -> int:
         """Just after the start; 0 where these powers do not tell."""
-        first = next((c for c in self.powers.coeffs() if c != 0), fmpq(0))
-        return (first > 0) - (first < 0)
+        first = self._first
+        value = fmpq(0) if first is None else self.powers[first]
+        return (value > 0) - (value < 0)
+
+    @property
+    def _first(self) -> int | None:
+        """The first power that is not 0."""
+        first = next((n for n, c in enumerate(self.powers.coeffs()) if c != 0), None)
+        return first if first is not None and first < self.order else None
 
     def positive_until(self, length: fmpq) -> fmpq:
         """How long it is certainly positive, about; 0 where it does not begin so."""
         if self.sign() <= 0:
             return fmpq(0)
-        c = self.powers.coeffs()
-        first = next(n for n, value in enumerate(c) if value != 0)
+        first, c = self._first or 0, self.powers.coeffs()
+        others = [(n, abs(arb(value))) for n, value in enumerate(c) if n > first] + list(self.rests)
         w = length
-        while True:
-            rest = sum((abs(arb(value)) * arb(w) ** (n - first) for n, value in enumerate(c) if n > first), arb(0))
-            if arb(c[first]) > rest + self.beyond * arb(w) ** (ORDER - first):
-                return w
+        while not arb(c[first]) > sum((size * arb(w) ** (n - first) for n, size in others), arb(0)):
             w /= 2
+        return w
 
-    def derivatives(self, length: fmpq) -> list[arb]:
-        """Bounds of the function and its derivatives, up to that of ORDER."""
-        h, c = arb(length), [*map(abs, self.powers.coeffs())]
-        return [
-            sum((arb(value * perm(n, j)) * h ** (n - j) for n, value in enumerate(c) if n >= j), arb(0)).upper()
-            + (self.beyond * perm(ORDER, j) * h ** (ORDER - j)).upper()
-            for j in range(ORDER + 1)
-        ]
+    def derivative(self, order: int, length: fmpq) -> arb:
+        """A bound of a derivative; infinite where its order is higher than those that are known."""
+        if order > self.order:
+            return arb("inf")
+        h, c = arb(length), self.powers.coeffs()
+        total = sum((abs(arb(c[n] * perm(n, order))) * h ** (n - order) for n in range(order, len(c))), arb(0))
+        return total.upper() + sum((b * perm(n, order) * h ** (n - order) for n, b in self.rests), arb(0)).upper()
 
 
 @dataclass(frozen=True)
@@ -93,7 +100,7 @@ class Enclosed:
     @property
     def begins(self) -> Onset | None:
         """How it begins, of a polynomial too."""
-        return self.onset if self.exact is None else Onset.of(self.exact)
+        return self.onset if self.exact is None else Onset(self.exact)
 
     @classmethod
     def of(cls, exact: fmpq_poly) -> Enclosed:
@@ -119,11 +126,12 @@ Terms = list[tuple[fmpq, Enclosed]]
 
 def combined(terms: Sequence[tuple[fmpq, Onset]]) -> Onset:
     """A sum with exact factors."""
-    total, beyond = fmpq_poly(), arb(0)
+    total, rests = fmpq_poly(), dict[int, arb]()
     for factor, onset in terms:
         total += factor * onset.powers
-        beyond += abs(arb(factor)) * onset.beyond
-    return Onset(total, beyond.upper())
+        for order, beyond in onset.rests:
+            rests[order] = (rests.get(order, arb(0)) + abs(arb(factor)) * beyond).upper()
+    return Onset(total, tuple(sorted(rests.items())))
 
 
 def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:

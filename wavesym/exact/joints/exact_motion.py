@@ -8,9 +8,9 @@ velocities, which come one after another from M q' + C q + K u = s as do their b
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import islice
-from math import factorial
+from math import factorial, inf
 
 from flint import arb, fmpq, fmpq_poly
 
@@ -57,48 +57,73 @@ def onsets(
     `sizes` are bounds of the velocities on the stretch.
     """
     velocity, displacement = state
+    orders = _orders(law, [each.order for each in forces], [each.order for each in prescribed])
     acting, given = [each.powers for each in forces], [each.powers for each in prescribed]
-    *_, (q, _, _) = islice(motion_series(law, velocity, displacement, acting, given, fmpq, _all), ORDER + 1)
-    beyond = _derivatives(
-        law,
-        [each.derivatives(length) for each in forces],
-        {k: each.derivatives(length) for k, each in enumerate(prescribed) if law.given[k] is not None},
-        sizes,
-        [
-            abs(arb(u)) + abs(arb(ratio)) * arb(length) * sizes[a]
-            for u, (a, ratio) in zip(displacement, law.moves, strict=True)
-        ],
-    )
-    return [Onset(fmpq_poly(c[:ORDER]), (last / factorial(ORDER)).upper()) for c, last in zip(q, beyond, strict=True)]
+    *_, (q, _, _) = islice(motion_series(law, velocity, displacement, acting, given, fmpq, _all), max(orders) + 1)
+    places = [
+        abs(arb(u)) + abs(arb(ratio)) * arb(length) * sizes[a]
+        for u, (a, ratio) in zip(displacement, law.moves, strict=True)
+    ]
+    beyond = _derivatives(law, forces, prescribed, orders, sizes, places, length)
+    return [
+        Onset(fmpq_poly(c[:order]), ((order, (last / factorial(order)).upper()),))
+        for c, order, last in zip(q, orders, beyond, strict=True)
+    ]
+
+
+def _orders(law: JointLaw, forces: Sequence[float], prescribed: Sequence[float]) -> list[int]:
+    """How many powers of each velocity follow from those that are known: each mass or spring in between adds one."""
+    size = range(len(law.mass))
+    orders = [prescribed[k] if law.given[k] is not None else inf for k in size]
+
+    def pulled(k: int) -> float:
+        """What is known of what acts on a group, but for groups without mass."""
+        slow = (orders[b] for b in size if law.damping[k][b] != 0 and b not in law.light)
+        sprung = (orders[law.moves[p][0]] + 1 for p, c in enumerate(law.stiffness[k]) if c != 0)
+        return min([forces[k], *slow, *sprung])
+
+    while True:
+        before = list(orders)
+        for row, k in enumerate(law.light):
+            orders[k] = min(pulled(b) for n, b in enumerate(law.light) if law.inverse[row, n] != 0)
+        for k in law.heavy:
+            orders[k] = 1 + min([pulled(k), *(orders[b] for b in law.light if law.damping[k][b] != 0)])
+        if orders == before:
+            return [ORDER + 2 * (len(orders) - 1) if order == inf else int(order) for order in orders]
 
 
 def _derivatives(
     law: JointLaw,
-    forces: Sequence[Sequence[arb]],
-    given: Mapping[int, Sequence[arb]],
+    forces: Sequence[Onset],
+    prescribed: Sequence[Onset],
+    orders: Sequence[int],
     sizes: Sequence[arb],
     places: Sequence[arb],
+    length: fmpq,
 ) -> list[arb]:
-    """Bounds of the velocities' derivatives of ORDER, from those of all lower ones."""
+    """Bounds of the velocities' derivatives of these orders, from those of all lower ones."""
     size = range(len(law.mass))
     now, springs = list(sizes), list(places)
     heavy = {k: sizes[k] for k in law.heavy}
-    for j in range(ORDER + 1):
+    found = list(sizes)
+    for j in range(max(orders) + 1):
         for k in size:
-            if k in given:
-                now[k] = given[k][j]
+            if law.given[k] is not None:
+                now[k] = prescribed[k].derivative(j, length)
             elif k in heavy:
                 now[k] = heavy[k]
-        pull = [
-            forces[k][j] + sum((abs(arb(c)) * u for c, u in zip(law.stiffness[k], springs, strict=True)), arb(0))
-            for k in size
-        ]
+        pull = [forces[k].derivative(j, length) + _pulls(law.stiffness[k], springs) for k in size]
         known = [k for k in size if k not in law.light]
-        right = [pull[k] + sum((abs(arb(law.damping[k][b])) * now[b] for b in known), arb(0)) for k in law.light]
+        right = [pull[k] + _pulls([law.damping[k][b] for b in known], [now[b] for b in known]) for k in law.light]
         for row, k in enumerate(law.light):
-            now[k] = sum((abs(arb(law.inverse[row, n])) * value for n, value in enumerate(right)), arb(0)).upper()
+            now[k] = _pulls([law.inverse[row, n] for n in range(len(right))], right).upper()
         for k in law.heavy:
-            force = pull[k] + sum((abs(arb(law.damping[k][b])) * now[b] for b in size), arb(0))
-            heavy[k] = (force / arb(law.mass[k])).upper()
+            heavy[k] = ((pull[k] + _pulls(law.damping[k], now)) / arb(law.mass[k])).upper()
         springs = [abs(arb(ratio)) * now[a] for a, ratio in law.moves]
-    return now
+        found = [now[k] if orders[k] == j else found[k] for k in size]
+    return found
+
+
+def _pulls(factors: Sequence[fmpq], sizes: Sequence[arb]) -> arb:
+    """What these sizes make at most; some may be infinite, where their factor is 0."""
+    return sum((abs(arb(c)) * size for c, size in zip(factors, sizes, strict=True) if c != 0), arb(0))
