@@ -370,6 +370,12 @@ class JointGroup:
         self.size = scheme.degree + 1
         self._panels = np.arange(scheme.panels)[:, None, None]
         self._answers, self._matrix = answers[:, joints], np.array(tables["matrix"], scheme.real)
+        self.drive = np.array(tables["drive"], scheme.real)[joints, None]
+        self.prepare()
+
+    def prepare(self) -> None:
+        """Read what the matrices say."""
+        raise NotImplementedError
 
     def matrices(self, width: int, height: int) -> NDArray[np.float64]:
         """Those of each panel and joint, turned: (panels, joints, width, height)."""
@@ -405,14 +411,7 @@ class JointGroup:
 class Scatterers(JointGroup):
     """Joints without state."""
 
-    def __init__(
-        self,
-        scheme: MarchScheme,
-        tables: dict[str, tuple[float, ...]],
-        joints: NDArray[np.int_],
-        answers: NDArray[np.int_],
-    ) -> None:
-        super().__init__(scheme, tables, joints, answers)
+    def prepare(self) -> None:
         ports = self.ports.shape[1]
         self.columns = self.matrices(ports + self.points.shape[1], ports)
         self.waves, self.loads = (
@@ -434,15 +433,7 @@ class Scatterers(JointGroup):
 class Bodies(JointGroup):
     """Masses between rods: their recurrences as scans, in log2(degree) steps."""
 
-    def __init__(
-        self,
-        scheme: MarchScheme,
-        tables: dict[str, tuple[float, ...]],
-        joints: NDArray[np.int_],
-        answers: NDArray[np.int_],
-    ) -> None:
-        super().__init__(scheme, tables, joints, answers)
-        self.drive = np.array(tables["drive"], scheme.real)[joints, None]
+    def prepare(self) -> None:
         rows = np.swapaxes(self.matrices(self.size, 3), 2, 3)
         self.slack, self.loss = rows[:, :, 0, 0].copy(), rows[:, :, 1, 0].copy()
         rows[..., 0] = 0
@@ -491,14 +482,7 @@ class Bodies(JointGroup):
 class Blocks(JointGroup):
     """Joints with any other state, all with the same matrices."""
 
-    def __init__(
-        self,
-        scheme: MarchScheme,
-        tables: dict[str, tuple[float, ...]],
-        joints: NDArray[np.int_],
-        answers: NDArray[np.int_],
-    ) -> None:
-        super().__init__(scheme, tables, joints, answers)
+    def prepare(self) -> None:
         self.collect = np.swapaxes(self.at * self.push[..., None], 1, 2)
         self.spread = self.at * self.ratio[..., None]
         width = self.points.shape[1] * self.size + self.states.shape[1]
