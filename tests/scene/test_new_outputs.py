@@ -139,3 +139,18 @@ def test_a_named_system_written_out_has_the_same_outputs(
 def test_without_a_motion_end_nothing_is_relative_when_it_is_written_out() -> None:
     with pytest.raises(WavesymError, match=r'output.relative: given with base = "force", "ground" expected'):
         explicit_text(scene({**BUILDING, "base": "force"}, relative=[3]))
+
+
+def test_all_drifts_are_those_of_every_rod() -> None:
+    building = Scene.from_toml("building_m2")
+    every = building.with_({"output.drift": "all"})
+    assert every == building.with_({"output.drift": [1, 2]})
+    assert [output.name for output in every.outputs][-2:] == ["drift@1", "drift@2"]
+    chain = Scene(
+        name="linked",
+        system={"type": "chain", "parts": [{"rod": 1}, {"spring": 1}, {"rod": 2}, {"mass": 1}, {"rod": 1}, "fixed"]},
+        output={"until": 1, "drift": "all"},
+    )
+    assert [output.name for output in chain.outputs] == ["drift@1", "drift@2", "drift@3"]
+    with pytest.raises(SceneError, match=r'output\.drift: "each" given, a list or "all" expected'):
+        building.with_({"output.drift": "each"})

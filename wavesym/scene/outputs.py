@@ -47,6 +47,17 @@ class Observable:
 
 Positioned = Annotated[Position, PlainValidator(position_of), PlainSerializer(lambda at: at.written, return_type=str)]
 Positions = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(listed)]
+EVERY = "all"
+"""In place of a list of drifts: those of all rods of the main line."""
+
+
+def _drifts(value: object) -> tuple[object, ...]:
+    if isinstance(value, str) and value != EVERY:
+        raise wrong(f'{shown(value)} given, a list or "{EVERY}" expected')
+    return (EVERY,) if value == EVERY else listed(value)
+
+
+Drifts = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(_drifts)]
 
 
 class Output(SceneTable):
@@ -59,7 +70,7 @@ class Output(SceneTable):
     displacement: Positions = ()
     acceleration: Positions = ()
     force: Positions = ()
-    drift: Positions = ()
+    drift: Drifts = ()
     relative: Positions = ()
 
     @field_validator("until")
@@ -90,6 +101,12 @@ class Output(SceneTable):
         """Without new quantities that are not asked for: so scenes keep the hash that they have had."""
         said: dict[str, Any] = handler(self)
         return {key: value for key, value in said.items() if value or key not in QUANTITIES[3:]}
+
+    def of_every_rod(self, count: int) -> Self:
+        """The same with a drift for each of the rods of the main line, where it says "all"."""
+        if [position.written for position in self.drift] != [EVERY]:
+            return self
+        return self.model_copy(update={"drift": tuple(position_of(k) for k in range(1, count + 1))})
 
 
 class NoOutput(Output):

@@ -179,6 +179,8 @@ class Scene(SceneTable):
 
     @model_validator(mode="after")
     def _watches_the_chain(self) -> Self:
+        rods = sum(station.right is not None for station in self.system.lines[""])
+        vars(self)["output"] = self.output.of_every_rod(rods)
         _ = self.outputs
         if any(isinstance(load, ShapedLoad) for load in self.load):
             until, tolerance = self.output.until, self.output.tolerance
