@@ -91,6 +91,7 @@ bench: install
 	@set -e; for scene in b d c l r; do \
 		$(BIN)/wavesym chart bench/$$scene.toml -o bench/$$scene.svg --csv bench/$$scene.csv; \
 	done
+	$(BIN)/python -m tools.front_page
 
 # what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not
 prove: install

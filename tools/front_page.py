@@ -1,0 +1,135 @@
+"""python -m tools.front_page: draw the picture of README.md, and write the numbers that bench/ measured into it.
+
+The picture is of two joined bars under a pulse: where its waves are, and the force at one place, beside what a common
+integrator gives (linear finite elements, stepped by Newmark's method with the mean acceleration).
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+import wavesym
+from wavesym.pictures.saving import save
+
+ROOT = Path(__file__).parents[1]
+PICTURE = ROOT / "docs" / "waves.svg"
+BEGIN, END = "<!-- measured by make bench -->", "<!-- end -->"
+
+_IMPEDANCE, _PULSE, _UNTIL = 3, 0.35, 4.0  # of the second bar; how long the load acts
+_ELEMENTS = 100  # of each bar
+_PLACE = 0.5
+_COLUMNS, _ROWS = 160, 401
+_GREY, _BLUE = "0.62", "#1b5e9e"
+
+Numbers = NDArray[np.float64]
+
+
+def scene(places: list[float]) -> wavesym.Scene:
+    """The bars: the second is stiffer and heavier, its far end is free."""
+    parts: list[Any] = [{"joint": True, "name": "head"}, {"rod": 1}, {"rod": 1, "impedance": _IMPEDANCE}, "free"]
+    fields: dict[str, Any] = {
+        "system": {"type": "chain", "parts": parts},
+        "load": [{"at": "head", "times": [0, _PULSE], "steps": [1, -1]}],
+        "output": {"until": _UNTIL, "force": places, "tolerance": 1e-12},
+    }
+    return wavesym.Scene(name="bars", **fields)
+
+
+def finite_elements(times: Numbers) -> Numbers:
+    """The force at the place, by linear elements of equal length and Newmark's method, a step for each time."""
+    count, h, step = 2 * _ELEMENTS, 1 / _ELEMENTS, float(times[1])
+    impedances = np.repeat([1.0, _IMPEDANCE], _ELEMENTS)
+    stiffness, mass = np.zeros((count + 1, count + 1)), np.zeros((count + 1, count + 1))
+    for e, z in enumerate(impedances):
+        pair = slice(e, e + 2)
+        stiffness[pair, pair] += z / h * np.array([[1, -1], [-1, 1]])
+        mass[pair, pair] += z * h / 6 * np.array([[2, 1], [1, 2]])
+    inverse = np.linalg.inv(mass + step * step / 4 * stiffness)
+    moved, moving, forces = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
+    forces[0] = 1
+    speeding = np.linalg.solve(mass, forces)
+    element, found = int(_PLACE / h), []
+    for time in times:
+        found.append(float(impedances[element] * (moved[element + 1] - moved[element]) / h))
+        forces[0] = float(time + step < _PULSE)
+        ahead = moved + step * moving + step * step / 4 * speeding
+        after = inverse @ (forces - stiffness @ ahead)
+        moved, moving = ahead + step * step / 4 * after, moving + step / 2 * (speeding + after)
+        speeding = after
+    return np.array(found)
+
+
+def picture() -> Figure:
+    """Place by time on the left, the force at one place on the right."""
+    places = [round((k + 0.5) / (_COLUMNS / 2), 6) for k in range(_COLUMNS)]
+    times = np.linspace(0, _UNTIL, _ROWS)
+    field = wavesym.run(scene(places), times).values
+    fine = np.linspace(0, _UNTIL, 8 * _ELEMENTS + 1)
+    exact = wavesym.run(scene([_PLACE]), fine).values[0]
+    figure = Figure(figsize=(9, 3.4), layout="constrained")
+    FigureCanvasAgg(figure)
+    waves, history = figure.subplots(1, 2, width_ratios=[1, 1.5])
+    largest = float(np.abs(field).max())
+    extent = (0.0, 2.0, 0.0, _UNTIL)
+    waves.imshow(field.T, origin="lower", aspect="auto", extent=extent, cmap="RdBu", vmin=-largest, vmax=largest)
+    waves.axvline(1, color="0.3", linewidth=0.8)
+    waves.axvline(_PLACE, color="0.3", linewidth=0.8, linestyle=":")
+    waves.set_xlabel("place along two joined bars")
+    waves.set_ylabel("time")
+    waves.set_title("a pulse is split where the bars meet", fontsize="medium", loc="left")
+    label = f"{2 * _ELEMENTS} finite elements, Newmark"
+    history.plot(fine, finite_elements(fine), color=_GREY, linewidth=1.0, label=label)
+    history.plot(fine, exact, color=_BLUE, linewidth=1.6, label="wavesym")
+    history.set_xlabel("time")
+    history.set_xlim(0, _UNTIL)
+    history.set_title("the force at the dotted line", fontsize="medium", loc="left")
+    history.grid(color="0.92", linewidth=0.6)
+    history.legend(fontsize="small", frameon=False, loc="upper left")
+    return figure
+
+
+def measured(rows: list[Mapping[str, str]]) -> list[str]:
+    """The lines of a table: what `make bench` measured of the building B."""
+    own = [row for row in rows if row["name"] == "pieces" and row["language"] == "C" and row["precision"] == "double"]
+    row = next(row for row in own if row["resolution"] == "tolerance 1e-12")
+    others = [
+        other
+        for other in rows
+        if other["kind"] not in ("wavesym", "floor", "set-up") and other["error_at_fronts"] and other["ns_per_value"]
+    ]
+    near = [other for other in others if float(other["error_at_fronts"]) <= 1e-9]
+    best = min(near, key=lambda other: float(other["ns_per_value"]))
+    new = next(each for each in rows if each["kind"] == "set-up")
+    ratio = float(best["ns_per_value"]) / float(row["ns_per_value"])
+    return [
+        "| of a building, generated C, one core | |",
+        "|---|---|",
+        f"| largest error, proved to be below {float(row['proved_bound']):.1e} | {float(row['error_at_fronts']):.1e} |",
+        f"| time a value, many samples | {float(row['ns_per_value']):.2g} ns |",
+        f"| a new set of parameters, with its histories | {1e6 * float(new['setup_seconds']):.3g} us |",
+        f"| time of the best other method to an error of 1e-9 ({best['name']}) | {ratio:.3g} times as long |",
+    ]
+
+
+def main() -> None:
+    """Write both."""
+    save(picture(), PICTURE)
+    with (ROOT / "bench" / "b.csv").open(encoding="utf-8", newline="") as file:
+        lines = measured(list(csv.DictReader(file)))
+    page = ROOT / "README.md"
+    text = page.read_text(encoding="utf-8")
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    page.write_text(before + "\n".join([BEGIN, *lines, END]) + after, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
