@@ -30,11 +30,11 @@ def test_it_is_the_least_that_will_do_and_few_are_tried(name, monkeypatch) -> No
     )
     degree = int(making.stream_program(model, Request(stream=True), inputs).constants["degree"])
     plan = stream_plan(model, inputs, DOUBLE)
-    first = max(first_degree(plan.rings, DOUBLE) - 8, 4)
+    first = max(first_degree(plan.march, DOUBLE) - 8, 4)
     wanted = nearest(max(model.tolerance, making._ROUNDINGS * DOUBLE.roundoff))
 
     def loses(degree: int) -> bool:
-        verdict = judge(plan.rings, degree, DOUBLE)
+        verdict = judge(plan.march, degree, DOUBLE)
         return 5 * verdict.truncated * max(verdict.bounds) > wanted * (verdict.truncated + verdict.rounded)
 
     assert not loses(degree)

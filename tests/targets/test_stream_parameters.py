@@ -20,7 +20,7 @@ from wavesym.errors import WavesymError
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.request import POSITIVE, Request
 from wavesym.programs.runtime.network import NAMES as FIELDS
-from wavesym.programs.stream.free import QUICKER, free_stream
+from wavesym.programs.stream.parameters import QUICKER, free_stream
 from wavesym.programs.stream.plan import inputs_of
 from wavesym.programs.stream.tables import StreamTables
 from wavesym.running.stream import StreamModel

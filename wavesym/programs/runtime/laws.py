@@ -7,13 +7,16 @@ would be wrong is the chain itself. So such parameters are refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 
-from flint import fmpq, fmpq_mpoly
+from flint import fmpq, fmpq_mat, fmpq_mpoly
 
 from wavesym.numbers.ratio import Ratio
+from wavesym.programs.flat import firsts
+from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.runtime.network import RuntimeField
 
 Function = Ratio | fmpq
@@ -21,6 +24,9 @@ Function = Ratio | fmpq
 
 Product = tuple[fmpq_mpoly, ...]
 """Its factors, which are sums of products of symbols."""
+
+MATRICES = ("rates", "pushed", "shown", "passed")
+"""The laws of a joint that are matrices, as the fields of a `JointSpace` or of `JointRows`."""
 
 OPEN = 1e30
 """So many roundings where nothing is known: terms that may cancel."""
@@ -70,6 +76,22 @@ class RuntimeLaws:
     def positive(self) -> frozenset[str]:
         """The symbols of numbers that have to be."""
         return frozenset(label for field in self.fields if field.positive for label in field.labels)
+
+
+def matrix_laws(joints: Sequence[MarchedJoint]) -> dict[str, tuple[Function, ...]]:
+    """The matrices of all joints, each by rows, one joint after the other."""
+    return {name: tuple(chain.from_iterable(_entries(joint, name) for joint in joints)) for name in MATRICES}
+
+
+def matrix_places(joints: Sequence[MarchedJoint]) -> dict[str, tuple[int, ...]]:
+    """Tables of where those of each joint begin, and where the last one ends."""
+    return {f"at_{name}": firsts(len(_entries(joint, name)) for joint in joints) for name in MATRICES}
+
+
+def _entries(joint: MarchedJoint, name: str) -> list[Function]:
+    matrix = getattr(joint.space, name)
+    # where no parameter changes a joint its matrices are numbers
+    return list(matrix.entries() if isinstance(matrix, fmpq_mat) else chain.from_iterable(matrix))
 
 
 def products(function: Ratio, positive: Set[str]) -> Iterator[Product]:

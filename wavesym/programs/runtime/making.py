@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
-from flint import fmpq, fmpq_mat
+from flint import fmpq
 
 from wavesym.errors import CostError, WavesymError
 from wavesym.mechanics.loads import Applied
@@ -20,7 +19,7 @@ from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
-from wavesym.programs.runtime.laws import Function, RuntimeLaws, most_roundings
+from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places, most_roundings
 from wavesym.programs.runtime.network import free_network
 from wavesym.programs.runtime.plan import RuntimePlan, as_one_load, reading_tables, runtime_plan
 
@@ -129,11 +128,7 @@ def _refuse_huge(windows: int, tau_max: float, strands: int, degree: int, real: 
 
 def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
     spaces = [joint.space for joint in made.plan.joints]
-    functions: dict[str, tuple[Function, ...]] = {
-        name: tuple(value for space in spaces for value in _flat(getattr(space, name)))
-        for name in ("rates", "pushed", "shown", "passed")
-    }
-    functions |= {
+    functions = matrix_laws(made.plan.joints) | {
         "push": tuple(port.push for space in spaces for port in space.ports),
         "initial_wave": tuple(track.held for track in made.plan.tracks),
         "initial": tuple(value for space in spaces for value in space.begun),
@@ -143,12 +138,6 @@ def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
         "gain": tuple(wave.gain for _, wave in made.output_terms),
     }
     return RuntimeLaws(made.free.fields, functions, amplitudes)
-
-
-def _flat(matrix: Any) -> list[Any]:
-    if isinstance(matrix, fmpq_mat):  # of what no parameter changes
-        return list(matrix.entries())
-    return [value for row in matrix for value in row]
 
 
 def _strengths(made: RuntimePlan) -> tuple[Function, ...]:
@@ -204,10 +193,7 @@ def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple
         "first_point": firsts(len(joint.forces) for joint in plan.joints),
         "first_state": firsts(len(space.weights) for space in spaces),
         "first_port": firsts(len(space.ports) for space in spaces),
-        **{
-            f"at_{name}": firsts(len(_flat(getattr(space, name))) for space in spaces)
-            for name in ("rates", "pushed", "shown", "passed")
-        },
+        **matrix_places(plan.joints),
         "at_square": firsts(len(joint.space.weights) ** 2 * _is_block(joint) for joint in plan.joints),
         # one more, where there is none
         "body_joint": (*_bodies(made), 0),

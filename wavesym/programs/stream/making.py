@@ -29,8 +29,7 @@ from wavesym.programs.program import (
 )
 from wavesym.programs.reference_values import leap, reference_values
 from wavesym.programs.request import Request
-from wavesym.programs.stream.free import free_stream
-from wavesym.programs.stream.parameters import quick_enough, refuse_stiff, with_parameters
+from wavesym.programs.stream.parameters import free_stream, quick_enough, refuse_stiff, with_parameters
 from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
 from wavesym.programs.stream.tables import StreamTables
 
@@ -70,7 +69,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
     )
     tolerance = max(model.tolerance, _ROUNDINGS * real.roundoff)
     degree, verdict = _enough(plan, model, real)
-    for output, error in zip(plan.rings.outputs, verdict.bounds, strict=True):
+    for output, error in zip(plan.march.outputs, verdict.bounds, strict=True):
         if not isfinite(error):
             told = f"output.tolerance: {nearest(tolerance):g} cannot be met: stream: "
             better = "" if real is REALS["double"] else "double precision or "
@@ -84,10 +83,10 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
     program = Program(
         "stream",
         real,
-        plan.rings.tau_max,
+        plan.march.tau_max,
         tuple(
             ProgramOutput(output.name, nearest(tolerance) if free else bound(arb(error)), size)
-            for output, error, size in zip(plan.rings.outputs, verdict.bounds, verdict.largest, strict=True)
+            for output, error, size in zip(plan.march.outputs, verdict.bounds, verdict.largest, strict=True)
         ),
         made.tables(),
         made.constants(nearest(tolerance)),
@@ -104,8 +103,8 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
 
 
 def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
-    count = len(plan.rings.panels)
-    step = "" if plan.rings.step == 1 else f" of {plan.rings.step} tau"
+    count = len(plan.march.panels)
+    step = "" if plan.march.step == 1 else f" of {plan.march.step} tau"
     return (
         f"march as a stream, {count} panels a window{step}, degree {degree}, a state of about "
         f"{-(-made.state_bytes // 1024)} KiB with room for {plan.breakpoints} instants inside of panels, "
@@ -115,7 +114,7 @@ def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
 
 def _at_worst(plan: StreamPlan, verdict: Verdict, tolerance: fmpq) -> str:
     """How far rounding may take an output, all of it with one sign, where that is beyond the tolerance."""
-    error, output = max(zip(verdict.bounds, plan.rings.outputs, strict=True), key=lambda pair: pair[0])
+    error, output = max(zip(verdict.bounds, plan.march.outputs, strict=True), key=lambda pair: pair[0])
     if error <= nearest(tolerance):
         return ""
     return f"; rounding at worst {bound(arb(error)):g} of the largest {output.name}, {nearest(tolerance):g} wanted"
@@ -128,19 +127,19 @@ def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
     factor from one degree to the next: e**2 as a rule, until two degrees show it.
     """
     tolerance = nearest(max(model.tolerance, _ROUNDINGS * real.roundoff))
-    degree, spent = max(first_degree(plan.rings, real) - 8, 4), 0.0
+    degree, spent = max(first_degree(plan.march, real) - 8, 4), 0.0
     failed: tuple[int, float] | None = None
     gain = 2.0
     found: tuple[int, float, Verdict] | None = None
     while True:
         try:
-            spent = refuse_long(plan.rings, degree, spent, real)
+            spent = refuse_long(plan.march, degree, spent, real)
         except CostError:
             if failed is None or degree == failed[0] + 1:
                 raise
             degree = failed[0] + 1  # not as far at once
             continue
-        verdict = judge_degree(plan.rings, degree, real, "stream")
+        verdict = judge_degree(plan.march, degree, real, "stream")
         excess = _excess(verdict, tolerance)
         if excess > 0:
             if failed:
@@ -178,9 +177,9 @@ _INSIDE = fmpq(1, 4)  # of a panel, where loads jump
 
 def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValues:
     """Loads that jump inside of panels, at edges where there is no room for that, and are held; the exact values."""
-    panel, last = plan.panel, min(model.until, _CHECKED * max(plan.rings.step, _ONE))
+    panel, last = plan.panel, min(model.until, _CHECKED * max(plan.march.step, _ONE))
     count = int((last / panel).floor())
-    late = _INSIDE * panel if plan.breakpoints >= len(plan.rings.panels) else fmpq(0)
+    late = _INSIDE * panel if plan.breakpoints >= len(plan.march.panels) else fmpq(0)
     jumps = [(k, j, leap(k, j)) for k in range(count) for j in range(len(plan.inputs)) if k % 5 == (2 * j) % 5]
     applied = [Applied(plan.inputs[j].source, k * panel + late, rise / plan.inputs[j].size) for k, j, rise in jumps]
     looked = [(k + _PLACES[k % len(_PLACES)]) * panel for k in range(count)]

@@ -1,24 +1,36 @@
-"""A stream whose parameters come at run time: the degree for them, and functions in place of tables that they make."""
+"""What is streamed where parameters come at run time: the same march over functions of them.
+
+Lengths, speeds and panels stay. What joints make of waves, what is on its way at tau = 0, how strong inputs are and
+what outputs weigh are rational functions of the parameters; these stand in place of the tables that follow from them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
-from itertools import chain
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from flint import fmpq, fmpq_mat
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError, WavesymError
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
+from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
+from wavesym.programs.march.plan import MarchedJoint, MarchOutput, MarchPlan, march_plan
+from wavesym.programs.march.space import JointRows, JointSpace, Rows, joint_rows
 from wavesym.programs.march.tables import matrix_size
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.laws import Function, RuntimeLaws
-from wavesym.programs.stream.free import FreeStream
-from wavesym.programs.stream.plan import StreamPlan
+from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places
+from wavesym.programs.runtime.network import RuntimeField, free_network
+from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, breakpoints, paneled, steps_of
 from wavesym.programs.stream.tables import StreamTables, slip_size
+
+QUICKER = fmpq(10)
+"""Panels and the degree are enough for joints that parameters make so many times as fast as the scene's own are."""
 
 MADE = (
     "held",
@@ -35,15 +47,116 @@ MADE = (
 )
 """The tables that `build` computes."""
 
+_ONE = fmpq(1)
 _CALM = 4  # radians that springs may swing on a panel: beyond it the elimination is not known to keep its digits
-_LAWS = ("rates", "pushed", "shown", "passed")  # the matrices of joints
 _HIGH = 48  # degrees: no more of them for joints that are only allowed to be quick
 _SPARE = 4  # one jump loses so much less than the tolerance
 
 
+@dataclass(frozen=True)
+class FreeStream:
+    """`march` and `acting` have functions of the parameters, whose numbers in the scene are those of `fields`."""
+
+    model: Model
+    inputs: tuple[Input, ...]
+    fields: tuple[RuntimeField, ...]
+    march: MarchPlan
+    acting: tuple[InputForce, ...]
+
+    @property
+    def quicker(self) -> fmpq:
+        """How many times as fast as those of the scene joints may be."""
+        return QUICKER if any(field.positive for field in self.fields) else _ONE
+
+    def plan(self, spacing: fmpq | None, *, simulated: bool = False) -> StreamPlan:
+        """With the numbers of the scene, as any other stream."""
+        march = replace(
+            self.march,
+            model=replace(self.model, loads=steps_of(self.inputs)),
+            tracks=tuple(
+                replace(track, held=self._number(track.held), impedance=self._number(track.impedance))
+                for track in self.march.tracks
+            ),
+            joints=tuple(map(self._joint, self.march.joints)),
+            outputs=tuple(
+                MarchOutput(output.name, tuple(replace(one, gain=self._number(one.gain)) for one in output.heard))
+                for output in self.march.outputs
+            ),
+        )
+        acting = (
+            InputForce(self._number(force.base), tuple(map(self._number, force.gains)), force.summed)
+            for force in self.acting
+        )
+        panels = paneled(march, spacing, self.quicker)
+        room = breakpoints(self.model, panels, spacing, simulated=simulated)
+        return StreamPlan(panels, self.inputs, tuple(acting), room)
+
+    @cached_property
+    def _values(self) -> Mapping[str, fmpq]:
+        return {label: value for field in self.fields for label, value in zip(field.labels, field.values, strict=True)}
+
+    def _number(self, function: Any) -> fmpq:
+        return function.at(self._values) if isinstance(function, Ratio) else function
+
+    def _joint(self, joint: MarchedJoint) -> MarchedJoint:
+        rows = joint.space
+        if not isinstance(rows, JointRows):  # a load that is read
+            return joint
+        states, points = len(rows.weights), len(rows.passed)
+
+        def matrix(of: Rows, across: int) -> fmpq_mat:
+            return fmpq_mat(len(of), across, [self._number(value) for row in of for value in row])
+
+        space = JointSpace(
+            matrix(rows.rates, states),
+            matrix(rows.pushed, points),
+            matrix(rows.shown, states),
+            matrix(rows.passed, points),
+            tuple(map(self._number, rows.weights)),
+            tuple(map(self._number, rows.begun)),
+            tuple(
+                replace(port, impedance=self._number(port.impedance), push=self._number(port.push))
+                for port in rows.ports
+            ),
+        )
+        return replace(joint, space=space)
+
+
+def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], real: Real) -> FreeStream:
+    """The stream of a model with the parameters `names` at run time.
+
+    WavesymError for a name that the scene does not have, and for loads; UnservedError, CostError as `fields`,
+    `free_network` and `march_plan` say.
+    """
+    if "load" in names:
+        raise WavesymError("--runtime: load given with a stream, other parameters expected (its inputs are the loads)")
+    free = free_network(model, names, ())
+    network = free.network
+    if any(point.motion is not None and isinstance(point.velocity, Ratio) for point in network.points):
+        raise UnservedError("--runtime: velocity given where an end moves as it is told, other parameters expected")
+    steady = replace(model, network=_loaded(network, model.network), loads=steps_of(inputs))
+    march = march_plan(steady, real, joint_rows)
+    kepts: list[Any] = [free.factors.force if probe.quantity == "force" else _ONE for probe in model.probes]
+    outputs = tuple(
+        MarchOutput(
+            output.name,
+            tuple(replace(one, gain=one.gain * kept) for one in output.heard),
+        )
+        for kept, output in zip(kepts, march.outputs, strict=True)
+    )
+    acting = acting_inputs(network, march.pushed, inputs, free.factors.load)
+    return FreeStream(model, tuple(inputs), free.fields, replace(march, outputs=outputs), tuple(acting))
+
+
+def _loaded(network: Network, own: Network) -> Network:
+    """With loads that are numbers: which points they act on is all that counts of them here."""
+    points = zip(network.points, own.points, strict=True)
+    return replace(network, points=tuple(replace(point, loads=other.loads) for point, other in points))
+
+
 def refuse_stiff(plan: StreamPlan) -> None:
     """CostError where springs of the scene itself are too stiff for tables in the numbers of the program."""
-    angle = nearest(plan.panel) * max(joint.space.swing for joint in plan.rings.joints)
+    angle = nearest(plan.panel) * max(joint.space.swing for joint in plan.march.joints)
     if angle > _CALM:
         raise CostError(
             f"system.parts: springs turn by {angle:.3g} on a panel of {plan.panel}, at most {_CALM} expected with "
@@ -56,7 +169,7 @@ def quick_enough(plan: StreamPlan, quicker: fmpq, degree: int, tolerance: float,
 
     def fine(of: StreamPlan) -> bool:
         tables = StreamTables(of, degree, real)
-        return max(map(tables.jump_lost, of.rings.joints)) <= tolerance / _SPARE
+        return max(map(tables.jump_lost, of.march.joints)) <= tolerance / _SPARE
 
     quick = plan.quicker(quicker)
     while not fine(plan) or (degree < _HIGH and not fine(quick)):
@@ -66,12 +179,12 @@ def quick_enough(plan: StreamPlan, quicker: fmpq, degree: int, tolerance: float,
 
 def with_parameters(program: Program, free: FreeStream, plan: StreamPlan, degree: int, quicker: fmpq) -> Program:
     """With functions for the tables that parameters make, enough for joints so much `quicker` than the scene's."""
-    names, joints, laws = ", ".join(field.name for field in free.fields), plan.rings.joints, _laws(free)
+    names, joints, laws = ", ".join(field.name for field in free.fields), plan.march.joints, _laws(free)
     answers = firsts(matrix_size(joint.space, degree) for joint in joints)
     slips = firsts(slip_size(joint.space, degree) for joint in joints)
     tables = {name: table for name, table in program.tables.items() if name not in MADE}
     tables |= {"answer": answers, "first_slip": slips}
-    tables |= {f"at_{law}": firsts(len(_flat(getattr(joint.space, law))) for joint in joints) for law in _LAWS}
+    tables |= matrix_places(joints)
     kept = sum(map(len, laws.functions.values())) + answers[-1] + slips[-1]
     also = f" and for joints {quicker} times as fast" if quicker != 1 else ""
     kib = -(-kept * program.real.bytes // 1024)
@@ -88,22 +201,17 @@ def with_parameters(program: Program, free: FreeStream, plan: StreamPlan, degree
 
 def _laws(free: FreeStream) -> RuntimeLaws:
     """The functions of the parameters from which all of `MADE` follow, as templates/c/stream/made.c takes them."""
-    rings = free.rings
-    spaces = [joint.space for joint in rings.joints]
+    march = free.march
+    spaces = [joint.space for joint in march.joints]
     functions: dict[str, Iterable[Function]] = {
-        **{law: [value for space in spaces for value in _flat(getattr(space, law))] for law in _LAWS},
+        **matrix_laws(march.joints),
         "weight": (weight for space in spaces for weight in space.weights),
         "initial_state": (value for space in spaces for value in space.begun),
         "push": (port.push for space in spaces for port in space.ports),
-        "held": (track.held for track in rings.tracks),
-        "track_impedance": (track.impedance for track in rings.tracks),
+        "held": (track.held for track in march.tracks),
+        "track_impedance": (track.impedance for track in march.tracks),
         "base": (force.base for force in free.acting),
         "strength": (gain for force in free.acting for gain in force.gains),
-        "gain": (one.gain for output in rings.outputs for one in output.heard),
+        "gain": (one.gain for output in march.outputs for one in output.heard),
     }
     return RuntimeLaws(free.fields, {name: tuple(of) for name, of in functions.items()}, ())
-
-
-def _flat(matrix: Any) -> list[Any]:
-    """The entries of a matrix, or of rows, by rows."""
-    return list(matrix.entries() if isinstance(matrix, fmpq_mat) else chain.from_iterable(matrix))

@@ -69,12 +69,12 @@ class InputForce:
 
 @dataclass(frozen=True)
 class StreamPlan:
-    """`rings` is the march of all joints, under a step of every input at tau = 0, on the panels of the stream.
+    """`march` is the march of all joints, under a step of every input at tau = 0, on the panels of the stream.
 
     There is room for so many `breakpoints`.
     """
 
-    rings: MarchPlan
+    march: MarchPlan
     inputs: tuple[Input, ...]
     acting: tuple[InputForce, ...]
     breakpoints: int
@@ -82,19 +82,19 @@ class StreamPlan:
     @property
     def panel(self) -> fmpq:
         """How long one is."""
-        return self.rings.panels[0].length
+        return self.march.panels[0].length
 
     @property
     def loaded(self) -> tuple[int, ...]:
         """The joints on which something acts, by number."""
-        return _loaded(self.rings.joints)
+        return _loaded(self.march.joints)
 
     @property
     def direct(self) -> tuple[tuple[int, ...], ...]:
         """Of each output the inputs that act on it at once: where a loaded point without mass is heard, or a load."""
         passing: dict[int, tuple[fmpq, ...]] = {}
         for n in self.loaded:
-            joint = self.rings.joints[n]
+            joint = self.march.joints[n]
             for port, track in zip(joint.space.ports, joint.sends, strict=True):
                 passing[track] = tuple(
                     port.ratio * sum((joint.space.passed[port.point, k] * gain for k, gain in gains), _ZERO)
@@ -106,7 +106,7 @@ class StreamPlan:
                 for j in range(len(self.inputs))
                 if sum((one.gain * passing[one.track][j] for one in output.heard if _at_once(one, passing)), _ZERO) != 0
             )
-            for output in self.rings.outputs
+            for output in self.march.outputs
         )
 
     def _gains(self, joint: MarchedJoint) -> Iterator[list[tuple[int, fmpq]]]:
@@ -122,7 +122,7 @@ class StreamPlan:
             space = joint.space
             return replace(joint, space=replace(space, rates=times * space.rates, pushed=times * space.pushed))
 
-        return replace(self, rings=replace(self.rings, joints=tuple(map(quick, self.rings.joints))))
+        return replace(self, march=replace(self.march, joints=tuple(map(quick, self.march.joints))))
 
     def late(self, delay: fmpq) -> tuple[int, fmpq]:
         """A delay as whole panels and a rest."""
@@ -160,26 +160,26 @@ def stream_plan(
     Raises:
         UnservedError: The model has contacts or damped modes.
     """
-    rings = march_plan(replace(model, loads=steps_of(inputs)), real)
-    acting = acting_inputs(model.network, rings.pushed, inputs)
-    panels = paneled(rings, spacing)
+    march = march_plan(replace(model, loads=steps_of(inputs)), real)
+    acting = acting_inputs(model.network, march.pushed, inputs)
+    panels = paneled(march, spacing)
     return StreamPlan(panels, tuple(inputs), tuple(acting), breakpoints(model, panels, spacing, simulated=simulated))
 
 
-def paneled(rings: MarchPlan, spacing: fmpq | None, quicker: fmpq = _ONE) -> MarchPlan:
+def paneled(march: MarchPlan, spacing: fmpq | None, quicker: fmpq = _ONE) -> MarchPlan:
     """On the panels of a stream, for joints that may be `quicker` than they are."""
-    count = _panels(rings, spacing, quicker)
-    length = rings.step / count
-    return replace(rings, panels=tuple(Panel(k * length, length) for k in range(count)))
+    count = _panels(march, spacing, quicker)
+    length = march.step / count
+    return replace(march, panels=tuple(Panel(k * length, length) for k in range(count)))
 
 
-def breakpoints(model: Model, rings: MarchPlan, spacing: fmpq | None, *, simulated: bool) -> int:
+def breakpoints(model: Model, march: MarchPlan, spacing: fmpq | None, *, simulated: bool) -> int:
     """For how many instants inside of panels there is to be room, up to `MOST_BREAKPOINTS`.
 
     Those at which multiples of the `spacing` lie, or the times of the model's own loads, up to the horizon; where
     nothing is known of the time between calls no fewer than `ROOM`, or if they are `simulated` `SIMULATED_ROOM`.
     """
-    until, panel = model.until, rings.panels[0].length
+    until, panel = model.until, march.panels[0].length
     if spacing is None:
         times = {load.time for load in model.loads if load.time <= until}
         room = max(SIMULATED_ROOM, int((until / panel).ceil())) if simulated else ROOM
@@ -187,7 +187,7 @@ def breakpoints(model: Model, rings: MarchPlan, spacing: fmpq | None, *, simulat
         count = min(int((until / spacing).floor()), _LOOKED)
         times = {k * spacing for k in range(count + 1)}
         room = 0
-    inside = {time - (time / rings.step).floor() * rings.step for time in times if (time / panel).q != 1}
+    inside = {time - (time / march.step).floor() * march.step for time in times if (time / panel).q != 1}
     return min(max(len(inside), room), MOST_BREAKPOINTS)
 
 
@@ -215,9 +215,9 @@ def _loaded(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
     return tuple(n for n, joint in enumerate(joints) if any(force >= 0 for force in joint.forces))
 
 
-def _panels(rings: MarchPlan, spacing: fmpq | None, quicker: fmpq) -> int:
+def _panels(march: MarchPlan, spacing: fmpq | None, quicker: fmpq) -> int:
     """How many are a step of the march."""
-    step, joints = rings.step, rings.joints
+    step, joints = march.step, march.joints
     fastest = nearest(quicker) * max(joint.space.norm for joint in joints)
     few = 1 if spacing is None else int((step / spacing).p)
     most = max(int((step / FINEST).floor()), 8)

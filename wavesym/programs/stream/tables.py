@@ -34,26 +34,26 @@ class StreamTables:
 
     def __init__(self, plan: StreamPlan, degree: int, real: Real) -> None:
         self._plan, self._degree, self._real = plan, degree, real
-        self._rings = MarchTables(plan.rings, degree, real)
-        self._joints = plan.rings.joints
+        self._march = MarchTables(plan.march, degree, real)
+        self._joints = plan.march.joints
 
     def tables(self) -> dict[str, tuple[float, ...]]:
         """All tables, by name."""
-        plan, rings, panel = self._plan, self._plan.rings, self._plan.panel
+        plan, march, panel = self._plan, self._plan.march, self._plan.panel
         half = nearest(panel / 2)
-        heard = [one for output in rings.outputs for one in output.heard]
+        heard = [one for output in march.outputs for one in output.heard]
         late = [plan.late(one.delay) for one in heard]
-        joints = self._rings.joints()
+        joints = self._march.joints()
         slips = [self.slips(joint) for joint in self._joints]
         spaces = [joint.space for joint in self._joints]
         shown = {joint.sends[0]: joint.forces[0] for joint in self._joints if joint.space is SHOWN}
-        weights = [self._weight(track) for track in range(len(rings.tracks))]
+        weights = [self._weight(track) for track in range(len(march.tracks))]
         return {
             "slots": self._slots,
             "first_slot": firsts(self._slots),
             "entries": self._entries,
             "first_entry": firsts(self._entries),
-            "held": self._real.table(track.held for track in rings.tracks),
+            "held": self._real.table(track.held for track in march.tracks),
             "root_impedance": self._rounded(root for root, _ in weights),
             "state_gain": self._rounded(gain for _, gain in weights),
             **joints,
@@ -74,7 +74,7 @@ class StreamTables:
                 for order, errors in enumerate(kinks(self._degree))
                 for value, power in zip(errors, (0.0, 0.5), strict=True)
             ),
-            "first_term": firsts(len(output.heard) for output in rings.outputs),
+            "first_term": firsts(len(output.heard) for output in march.outputs),
             "track": tuple(one.track for one in heard),
             "gain": self._real.table(one.gain for one in heard),
             "summed": tuple(int(one.summed) for one in heard),
@@ -89,11 +89,11 @@ class StreamTables:
         long, length = real.nearest(plan.panel), nearest(plan.panel)
         exponent = 20 if real is DOUBLE else 10
         return {
-            **{name: value for name, value in self._rings.constants().items() if name not in _OF_HORIZON},
+            **{name: value for name, value in self._march.constants().items() if name not in _OF_HORIZON},
             "slot_count": sum(self._slots),
             "entry_count": sum(self._entries),
             "breakpoints": plan.breakpoints,
-            "deepest": max(track.steps for track in plan.rings.tracks),
+            "deepest": max(track.steps for track in plan.march.tracks),
             "loads": len(plan.inputs),
             "loaded_count": len(plan.loaded),
             "loaded_ports": sum(len(self._joints[n].space.ports) for n in plan.loaded),
@@ -101,7 +101,7 @@ class StreamTables:
             "panel": long,
             "panel_low": real.nearest(plan.panel - rational(long)),
             "scale": real.nearest(2 / plan.panel),
-            "step_length": real.nearest(plan.rings.step),
+            "step_length": real.nearest(plan.march.step),
             "tolerance": real.nearest(rational(tolerance)),
             "share": self._above(tolerance * self._share),
             "rough": self._above((sqrt(2) - 1) / sqrt(length)),
@@ -133,7 +133,7 @@ class StreamTables:
     def panel_operations(self) -> int:
         """Multiplications with addition when a panel begins and ends; without integrals as many for each breakpoint."""
         size = self._degree + 1
-        summed = sum(one.summed for output in self._plan.rings.outputs for one in output.heard)
+        summed = sum(one.summed for output in self._plan.march.outputs for one in output.heard)
         total = 2 * 3 * 4 * size * summed
         total += sum(step_multiplications(joint.space, self._degree) for joint in self._joints)
         total += sum(len(self.slips(joint)) for joint in self._joints)
@@ -148,42 +148,42 @@ class StreamTables:
             wide = space.points * size + space.states
             total += 3 * space.points * wide if space.law == BLOCK else step_multiplications(space, self._degree)
             total += len(self.slips(joint)) + size * (space.states + len(space.ports))
-        for output in self._plan.rings.outputs:
+        for output in self._plan.march.outputs:
             total += sum((2 * 4 * 3 if one.summed else 3) * size for one in output.heard)
         return total
 
     @cached_property
     def _slots(self) -> tuple[int, ...]:
         """Of each track: the panels that are on their way, and the current one."""
-        count = len(self._plan.rings.panels)
-        return tuple(track.steps * count + 1 for track in self._plan.rings.tracks)
+        count = len(self._plan.march.panels)
+        return tuple(track.steps * count + 1 for track in self._plan.march.tracks)
 
     @cached_property
     def _entries(self) -> tuple[int, ...]:
         """Of each track: the windows that are on their way, and the current one."""
-        return tuple(track.steps + 1 for track in self._plan.rings.tracks)
+        return tuple(track.steps + 1 for track in self._plan.march.tracks)
 
     @property
     def _growth(self) -> float:
         """How steep errors that are smooth can become in a window, where the root of their energy is 1."""
         rate = max(joint.space.norm for joint in self._joints)
-        return rate * (sqrt(2 * rate * nearest(self._plan.rings.step)) + 2)
+        return rate * (sqrt(2 * rate * nearest(self._plan.march.step)) + 2)
 
     @property
     def _share(self) -> float:
         """What may be lost at once in a tau so that the bound stays at a part of 1 to the horizon (docs/march.md)."""
-        panel, step, until = (nearest(each) for each in (self._plan.panel, self._plan.rings.step, self._until))
+        panel, step, until = (nearest(each) for each in (self._plan.panel, self._plan.march.step, self._until))
         later = 1.5 * sqrt(panel / step) + sqrt(3 * panel * self._growth * (until / step + 1))
         return 1 / (_SPARE * (1 + later) * until)
 
     @property
     def _until(self) -> fmpq:
-        return self._plan.rings.model.until
+        return self._plan.march.model.until
 
     def _weight(self, track: int) -> tuple[float, float]:
         """What an error counts for on a track: as a wave, and (one over) what the state of the joint adds."""
-        rings = self._plan.rings
-        if impedance := rings.tracks[track].impedance:
+        march = self._plan.march
+        if impedance := march.tracks[track].impedance:
             return sqrt(nearest(impedance)), 0.0
         for joint in self._joints:
             for port, send in zip(joint.space.ports, joint.sends, strict=True):
@@ -198,9 +198,9 @@ class StreamTables:
         panel = self._plan.panel
         turned = nearest(panel) * joint.space.norm
         rows = (
-            np.array([self._rings.body(joint, panel).leak * sqrt(nearest(joint.space.weights[0]))])
+            np.array([self._march.body(joint, panel).leak * sqrt(nearest(joint.space.weights[0]))])
             if joint.space.law == BODY
-            else self._rings.missed(joint, panel).ravel()
+            else self._march.missed(joint, panel).ravel()
         )
         rows = 2 * (sqrt(turned) + (1 + turned) / sqrt(2)) * rows
         return [float(f"{value * 1.01:.3g}") for value in rows.tolist()]
@@ -215,7 +215,7 @@ class StreamTables:
         masses = [point >= 0 for point in space.moves_with]
         pushes = [abs(nearest(port.push)) for port in space.ports]
         if space.law == BODY:
-            operator, acting = self._rings.body(joint, self._plan.panel), nearest(space.drive) * sum(pushes)
+            operator, acting = self._march.body(joint, self._plan.panel), nearest(space.drive) * sum(pushes)
             lost = slips[0] * (abs(operator.highest(acting, 0.0)) + abs(operator.highest(0.0, 1.0)))
         else:
             jumps = np.zeros(space.points * size + space.states)
