@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from wavesym.exact.reference import Reference, beginning
+from wavesym.methods.quadrature import gauss
 from wavesym.scene import Scene, lower
-from wavesym.verification.collocation import gauss, integrate
+from wavesym.verification.collocation import integrate
 from wavesym.verification.problem import problem_of
 
 UNIT = Fraction(1, 2**53)

@@ -19,13 +19,14 @@ from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
-from wavesym.methods.characteristics import lagrange, unlinked_problem
+from wavesym.methods.characteristics import unlinked_problem
 from wavesym.methods.problem import Array, LoadEvent
+from wavesym.methods.quadrature import gauss, lagrange
 from wavesym.numbers.doubles import nearest
 from wavesym.running.native import FAST, address, library
 
 _SOURCE = Path(__file__).with_suffix(".c")
-_GAUSS = np.polynomial.legendre.leggauss(24)
+_POINTS = 24  # of Gauss
 _FIRSTS = (0, -1, -2)
 
 
@@ -204,7 +205,8 @@ def in_numpy(grid: SampleGrid, problems: Sequence[Line]) -> Array:
     inertia, alpha, beta, gamma, velocity, before, loads = stacked
     bodies = np.where(inertia > 0, inertia, 1.0)
     z = (gamma / bodies * h)[..., np.newaxis]
-    s, weights = (_GAUSS[0] + 1) / 2, _GAUSS[1] / 2
+    rule = gauss(_POINTS)
+    s, weights = rule.nodes, rule.weights
     kernel = np.exp(-z * (1 - s)) * weights * h / bodies[..., np.newaxis]
     first, inner, last = (kernel @ lagrange(s, begin, 4) for begin in _FIRSTS)
     decay = np.exp(-z[..., 0])

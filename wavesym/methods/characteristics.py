@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
 from wavesym.methods.problem import Array, Evaluate, Method, Problem, gridded_problem
+from wavesym.methods.quadrature import gauss, lagrange
 from wavesym.numbers.doubles import fraction
 from wavesym.running.native import FAST, address, library
 
 _SOURCE = Path(__file__).with_suffix(".c")
-_GAUSS = np.polynomial.legendre.leggauss(24)
+_POINTS = 24  # of Gauss
 
 _COUNTS = ("points", "ends", "panels", "samples", "events", "terms", "outputs", "windows", "depth")
 _TABLES = (
@@ -176,20 +177,12 @@ def _stencils(mass: Array, gamma: Array, step: float, order: int) -> Array:
     # what has no mass is not integrated; 1 keeps its line finite
     inertia = np.append(np.where(mass > 0, mass, 1.0), 1.0)
     z = np.append(gamma, 0.0)[:, np.newaxis] / inertia[:, np.newaxis] * step
-    s, weights = (_GAUSS[0] + 1) / 2, _GAUSS[1] / 2
-    kernel = np.exp(-z * (1 - s)) * weights * step / inertia[:, np.newaxis]
+    rule = gauss(_POINTS)
+    s = rule.nodes
+    kernel = np.exp(-z * (1 - s)) * rule.weights * step / inertia[:, np.newaxis]
     # the stencil starts at the step itself, so that it is inside the panel, or ends at its end
     firsts = (0, 1 - order // 2, 2 - order)
     return np.hstack([np.exp(-z), *(kernel @ lagrange(s, first, order) for first in firsts)])
-
-
-def lagrange(s: Array, first: int, points: int) -> Array:
-    """Lagrange's polynomials on the points first, first + 1, ... at s: shape (len(s), points)."""
-    places = range(first, first + points)
-    return np.stack(
-        [np.prod([(s - other) / (place - other) for other in places if other != place], axis=0) for place in places],
-        axis=1,
-    )
 
 
 # with divisors of the usual numbers of samples

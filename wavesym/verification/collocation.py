@@ -21,12 +21,12 @@ from itertools import product
 from math import ceil
 
 import numpy as np
-from flint import arb, arb_mat, ctx
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.problem import Array
+from wavesym.methods.quadrature import gauss
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.verification.problem import Change, ContactProblem
 
@@ -43,9 +43,6 @@ _REACH = 2.0
 # where signs of pushes and gaps are looked at in a panel: ever closer to its start
 _LOOKED = np.linspace(0, 1, 65) ** 4
 _HALVINGS = 60
-
-# bits of Gauss's rule before it is rounded
-_BITS = 256
 
 # a panel rounds no more often than this for each of its points: a tenth of it was seen
 _ROUNDINGS = 1
@@ -165,47 +162,6 @@ class Motion:
         terms = np.column_stack([x + 1, (since[:, 2:] - since[:, : self.points - 1]) / (2 * orders + 1)])
         moved = self._sums[panel, side, number] + self._widths[panel] / 2 * np.sum(terms * series, axis=1)
         return np.asarray(np.where(panel < 0, before * times, moved) + before * float(late))
-
-
-@dataclass(frozen=True)
-class Gauss:
-    """Gauss's rule on [0, 1]: points, weights, the integrals from 0 to each point, and Legendre's coefficients."""
-
-    nodes: Array
-    weights: Array
-    until: Array
-    series: Array
-
-    def interpolation(self, local: Array) -> Array:
-        """From values at the points to values at others (n,) of [0, 1]: shape (n, points)."""
-        return np.asarray(legendre.legvander(2 * local - 1, len(self.nodes) - 1) @ self.series)
-
-
-@cache
-def gauss(points: int) -> Gauss:
-    """Gauss's rule with so many points, each number rounded once: NumPy has weights that are wrong by up to 1e-12."""
-    with ctx.workprec(_BITS):
-        rule = (arb.legendre_p_root(points, k, weight=True) for k in reversed(range(points)))
-        nodes, weights = zip(*rule, strict=True)
-        values = [_legendre(node, points) for node in nodes]
-        series = [[(2 * j + 1) * w * p[j] / 2 for w, p in zip(weights, values, strict=True)] for j in range(points)]
-        # P_j integrated from -1 on is (P_(j+1) - P_(j-1))/(2 j + 1)
-        integrals = [[1 + p[1], *((p[j + 1] - p[j - 1]) / (2 * j + 1) for j in range(1, points))] for p in values]
-        until = arb_mat(integrals) * arb_mat(series)
-        on_unit = _rounded(arb_mat([[(x + 1) / 2 for x in nodes], [w / 2 for w in weights]]))
-    return Gauss(on_unit[0], on_unit[1], _rounded(until) / 2, _rounded(arb_mat(series)))
-
-
-def _legendre(x: arb, degree: int) -> list[arb]:
-    """Legendre's polynomials P_0 ... P_degree at x."""
-    values = [arb(1), x]
-    for j in range(1, degree):
-        values.append(((2 * j + 1) * x * values[j] - j * values[j - 1]) / (j + 1))
-    return values
-
-
-def _rounded(matrix: arb_mat) -> Array:
-    return np.array([[float(value.mid()) for value in row] for row in matrix.tolist()])
 
 
 def integrate(problem: ContactProblem, until: float, points: int, most: int = 100_000) -> Motion:

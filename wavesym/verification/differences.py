@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.differences import Grid, GridMotion, point_steps
 from wavesym.methods.problem import Array
+from wavesym.methods.quadrature import lagrange
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
 from wavesym.verification.problem import Change, ContactProblem, KnownChanges, match_changes
 
@@ -277,9 +278,7 @@ def _between(place: float, cells: int) -> Iterator[tuple[int, float]]:
         yield round(place), 1.0
         return
     first = min(max(int(place) - _STENCIL // 2 + 1, 0), cells + 1 - _STENCIL)
-    points = range(first, first + _STENCIL)
-    for j in points:
-        yield j, float(np.prod([(place - k) / (j - k) for k in points if k != j]))
+    yield from enumerate(lagrange(np.array([place]), first, _STENCIL)[0].tolist(), first)
 
 
 def _is_whole(place: float) -> bool:

@@ -31,8 +31,8 @@ from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.methods.problem import Array
+from wavesym.methods.quadrature import gauss
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
-from wavesym.verification.collocation import gauss
 from wavesym.verification.problem import ContactProblem, problem_of
 
 Evaluate = Callable[[Array], Array]
