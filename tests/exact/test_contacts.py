@@ -143,7 +143,7 @@ def test_a_gap_of_the_wrong_sign_is_seen(monkeypatch):
 
     rate = touching_joint._rate
     monkeypatch.setattr(
-        touching_joint, "_rate", lambda touch, velocities: touching_joint.scaled(rate(touch, velocities), fmpq(-1))
+        touching_joint, "_rate", lambda touch, velocities: touching_joint.scale_terms(rate(touch, velocities), fmpq(-1))
     )
     assert differs()
 

@@ -285,7 +285,7 @@ def test_a_top_that_no_sample_is_near_is_kept(points, sign, bend):
         for k, powers in enumerate((parabola, [1 - lower / 2]))
     ]
     with ctx.workprec(128):
-        found = module._found(pieces, max(piece.largest for piece in pieces))
+        found = module._extremes_of(pieces, max(piece.largest for piece in pieces))
     highest = found[1 if sign > 0 else 0]
     assert highest == near(sign, float((1 + middle) / 2))
 
@@ -346,7 +346,7 @@ def test_what_is_trimmed_is_in_the_radius(seed):
         c = [arb(fmpq(int(random.integers(-(10**9), 10**9)), 3 * 10**6)) * arb(2) ** (300 - 9 * k) for k in range(80)]
         middles = [each.mid() for each in c]
         flat, radius = arb(2) ** -64, arb(2) ** -80
-        polynomial, more = module._trimmed(arb_poly(middles), radius, flat)
+        polynomial, more = module._trim(arb_poly(middles), radius, flat)
         assert polynomial.degree() < 79
         assert radius < more < flat
         assert all(int(each.man_exp()[0]).bit_length() < 600 for each in polynomial.coeffs())

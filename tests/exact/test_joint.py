@@ -65,7 +65,7 @@ def driven(gamma, powers, start, u):
 def test_a_cut_off_series_is_off_by_what_is_told(force, length):
     """With three terms and a rate of 400 the defect is all there is."""
     gamma, terms = 400, 3
-    (cut,) = moving(law([1], [[gamma]])).moved([force], [fmpq_poly()], fmpq(length), terms)
+    (cut,) = moving(law([1], [[gamma]])).move([force], [fmpq_poly()], fmpq(length), terms)
     worst = arb(0)
     for sign in (-1, 1):
         powers = [arb(c) for c in force.polynomial.coeffs()]
@@ -80,8 +80,8 @@ def test_a_cut_off_series_is_off_by_what_is_told(force, length):
 
 def test_an_error_at_the_start_goes_on():
     joint = moving(law([1], [[2]]))
-    (first,) = joint.moved([wave([2], fmpq(1, 5))], [fmpq_poly()], fmpq(1), 30)
-    (second,) = joint.moved([STILL], [fmpq_poly()], fmpq(1, 2), 30)
+    (first,) = joint.move([wave([2], fmpq(1, 5))], [fmpq_poly()], fmpq(1), 30)
+    (second,) = joint.move([STILL], [fmpq_poly()], fmpq(1, 2), 30)
     for off in (-1, 0, 1):
         ended = driven(2, [2 * (1 + off * fmpq(1, 10))], arb(0), 1)
         assert first.at(fmpq(1)).contains(ended)
@@ -91,7 +91,7 @@ def test_an_error_at_the_start_goes_on():
 
 
 def test_a_point_without_mass_follows_at_once():
-    (moved,) = moving(law([0], [[4]])).moved([wave([7, 14], fmpq(7, 8))], [fmpq_poly()], fmpq(1), 9)
+    (moved,) = moving(law([0], [[4]])).move([wave([7, 14], fmpq(7, 8))], [fmpq_poly()], fmpq(1), 9)
     assert moved.polynomial(arb(1)).contains(fmpq(21, 4))
     assert moved.error >= fmpq(7, 32)
     assert moved.error < fmpq(7, 32) + fmpq(1, 2**200)
@@ -102,8 +102,8 @@ def test_a_spring_pulls_a_point_without_mass_back_from_where_it_may_be(damping, 
     """c q + k u = s: what s may be off by is in u when it ends, and then in q, though nothing acts any more."""
     c, k, off, length = fmpq(damping), fmpq(stiffness), fmpq(1, 5), fmpq(1)
     joint = moving(law([0], [[c]], [[k]]))
-    joint.moved([wave([2], off)], [fmpq_poly()], length, 60)
-    (later,) = joint.moved([STILL], [fmpq_poly()], length, 60)
+    joint.move([wave([2], off)], [fmpq_poly()], length, 60)
+    (later,) = joint.move([STILL], [fmpq_poly()], length, 60)
     for sign in (-1, 0, 1):
         displaced = (2 + sign * off) / k * (1 - (-arb(k / c) * arb(length)).exp())
         for u in (fmpq(0), fmpq(1, 3), length):
@@ -112,14 +112,14 @@ def test_a_spring_pulls_a_point_without_mass_back_from_where_it_may_be(damping, 
 
 
 def test_what_does_not_move_is_exactly_still():
-    (moved,) = moving(law([1], [[1]])).moved([STILL], [fmpq_poly()], fmpq(1), 9)
+    (moved,) = moving(law([1], [[1]])).move([STILL], [fmpq_poly()], fmpq(1), 9)
     assert moved.polynomial.length() == 0
     assert moved.error == 0
 
 
 def test_a_prescribed_point_moves_as_it_is_told():
     joint = moving(law([0, 1], [[1, -1], [-1, 2]], given=["velocity", None]))
-    told, pulled = joint.moved([STILL, STILL], [fmpq_poly([3, 1]), fmpq_poly()], fmpq(1), 40)
+    told, pulled = joint.move([STILL, STILL], [fmpq_poly([3, 1]), fmpq_poly()], fmpq(1), 40)
     assert told.polynomial(arb(1)).contains(4)
     # 1 q' + 2 q = 3 + u
     assert pulled.at(fmpq(1)).overlaps(driven(2, [3, 1], arb(0), 1))
@@ -159,7 +159,7 @@ def test_springs_and_dashpots_between_masses(mass, dashpots, springs, stiff, ter
     motion = moving(joint, [k + 1 for k in range(size)])
     length = fmpq(1, 200) if stiff > 1 else fmpq(1)
     for start in (fmpq(0), length):
-        found = motion.moved([wave([f]) for f in force], [fmpq_poly()] * size, length, terms)
+        found = motion.move([wave([f]) for f in force], [fmpq_poly()] * size, length, terms)
         for part in (fmpq(0), fmpq(1, 3), fmpq(1)):
             exact = exponential(joint, velocity, force, start + part * length)
             for known, true in zip(found, exact, strict=True):

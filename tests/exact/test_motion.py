@@ -12,7 +12,7 @@ from tests.support.drawn import scenes
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import motion as room
-from wavesym.exact.joints.enclosed import Enclosed, weighted
+from wavesym.exact.joints.enclosed import Enclosed, weighted_sum
 from wavesym.exact.joints.network_waves import SentWave
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.ball import Balls, is_zero
@@ -115,7 +115,7 @@ def test_errors_of_all_that_is_summed_are_in_a_value():
     """Of a drift, which reads both ends of its rod, and of any sum: none takes the place of another."""
     parts = [(fmpq(2), Enclosed(arb_poly([1]), arb(1))), (fmpq(-3), Enclosed(arb_poly([1]), arb(fmpq(1, 4))))]
     for terms in (parts, parts[::-1], [*parts, (fmpq(1), Enclosed(arb_poly(), arb(0)))]):
-        for total in (room._sum(terms), weighted(terms)):
+        for total in (room._sum(terms), weighted_sum(terms)):
             assert total.at(fmpq(0)).contains(-1 + fmpq(11, 4))
             assert total.at(fmpq(0)).contains(-1 - fmpq(11, 4))
             assert total.error < fmpq(12, 4)

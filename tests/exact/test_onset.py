@@ -13,7 +13,7 @@ from tests.support.touching import FIXED, body, contact, line, q, rod, seen, tol
 from wavesym.errors import CostError
 from wavesym.exact.contacts.events import events
 from wavesym.exact.contacts.search import Search
-from wavesym.exact.joints.enclosed import ORDER, Onset, combined
+from wavesym.exact.joints.enclosed import ORDER, Onset, combine
 from wavesym.exact.joints.exact_motion import onsets
 from wavesym.exact.joints.joint import JointLaw, motion_series
 from wavesym.exact.reference import Reference
@@ -115,7 +115,7 @@ def test_a_wave_through_many_equal_bodies_comes_to_the_last_contact(bodies, unti
 
 def test_signs_hold_as_far_as_is_said():
     rest = (ORDER, arb(5)), (ORDER, arb(1))
-    rises = combined(
+    rises = combine(
         [(q(2), Onset(fmpq_poly([0, 0, q("1/2"), -3]), rest[:1])), (q(-1), Onset(fmpq_poly([0, 0, 0, 1]), rest[1:]))]
     )
     assert rises.sign() == 1

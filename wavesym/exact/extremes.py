@@ -106,7 +106,7 @@ def _range(motion: Motion, probe: Probe) -> Range:
         sizes = [piece.largest for piece in pieces]
         if motion.vanishes(sizes):
             return NOTHING
-        return _found(pieces, max(sizes))
+        return _extremes_of(pieces, max(sizes))
 
     try:
         return precise(attempt, motion.first_bits, _MORE_BITS * motion.first_bits)
@@ -132,7 +132,7 @@ class _Piece:
     def of(cls, segment: Segment, end: fmpq, last: bool, negligible: arb) -> _Piece:
         (polynomial,) = segment.families.values()
         half = arb((end - segment.start) / 2)
-        middles, radius = _split(_shortened(polynomial, 2 * half, negligible)(arb_poly([half, half])))
+        middles, radius = _split(_shorten(polynomial, 2 * half, negligible)(arb_poly([half, half])))
         return cls(segment.start, end, middles, radius, segment.from_zero, last)
 
     @property
@@ -157,7 +157,7 @@ class _Piece:
         return _Candidate(exact, tau, after, False)
 
 
-def _shortened(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
+def _shorten(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
     """Without the highest powers, as far as they are negligible on [0, length]; they are in the ball of the first."""
     powers, rest = polynomial.coeffs(), arb(0)
     while powers and (more := (rest + abs(powers[-1]) * length ** (len(powers) - 1)).upper()) <= negligible:
@@ -186,19 +186,19 @@ class _Candidate:
         return self.double, not self.reached, self.tau
 
 
-def _found(pieces: Sequence[_Piece], size: arb) -> Range | None:
+def _extremes_of(pieces: Sequence[_Piece], size: arb) -> Range | None:
     """The least and the greatest value; None where the balls are too large to tell. No value is beyond `size`."""
     screen = _Screen(pieces, size)
     scale = screen.scale
     if not scale > 0 or not max(piece.radius for piece in pieces) < scale * _KNOWN:
         return None
-    greatest = _first(screen.left(1), 1, screen.greatest, scale)
-    least = _first(screen.left(-1), -1, -screen.least, scale)
+    greatest = _first(screen.candidates(1), 1, screen.greatest, scale)
+    least = _first(screen.candidates(-1), -1, -screen.least, scale)
     rests = abs(pieces[0].begin) <= scale * BOUND
-    return _told(least, -1, scale, rests), _told(greatest, 1, scale, rests)
+    return _extreme(least, -1, scale, rests), _extreme(greatest, 1, scale, rests)
 
 
-def _told(found: _Candidate, sign: int, scale: arb, rests: bool) -> TrueExtreme:
+def _extreme(found: _Candidate, sign: int, scale: arb, rests: bool) -> TrueExtreme:
     """An extreme; of an output that is 0 at the start, and of `scale`, where it `rests`."""
     if abs(found.value) <= scale * BOUND:
         return NOTHING[0] if rests else TrueExtreme(0.0, found.double, found.reached)
@@ -244,7 +244,7 @@ class _Screen:
         """A lower bound of the largest absolute value."""
         return self.greatest.max(-self.least)
 
-    def left(self, sign: int) -> list[_Piece]:
+    def candidates(self, sign: int) -> list[_Piece]:
         """The pieces, in order, that may hold the greatest (`sign` 1) or the least (-1) value."""
         chosen = np.arange(len(self._pieces))
         for points in _POINTS:
@@ -277,7 +277,7 @@ def _tops(coefficients: Sequence[arb], radius: arb, low: arb, flat: arb) -> Iter
         value = whole(arb(t)) + arb(0, radius)
         yield value, t
         low = low.max(value.lower())
-    parts = [(*_trimmed(whole, radius, flat), _ZERO, _ONE)]
+    parts = [(*_trim(whole, radius, flat), _ZERO, _ONE)]
     while parts:
         polynomial, radius, centre, half = parts.pop()
         c = polynomial.coeffs() or [arb(0)]
@@ -288,15 +288,15 @@ def _tops(coefficients: Sequence[arb], radius: arb, low: arb, flat: arb) -> Iter
             value = c[0] + arb(0, (rest + radius).upper())
             yield value, centre - half
             low = low.max(value.lower())
-        elif len(c) > 2 and _sure(c, 2) and c[2] < 0:
+        elif len(c) > 2 and _has_one_sign(c, 2) and c[2] < 0:
             with ctx.workprec(_bits(c, flat)):
                 value, t = _top(polynomial)
             yield value + arb(0, radius), centre + half * t
             low = low.max((value - radius).lower())
-        elif not _sure(c, 1) and not (len(c) > 2 and _sure(c, 2)):
+        elif not _has_one_sign(c, 1) and not (len(c) > 2 and _has_one_sign(c, 2)):
             for side in (1, -1):
                 with ctx.workprec(_bits(c, flat)):
-                    shorter = _trimmed(polynomial(arb_poly([arb(side) / 2, arb(1) / 2])), radius, flat)
+                    shorter = _trim(polynomial(arb_poly([arb(side) / 2, arb(1) / 2])), radius, flat)
                 parts.append((*shorter, centre + half * side / 2, half / 2))
         elif half < 1:  # an end is greatest, where another part may meet it
             for t in (-_ONE, _ONE):
@@ -309,7 +309,7 @@ def _bits(c: Sequence[arb], flat: arb) -> int:
     return min(max(mantissa.bit_length() + exponent, 0) + _SPARE, ctx.prec)
 
 
-def _trimmed(polynomial: arb_poly, radius: arb, flat: arb) -> tuple[arb_poly, arb]:
+def _trim(polynomial: arb_poly, radius: arb, flat: arb) -> tuple[arb_poly, arb]:
     """Exact numbers with as many bits as they need, without the highest powers as far as they are far below `flat`, and
     how far from them the output may be.
     """
@@ -322,7 +322,7 @@ def _trimmed(polynomial: arb_poly, radius: arb, flat: arb) -> tuple[arb_poly, ar
     return arb_poly(list(middles)), (radius + rest + lost).upper()
 
 
-def _sure(c: Sequence[arb], order: int) -> bool:
+def _has_one_sign(c: Sequence[arb], order: int) -> bool:
     """Whether the first or second derivative has one sign on [-1, 1]: its first coefficient outweighs the others."""
     factors = (k if order == 1 else k * (k - 1) for k in range(order + 1, len(c)))
     others = sum((factor * abs(each) for factor, each in zip(factors, c[order + 1 :], strict=True)), arb(0))
@@ -334,7 +334,7 @@ def _top(polynomial: arb_poly) -> tuple[arb, fmpq]:
     slope = polynomial.derivative()
     for end, rises in ((-_ONE, 1), (_ONE, -1)):
         if not (inward := rises * slope(arb(end))) > 0:
-            return _above(polynomial, end, inward.max(arb(0))), end
+            return _bound_above(polynomial, end, inward.max(arb(0))), end
     bend = slope.derivative()
     low, high, t, near = arb(-1), arb(1), arb(0), arb(2) ** (8 - ctx.prec)
     for _ in range(_NEWTON):
@@ -347,10 +347,10 @@ def _top(polynomial: arb_poly) -> tuple[arb, fmpq]:
         if abs(t - before) < near:
             break
     place = middle(t)
-    return _above(polynomial, place, abs(slope(arb(place)))), place
+    return _bound_above(polynomial, place, abs(slope(arb(place)))), place
 
 
-def _above(polynomial: arb_poly, place: fmpq, slope: arb) -> arb:
+def _bound_above(polynomial: arb_poly, place: fmpq, slope: arb) -> arb:
     """From the value there to what a line with this slope comes to on [-1, 1]."""
     value = polynomial(arb(place))
     return value.union(value + 2 * slope.upper())

@@ -14,7 +14,7 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.arrivals import smooth_starts
 from wavesym.exact.breakpoints import Breakpoints
-from wavesym.exact.joints.enclosed import STILL, Enclosed, later, weighted
+from wavesym.exact.joints.enclosed import STILL, Enclosed, shift, weighted_sum
 from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.joints.network_waves import Acting, NetworkWaves, Waves
 from wavesym.exact.tables.ball import Segment
@@ -264,7 +264,7 @@ def _within(known: Enclosed) -> arb_poly:
 def _sum(parts: Iterable[tuple[fmpq, Enclosed]]) -> Enclosed:
     """A sum with factors; of what cancels nothing is left, where all of it is known exactly."""
     terms = list(parts)
-    total = weighted(terms)
+    total = weighted_sum(terms)
     if total.error == 0 and all(c.contains(0) for c in total.polynomial.coeffs()):
         exact = [(factor, known.exact) for factor, known in terms if known.exact is not None]
         if len(exact) == len(terms) and sum((factor * p for factor, p in exact), fmpq_poly()).length() == 0:
@@ -294,11 +294,11 @@ def _values(waves: Waves, terms: Iterable[Weighted], start: fmpq) -> Iterator[tu
         right, left = reading.weights
         for factor, side, way in ((right, 0, reading.place), (left, 1, 1 - reading.place)):
             known, offset = waves.sent[End(reading.rod - 1, side)].at(start - way * bar.delay)
-            yield weight * factor * over, later(known, offset)
+            yield weight * factor * over, shift(known, offset)
 
 
 def _velocity(waves: Waves, point: int, start: fmpq) -> Enclosed:
-    return later(*waves.velocities[point].at(start))
+    return shift(*waves.velocities[point].at(start))
 
 
 def waves_size(model: Model) -> int:

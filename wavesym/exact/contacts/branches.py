@@ -14,7 +14,7 @@ from typing import NamedTuple
 from flint import arb, fmpq
 
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.contacts.touching_joint import Moved
+from wavesym.exact.contacts.touching_joint import JointStretch
 from wavesym.exact.joints.enclosed import Enclosed
 from wavesym.numbers.doubles import middle
 
@@ -50,7 +50,7 @@ class Contact:
         """Its gap is certainly more than 0."""
         return self.exact > 0 if self.exact is not None else bool(self.gap > 0)
 
-    def begins(self, moved: Moved) -> bool:
+    def begins(self, moved: JointStretch) -> bool:
         """Whether its branch on a stretch is certainly right just after the start."""
         if self.link in moved.closed:
             force = moved.pushes[self.link]
@@ -68,7 +68,7 @@ class Contact:
             for each in rate.choices or (rate,)
         )
 
-    def end(self, moved: Moved, low: fmpq, resolution: fmpq) -> BranchEnd | None:
+    def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long its branch certainly lasts on a stretch, as it does up to `low`; None: all the way."""
         if self.link in moved.closed:
             return _positive(moved.pushes[self.link], low, moved.length, resolution)
@@ -84,13 +84,13 @@ class Contact:
         error = (rate.error * arb(moved.length)).upper()
         return _positive(Enclosed(rate.polynomial.integral() + self.gap, error), low, moved.length, resolution)
 
-    def lasts(self, moved: Moved, length: fmpq) -> bool:
+    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether its branch is certainly right on all of a short stretch."""
         if self.link in moved.closed:
             return _is_not_negative(moved.pushes[self.link], length)
         return bool(self.gap + arb(length) * _range(moved.rates[self.link], length) > 0)
 
-    def advance(self, moved: Moved, length: fmpq) -> None:
+    def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Go to the end of a stretch on which its branch was right, or of a short one on which it was left open."""
         if self.link in moved.closed:
             self.gap, self.exact = arb(0), fmpq(0)
@@ -108,7 +108,7 @@ class Contact:
         else:
             self.gap, self.exact = _gap_within(gap), None
 
-    def _advance_vague(self, moved: Moved, length: fmpq) -> None:
+    def _advance_vague(self, moved: JointStretch, length: fmpq) -> None:
         h, rate = arb(length), _range(moved.rates[self.link], length)
         if rate < 0 and _range(moved.pushes[self.link], length) > 0 and self.gap + h * rate < 0:
             self.gap, self.exact = arb(0), fmpq(0)

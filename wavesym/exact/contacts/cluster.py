@@ -63,7 +63,7 @@ class Cluster:
                 side, sign = [k for k, _ in _moving(touch.left, cut)], fmpq(-1)
             pushes[n] = [(k, sign * members[k][1] / members[touch.right][1]) for k in side]
         local = {k: n for n, k in enumerate(points)}
-        grouped = law.among(points).grouped([members[k] for k in points], [local[k] for k in leaders])
+        grouped = law.among(points).group([members[k] for k in points], [local[k] for k in leaders])
         return cls(tuple(points), grouped, pushes)
 
     @property
@@ -103,7 +103,7 @@ def subsets(contacts: Iterable[int]) -> list[Closed]:
     return [frozenset(some) for size in range(len(every) + 1) for some in combinations(every, size)]
 
 
-def parted(law: JointLaw, touches: Mapping[int, Touch], linked: Closed) -> list[list[int]]:
+def connected_sets(law: JointLaw, touches: Mapping[int, Touch], linked: Closed) -> list[list[int]]:
     """The points of a joint in sets that nothing connects: no spring, no dashpot, none of these contacts."""
     size = len(law.mass)
     near: list[set[int]] = [

@@ -12,7 +12,7 @@ from math import log
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.contacts.touching_joint import MOST_SWING, Moved
+from wavesym.exact.contacts.touching_joint import MOST_SWING, JointStretch
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
@@ -52,7 +52,7 @@ class Cost:
                 "rods help)"
             )
 
-    def add(self, number: int, start: fmpq, moved: Moved, events: int) -> None:
+    def add(self, number: int, start: fmpq, moved: JointStretch, events: int) -> None:
         """A stretch of a joint; so many events have been found."""
         self._stretches[number] += 1
         self._swings[number] = moved.swing

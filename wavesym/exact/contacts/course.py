@@ -8,7 +8,7 @@ from heapq import heappop
 from flint import fmpq
 
 from wavesym.exact.contacts.branches import Contact
-from wavesym.exact.contacts.touching_joint import Moved
+from wavesym.exact.contacts.touching_joint import JointStretch
 from wavesym.exact.contacts.touching_waves import Stage
 
 
@@ -37,7 +37,7 @@ class Course:
     contacts: tuple[Contact, ...]
     since: fmpq
     reached: fmpq
-    moved: Moved | None = None
+    moved: JointStretch | None = None
     doubt: Doubt | None = None
     spread: fmpq | None = None
     breakpoints: list[fmpq] = field(default_factory=list)

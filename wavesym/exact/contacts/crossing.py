@@ -7,7 +7,7 @@ from typing import cast
 
 from flint import acb, arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
-from wavesym.exact.joints.enclosed import Enclosed, shortened
+from wavesym.exact.joints.enclosed import Enclosed, shorten
 from wavesym.numbers.doubles import middle
 
 _COARSE = 64  # bits that do, where the interval is no shorter than this part of the whole
@@ -21,7 +21,7 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
     It is `low` itself where nothing can be said there.
     """
     with ctx.workprec(_COARSE):
-        rough = shortened(Enclosed(p * arb(1), error), high)
+        rough = shorten(Enclosed(p * arb(1), error), high)
     stack = [(low, high)]
     while stack:
         a, b = stack.pop()

@@ -66,7 +66,7 @@ def waves(network: Network, loads: tuple[Applied, ...], known: Schedule, bits: i
     """The waves of what is scheduled, with so many bits; the last ones are kept for whoever asks again."""
     with ctx.workprec(bits):
         if bits <= known.bits:
-            return known.waves.rounded(known.ends)
+            return known.waves.round_to_precision(known.ends)
         return replayed(network, known.stages, known.ends, loads)
 
 
@@ -84,7 +84,7 @@ def _attempt(
                 return follow(search)
             except UndecidedError as error:
                 undecided = error
-        if not search.relaxed:
+        if not search.has_relaxed:
             tried.append(bits)
     link = network.links[undecided.link]
     what = "force" if undecided.closed else "gap"

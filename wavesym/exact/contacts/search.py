@@ -17,7 +17,7 @@ from wavesym.exact.contacts.branches import BranchEnd, Contact
 from wavesym.exact.contacts.cluster import Closed, subsets
 from wavesym.exact.contacts.cost import Cost
 from wavesym.exact.contacts.course import Course, Doubt
-from wavesym.exact.contacts.touching_joint import MOST_SWING, Moved, SwingError
+from wavesym.exact.contacts.touching_joint import MOST_SWING, JointStretch, SwingError
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
@@ -81,9 +81,9 @@ class Search:
         self._cost.refuse_many_moves({number: course.shortest for number, course in self.courses.items()})
 
     @property
-    def relaxed(self) -> bool:
+    def has_relaxed(self) -> bool:
         """Whether what decays fast has been left out somewhere."""
-        return any(joint.relaxed for joint in self.waves.joints.values())
+        return any(joint.has_relaxed for joint in self.waves.joints.values())
 
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> Course:
         network, joint = self._network, self._network.joints[number]
@@ -133,16 +133,18 @@ class Search:
         self._keep(course, moved, end)
         return True
 
-    def _move(self, course: Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
+    def _move(self, course: Course, start: fmpq, length: fmpq, closed: Closed) -> JointStretch:
         """On a stretch, or on as much of it as a series bears."""
         joint = self.waves.joints[course.number]
         try:
             arriving = self.waves.arriving(course.number, start, length)
-            return joint.moved(arriving, start, length, closed, relaxing=self._relaxing)
+            return joint.move(arriving, start, length, closed, relaxing=self._relaxing)
         except SwingError as error:
             return self._move(course, start, error.longest, closed)
 
-    def _cut(self, course: Course, start: fmpq, moved: Moved, low: fmpq) -> tuple[Moved, BranchEnd | None]:
+    def _cut(
+        self, course: Course, start: fmpq, moved: JointStretch, low: fmpq
+    ) -> tuple[JointStretch, BranchEnd | None]:
         """As much of a stretch as all contacts are certainly on their branches, as they are up to `low`."""
         end = self._end(course, moved, low)
         if end is None or end.length == 0:
@@ -150,7 +152,7 @@ class Search:
         moved = self._move(course, start, end.length, moved.closed)
         return moved, end if moved.length == end.length else None
 
-    def _end(self, course: Course, moved: Moved, low: fmpq) -> BranchEnd | None:
+    def _end(self, course: Course, moved: JointStretch, low: fmpq) -> BranchEnd | None:
         """How long all contacts are certainly on their branches; None: all the way."""
         found = (contact.end(moved, low, self._resolution) for contact in course.contacts)
         ends = [end for end in found if end is not None]
@@ -183,7 +185,7 @@ class Search:
         self._add_stage(course, Stage(start, moved.closed), moved)
         self._keep(course, moved, end)
 
-    def _decide(self, course: Course, start: fmpq, limit: fmpq) -> tuple[Moved, BranchEnd | None] | None:
+    def _decide(self, course: Course, start: fmpq, limit: fmpq) -> tuple[JointStretch, BranchEnd | None] | None:
         """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
         shut = [contact.link for contact in course.contacts if contact.shut]
         for closed in sorted(subsets(shut), key=len, reverse=True):
@@ -193,11 +195,11 @@ class Search:
                 return (moved, end) if end is None or end.length > 0 else None
         return None
 
-    def _add_stage(self, course: Course, stage: Stage, moved: Moved) -> None:
+    def _add_stage(self, course: Course, stage: Stage, moved: JointStretch) -> None:
         course.stages.append(stage)
         self._cost.add(course.number, stage.start, moved, len(self.changes))
 
-    def _keep(self, course: Course, moved: Moved, end: BranchEnd | None) -> None:
+    def _keep(self, course: Course, moved: JointStretch, end: BranchEnd | None) -> None:
         """A stretch all the way, or up to its `end`, where a contact may change."""
         since = course.since
         if end is None:
@@ -209,13 +211,13 @@ class Search:
             self._take(course, moved)
         course.moved, course.reached, course.spread = None, since + end.length, end.spread
 
-    def _take(self, course: Course, moved: Moved) -> None:
+    def _take(self, course: Course, moved: JointStretch) -> None:
         """The joint goes to the end of its stretch; gaps become what they are there."""
         self.waves.joints[course.number].take(moved)
         for contact in course.contacts:
             contact.advance(moved, moved.length)
 
-    def _send(self, course: Course, start: fmpq, moved: Moved) -> None:
+    def _send(self, course: Course, start: fmpq, moved: JointStretch) -> None:
         """What a joint sends is kept; what begins there is a breakpoint at the other ends of its bars."""
         network = self._network
         begun = self.waves.record(course.number, start, moved)
@@ -251,13 +253,13 @@ class Search:
         doubt.high = start + length
         return doubt.high
 
-    def _move_vague(self, course: Course, start: fmpq, length: fmpq) -> Moved:
+    def _move_vague(self, course: Course, start: fmpq, length: fmpq) -> JointStretch:
         """The motion, with all contacts vague that are not certainly open or closed all the time."""
         joint, arriving = self.waves.joints[course.number], self.waves.arriving(course.number, start, length)
         vague = frozenset(contact.link for contact in course.contacts if not contact.shut and not contact.wide)
         while True:
             closed = frozenset(contact.link for contact in course.contacts if contact.shut) - vague
-            moved = joint.moved(arriving, start, length, closed, vague)
+            moved = joint.move(arriving, start, length, closed, vague)
             steady = (contact for contact in course.contacts if contact.link not in vague)
             wrong = frozenset(contact.link for contact in steady if not contact.lasts(moved, length))
             if not wrong:

@@ -19,20 +19,20 @@ from math import log2
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Closed, Cluster, Touch, parted, subsets
+from wavesym.exact.contacts.cluster import Closed, Cluster, Touch, connected_sets, subsets
 from wavesym.exact.joints.enclosed import (
     STILL,
     Enclosed,
     Onset,
     Terms,
-    collected,
+    add_terms,
+    collect,
     one_at_each_instant,
-    scaled,
-    together,
+    scale_terms,
     with_bounds,
 )
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
-from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, scattered, sent_back
+from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
 from wavesym.exact.joints.network_waves import Acting
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
@@ -67,7 +67,7 @@ class PointState:
 
 
 @dataclass
-class Moved:
+class JointStretch:
     """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
     `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
@@ -115,19 +115,19 @@ class TouchingJoint:
         self._bare = {n for n, end in enumerate(self._ends) if end.place in touched and self.law.mass[end.place] == 0}
         self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
         self._energy = arb(0)  # the largest that a set had
-        self.relaxed = False
+        self.has_relaxed = False
         # sets of points that have energy: mass or springs
         self._sets = [
             points
-            for points in parted(self.law, self.touches, frozenset())
+            for points in connected_sets(self.law, self.touches, frozenset())
             if any(self.law.mass[k] != 0 or self._elastic(k) for k in points)
         ]
 
-    def take(self, moved: Moved) -> None:
+    def take(self, moved: JointStretch) -> None:
         """Go on to the end of a stretch."""
         self._state |= moved.state
 
-    def moved(
+    def move(
         self,
         arriving: Sequence[Enclosed],
         start: fmpq,
@@ -135,7 +135,7 @@ class TouchingJoint:
         closed: Closed,
         vague: Closed = frozenset(),
         relaxing: bool | None = None,
-    ) -> Moved:
+    ) -> JointStretch:
         """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then.
 
         Where a series would have to bear more than exp(`MOST_SWING`), that is its motion without what decays fast. Such
@@ -144,56 +144,56 @@ class TouchingJoint:
         """
         acting = [load.on(start) for load in self._loads]
         forces = forces_on(self._ends, arriving, acting)
-        result = Moved(length, closed, vague, {})
-        for cluster in self._parted(closed, vague):
+        result = JointStretch(length, closed, vague, {})
+        for cluster in self._split(closed, vague):
             if any(self.touches[n].left in cluster.points for n in vague):
                 self._drift(cluster, result, arriving, forces, acting)
             else:
-                self._move(cluster, result, forces, acting, relaxing)
+                self._move_cluster(cluster, result, forces, acting, relaxing)
         for n, touch in self.touches.items():
             if n not in closed and n not in vague:
-                result.rates[n] = together(_rate(touch, result.velocities))
+                result.rates[n] = add_terms(_rate(touch, result.velocities))
         for number, wave in enumerate(arriving):
             if number not in result.sends:
-                result.sends[number] = self._sent(number, result.velocities, wave)
-                if number in self._bare and not collected(self._strained(number, result.velocities, wave)):
+                result.sends[number] = self._outgoing(number, result.velocities, wave)
+                if number in self._bare and not collect(self._end_force(number, result.velocities, wave)):
                     result.bare.add(number)
         return result
 
-    def _sent(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
+    def _outgoing(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
         end = self._ends[number]
-        return together(sent_back(end, velocities[end.place], wave))
+        return add_terms(outgoing_terms(end, velocities[end.place], wave))
 
-    def _strained(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Terms:
+    def _end_force(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Terms:
         """What is sent less what arrives: up to a factor, what acts on the end."""
         end = self._ends[number]
-        return [*sent_back(end, velocities[end.place], wave), (fmpq(-1), wave)]
+        return [*outgoing_terms(end, velocities[end.place], wave), (fmpq(-1), wave)]
 
-    def _parted(self, closed: Closed, vague: Closed) -> list[Cluster]:
+    def _split(self, closed: Closed, vague: Closed) -> list[Cluster]:
         if (closed, vague) not in self._clusters:
             self._clusters[closed, vague] = [
                 Cluster.of(self.law, points, self.touches, closed)
-                for points in parted(self.law, self.touches, closed | vague)
+                for points in connected_sets(self.law, self.touches, closed | vague)
             ]
         return self._clusters[closed, vague]
 
     # with contacts closed and open
 
-    def _move(
+    def _move_cluster(
         self,
         cluster: Cluster,
-        result: Moved,
+        result: JointStretch,
         forces: Sequence[Terms],
         acting: Sequence[fmpq_poly],
         relaxing: bool | None,
     ) -> None:
         law, points = cluster.law, cluster.points
-        pushed = grouped(cluster, forces)
+        pushed = group_forces(cluster, forces)
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
         motion, places = None, None
         if cluster.stateless:
-            q = scattered(law, pushed, _given(law, prescribed))
-        elif (exact := self._exactly(cluster, pushed, prescribed)) is not None:
+            q = scatter(law, pushed, _prescribed_terms(law, prescribed))
+        elif (exact := self._move_exactly(cluster, pushed, prescribed)) is not None:
             q = [[(_ONE, Enclosed.of(p))] for p in exact]
             places = {
                 k: ratio * exact[group].integral() + self._state[k].place
@@ -204,33 +204,33 @@ class TouchingJoint:
                 result.state[k] = PointState.of(ratio * exact[group](result.length), place)
         else:
             motion = self._balls(cluster)
-            waves = [together(force) for force in pushed]
+            waves = [add_terms(force) for force in pushed]
             longest = max(wave.polynomial.length() for wave in waves)
             if law.fastest * result.length > MOST_SWING:
-                rate, moving = self._relaxed(cluster, motion, waves, prescribed, result.length, relaxing)
+                rate, moving = self._relax(cluster, motion, waves, prescribed, result.length, relaxing)
             else:
                 rate, terms = law.fastest, _terms(law.fastest * result.length, longest)
-                moving = motion.moved(waves, prescribed, result.length, terms)
-            q = [[(_ONE, each)] for each in self._begun(cluster, pushed, prescribed, moving, result.length)]
-            result.state |= self._after(cluster, motion)
+                moving = motion.move(waves, prescribed, result.length, terms)
+            q = [[(_ONE, each)] for each in self._add_onsets(cluster, pushed, prescribed, moving, result.length)]
+            result.state |= self._state_after(cluster, motion)
             if rate > result.swing:
                 result.swing = rate
                 cut = 2 * rate * result.length > MOST_SWING
                 result.fleeting = cut and any(each.slow < rate for each in cluster.relaxations)
             self._energy = self._energy.max(motion.energy(motion.velocity, motion.displacement))
         for k, (group, ratio) in zip(points, law.moves, strict=True):
-            result.velocities[k] = scaled(q[group], ratio)
+            result.velocities[k] = scale_terms(q[group], ratio)
         for n, push in cluster.pushes.items():
             pull = self._pull(cluster, push, result.velocities, forces)
             if places is not None:
                 pull += [
                     (factor * self.law.stiffness[k][j], Enclosed.of(places[j])) for k, factor in push for j in points
                 ]
-            result.pushes[n] = together(pull)
+            result.pushes[n] = add_terms(pull)
             if motion is not None:
-                result.pushes[n] = self._sprung(cluster, push, motion, result.pushes[n])
+                result.pushes[n] = self._add_springs(cluster, push, motion, result.pushes[n])
 
-    def _relaxed(
+    def _relax(
         self,
         cluster: Cluster,
         motion: JointMotion,
@@ -243,7 +243,7 @@ class TouchingJoint:
         longest = max(wave.polynomial.length() for wave in waves)
         if relaxing is None:
             relaxation = next(each for each in reversed(cluster.relaxations) if each.slow * length <= MOST_SWING)
-            q, u, missed = motion.relaxed(relaxation, waves, prescribed, _terms(relaxation.slow * length, longest))
+            q, u, missed = motion.relax(relaxation, waves, prescribed, _terms(relaxation.slow * length, longest))
             motion.lose(missed)
             return relaxation.slow, motion.follow(q, u, waves, length)
         for relaxation in cluster.relaxations if relaxing else ():
@@ -251,12 +251,12 @@ class TouchingJoint:
             terms = _terms(relaxation.slow * shorter, longest)
             if not relaxation.serves(shorter, terms):
                 continue
-            q, u, missed = motion.relaxed(relaxation, waves, prescribed, terms)
+            q, u, missed = motion.relax(relaxation, waves, prescribed, terms)
             if missed > self._energy * arb(2) ** (2 * (_MISSED - ctx.prec)):
                 continue
             if shorter < length:
                 raise SwingError(shorter)
-            self.relaxed = True
+            self.has_relaxed = True
             motion.lose(missed)
             return relaxation.slow, motion.follow(q, u, waves, length)
         raise SwingError(MOST_SWING / cluster.law.fastest)
@@ -264,24 +264,24 @@ class TouchingJoint:
     def _elastic(self, k: int) -> bool:
         return any(c != 0 for c in self.law.stiffness[k])
 
-    def _known(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
+    def _exact_state(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
         """The state of a cluster, where it is known exactly."""
         known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
         return known if len(known) == len(cluster.points) else None
 
-    def _exactly(
+    def _move_exactly(
         self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
     ) -> list[fmpq_poly] | None:
         """The velocities of groups, where all is known exactly and they are polynomials."""
-        if (known := self._known(cluster)) is None:
+        if (known := self._exact_state(cluster)) is None:
             return None
-        forces = [force for terms in pushed if (force := together(terms).exact) is not None]
+        forces = [force for terms in pushed if (force := add_terms(terms).exact) is not None]
         if len(forces) < len(pushed):
             return None
         velocity = [known[leader][0] for leader in cluster.law.leaders]
         return exact_motion(cluster.law, velocity, [u for _, u in known], forces, prescribed)
 
-    def _begun(
+    def _add_onsets(
         self,
         cluster: Cluster,
         pushed: Sequence[Terms],
@@ -290,9 +290,9 @@ class TouchingJoint:
         length: fmpq,
     ) -> Sequence[Enclosed]:
         """The velocities of groups, with how they begin, where that is known."""
-        if (known := self._known(cluster)) is None:
+        if (known := self._exact_state(cluster)) is None:
             return velocities
-        forces = [begins for terms in pushed if (begins := together(terms).begins) is not None]
+        forces = [begins for terms in pushed if (begins := add_terms(terms).begins) is not None]
         if len(forces) < len(pushed):
             return velocities
         span = arb(0).union(arb(length))
@@ -316,17 +316,17 @@ class TouchingJoint:
         """The force of a closed contact, but for what springs do."""
         terms: Terms = []
         for k, factor in push:
-            terms += scaled(forces[k], -factor)
+            terms += scale_terms(forces[k], -factor)
             for j in cluster.points:
-                terms += scaled(velocities[j], factor * self.law.damping[k][j])
+                terms += scale_terms(velocities[j], factor * self.law.damping[k][j])
         return terms
 
-    def _sprung(
+    def _add_springs(
         self, cluster: Cluster, push: Sequence[tuple[int, fmpq]], motion: JointMotion, force: Enclosed
     ) -> Enclosed:
         """With what springs do."""
         springs = [(factor, self._spring(cluster, motion, k)) for k, factor in push if self._elastic(k)]
-        return together([(_ONE, force), *springs])
+        return add_terms([(_ONE, force), *springs])
 
     def _spring(self, cluster: Cluster, motion: JointMotion, k: int) -> Enclosed:
         """What springs pull at a point on a stretch."""
@@ -350,7 +350,7 @@ class TouchingJoint:
         motion.round(velocity, displacement)
         return motion
 
-    def _after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
+    def _state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
         leaders = dict(zip(cluster.law.leaders, motion.velocity, strict=True))
         return {
             k: PointState(leaders.get(n, arb(0)), motion.displacement[n], None, motion.unknown)
@@ -362,7 +362,7 @@ class TouchingJoint:
     def _drift(
         self,
         cluster: Cluster,
-        result: Moved,
+        result: JointStretch,
         arriving: Sequence[Enclosed],
         forces: Sequence[Terms],
         acting: Sequence[fmpq_poly],
@@ -375,15 +375,15 @@ class TouchingJoint:
         bounds = dict.fromkeys(vague, arb(0))
         for _ in range(_ROUNDS):
             motion = self._balls(cluster)
-            pushed = [together(each) for each in grouped(cluster, self._with(forces, bounds))]
+            pushed = [add_terms(each) for each in group_forces(cluster, self._add_pushes(forces, bounds))]
             terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
-            q = motion.moved(pushed, prescribed, result.length, terms)
+            q = motion.move(pushed, prescribed, result.length, terms)
             known = {cluster.leader(a): [(_ONE, q[a])] for a in law.heavy}
-            known |= {cluster.leader(a): each for a, each in _given(law, prescribed).items()}
+            known |= {cluster.leader(a): each for a, each in _prescribed_terms(law, prescribed).items()}
             pulls = list(forces)
             for k in points:
                 pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
-            found = self._under_every_choice(points, closed, vague, known, arriving, pulls, span)
+            found = self._try_every_choice(points, closed, vague, known, arriving, pulls, span)
             largest = {n: found.pushes[n].over(span).upper().max(arb(0)) for n in vague}
             if all(largest[n] < bounds[n] or largest[n] == 0 for n in vague):
                 break
@@ -392,40 +392,42 @@ class TouchingJoint:
             raise ArithmeticError("the force of a contact has no bound")
         result.velocities |= found.velocities
         result.sends |= found.sends
-        self._bounded(cluster, result, closed, vague, arriving, forces)
+        self._bound_sends(cluster, result, closed, vague, arriving, forces)
         result.rates |= found.rates
         result.pushes |= found.pushes
         if not cluster.stateless:
-            result.state |= self._after(cluster, motion)
+            result.state |= self._state_after(cluster, motion)
 
-    def _bounded(
+    def _bound_sends(
         self,
         cluster: Cluster,
-        result: Moved,
+        result: JointStretch,
         closed: Closed,
         vague: Closed,
         arriving: Sequence[Enclosed],
         forces: Sequence[Terms],
     ) -> None:
         """What is sent is on one side of what would be, were all vague contacts open: they push, and never pull."""
-        for alone in self._parted(closed, frozenset()):
+        for alone in self._split(closed, frozenset()):
             law, points = alone.law, alone.points
-            pushed = [together(each) for each in grouped(alone, forces)] if set(points) <= set(cluster.points) else []
+            pushed = (
+                [add_terms(each) for each in group_forces(alone, forces)] if set(points) <= set(cluster.points) else []
+            )
             if not pushed or len(law.light) < len(pushed) or law.springs or any(each.exact is None for each in pushed):
                 continue
-            free = scattered(law, [[(_ONE, each)] for each in pushed], {})
+            free = scatter(law, [[(_ONE, each)] for each in pushed], {})
             moves = dict(zip(points, law.moves, strict=True))
-            gained = [self._gained(n, moves, law) for n in vague]
+            gained = [self._velocity_gains(n, moves, law) for n in vague]
             for n, end in enumerate(self._ends):
                 if (k := end.place) in moves and result.sends[n].exact is None:
                     group, ratio = moves[k]
-                    exact = self._sent(n, {k: scaled(free[group], ratio)}, arriving[n]).exact
+                    exact = self._outgoing(n, {k: scale_terms(free[group], ratio)}, arriving[n]).exact
                     signs = [end.ratio * ratio * gains[group] for gains in gained]
                     least = exact if all(sign >= 0 for sign in signs) else None
                     most = exact if all(sign <= 0 for sign in signs) else None
                     result.sends[n] = with_bounds(result.sends[n], None, least, most)
 
-    def _gained(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> list[fmpq]:
+    def _velocity_gains(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> list[fmpq]:
         """The velocities that groups without mass gain where a contact pushes with 1."""
         touch, push = self.touches[n], [fmpq(0)] * len(law.mass)
         for place, factor in ((touch.right, _ONE), (touch.left, -touch.ratio)):
@@ -434,7 +436,7 @@ class TouchingJoint:
                 push[group] += factor * ratio
         return [sum((law.inverse[a, b] * x for b, x in enumerate(push)), fmpq(0)) for a in range(len(push))]
 
-    def _under_every_choice(
+    def _try_every_choice(
         self,
         points: Sequence[int],
         closed: Closed,
@@ -443,7 +445,7 @@ class TouchingJoint:
         arriving: Sequence[Enclosed],
         pulls: Sequence[Terms],
         span: arb,
-    ) -> Moved:
+    ) -> JointStretch:
         """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points."""
         velocities: dict[int, list[Enclosed]] = {k: [] for k in points}
         sends: dict[int, list[Enclosed]] = {n: [] for n, end in enumerate(self._ends) if end.place in points}
@@ -452,19 +454,19 @@ class TouchingJoint:
         for chosen in subsets(vague):
             cluster = Cluster.of(self.law, points, self.touches, closed | chosen)
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
-            q = scattered(cluster.law, grouped(cluster, pulls), rigid)
-            moving = {k: scaled(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
+            q = scatter(cluster.law, group_forces(cluster, pulls), rigid)
+            moving = {k: scale_terms(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
             for k in points:
-                velocities[k].append(together(moving[k]))
+                velocities[k].append(add_terms(moving[k]))
             for n, each in sends.items():
-                each.append(self._sent(n, moving, arriving[n]))
+                each.append(self._outgoing(n, moving, arriving[n]))
             for n, touch in self.touches.items():
                 if n in cluster.pushes:
-                    force = together(self._pull(cluster, cluster.pushes[n], moving, pulls))
+                    force = add_terms(self._pull(cluster, cluster.pushes[n], moving, pulls))
                     pushes.setdefault(n, []).append(force)
                 elif touch.left in moving and touch.right in moving:
-                    rates.setdefault(n, []).append(together(_rate(touch, moving)))
-        result = Moved(
+                    rates.setdefault(n, []).append(add_terms(_rate(touch, moving)))
+        result = JointStretch(
             fmpq(0), closed, vague, {k: [(_ONE, one_at_each_instant(each, span))] for k, each in velocities.items()}
         )
         result.sends = {n: one_at_each_instant(each, span) for n, each in sends.items()}
@@ -472,7 +474,7 @@ class TouchingJoint:
         result.pushes = {n: one_at_each_instant(each, span) for n, each in pushes.items()}
         return result
 
-    def _with(self, forces: Sequence[Terms], bounds: Mapping[int, arb]) -> list[Terms]:
+    def _add_pushes(self, forces: Sequence[Terms], bounds: Mapping[int, arb]) -> list[Terms]:
         """With contacts that push with anything between 0 and their bounds."""
         result = list(forces)
         for n, bound in bounds.items():
@@ -483,20 +485,20 @@ class TouchingJoint:
         return result
 
 
-def grouped(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
+def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
     """What acts on the groups of a cluster."""
     terms: list[Terms] = [[] for _ in cluster.law.mass]
     for k, (group, ratio) in zip(cluster.points, cluster.law.moves, strict=True):
-        terms[group] += scaled(forces[k], ratio)
+        terms[group] += scale_terms(forces[k], ratio)
     return terms
 
 
-def _given(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:
+def _prescribed_terms(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:
     return {a: [(_ONE, Enclosed.of(p))] for a, p in enumerate(prescribed) if law.given[a] is not None}
 
 
 def _rate(touch: Touch, velocities: Mapping[int, Terms]) -> Terms:
-    return [*velocities[touch.right], *scaled(velocities[touch.left], -touch.ratio)]
+    return [*velocities[touch.right], *scale_terms(velocities[touch.left], -touch.ratio)]
 
 
 def _terms(swing: fmpq, least: int) -> int:

@@ -12,8 +12,8 @@ from operator import itemgetter
 from flint import fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed
-from wavesym.exact.contacts.touching_joint import Moved, TouchingJoint
-from wavesym.exact.joints.enclosed import Enclosed, together
+from wavesym.exact.contacts.touching_joint import JointStretch, TouchingJoint
+from wavesym.exact.joints.enclosed import Enclosed, add_terms
 from wavesym.exact.joints.network_waves import SentWave, Waves
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End, Network
@@ -43,7 +43,7 @@ class TouchingWaves(Waves):
         known = self._bare.get(end)
         return known[bisect_right(known, tau, key=itemgetter(0)) - 1][1] if known else super().is_bare(end, tau)
 
-    def record(self, number: int, start: fmpq, moved: Moved) -> list[bool]:
+    def record(self, number: int, start: fmpq, moved: JointStretch) -> list[bool]:
         """Keep what a joint sends from an instant on; for each end, whether another function begins there.
 
         Where one goes on that is known exactly, nothing is kept.
@@ -54,10 +54,10 @@ class TouchingWaves(Waves):
         begun = [self._kept(self.sent[end], start, moved.sends[n]) for n, (end, _) in enumerate(joint.ends)]
         for k, point in enumerate(joint.points):
             if point in self.velocities:
-                self._kept(self.velocities[point], start, together(moved.velocities[k]))
+                self._kept(self.velocities[point], start, add_terms(moved.velocities[k]))
         return begun
 
-    def rounded(self, ends: Mapping[int, fmpq]) -> TouchingWaves:
+    def round_to_precision(self, ends: Mapping[int, fmpq]) -> TouchingWaves:
         """The same at the working precision, with no more powers than it needs; `ends` are those of the last stretches.
 
         How joints move is no longer told.
@@ -65,7 +65,7 @@ class TouchingWaves(Waves):
         same, joint_of, point_at = copy(self), self.network.joint_of, self.network.point_at
 
         def anew(wave: SentWave, joint: int) -> SentWave:
-            return wave.rounded(ends[joint]) if joint in ends else wave
+            return wave.round_to_precision(ends[joint]) if joint in ends else wave
 
         same.sent = {end: anew(wave, joint_of[point_at(end)]) for end, wave in self.sent.items()}
         same.velocities = {point: anew(wave, joint_of[point]) for point, wave in self.velocities.items()}
@@ -104,7 +104,7 @@ def replayed(
         last = place + 1 == len(stages[number])
         length = (ends[number] if last else stages[number][place + 1].start) - start
         joint, arriving = waves.joints[number], waves.arriving(number, start, length)
-        moved = joint.moved(arriving, start, length, stage.closed, stage.vague)
+        moved = joint.move(arriving, start, length, stage.closed, stage.vague)
         waves.record(number, start, moved)
         joint.take(moved)
         if not last:

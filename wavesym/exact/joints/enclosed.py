@@ -124,7 +124,7 @@ Terms = list[tuple[fmpq, Enclosed]]
 """A sum with exact factors."""
 
 
-def combined(terms: Sequence[tuple[fmpq, Onset]]) -> Onset:
+def combine(terms: Sequence[tuple[fmpq, Onset]]) -> Onset:
     """A sum with exact factors."""
     total, rests = fmpq_poly(), dict[int, arb]()
     for factor, onset in terms:
@@ -134,7 +134,7 @@ def combined(terms: Sequence[tuple[fmpq, Onset]]) -> Onset:
     return Onset(total, tuple(sorted(rests.items())))
 
 
-def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
+def weighted_sum(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
     """A sum with exact factors; what has the factor 0 is not in it."""
     polynomial, error = arb_poly(), arb(0)
     for factor, known in terms:
@@ -151,26 +151,26 @@ def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
     return Enclosed(polynomial, error.upper())
 
 
-def scaled(terms: Terms, factor: fmpq) -> Terms:
+def scale_terms(terms: Terms, factor: fmpq) -> Terms:
     """Each times a factor."""
     return [(factor * each, known) for each, known in terms] if factor != 0 else []
 
 
-def together(terms: Terms) -> Enclosed:
+def add_terms(terms: Terms) -> Enclosed:
     """A sum with exact factors; exact where all of it is. What is in it twice is one."""
-    counted = collected(terms)
+    counted = collect(terms)
     number = prod(len(known.choices) or 1 for _, known in counted)
     if number == 1:
-        return _added(counted)
+        return _add(counted)
     if number > _CHOICES:
-        return weighted(counted)
+        return weighted_sum(counted)
     ways = product(*(known.choices or (known,) for _, known in counted))
     factored = [factor for factor, _ in counted]
-    hull = with_bounds(weighted(counted), None, *_bounds(counted))
-    return _one_of(hull, [_added(list(zip(factored, way, strict=True))) for way in ways])
+    hull = with_bounds(weighted_sum(counted), None, *_bounds(counted))
+    return _one_of(hull, [_add(list(zip(factored, way, strict=True))) for way in ways])
 
 
-def collected(terms: Terms) -> Terms:
+def collect(terms: Terms) -> Terms:
     """Each known function once, and none whose factors cancel."""
     factors: dict[int, fmpq] = {}
     parts: dict[int, Enclosed] = {}
@@ -180,15 +180,15 @@ def collected(terms: Terms) -> Terms:
     return [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
 
 
-def _added(terms: Terms) -> Enclosed:
+def _add(terms: Terms) -> Enclosed:
     exact = fmpq_poly()
     for factor, known in terms:
         if known.exact is None:
             if not any(other.onset or other.bounded for _, other in terms):
-                return weighted(terms)
+                return weighted_sum(terms)
             begin = [(factor, begins) for factor, known in terms if (begins := known.begins) is not None]
-            onset = combined(begin) if len(begin) == len(terms) else None
-            return with_bounds(weighted(terms), onset, *_bounds(terms))
+            onset = combine(begin) if len(begin) == len(terms) else None
+            return with_bounds(weighted_sum(terms), onset, *_bounds(terms))
         exact += factor * known.exact
     return Enclosed.of(exact)
 
@@ -232,28 +232,28 @@ def one_at_each_instant(functions: Sequence[Enclosed], span: arb) -> Enclosed:
     )
 
 
-def later(known: Enclosed, by: fmpq) -> Enclosed:
+def shift(known: Enclosed, by: fmpq) -> Enclosed:
     """The same function in the time since an instant that is `by` later."""
     if by == 0 or (known.polynomial.length() <= 1 and not known.choices and not known.bounded):
         return known
     if known.exact is not None:
         return Enclosed.of(known.exact(fmpq_poly([by, 1])))
-    choices = tuple(later(each, by) for each in known.choices)
-    least, most = _bounds_later(known, by)
+    choices = tuple(shift(each, by) for each in known.choices)
+    least, most = _shift_bounds(known, by)
     return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices, None, least, most)
 
 
-def _bounds_later(known: Enclosed, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+def _shift_bounds(known: Enclosed, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
     least, most = (None if p is None else p(fmpq_poly([by, 1])) for p in (known.least, known.most))
     return least, most
 
 
-def rounded(known: Enclosed, length: fmpq) -> Enclosed:
+def round_to_precision(known: Enclosed, length: fmpq) -> Enclosed:
     """The same at the working precision, without powers that count for nothing on a stretch."""
-    return shortened(Enclosed(known.polynomial * arb(1), known.error, known.exact), length)
+    return shorten(Enclosed(known.polynomial * arb(1), known.error, known.exact), length)
 
 
-def shortened(known: Enclosed, length: fmpq) -> Enclosed:
+def shorten(known: Enclosed, length: fmpq) -> Enclosed:
     """Without the highest powers, as far as they count for less on a stretch than the last bit of the first ones."""
     powers = known.polynomial.coeffs()
     if known.exact is not None or len(powers) < 2:
@@ -271,17 +271,17 @@ def shortened(known: Enclosed, length: fmpq) -> Enclosed:
     return replace(known, polynomial=arb_poly(powers[:count]), error=(known.error + rest).upper())
 
 
-def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
+def shift_briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
     """The same as `later` on a short stretch: Taylor's first powers, and what the others can add."""
     terms = 2 + ctx.prec // 64
     if known.exact is not None or known.polynomial.length() <= terms:
-        return later(known, by)
-    choices = tuple(briefly(each, by, length) for each in known.choices)
+        return shift(known, by)
+    choices = tuple(shift_briefly(each, by, length) for each in known.choices)
     here, derivative, powers, share = arb(by), known.polynomial, [], arb(1)
     for n in range(1, terms):
         powers.append(derivative(here) * share)
         derivative, share = derivative.derivative(), share / n
     span = here.union(arb(by + length))
     rest = abs(derivative(span) * share) * arb(length) ** (terms - 1)
-    least, most = _bounds_later(known, by)
+    least, most = _shift_bounds(known, by)
     return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices, None, least, most)

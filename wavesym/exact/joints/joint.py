@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
 from wavesym.derivation.exact_rule import joint_rule
-from wavesym.exact.joints.enclosed import Enclosed, Terms, scaled
+from wavesym.exact.joints.enclosed import Enclosed, Terms, scale_terms
 from wavesym.mechanics.network import End, Joint, Network
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ class JointLaw:
             tuple(self.given[k] for k in points),
         )
 
-    def grouped(self, members: Sequence[tuple[int, fmpq]], leaders: Sequence[int]) -> JointLaw:
+    def group(self, members: Sequence[tuple[int, fmpq]], leaders: Sequence[int]) -> JointLaw:
         """The same with points that move as one: the group of each, its ratio, and the point that each moves like."""
         of = [[(k, ratio) for k, (group, ratio) in enumerate(members) if group == a] for a in range(len(leaders))]
         return JointLaw(
@@ -134,7 +134,7 @@ class JointLaw:
         return self.members or tuple((k, fmpq(1)) for k in range(len(self.mass)))
 
     @cached_property
-    def squared(self) -> tuple[tuple[fmpq, ...], ...]:
+    def group_stiffness(self) -> tuple[tuple[fmpq, ...], ...]:
         """K with groups as columns too."""
         if not self.members:
             return self.stiffness
@@ -219,20 +219,20 @@ def forces_on(ends: Sequence[JointEnd], arriving: Sequence[Enclosed], loads: Seq
     return forces
 
 
-def sent_back(end: JointEnd, velocity: Terms, wave: Enclosed) -> Terms:
+def outgoing_terms(end: JointEnd, velocity: Terms, wave: Enclosed) -> Terms:
     """What an end sends when a wave arrives: n q - a."""
-    return [*scaled(velocity, end.ratio), (fmpq(-1), wave)]
+    return [*scale_terms(velocity, end.ratio), (fmpq(-1), wave)]
 
 
-def scattered(law: JointLaw, forces: Sequence[Terms], known: Mapping[int, Terms]) -> list[Terms]:
+def scatter(law: JointLaw, forces: Sequence[Terms], known: Mapping[int, Terms]) -> list[Terms]:
     """The velocities of groups: of those without mass they follow from what acts and from the others, `known`."""
     q = [known.get(a, []) for a in range(len(law.mass))]
     for row, a in enumerate(law.light):
         for column, b in enumerate(law.light):
             share = law.inverse[row, column]
-            q[a] = [*q[a], *scaled(forces[b], share)]
+            q[a] = [*q[a], *scale_terms(forces[b], share)]
             for c, velocity in known.items():
-                q[a] += scaled(velocity, -share * law.damping[b][c])
+                q[a] += scale_terms(velocity, -share * law.damping[b][c])
     return q
 
 
@@ -253,7 +253,7 @@ class JointMotion:
     strained: arb = field(default_factory=lambda: arb(0))
     decays: bool = False
 
-    def moved(
+    def move(
         self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
     ) -> list[Enclosed]:
         """The velocities of the points on a stretch, in so many terms; afterwards the joint is at its end.
@@ -275,7 +275,7 @@ class JointMotion:
         self.round([arb_poly(c)(h) for c in q], [arb_poly(c)(h) for c in u] if self.law.springs else [])
         return result
 
-    def relaxed(
+    def relax(
         self, relaxation: Relaxation, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
     ) -> tuple[list[list[arb]], list[list[arb]], arb]:
         """The series without what decays fast, as `follow` takes it, and the energy of what it leaves out."""
@@ -354,10 +354,10 @@ class JointMotion:
         before = (2 * self.unknown / arb(law.mass[law.heavy[0]])).sqrt() if law.heavy else arb(0)
         kappa = sum(
             (
-                abs(arb(law.squared[a][b])) * one * other
+                abs(arb(law.group_stiffness[a][b])) * one * other
                 for a, one in zip(law.light, through, strict=True)
                 for b, other in zip(law.light, through, strict=True)
-                if law.squared[a][b] != 0
+                if law.group_stiffness[a][b] != 0
             ),
             arb(0),
         ).sqrt()
@@ -376,7 +376,7 @@ class JointMotion:
             self.unknown = (arb(law.mass[k]) * after**2 / 2).upper()
         right = []
         for k in law.light:
-            value = defect[k] + speed * arb(law.squared[k][k]).sqrt()
+            value = defect[k] + speed * arb(law.group_stiffness[k][k]).sqrt()
             value += sum((abs(arb(law.damping[k][b])) * e for b, e in errors.items()), arb(0))
             right.append(value)
         for row, k in enumerate(law.light):

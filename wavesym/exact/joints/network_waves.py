@@ -9,8 +9,17 @@ from heapq import heapify, heappop, heappush
 
 from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.joints.enclosed import STILL, Enclosed, briefly, collected, later, rounded, shortened, weighted
-from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, scattered, sent_back
+from wavesym.exact.joints.enclosed import (
+    STILL,
+    Enclosed,
+    collect,
+    round_to_precision,
+    shift,
+    shift_briefly,
+    shorten,
+    weighted_sum,
+)
+from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End, Joint, Network
 
@@ -38,12 +47,15 @@ class SentWave:
         self._asked = place
         return self.stretches[place], tau - starts[place]
 
-    def rounded(self, last: fmpq) -> SentWave:
+    def round_to_precision(self, last: fmpq) -> SentWave:
         """The same at the working precision, up to its `last` instant, without powers that count for nothing."""
         ends = [*self.starts[1:], last]
         return SentWave(
             self.starts,
-            [rounded(known, end - start) for start, end, known in zip(self.starts, ends, self.stretches, strict=True)],
+            [
+                round_to_precision(known, end - start)
+                for start, end, known in zip(self.starts, ends, self.stretches, strict=True)
+            ],
         )
 
 
@@ -75,11 +87,11 @@ class Waves:
         for end, _ in self.network.joints[number].ends:
             known, offset = self.sent[self.network.beyond(end)].at(start - self.network.bars[end.bar].delay)
             if length is None:
-                waves.append(later(known, offset))
+                waves.append(shift(known, offset))
             elif length < _BRIEF:
-                waves.append(briefly(known, offset, length))
+                waves.append(shift_briefly(known, offset, length))
             else:
-                waves.append(shortened(later(known, offset), length))
+                waves.append(shorten(shift(known, offset), length))
         return waves
 
 
@@ -139,13 +151,13 @@ class _MovingJoint:
         acting = [load.on(start) for load in self._loads]
         forces = forces_on(self._ends, arriving, acting)
         if self._scatters:
-            moving = scattered(self._motion.law, forces, {})
-            self.velocities = [weighted(collected(each)) for each in moving]
+            moving = scatter(self._motion.law, forces, {})
+            self.velocities = [weighted_sum(collect(each)) for each in moving]
         else:
-            self.velocities = self._motion.moved([weighted(each) for each in forces], acting, length, terms)
+            self.velocities = self._motion.move([weighted_sum(each) for each in forces], acting, length, terms)
             moving = [[(fmpq(1), each)] for each in self.velocities]
         return [
-            weighted(collected(sent_back(end, moving[end.place], wave)))
+            weighted_sum(collect(outgoing_terms(end, moving[end.place], wave)))
             for end, wave in zip(self._ends, arriving, strict=True)
         ]
 

@@ -56,7 +56,7 @@ class Foreseen:
 
     def nth(self, source: str, count: int) -> dict[End, fmpq]:
         """When the first `count` fronts have left each end that something leaves at all."""
-        begun = {end for number in self._joints.begun(source) for end in self._starts(number, source)}
+        begun = {end for number in self._joints.acting_joints(source) for end in self._starts(number, source)}
         waiting = dict.fromkeys(reachable(self._joints.network, begun, self._passes), count)
         found: dict[End, fmpq] = {}
         for time, end, _ in self._walk(source, None, "--intervals"):
@@ -83,7 +83,7 @@ class Foreseen:
                 shape[pole.rate] = shape.get(pole.rate, 0) + len(pole.residues)
             return ((end, shape) for end in self._leaves(number, source if time == 0 else "", waves))
 
-        begun = [number for number in self._joints.begun(source) if last is None or number in last]
+        begun = [number for number in self._joints.acting_joints(source) if last is None or number in last]
         for count, front in enumerate(departures(network, begun, answer, last), 1):
             if count > MOST_FRONTS:
                 raise CostError(

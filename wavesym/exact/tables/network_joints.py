@@ -43,24 +43,24 @@ class NetworkJoints:
     def response(self, number: int) -> JointResponse:
         """What a joint answers. UnservedError, with its polynomial, where that does not split over the rationals."""
         if number not in self._responses:
-            self._responses[number] = self._made(number)
+            self._responses[number] = self._compute_response(number)
         return self._responses[number]
 
-    def _made(self, number: int) -> JointResponse:
+    def _compute_response(self, number: int) -> JointResponse:
         law = self.law(number)
         if (count := len(law.mass)) > MOST_POINTS:
             raise UnservedError(
-                f"system: springs and dashpots hold {count} nodes together ({self.told(number)}), "
+                f"system: springs and dashpots hold {count} nodes together ({self.describe(number)}), "
                 f"at most {MOST_POINTS} expected for exact tables"
             )
         if rates(law) is None:
             raise UnservedError(
-                f"system: the joint at {self.told(number)} has the polynomial {written(joint_polynomial(law))}, "
+                f"system: the joint at {self.describe(number)} has the polynomial {written(joint_polynomial(law))}, "
                 "one with factors s + g, g rational, expected for exact tables"
             )
         return joint_response(law)
 
-    def told(self, number: int) -> str:
+    def describe(self, number: int) -> str:
         """What a scene calls the points of a joint that are free to move: their names or places, a few of them."""
         law, joint = self.law(number), self.network.joints[number]
         points = [self.network.points[joint.points[k]] for k in sorted((*law.heavy, *law.light))]
@@ -76,9 +76,9 @@ class NetworkJoints:
     def sources(self) -> tuple[str, ...]:
         """The start, where not all stays as it is, and the unit loads."""
         units = (load.source for point in self.network.points for load in point.loads)
-        return (*([START] if self.begun(START) else []), *units)
+        return (*([START] if self.acting_joints(START) else []), *units)
 
-    def begun(self, source: str) -> tuple[int, ...]:
+    def acting_joints(self, source: str) -> tuple[int, ...]:
         """The joints at which a source acts."""
         network = self.network
         if source == START:

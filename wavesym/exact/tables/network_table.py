@@ -111,7 +111,7 @@ class RuledNetwork:
                         found[watched].append((time, gained))
             return self._sent(number, acts, waves, velocities)
 
-        begun = [number for number in self.joints.begun(source) if number in last]
+        begun = [number for number in self.joints.acting_joints(source) if number in last]
         for time, end, wave in departures(self.network, begun, answer, last):
             if time <= reach.get(function := function_of(end), -1):
                 found[function].append((time, wave))
