@@ -102,9 +102,19 @@ def test_what_is_computed_wrong_is_in_the_bound(change, case, tmp_path):
     ],
 )
 def test_a_mistake_in_the_bound_is_seen(changes, tmp_path):
-    made = BuiltModel(DRIVE, list(CASES["drive"][1]), tmp_path, changes)
+    refuse(changes, "drive", tmp_path)
+
+
+def refuse(changes, case, folder):
+    """Errors of spoiled C are larger than its spoiled bound."""
+    scene, numbers = CASES[case]
+    made = BuiltModel(scene, list(numbers), folder, changes)
     with pytest.raises(AssertionError):
-        check(made, DRIVE, {name: choices[0] for name, choices in CASES["drive"][1].items()})
+        check(made, scene, {name: choices[0] for name, choices in numbers.items()})
+
+
+def test_waves_that_are_sent_wrong_add_up_at_an_instant(tmp_path):
+    refuse((SENT, ("w->instant += w->passes[port]", "w->instant += 0 * w->passes[port]")), "building", tmp_path)
 
 
 STEPS = 150
