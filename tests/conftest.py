@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Generator, Iterator
+from functools import cache
 
 import pytest
 from hypothesis import Phase, is_hypothesis_test, settings
 
 from wavesym.running import native, sets, stream
+from wavesym.running.toolchain import CompilerError, compiler
 
 settings.register_profile("wavesym", deadline=None, derandomize=True)
 # where only the first failure is of interest, not the simplest
@@ -23,6 +25,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    _without_compiler()
     if config.getoption("--processor"):
         config.pluginmanager.register(ProcessorSeconds())
 
@@ -47,6 +50,36 @@ def quick_builds(pytestconfig: pytest.Config) -> Iterator[None]:
             for module in (sets, stream):
                 patch.setattr(module, "FAST", ("-O1", *native.FAST[1:]))
         yield
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup() -> Generator[None, None, None]:
+    yield from _skip_without_compiler()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call() -> Generator[None, None, None]:
+    yield from _skip_without_compiler()
+
+
+def _skip_without_compiler() -> Generator[None, None, None]:
+    """What a machine cannot compile is skipped, where it has no compiler: `make test` installs one there."""
+    try:
+        yield
+    except CompilerError as error:
+        if str(error) == _without_compiler():
+            pytest.skip(str(error))
+        raise
+
+
+@cache
+def _without_compiler() -> str:
+    """Why this machine cannot compile; empty where it can. First asked before a test makes it another machine."""
+    try:
+        compiler()
+    except CompilerError as error:
+        return str(error)
+    return ""
 
 
 def quick_examples(every: int) -> int:

@@ -7,7 +7,7 @@ import pytest
 
 from tests.support.generated import files
 from wavesym.running.compiled import compiled, imported
-from wavesym.running.toolchain import CompilerError
+from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene, lower
 
 OUTPUTS = ("strain@0", "strain@1/3", "displacement@1")
@@ -61,6 +61,7 @@ def test_the_self_test_can_fail(made):
     "flaw", ["int small_extra(void) { return 0; }", "static int unused(void) { return 0; }", "syntax error"]
 )
 def test_a_warning_is_an_error(made, flaw):
+    compiler()
     flawed = {**made, "small.c": f"{made['small.c']}\n{flaw}\n"}
     with pytest.raises(CompilerError, match=r"does not accept.*small\.c") as error, compiled(flawed, len(OUTPUTS)):
         pass

@@ -29,7 +29,7 @@ def no_package(monkeypatch):
 
 def test_the_compiler_is_the_users_choice(monkeypatch, tmp_path):
     chosen = tmp_path / "mycc"
-    chosen.symlink_to(shutil.which(at_hand()[0].command[0]))
+    chosen.symlink_to(shutil.which(compiler().command[0]))
     monkeypatch.setenv("CC", f"{chosen} -g")
     assert compiler().command == (str(chosen), "-g")
     monkeypatch.setenv("CC", "no-such-compiler")
@@ -61,6 +61,7 @@ def test_it_is_all_that_verify_needs(bare, capsys):
 
 
 def test_a_compiler_that_refuses_is_quoted():
+    compiler()
     with pytest.raises(CompilerError, match="error") as error:
         library("int f( { return 0; }")
     assert "\n" not in str(error.value)

@@ -26,10 +26,11 @@ PARTS = ("-Wno-unused-function", "-Wno-unused-const-variable")
 
 def complaint(file, folder, *flags):
     """What the compiler says of a file as it stands; empty where it takes it."""
+    chosen = compiler()
     with TemporaryDirectory() as made:
         written = ["-c", file, "-o", str(Path(made) / "made.o")]  # zig knows no -fsyntax-only
         try:
-            compiler().run([*LANGUAGES["c99"], *STRICT, *PARTS, *flags, *written], folder)
+            chosen.run([*LANGUAGES["c99"], *STRICT, *PARTS, *flags, *written], folder)
         except CompilerError as error:
             return str(error)
     return ""
