@@ -17,7 +17,7 @@ from wavesym.papers.pielorz1979.transcript import ids, settled
 from wavesym.papers.record import Case, Reading, Test, by_size, case, reading
 from wavesym.papers.tree import Tree
 
-SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(11 - m)))
+SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(10 - m)))
 SMALL = 9
 """The m + n below which values are compared first: a wrong one says more than a wrong H or range."""
 STEP = 1
@@ -27,7 +27,7 @@ STEP = 1
 def coefficient(entry: PaperEntry) -> Test:
     """A line of the list."""
     return Test(
-        "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 11: values, the H of "
+        "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 10: values, the H of "
         "every coefficient, and every coefficient given once",
         partial(_cases, entry.id),
         conventions={"the functions g of the first interval are 0": partial(_cases, entry.id, rests=True)},

@@ -8,7 +8,7 @@ A coefficient beyond the highest power does not exist, so that a limit may be ne
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
@@ -86,6 +86,18 @@ def functions(name: str, m: int) -> dict[Function, str]:
     return {function: id for id, row in right_rows(group, m).items() for function in row}
 
 
+_LETTERS = ("m", "n", "i", "j", "l", "r", "s")
+"""What the value of a cell may depend on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Limit:
+    """What a letter of a form is: its tree, and the values that are known for some _LETTERS."""
+
+    tree: Tree
+    values: dict[tuple[Any, ...], Any] = field(default_factory=dict)
+
+
 _WITHOUT_BRACES = str.maketrans("", "", "{}")
 _DEFINED: Mapping[tuple[str, Indices], str] = {
     ("L", (0,)): "(4.10).L_0",
@@ -108,6 +120,21 @@ def _cell(name: str, m: int, letter: str, symbol: str, indices: Indices, bound: 
     return f"{row}.{symbol}_{','.join(map(str, (first, *indices[1:])))}"
 
 
+@cache
+def _part(id: str) -> tuple[str, ...]:
+    """A cell and those of its part of Table 2, of which all are dashes or none."""
+    row, _, name = id.rpartition(".")
+    if name.startswith(("j_", "K_j")):
+        return tuple(f"{row}.{one}{name[-1]}" for one in ("j_0,", "j_", "K_j,"))
+    return (id,)
+
+
+@cache
+def _concerned(id: str) -> frozenset[str]:
+    """The records on which the value of a cell may depend."""
+    return frozenset((*_DEFINED.values(), *_part(id)))
+
+
 def _limit(id: str, scope: Scope, changed: Changed) -> Tree:
     """A cell where its ranges hold; where not, no power. A dash is an empty range."""
     if id in _DEFINED.values():
@@ -115,10 +142,9 @@ def _limit(id: str, scope: Scope, changed: Changed) -> Tree:
         if latex(left).translate(_WITHOUT_BRACES) != id.rpartition(".")[2]:
             raise KeyError(id)
         return right
-    cell, (row, _, name) = reading_of(id, changed), id.rpartition(".")
+    cell = reading_of(id, changed)
     formula: Tree = cell.formula
-    names = [f"{one}{name[-1]}" for one in ("j_0,", "j_", "K_j,")] if name.startswith(("j_", "K_j")) else [name]
-    if len({isinstance(reading_of(f"{row}.{one}", changed).formula, Blank) for one in names}) > 1:
+    if len({isinstance(reading_of(one, changed).formula, Blank) for one in _part(id)}) > 1:
         raise MeaninglessError("a part is given whole or not at all")
     if not all(holds(range_, scope) for range_ in cell.ranges if isinstance(range_, Progression)):
         if ".K_" not in id:
@@ -130,8 +156,8 @@ def _limit(id: str, scope: Scope, changed: Changed) -> Tree:
 
 
 @cache
-def _right_limit(id: str, m: int, i: int, n: int) -> Tree:
-    return _limit(id, Scope({"m": m, "i": i, "n": n}), {})
+def _right_limit(id: str, m: int, i: int, n: int) -> Limit:
+    return Limit(_limit(id, Scope({"m": m, "i": i, "n": n}), {}))
 
 
 # forms
@@ -175,7 +201,7 @@ class FormScope(Scope):
         self._most_n = INTERVALS[form.name] if most_n is None else most_n
         self._stated: dict[int, list[tuple[Indices, Tree, Tree, dict[str, Any]]]] = {}
         self._totals: dict[tuple[int, int, int, int], Any] = {}
-        self._limits: dict[tuple[Any, ...], Tree] = {}
+        self._limits: dict[tuple[Any, ...], Limit] = {}
         self._rates = driven.exact.rates
 
     def total(self, rod: int, number: int, z: fmpq) -> Any:
@@ -234,17 +260,23 @@ class FormScope(Scope):
             return self._driven.piece(source, number).time
         if name == "m" and len(indices) == 1:
             return self.last(f"M{indices[0]}" if is_drive else "a" if indices == (1,) else "")
-        return self.value(self._limit_of(name, indices))
+        limit = self._limit_of(name, indices)
+        if name == "w":  # depends on loads
+            return self.value(limit.tree)
+        place = tuple(map(self.bound.get, _LETTERS))
+        if place not in limit.values:
+            limit.values[place] = self.value(limit.tree)
+        return limit.values[place]
 
-    def _limit_of(self, name: str, indices: Indices) -> Tree:
+    def _limit_of(self, name: str, indices: Indices) -> Limit:
         """The right side of a definition, or a cell, that a letter is at this place; MeaninglessError."""
         bound, m = self.bound, self._driven.exact.m
         key = name, indices, *map(bound.get, ("n", "half", "i", ALPHA))
         if key not in self._limits:
             id = _DEFINED.get((name, indices)) or _cell(self._form.name, m, self._letter, name, indices, bound)
             try:
-                if self._changed:
-                    self._limits[key] = _limit(id, self, self._changed)
+                if not self._changed.keys().isdisjoint(_concerned(id)):
+                    self._limits[key] = Limit(_limit(id, self, self._changed))
                 else:
                     self._limits[key] = _right_limit(id, m, bound.get("i", 0), bound.get("n", 0))
             except KeyError:
@@ -302,14 +334,17 @@ def only(letters: str, ranges: Sequence[Tree]) -> Progression:
     raise MeaninglessError(f"the range of {letters} is not given")
 
 
-def form_cases(form: Form, changed: Changed | None = None, scope: type[FormScope] = FormScope) -> Iterator[Case]:
+def form_cases(
+    form: Form, changed: Changed | None = None, scope: type[FormScope] = FormScope, chains: int = 3
+) -> Iterator[Case]:
     """All functions of the form's table at the starts of the first intervals and inside, then in the last interval.
 
     A value there has the increments of all intervals in it, and exponentials of different exponents are independent.
+    Of the `chains` of an example the first ones are tried.
     """
     scopes: dict[tuple[int, str], FormScope] = {}
     most = INTERVALS[form.name]
-    for m, n in by_size((m, n) for m in SIZES[form.name] for n in (0, 1, most)):
+    for m, n in by_size((m, n) for m in SIZES[form.name][:chains] for n in (0, 1, most)):
         driven = driven_form(form.name, m)
         for letter, rod in functions(form.name, m):
             own = scopes.setdefault((m, letter), scope(form, driven, letter, changed))

@@ -93,7 +93,7 @@ def part_of_form(entry: PaperEntry) -> Test:
         tried = replace(right, step=replaced(right.step, part, reading.formula))
         for value in said or at_0:
             scope = type("At0", (FormScope,), {"heaviside_at_0": value})
-            for found in form_cases(tried, scope=scope):
+            for found in form_cases(tried, scope=scope, chains=2):
                 yield replace(found, at={"H(0)": value, **found.at}) if is_step else found
 
     return Test(

@@ -35,9 +35,9 @@ class PaperExample:
 
 
 EXAMPLES: Mapping[str, PaperExample] = {
-    "I": PaperExample("I", COLLISION, collision, range(4, 11, 2)),
-    "II": PaperExample("II", DRIVE, drive, range(1, 6)),
-    "III": PaperExample("III", BUILDING_FORCE, uneven_building, range(2, 7)),
+    "I": PaperExample("I", COLLISION, collision, range(4, 9, 2)),
+    "II": PaperExample("II", DRIVE, drive, range(1, 5)),
+    "III": PaperExample("III", BUILDING_FORCE, uneven_building, range(2, 6)),
 }
 
 
