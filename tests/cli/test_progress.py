@@ -70,7 +70,7 @@ def screen(written: str) -> list[str]:
     return lines
 
 
-def shown(written: str) -> list[str]:
+def format_value(written: str) -> list[str]:
     """The states of the line, one after the other."""
     return [part.rstrip() for part in written.split("\r") if part.strip()]
 
@@ -102,7 +102,7 @@ def test_it_tells_the_steps_and_is_gone_at_the_end(soon: None, monkeypatch: pyte
     print("done", file=sys.stderr)
     written = terminal.close()
     assert screen(written) == ["done", ""]
-    told = [line.partition(" (")[0] for line in shown(written)]
+    told = [line.partition(" (")[0] for line in format_value(written)]
     assert list(dict.fromkeys(told)) == ["work: A, 1 of 3", "work: B, 2 of 3", "work: C, 3 of 3", "done"]
 
 
@@ -132,7 +132,7 @@ def test_a_line_too_long_for_the_terminal_is_cut(soon: None, monkeypatch: pytest
     monkeypatch.setattr(progress, "_columns", lambda: 20)
     with progress.progress("a" * 99):
         time.sleep(0.1)
-    assert set(shown(terminal.close())) == {"a" * 19}
+    assert set(format_value(terminal.close())) == {"a" * 19}
 
 
 def test_a_terminal_that_has_gone_stops_nothing(soon: None, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -183,4 +183,4 @@ def test_commands_put_out_the_same_with_it_and_without(
     written = terminal.close()
     assert capsys.readouterr().out == out
     assert screen(written) == aside.split("\n")
-    assert any(line.startswith(step) for line in shown(written))
+    assert any(line.startswith(step) for line in format_value(written))

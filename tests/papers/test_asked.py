@@ -4,7 +4,7 @@ import pytest
 
 from tests.papers.small import entry
 from wavesym.errors import WavesymError
-from wavesym.papers.asked import asked
+from wavesym.papers.published import requested_entries
 
 IDS = {
     "(2.4).5": "section 2, (2.4)",
@@ -40,11 +40,15 @@ ENTRIES = tuple(entry(id, "n = n", where) for id, where in IDS.items())
     ],
 )
 def test_a_name_means_an_id_a_group_or_a_place(name: str, found: list[str]) -> None:
-    assert [each.id for each in asked(ENTRIES, [name])] == found
+    assert [each.id for each in requested_entries(ENTRIES, [name])] == found
 
 
 def test_several_names_come_in_the_order_of_print_and_once() -> None:
-    assert [each.id for each in asked(ENTRIES, ["text", "4.1", "text.22"])] == ["(4.1)", "text.2", "text.22"]
+    assert [each.id for each in requested_entries(ENTRIES, ["text", "4.1", "text.22"])] == [
+        "(4.1)",
+        "text.2",
+        "text.22",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -52,11 +56,11 @@ def test_several_names_come_in_the_order_of_print_and_once() -> None:
 )
 def test_a_name_that_is_not_there_is_answered_with_one_that_is(name: str, meant: str) -> None:
     with pytest.raises(WavesymError, match=rf"^{name}: no such record.*Did you mean .*{meant}") as caught:
-        asked(ENTRIES, ["III.1", name])
+        requested_entries(ENTRIES, ["III.1", name])
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("name", ["", "(", "section", "4.1.", "drive_m1"])
 def test_what_is_no_name_at_all(name: str) -> None:
     with pytest.raises(WavesymError, match="no such record"):
-        asked(ENTRIES, [name])
+        requested_entries(ENTRIES, [name])

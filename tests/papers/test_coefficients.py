@@ -82,4 +82,4 @@ def test_what_lines_differ_in():
 def test_what_the_list_lacks_is_said_in_words():
     short = reading(entries()["III.9"].printed, [r"j = 3, 4, \dots, m"])
     with pytest.raises(coefficients.NotGivenError, match=r"f_0\^\(1,2,1\) is in no line's range"):
-        list(coefficients.compared([short if id == "III.9" else settled(id) for id in ids("line")], 3, 2))
+        list(coefficients.listed_values([short if id == "III.9" else settled(id) for id in ids("line")], 3, 2))

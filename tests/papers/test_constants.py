@@ -6,8 +6,8 @@ import pytest
 from flint import fmpq
 
 from tests.papers.falsified import ENTRIES, judged
+from wavesym.papers.pielorz1979.chains import loaded_chain
 from wavesym.papers.pielorz1979.letters import Material, Units
-from wavesym.papers.pielorz1979.truth import driven
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def test_a_wrong_string_is_a_verdict(id, changes):
 def test_the_bodies_and_rods_of_a_chain_have_the_laws_of_its_nodes():
     """The rate of a body is what its rods pull, over its inertia, in the units of the chain."""
     for name, m in (("I", 4), ("II", 3), ("III", 3)):
-        chain = driven(name, m).exact.chain
+        chain = loaded_chain(name, m).exact.chain
         units = Units(fmpq(2), fmpq(3), fmpq(5, 7))
         material = Material(chain, units)
         for x, node in enumerate(chain.nodes):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from wavesym.papers.difference import marked, marked_ranges
+from wavesym.papers.difference import mark_differences, mark_range_differences
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.tree import latex
 
@@ -23,13 +23,13 @@ from wavesym.papers.tree import latex
     ],
 )  # fmt: skip
 def test_only_what_differs_is_marked(printed: str, corrected: str, one: str, other: str) -> None:
-    assert tuple(map(latex, marked(read_formula(printed), read_formula(corrected)))) == (one, other)
+    assert tuple(map(latex, mark_differences(read_formula(printed), read_formula(corrected)))) == (one, other)
 
 
 def test_without_marks_both_sides_are_as_before() -> None:
     printed = read_formula(r"g = \frac{1}{2\kappa_1 - \kappa_m} [(i+1)(g_{1,i+n} + f_{1,i+1})H(2n+m-5-i)]")
     corrected = read_formula(r"g = \frac{1}{2\kappa_1 - \kappa_m} [(i+1)(g_{1,i+1} - f_{1,i})H(2n+m-5)]")
-    one, other = (latex(tree).replace(r"\marked", "") for tree in marked(printed, corrected))
+    one, other = (latex(tree).replace(r"\marked", "") for tree in mark_differences(printed, corrected))
     stripped = [latex(tree) for tree in (printed, corrected)]
     assert [plain(one), plain(other)] == list(map(plain, stripped))
 
@@ -41,6 +41,6 @@ def plain(text: str) -> str:
 def test_ranges_are_compared_as_lists() -> None:
     printed = [read_range(r"i = 2, 3, \dots, m")]
     corrected = [read_range(r"i = 2, 3, \dots, m-1"), read_range("m > 3")]
-    one, other = marked_ranges(printed, corrected)
+    one, other = mark_range_differences(printed, corrected)
     assert list(map(latex, one)) == [r"i = 2, 3, \dots, m"]
     assert list(map(latex, other)) == [r"i = 2, 3, \dots, m \marked{ - 1}", r"\marked{m > 3}"]

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, span
-from wavesym.papers.exponentials import Exponentials, exponential
+from wavesym.papers.exact_numbers import Exponentials, exponential
 from wavesym.papers.reader import read_formula, read_range
 
 RATIONALS = st.fractions(-5, 5, max_denominator=12).map(lambda x: fmpq(x.numerator, x.denominator))

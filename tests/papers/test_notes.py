@@ -11,7 +11,7 @@ from flint import fmpq
 
 from tests.papers.falsified import ENTRIES
 from wavesym.mechanics.node import Parameters
-from wavesym.papers.exact_tables import Exact, collision, drive, with_parameters
+from wavesym.papers.pielorz1979.chains import Exact, collision, drive, with_parameters
 from wavesym.papers.pielorz1979.transcript import paper
 
 REFERENCE = re.compile(r"\(\d\.\d+\)(?:\.\w+)?|III\.\d+|text\.\w+(?:\.\w+)*|def\.\w|Table \d")

@@ -5,7 +5,7 @@ import pytest
 from tests.papers.falsified import changed_passage
 from wavesym.papers import entries as data
 from wavesym.papers.evaluation import MeaninglessError
-from wavesym.papers.pielorz1979.forms import ALPHA, FormScope, driven_form, right_form
+from wavesym.papers.pielorz1979.forms import ALPHA, FormScope, form_chain, right_form
 from wavesym.papers.pielorz1979.paper import ADAPTERS
 from wavesym.papers.pielorz1979.tables import TESTS
 from wavesym.papers.pielorz1979.transcript import entries, paper
@@ -77,7 +77,7 @@ def test_a_range_that_corrects_is_tried():
 
 
 def test_cells_as_they_should_be():
-    scope = FormScope(right_form("II"), driven_form("II", 5), "g")
+    scope = FormScope(right_form("II"), form_chain("II", 5), "g")
     with scope.binding({"i": 3, "n": 2, "half": "even", ALPHA: 2}):
         assert scope.value(read_formula(r"R_\alpha")) == 2  # as printed 3
         with pytest.raises(MeaninglessError, match=r"Q.* is not defined"):

@@ -17,13 +17,11 @@ from flint import fmpq, fmpq_mat
 from tests.papers.falsified import ENTRIES
 from wavesym.derivation.table import Function
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, range_of, sides, span
-from wavesym.papers.exact_tables import Exact
-from wavesym.papers.jets import Jet
-from wavesym.papers.pielorz1979.coefficients import STEP, Alone, corrected
+from wavesym.papers.exact_numbers import Jet
+from wavesym.papers.pielorz1979.chains import Exact, LoadedChain
+from wavesym.papers.pielorz1979.coefficients import STEP, Alone, corrected, truth, unknowns
 from wavesym.papers.pielorz1979.letters import Motion
-from wavesym.papers.pielorz1979.lines import truth, unknowns
 from wavesym.papers.pielorz1979.transcript import settled
-from wavesym.papers.pielorz1979.truth import DrivenChain
 from wavesym.papers.record import Reading, reading
 from wavesym.papers.tree import Call, Derivative, Progression, Symbol, Tree, latex
 
@@ -296,8 +294,8 @@ def test_the_model_of_the_text_goes_with_no_other_formula() -> None:
 def _against_the_list(lines: list[Reading]) -> set[str]:
     """The lines of (4.8) that (4.12) with these coefficients does not satisfy; g_1 is not in the list."""
     m, most = 3, 3
-    known, driven = Alone(lines, m, most), truth(m).driven
-    kappa, (a, b) = driven.exact.chain.parameters.kappa, (driven.piece(source, STEP) for source in "ab")
+    known, motion = Alone(lines, m, most), truth(m).motion
+    kappa, (a, b) = motion.exact.chain.parameters.kappa, (motion.piece(source, STEP) for source in "ab")
     gains: dict[Function, list[dict[fmpq, list[fmpq]]]] = {}
     for n in range(most + 1):
         for key in sorted(key for key in unknowns(m, n) if key.k == STEP):  # powers in their order
@@ -305,8 +303,8 @@ def _against_the_list(lines: list[Reading]) -> set[str]:
             gained = gains.setdefault(Function(key.letter, key.rod), [{} for _ in range(most + 1)])[n]
             gained.setdefault(rate, []).append(known(key) / a.weight)
     nothing = {function: [{}] * (most + 1) for function in gains}
-    exact = Exact(driven.exact.chain, 2, {"a": gains, "b": nothing})
-    scope = Motion(DrivenChain(exact, {"a": (a,), "b": (b,)}))
+    exact = Exact(motion.exact.chain, 2, {"a": gains, "b": nothing})
+    scope = Motion(LoadedChain(exact, {"a": (a,), "b": (b,)}))
     found = set()
     for id in ("(4.8).2", "(4.8).3", "(4.8).4", "(4.8).5"):
         left, right = sides(settled(id).formula)

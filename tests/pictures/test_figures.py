@@ -52,7 +52,7 @@ def listed(figure: Figure) -> set[str]:
     return {words[0] for text in figure.texts if (words := text.get_text().split("  ")) and words[0].isdigit()}
 
 
-def marked(figure: Figure) -> set[str]:
+def mark_differences(figure: Figure) -> set[str]:
     """The numbers in the panels."""
     texts = {text.get_text().partition(":")[0] for axes in figure.axes for text in axes.texts}
     return {text for text in texts if text.isdigit()}
@@ -71,7 +71,7 @@ def missing(found: Mapping[int, Figure], records: Mapping[str, Record]) -> set[s
         said = section_5.statements(number).get(id)
         nowhere = said is not None and not measured(number, said).spots
         if id.removeprefix("text.") not in listed(found[number]) & (
-            marked(found[number]) | ({id[5:]} if nowhere else set())
+            mark_differences(found[number]) | ({id[5:]} if nowhere else set())
         ):
             absent.add(id)
     return absent

@@ -1,6 +1,8 @@
 """Papers judged: what one prints, formula by formula, with a verdict that is computed each time anew.
 
-record.py        Claim -> Record: how a verdict comes about
-exact_tables.py  the exact tables that formulas are tested on
-report.py        text, JSON, Markdown
+entries.py       passages of the source, and the records that select their parts of them; selection.py, tables.py
+reader.py        strings to trees (tree.py), by latex.lark; evaluation.py: trees to values in a scope
+record.py        a test tried on what is printed, on what is right, and on faults (mutations.py): the verdict
+sentences.py     the test of prose, by patterns
+pages/           the verdicts as one list, in five formats; published.py puts it together
 """

@@ -30,13 +30,13 @@ from wavesym.papers.tree import (
 )
 
 
-def marked(before: Tree, after: Tree) -> tuple[Tree, Tree]:
+def mark_differences(before: Tree, after: Tree) -> tuple[Tree, Tree]:
     """Both formulas, with `Marked` around what differs; around nothing where they share nothing."""
     _, one, other = _compared(before, after)
     return (before, after) if isinstance(one, Marked) and isinstance(other, Marked) else (one, other)
 
 
-def marked_ranges(before: Sequence[Tree], after: Sequence[Tree]) -> tuple[tuple[Tree, ...], tuple[Tree, ...]]:
+def mark_range_differences(before: Sequence[Tree], after: Sequence[Tree]) -> tuple[tuple[Tree, ...], tuple[Tree, ...]]:
     """Both lists of ranges, with what differs marked."""
     _, one, other = _rows(tuple(before), tuple(after))
     return one, other
@@ -167,7 +167,7 @@ def _joined(parts: tuple[Any, ...], kind: type) -> Any:
     return parts[0] if len(parts) == 1 else kind(parts)
 
 
-def subtracted(printed: Tree, corrected: Tree) -> str:
+def subtract(printed: Tree, corrected: Tree) -> str:
     """One equation less another, term by term, as LaTeX: their right sides, where the left ones are the same, else left
     less right sides; "" where they do not differ.
     """

@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.papers.exponentials import exponential
+from wavesym.papers.exact_numbers import exponential
 from wavesym.papers.tree import (
     Addition,
     AtValue,
@@ -184,9 +184,9 @@ def items(tree: Tree) -> tuple[Tree, ...]:
     return tree.items if isinstance(tree, Listed) else (tree,)
 
 
-def ungrouped(tree: Tree) -> Tree:
+def without_brackets(tree: Tree) -> Tree:
     """What stands within brackets."""
-    return ungrouped(tree.inner) if isinstance(tree, Group) else tree
+    return without_brackets(tree.inner) if isinstance(tree, Group) else tree
 
 
 _COMPARED: dict[str, Callable[[Any, Any], bool]] = {
@@ -225,7 +225,7 @@ def range_of(name: str, ranges: Iterable[Tree]) -> Progression:
     raise MeaninglessError(f"{name} has no range")
 
 
-def given(ranges: Iterable[Tree]) -> dict[Tree, Tree]:
+def constants_in(ranges: Iterable[Tree]) -> dict[Tree, Tree]:
     """The constants that ranges say the value of, such as "v_0 = c_f U_0 / l"."""
     return {r.variable: r.shown[0] for r in ranges if isinstance(r, Progression) and len(r.shown) == 1 and not r.dots}
 
@@ -301,14 +301,14 @@ def _symbol(tree: Symbol) -> Runner:
 
     def plain(scope: Scope) -> Any:
         bound = scope.bound
-        return bound[name] if name in bound else marked(scope)
+        return bound[name] if name in bound else with_marks(scope)
 
-    def marked(scope: Scope) -> Any:
+    def with_marks(scope: Scope) -> Any:
         if scope.constants and tree in scope.constants:
             return scope._constant(tree)
         return scope.symbol(tree)
 
-    return marked if tree.below or tree.above or tree.primes or tree.accent else plain
+    return with_marks if tree.below or tree.above or tree.primes or tree.accent else plain
 
 
 def _minus(tree: Minus) -> Runner:

@@ -12,10 +12,10 @@ from typing import Any, Literal
 
 from flint import fmpq
 
-from wavesym.papers.difference import subtracted
+from wavesym.papers.difference import subtract
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError
-from wavesym.papers.exponentials import Exponentials
+from wavesym.papers.exact_numbers import Exponentials
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.reader import UnreadableError, read_formula, read_range
 from wavesym.papers.tree import Tree, latex
@@ -61,13 +61,13 @@ class Case:
         return bool(self.printed == self.true)
 
     def __str__(self) -> str:
-        where = ", ".join(f"{name} = {shown(value)}" for name, value in self.at.items())
+        where = ", ".join(f"{name} = {format_value(value)}" for name, value in self.at.items())
         match self.printed, self.true:
             case bool(), bool():
                 said = f"what is printed is {'' if self.agrees else 'not '}so"
             case printed, true:
                 verb = "has" if isinstance(printed, Nothing) else "gives"
-                said = f"what is printed {verb} {shown(printed)}; it should be {shown(true)}"
+                said = f"what is printed {verb} {format_value(printed)}; it should be {format_value(true)}"
         return f"With {where}, {said}" if where else said[0].upper() + said[1:]
 
 
@@ -277,7 +277,7 @@ def _adds(entry: PaperEntry) -> bool:
 def _subtracted(test: Test, printed: str, corrected: str) -> str | None:
     """Printed less corrected, where both can be read and differ."""
     try:
-        return subtracted(test.read(printed, ()).formula, test.read(corrected, ()).formula) or None
+        return subtract(test.read(printed, ()).formula, test.read(corrected, ()).formula) or None
     except UnreadableError:
         return None
 
@@ -341,7 +341,7 @@ class _Trial:
         return cls(test.cases(read), stop_at="failure").wrong is not None
 
 
-def shown(value: object) -> str:
+def format_value(value: object) -> str:
     """A value in a sentence: exact numbers as they are, measured ones to four digits."""
     match value:
         case bool():
@@ -353,11 +353,11 @@ def shown(value: object) -> str:
         case Fraction() | fmpq() | int() | str() | Exponentials():
             return str(value)
         case dict():
-            return "(" + ", ".join(f"{key} = {shown(part)}" for key, part in value.items()) + ")"
+            return "(" + ", ".join(f"{key} = {format_value(part)}" for key, part in value.items()) + ")"
         case tuple() | list() | range():
-            return "(" + ", ".join(map(shown, value)) + ")"
+            return "(" + ", ".join(map(format_value, value)) + ")"
         case set() | frozenset():
-            return "{" + ", ".join(sorted(map(shown, value))) + "}"
+            return "{" + ", ".join(sorted(map(format_value, value))) + "}"
     return str(value)
 
 

@@ -265,15 +265,17 @@ def symbols(tree: Any) -> Iterator[Symbol]:
             yield from symbols(getattr(tree, field.name))
 
 
-def replaced(tree: Any, part: Tree, instead: Tree) -> Any:
+def replace_part(tree: Any, part: Tree, instead: Tree) -> Any:
     """A tree with another part wherever it has one."""
     if tree == part:
         return instead
     if isinstance(tree, tuple):
-        return tuple(replaced(each, part, instead) for each in tree)
+        return tuple(replace_part(each, part, instead) for each in tree)
     if not is_dataclass(tree) or isinstance(tree, type):
         return tree
-    return replace(tree, **{field.name: replaced(getattr(tree, field.name), part, instead) for field in fields(tree)})
+    return replace(
+        tree, **{field.name: replace_part(getattr(tree, field.name), part, instead) for field in fields(tree)}
+    )
 
 
 def _symbol(symbol: Symbol) -> str:

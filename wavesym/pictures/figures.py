@@ -28,7 +28,7 @@ from wavesym.papers.pielorz1979.figures import (
 from wavesym.papers.pielorz1979.measures import Finding
 from wavesym.papers.pielorz1979.paper import records
 from wavesym.papers.pielorz1979.transcript import entries
-from wavesym.papers.record import Record, Sentence, shown
+from wavesym.papers.record import Record, Sentence, format_value
 from wavesym.pictures.groups import Mark, PlotPanel, axis_title
 from wavesym.pictures.histories import Histories, histories
 from wavesym.pictures.loads import load_histories
@@ -142,11 +142,11 @@ def _list(number: int, load: TriedLoad, verdicts: Mapping[str, Record]) -> Itera
 
 def _measured(number: int, load: TriedLoad, statement: Sentence) -> Iterator[str]:
     found = findings(number, statement)
-    yield f"{meaning(statement)}; measured: {shown(finding(figure(number), load, statement).value)}"
+    yield f"{meaning(statement)}; measured: {format_value(finding(figure(number), load, statement).value)}"
     if len(found) > 1:
         for truth in (True, False):
             those = [
-                f"{other.name} ({shown(measured.value)})"
+                f"{other.name} ({format_value(measured.value)})"
                 for other, measured in found
                 if true(figure(number), other, statement) == truth
             ]

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
-from wavesym.papers.difference import marked, marked_ranges
+from wavesym.papers.difference import mark_differences, mark_range_differences
 from wavesym.papers.reader import UnreadableError, read_formula, read_range
 from wavesym.papers.record import Record
 from wavesym.papers.tree import Tree
@@ -107,20 +107,14 @@ def _versions(record: Record) -> tuple[tuple[Line, ...], tuple[Line, ...]]:
     else:
         one, other = formula(entry.printed), formula(slip.corrected)
         if isinstance(one, Formula) and isinstance(other, Formula):
-            trees = marked(one.tree, other.tree)
+            trees = mark_differences(one.tree, other.tree)
             one, other = (Formula(f.text, tree) for f, tree in zip((one, other), trees, strict=True))
         sentences = (one,), (other,)
     ranges = [list(map(range_of_values, texts)) for texts in (entry.ranges, slip.ranges or entry.ranges)]
     if slip.ranges is not None and all(isinstance(range_, Formula) for side in ranges for range_ in side):
-        sides = marked_ranges(*([range_.tree for range_ in side if isinstance(range_, Formula)] for side in ranges))
-        ranges = [
-            [
-                Formula(range_.text, tree)
-                for range_, tree in zip(side, trees, strict=True)
-                if isinstance(range_, Formula)
-            ]
-            for side, trees in zip(ranges, sides, strict=True)
-        ]
+        before, after = ([range_.tree for range_ in side if isinstance(range_, Formula)] for side in ranges)
+        differences = mark_range_differences(before, after)
+        ranges = [list(map(Formula, *side)) for side in zip((entry.ranges, slip.ranges), differences, strict=True)]
     first, second = ((sentence, *((r,) for r in side)) for sentence, side in zip(sentences, ranges, strict=True))
     return first, second
 

@@ -16,15 +16,25 @@ from flint import fmpq
 
 from wavesym.mechanics.node import Node
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, given, holds, items, sides, span
-from wavesym.papers.exact_tables import UNEQUAL_COLLISION, building, grounded_building, unequal_collision
-from wavesym.papers.jets import Jet
+from wavesym.papers.evaluation import MeaninglessError, Scope, constants_in, holds, items, sides, span
+from wavesym.papers.exact_numbers import Jet
+from wavesym.papers.pielorz1979.chains import (
+    EXAMPLES,
+    UNEQUAL_COLLISION,
+    JumpingChain,
+    LoadedChain,
+    building,
+    example,
+    grounded_building,
+    instants,
+    loaded_chain,
+    loads,
+    unequal_collision,
+)
 from wavesym.papers.pielorz1979.letters import DISPLACEMENTS, ONES, Motion, Units, body_velocity, letter, rods_at
-from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcript import others, settled
-from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, JumpingChain, driven, instants, loads
 from wavesym.papers.reader import read_range
-from wavesym.papers.record import Case, Reading, Reproduction, Test, case, shown
+from wavesym.papers.record import Case, Reading, Reproduction, Test, case, format_value
 from wavesym.papers.tree import Call, Cases, Derivative, Progression, Relation, Symbol, Tree, latex
 
 Place = Mapping[str, Any]
@@ -75,13 +85,13 @@ class EquationGroup:
     is_definition: ClassVar[bool] = False
     is_alone: ClassVar[bool] = True
 
-    def __init__(self, entry: PaperEntry, reading: Reading, motion: DrivenChain) -> None:
+    def __init__(self, entry: PaperEntry, reading: Reading, motion: LoadedChain) -> None:
         self.entry, self.reading = entry, reading
         progressions = [r for r in reading.ranges if isinstance(r, Progression)]
         self.ranges = {latex(r.variable): r for r in progressions}
         if len(self.ranges) < len(progressions) or not self.ranges.keys() <= self.letters:
             raise MeaninglessError("a range of something else")
-        constants = {name: value for name, value in given(reading.ranges).items() if "_" in latex(name)}
+        constants = {name: value for name, value in constants_in(reading.ranges).items() if "_" in latex(name)}
         self.scope = Motion(motion, self.units[motion.exact.m % 2], constants, self.velocities)
 
     # what a kind has of its own
@@ -156,7 +166,7 @@ class EquationGroup:
         """How a case is seen: what a scene says at its place, to be put into the equation."""
         if self.scope.chain.system is UNEQUAL_COLLISION:  # no scene has it
             return None
-        where = ", ".join(f"{name} = {shown(value)}" for name, value in at.items())
+        where = ", ".join(f"{name} = {format_value(value)}" for name, value in at.items())
         x = min(max(fmpq(at.get("x", at.get("i", 1))), fmpq(0)), fmpq(self.scope.chain.m))
         look = f"velocity@{x} and what stands beside it in the equation; with {where}, {found.printed} comes of it"
         motion, outputs = self.scope.motion, {"velocity": [str(x)]}
@@ -164,7 +174,7 @@ class EquationGroup:
 
 
 @cache
-def _said_beside(id: str, kind: str, motion: DrivenChain) -> Counter[Key]:
+def _said_beside(id: str, kind: str, motion: LoadedChain) -> Counter[Key]:
     found: Counter[Key] = Counter()
     for reading in others(id, kind):
         beside = GROUPS[kind](PaperEntry(id=id, kind=kind, printed=""), reading, motion)
@@ -276,7 +286,7 @@ class Delays(EquationGroup):
 class _Jumps(Delays):
     """The second derivatives alone, each with the jump of the first one."""
 
-    def __init__(self, entry: PaperEntry, reading: Reading, motion: DrivenChain) -> None:
+    def __init__(self, entry: PaperEntry, reading: Reading, motion: LoadedChain) -> None:
         super().__init__(entry, reading, motion)
         self.scope.heaviside_at_0 = 0
         self.scope.step = lambda value: 0  # type: ignore[method-assign]
@@ -291,7 +301,7 @@ class OfRods(EquationGroup):
     sizes: ClassVar[Mapping[str, Iterable[int]]] = {"I": (4, 6), "II": (1, 2), "III": (2, 3)}
     velocities = "rod"
 
-    def __init__(self, entry: PaperEntry, reading: Reading, motion: DrivenChain) -> None:
+    def __init__(self, entry: PaperEntry, reading: Reading, motion: LoadedChain) -> None:
         super().__init__(entry, reading, motion)
         late = self.scope.units.l / self.scope.units.c_f  # the t_k are those of (3.2) alone
         self.scope.letters["t"] = lambda zero, rod: self.scope.start(zero, rod) * late
@@ -520,7 +530,7 @@ def _without_bar(reading: Reading) -> Reading:
 
 
 @cache
-def _chain(name: str, m: int, variant: str | None, is_general: bool) -> DrivenChain:
+def _chain(name: str, m: int, variant: str | None, is_general: bool) -> LoadedChain:
     """A chain of an example under its loads; for (2.4), which has an A_i for each rod, with unequal rods."""
     if variant == "ground":
         exact = grounded_building(m)
@@ -529,8 +539,8 @@ def _chain(name: str, m: int, variant: str | None, is_general: bool) -> DrivenCh
     elif name == "I" and is_general:
         exact = unequal_collision(m)
     else:
-        return driven(name, m)
-    return DrivenChain(exact, loads(exact))
+        return loaded_chain(name, m)
+    return LoadedChain(exact, loads(exact))
 
 
 def is_complete(number: str, m: int) -> bool:
@@ -538,7 +548,7 @@ def is_complete(number: str, m: int) -> bool:
     known = EXAMPLES[{"(4.6)": "I", "(4.7)": "II", "(4.8)": "III"}[number]]
     if (m - known.system.smallest) % known.system.step:
         return False
-    said = _said_beside(number, "delay", driven(known.name, m))
+    said = _said_beside(number, "delay", loaded_chain(known.name, m))
     return said == Counter((name, rod) for name in "fg" for rod in range(1, m + 1))
 
 
@@ -571,7 +581,7 @@ def solution(entry: PaperEntry) -> Test:
 def _solution_cases(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
     for name, sizes in OfRods.sizes.items():
         for m in sizes:
-            group = Definitions(entry, reading, driven(name, m))
+            group = Definitions(entry, reading, loaded_chain(name, m))
             scope, at = group.scope, {"example": name, "m": m}
             said = Counter(group.key(reading.formula, place) for place in group.places(reading.formula))
             required = Counter(group.required())

@@ -22,11 +22,11 @@ from wavesym.exact.contacts.events import contact_ends
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
-from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, ungrouped
+from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, without_brackets
+from wavesym.papers.pielorz1979.chains import LoadStep
 from wavesym.papers.pielorz1979.transcript import entry
-from wavesym.papers.pielorz1979.truth import LoadStep
 from wavesym.papers.reader import read_formula
-from wavesym.papers.record import shown
+from wavesym.papers.record import format_value
 from wavesym.papers.tree import Number, Product, Symbol, Tree, latex
 from wavesym.scene import Scene, lower
 from wavesym.systems.drive import DRIVE
@@ -157,7 +157,7 @@ def described(figure: int, formula: Tree) -> Described:
     scope = Scope()
     for equation in items(formula):
         left, right = sides(equation)
-        match ungrouped(left):
+        match without_brackets(left):
             case Symbol() as symbol:
                 factor: Tree = Number("1")
             case Product((Number() as factor, Symbol() as symbol)):
@@ -203,7 +203,7 @@ def _system(described: Described) -> Mapping[str, object]:
 def _drive(rates: Sequence[fmpq]) -> Mapping[str, object]:
     """One shaft with bodies of these rates: a body's rate goes with kappa_1, and against its inertia."""
     if len(rates) != 2 or not all(rates):
-        raise MeaninglessError(f"rates {shown(tuple(rates))} for the two bodies of one shaft")
+        raise MeaninglessError(f"rates {format_value(tuple(rates))} for the two bodies of one shaft")
     equal = Chain(DRIVE, 1, Parameters(kappa={1: fmpq(1)}, inertia={1: fmpq(1), 2: fmpq(1)}))
     first, second = (fmpq(node.alpha + node.beta) / 2 for node in equal.nodes)
     kappa = rates[0] / first

@@ -20,6 +20,7 @@ from flint import fmpq
 
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope
+from wavesym.papers.pielorz1979.chains import written
 from wavesym.papers.pielorz1979.figure_scenes import (
     PLOTTED,
     SAMPLES,
@@ -32,10 +33,9 @@ from wavesym.papers.pielorz1979.figure_scenes import (
     loads,
 )
 from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding
-from wavesym.papers.pielorz1979.scenes import written
 from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.reader import UnreadableError, read_formula
-from wavesym.papers.record import Case, Nothing, Reproduction, Sentence, Test, case, shown
+from wavesym.papers.record import Case, Nothing, Reproduction, Sentence, Test, case, format_value
 from wavesym.papers.sentences import LIST, SentenceReader, read_patterns
 from wavesym.papers.tree import Number, Relation, Tree, latex
 from wavesym.scene import lower
@@ -152,7 +152,9 @@ def _observed(scene: Described, entry: PaperEntry) -> str:
 def _outcomes(scene: Described, sentence: Sentence) -> str:
     outcomes: dict[bool, list[str]] = {True: [], False: []}
     for load in tried(scene.figure, sentence):
-        outcomes[true(scene, load, sentence)].append(f"{load.name} ({shown(finding(scene, load, sentence).value)})")
+        outcomes[true(scene, load, sentence)].append(
+            f"{load.name} ({format_value(finding(scene, load, sentence).value)})"
+        )
     return "; ".join(f"{'true' if so else 'false'} under {', '.join(names)}" for so, names in outcomes.items() if names)
 
 

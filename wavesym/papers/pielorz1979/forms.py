@@ -15,10 +15,8 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
-from wavesym.papers.exact_tables import Exact, building, collision, drive
-from wavesym.papers.pielorz1979.scenes import example
+from wavesym.papers.pielorz1979.chains import Exact, LoadedChain, building, collision, drive, example, loads
 from wavesym.papers.pielorz1979.transcript import entries, ids, settled
-from wavesym.papers.pielorz1979.truth import DrivenChain, loads
 from wavesym.papers.record import Case, Reading, Reproduction, by_size, case
 from wavesym.papers.tree import Blank, Call, Minus, Number, Progression, Symbol, Tree, latex
 
@@ -43,10 +41,10 @@ Indices = tuple[int, ...]
 
 
 @cache
-def driven_form(name: str, m: int) -> DrivenChain:
+def form_chain(name: str, m: int) -> LoadedChain:
     """An example under loads of several pieces; the building has equal floors, as (4.12) says."""
     exact = EXACT[name](m)
-    return DrivenChain(exact, loads(exact))
+    return LoadedChain(exact, loads(exact))
 
 
 # the tables as they should be
@@ -178,7 +176,7 @@ class Form:
         found = items(reading.formula)
         if len(found) != 2:
             raise MeaninglessError("a form is two equations")
-        return cls(name, *found, only("n", reading.ranges))
+        return cls(name, *found, single_range("n", reading.ranges))
 
 
 @cache
@@ -194,15 +192,15 @@ class FormScope(Scope):
     """
 
     def __init__(
-        self, form: Form, driven: DrivenChain, letter: str, changed: Changed | None = None, most_n: int | None = None
+        self, form: Form, motion: LoadedChain, letter: str, changed: Changed | None = None, most_n: int | None = None
     ) -> None:
-        super().__init__({"m": driven.exact.m})
-        self._form, self._driven, self._letter, self._changed = form, driven, letter, changed or {}
+        super().__init__({"m": motion.exact.m})
+        self._form, self._motion, self._letter, self._changed = form, motion, letter, changed or {}
         self._most_n = INTERVALS[form.name] if most_n is None else most_n
         self._stated: dict[int, list[tuple[Indices, Tree, Tree, dict[str, Any]]]] = {}
         self._totals: dict[tuple[int, int, int, int], Any] = {}
         self._limits: dict[tuple[Any, ...], Limit] = {}
-        self._rates = driven.exact.rates
+        self._rates = motion.exact.rates
 
     def total(self, rod: int, number: int, z: fmpq) -> Any:
         """F' of a rod at z as the form of interval 1, 2, ... has it; MeaninglessError."""
@@ -250,14 +248,14 @@ class FormScope(Scope):
         if name == "F" and symbol.above:
             return self.coefficient(indices, self.upper(symbol))
         if symbol.accent == r"\bar" and name == "M" and len(indices) == 2:
-            return self._driven.piece(f"M{indices[0]}", indices[1]).weight
+            return self._motion.piece(f"M{indices[0]}", indices[1]).weight
         if symbol.accent or symbol.above or symbol.primes:
             return super().symbol(symbol)
         if len(indices) == 1 and name == (r"\gamma" if is_drive else r"\kappa"):
-            return known(self._rates if is_drive else self._driven.exact.chain.parameters.kappa, indices[0], name)
+            return look_up(self._rates if is_drive else self._motion.exact.chain.parameters.kappa, indices[0], name)
         if name == r"\tau" and indices:
             source, number = (f"M{indices[0]}", indices[1]) if len(indices) == 2 else ("a", indices[0])
-            return self._driven.piece(source, number).time
+            return self._motion.piece(source, number).time
         if name == "m" and len(indices) == 1:
             return self.last(f"M{indices[0]}" if is_drive else "a" if indices == (1,) else "")
         limit = self._limit_of(name, indices)
@@ -270,7 +268,7 @@ class FormScope(Scope):
 
     def _limit_of(self, name: str, indices: Indices) -> Limit:
         """The right side of a definition, or a cell, that a letter is at this place; MeaninglessError."""
-        bound, m = self.bound, self._driven.exact.m
+        bound, m = self.bound, self._motion.exact.m
         key = name, indices, *map(bound.get, ("n", "half", "i", ALPHA))
         if key not in self._limits:
             id = _DEFINED.get((name, indices)) or _cell(self._form.name, m, self._letter, name, indices, bound)
@@ -285,17 +283,17 @@ class FormScope(Scope):
 
     def last(self, source: str) -> int:
         """m_s and m_1: the number of the last piece of a load."""
-        return len(known(self._driven.loads, source, "the load")) - 1
+        return len(look_up(self._motion.loads, source, "the load")) - 1
 
     def coefficient(self, lower: Indices, upper: Indices) -> Any:
         """The coefficient with these indices; MeaninglessError where there is none."""
-        increment = self._driven.gain(self._letter, *self._where(upper))
+        increment = self._motion.gain(self._letter, *self._where(upper))
         if len(lower) < 2:  # of the family with rate 0, where 0 is as good as none
-            power = known({(): 0, (0,): 1}, lower, "F")
+            power = look_up({(): 0, (0,): 1}, lower, "F")
             powers = increment.get(fmpq(0), [])
             return powers[power] if power < len(powers) else fmpq(0)
         body, power = lower
-        powers = increment.get(known(self._rates, body, "the rate"), [])
+        powers = increment.get(look_up(self._rates, body, "the rate"), [])
         if not 0 <= power < len(powers):
             raise MeaninglessError(f"there is no coefficient of power {power} at the rate of body {body}")
         return powers[power]
@@ -320,14 +318,14 @@ def derivative(tree: Tree) -> Call:
     raise MeaninglessError(f"{latex(tree)} is no derivative of a function")
 
 
-def known(values: Mapping[Any, Any], index: Any, name: str) -> Any:
+def look_up(values: Mapping[Any, Any], index: Any, name: str) -> Any:
     """A value by its number; MeaninglessError where there is none."""
     if index not in values:
         raise MeaninglessError(f"{name} has no number {index}")
     return values[index]
 
 
-def only(letters: str, ranges: Sequence[Tree]) -> Progression:
+def single_range(letters: str, ranges: Sequence[Tree]) -> Progression:
     """The one range that there must be, of one of some letters; MeaninglessError."""
     if len(ranges) == 1 and isinstance(ranges[0], Progression) and latex(ranges[0].variable) in letters:
         return ranges[0]
@@ -345,12 +343,12 @@ def form_cases(
     scopes: dict[tuple[int, str], FormScope] = {}
     most = INTERVALS[form.name]
     for m, n in by_size((m, n) for m in SIZES[form.name][:chains] for n in (0, 1, most)):
-        driven = driven_form(form.name, m)
+        motion = form_chain(form.name, m)
         for letter, rod in functions(form.name, m):
-            own = scopes.setdefault((m, letter), scope(form, driven, letter, changed))
+            own = scopes.setdefault((m, letter), scope(form, motion, letter, changed))
             for number in numbers(form.name, n)[-1 if n == most else 0 :]:
                 for part in WITHIN if n < most else WITHIN[1:]:
-                    yield compared(own, driven, (letter, rod), number, driven.exact.interval * (number - 1 + part))
+                    yield compare_at(own, motion, (letter, rod), number, motion.exact.interval * (number - 1 + part))
 
 
 @cache
@@ -364,15 +362,15 @@ def numbers(name: str, n: int) -> tuple[int, ...]:
     return (2 * n + 1, 2 * n + 2) if name == "II" else (n + 1,)
 
 
-def compared(scope: FormScope, driven: DrivenChain, function: Function, number: int, z: fmpq) -> Case:
+def compare_at(scope: FormScope, motion: LoadedChain, function: Function, number: int, z: fmpq) -> Case:
     """A function at z, by the form of an interval and by the motion."""
     letter, rod = function
-    true = driven.wave(letter, rod, z)
-    at = {"m": driven.exact.m, "function": f"{letter}'_{rod}", "z": z, "interval": number}
-    return case(at, lambda: scope.total(rod, number, z), true, true != 0, shown(driven.exact, function, number))
+    true = motion.wave(letter, rod, z)
+    at = {"m": motion.exact.m, "function": f"{letter}'_{rod}", "z": z, "interval": number}
+    return case(at, lambda: scope.total(rod, number, z), true, true != 0, table_scene(motion.exact, function, number))
 
 
-def shown(exact: Exact, function: Function, number: int) -> Callable[[], Reproduction]:
+def table_scene(exact: Exact, function: Function, number: int) -> Callable[[], Reproduction]:
     """The scene of a chain under its loads, and where its table has what a function gains in an interval."""
     letter, rod = function
     outputs = {"velocity": [f"{rod - 1}+" if letter == "f" else f"{rod}-"]}

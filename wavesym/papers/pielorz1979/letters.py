@@ -14,9 +14,9 @@ from flint import fmpq
 
 from wavesym.mechanics.chain import Chain
 from wavesym.papers.evaluation import MeaninglessError, Scope
-from wavesym.papers.jets import Jet
-from wavesym.papers.pielorz1979.truth import DrivenChain
-from wavesym.papers.record import shown
+from wavesym.papers.exact_numbers import Jet
+from wavesym.papers.pielorz1979.chains import LoadedChain
+from wavesym.papers.record import format_value
 from wavesym.papers.tree import Call, Derivative, Number, Symbol, Tree, latex
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.drive import DRIVE
@@ -59,7 +59,7 @@ class IndexedLetters(Scope):
         try:
             return means(*index, *arguments)
         except (LookupError, TypeError):
-            which = f"with indices {shown(index)}" if index else "without an index"
+            which = f"with indices {format_value(index)}" if index else "without an index"
             raise MeaninglessError(f"{latex(symbol)} is not defined {which}") from None
 
 
@@ -157,7 +157,7 @@ class Motion(IndexedLetters):
 
     def __init__(
         self,
-        motion: DrivenChain,
+        motion: LoadedChain,
         units: Units | None = None,
         constants: Mapping[Tree, Tree] | None = None,
         velocities: str = "body",

@@ -11,8 +11,8 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.papers.evaluation import MeaninglessError
-from wavesym.papers.exact_tables import INTERVALS as TABULATED
-from wavesym.papers.exact_tables import Exact
+from wavesym.papers.pielorz1979.chains import INTERVALS as TABULATED
+from wavesym.papers.pielorz1979.chains import Exact, LoadedChain, LoadStep, example
 from wavesym.papers.pielorz1979.forms import (
     ALPHA,
     EXACT,
@@ -26,8 +26,6 @@ from wavesym.papers.pielorz1979.forms import (
     right_form,
     right_rows,
 )
-from wavesym.papers.pielorz1979.scenes import example
-from wavesym.papers.pielorz1979.truth import DrivenChain, LoadStep
 from wavesym.papers.record import Case, Nothing, Reproduction, by_size, case
 from wavesym.papers.tree import Call, Power, Series, Symbol
 
@@ -46,9 +44,9 @@ class RequestScope(FormScope):
     """
 
     def __init__(
-        self, name: str, driven: DrivenChain, letter: str, changed: Changed | None = None, part: int | None = None
+        self, name: str, motion: LoadedChain, letter: str, changed: Changed | None = None, part: int | None = None
     ) -> None:
-        super().__init__(right_form(name), driven, letter, changed, max(n for _, n in PAIRS[name]))
+        super().__init__(right_form(name), motion, letter, changed, max(n for _, n in PAIRS[name]))
         self._part = part
         self._requests: list[tuple[Indices, Indices]] = []
 
@@ -83,7 +81,7 @@ class RequestScope(FormScope):
 
     def last(self, source: str) -> int:
         """Moments that do not exist are requested, too."""
-        return len(self._driven.loads.get(source, (None,))) - 1
+        return len(self._motion.loads.get(source, (None,))) - 1
 
 
 Powers = dict[tuple[str, str], Any]
@@ -95,7 +93,7 @@ class HighestPowers:
 
     def __init__(self, name: str, exact: Exact) -> None:
         self.name, self.exact = name, exact
-        self.driven = DrivenChain(exact, {source: (LoadStep(fmpq(0), fmpq(1)),) for source in exact.responses})
+        self.motion = LoadedChain(exact, {source: (LoadStep(fmpq(0), fmpq(1)),) for source in exact.responses})
         self._rates = {body: str(rate) for body, rate in exact.rates.items()}
         self._true: dict[tuple[str, int, int], Powers] = {}
 
@@ -178,7 +176,7 @@ def power_cases(
         powers, table = highest_powers(name, m), right_rows(f"{TABLE[name]}.", m)
         for head, function in ((id, function) for id, row in table.items() for function in row if id in heads):
             letter, rod = function
-            scope = scopes.setdefault((m, letter), RequestScope(name, powers.driven, letter, changed, part))
+            scope = scopes.setdefault((m, letter), RequestScope(name, powers.motion, letter, changed, part))
             half = head.split(".")[1]
             number = numbers(name, n)[half == "odd"]
             if name == "II" and n == 0 and part is None:

@@ -20,8 +20,8 @@ from wavesym.derivation.walks import units
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds
-from wavesym.papers.exact_tables import INTERVALS as TABULATED
-from wavesym.papers.exact_tables import Exact, building, collision, drive, with_parameters
+from wavesym.papers.pielorz1979.chains import EXAMPLES, Exact, LoadedChain, building, collision, drive, with_parameters
+from wavesym.papers.pielorz1979.chains import INTERVALS as TABULATED
 from wavesym.papers.pielorz1979.forms import (
     ALPHA,
     EXACT,
@@ -31,16 +31,15 @@ from wavesym.papers.pielorz1979.forms import (
     SIZES,
     FormScope,
     Indices,
-    driven_form,
     form_cases,
+    form_chain,
     functions,
     numbers,
     right_form,
-    shown,
+    table_scene,
 )
 from wavesym.papers.pielorz1979.powers import HighestPowers, RequestScope, highest_powers
 from wavesym.papers.pielorz1979.tables import moments
-from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Reproduction, case
 from wavesym.papers.sentences import Words
@@ -83,7 +82,7 @@ def table(name: str, words: Words) -> Iterator[Case]:
             if not 1 <= rod <= exact.m:
                 yield Case({**at, "function": f"{letter}_{rod}", "claim": "there is such a rod"}, True, False)
                 continue
-            scope = RequestScope(name, chain.driven, letter)
+            scope = RequestScope(name, chain.motion, letter)
             for number in range(1, numbers(name, INTERVALS[name])[-1] + 1):
                 yield from chain.cases(scope, (letter, rod), number, {**at, "interval": number})
     yield from _of_rates(name, words["hypothesis"])
@@ -126,28 +125,28 @@ def _like(name: str) -> HighestPowers:
 def index_roles(name: str, words: Words) -> Iterator[Case]:
     """Every coefficient that a form asks for: what the sentence says of it, and what it is."""
     m = {"I": 6, "II": 3, "III": 3}[name]
-    driven = driven_form(name, m)
+    motion = form_chain(name, m)
     for letter, rod in functions(name, m):
-        scope, meant = RequestScope(name, driven, letter), FormScope(right_form(name), driven, letter)
+        scope, meant = RequestScope(name, motion, letter), FormScope(right_form(name), motion, letter)
         for lower, upper in (pair for number in range(1, 6) for pair in sorted(set(scope.requests(rod, number)))):
             if len(lower) == 2:
                 at = {"m": m, "function": f"{letter}_{rod}", "coefficient": f"F_{lower}^{upper}"}
-                true = _roles(name, driven, lower, upper)
-                yield case(at, lambda: _said_roles(words, meant, lower, upper, driven), true)  # noqa: B023
+                true = _roles(name, motion, lower, upper)
+                yield case(at, lambda: _said_roles(words, meant, lower, upper, motion), true)  # noqa: B023
 
 
-def _roles(name: str, driven: DrivenChain, lower: Indices, upper: Indices) -> dict[str, Any]:
+def _roles(name: str, motion: LoadedChain, lower: Indices, upper: Indices) -> dict[str, Any]:
     """What the coefficient with these indices is."""
-    begins = driven.exact.interval * (upper[-1] - 1)
+    begins = motion.exact.interval * (upper[-1] - 1)
     found = {"term": lower[0], "power": lower[1], "function": upper[1 if name == "III" else 0]}
     if name == "II":
-        return {**found, "moment": upper[1], "of": AT - begins - driven.loads[f"M{upper[1]}"][-1].time}
+        return {**found, "moment": upper[1], "of": AT - begins - motion.loads[f"M{upper[1]}"][-1].time}
     if name == "III":
-        return {**found, "part": upper[0], "begins": begins, "of": AT - begins - driven.loads["a"][upper[0]].time}
+        return {**found, "part": upper[0], "begins": begins, "of": AT - begins - motion.loads["a"][upper[0]].time}
     return {**found, "begins": begins, "of": AT - begins}
 
 
-def _said_roles(words: Words, scope: FormScope, lower: Indices, upper: Indices, driven: DrivenChain) -> dict[str, Any]:
+def _said_roles(words: Words, scope: FormScope, lower: Indices, upper: Indices, motion: LoadedChain) -> dict[str, Any]:
     symbol, term = read_formula(words["symbol"]), read_formula(words["term"])
     assert isinstance(symbol, Symbol)
     assert isinstance(term, Symbol)
@@ -159,7 +158,7 @@ def _said_roles(words: Words, scope: FormScope, lower: Indices, upper: Indices, 
         name, number = latex(plain), value if plain == tree else value - 1  # n + 1 is the number of an interval
         if letters.setdefault(name, number) != number:
             raise MeaninglessError(f"{name} is both {letters[name]} and {number}")
-    last = len(driven.loads[f"M{upper[1]}"]) - 1 if "moment" in words else 0
+    last = len(motion.loads[f"M{upper[1]}"]) - 1 if "moment" in words else 0
     with scope.binding({"k": last, **letters, "z": AT}):
         found = {
             role: scope.value(read_formula(word)) for role, word in words.items() if role not in ("symbol", "term")
@@ -243,7 +242,7 @@ def lengths(words: Words) -> Iterator[Case]:
     """Where functions gain anything."""
     steps = {"even": (0, 2), "odd": (1, 2), "whole": (0, 1)}[words["numbers"]]
     for name in words["examples"].removeprefix("examples ").removeprefix("example ").split(" and "):
-        for exact in [driven_form(name, m).exact for m in (4, 6)[: 2 if name == "I" else 1]]:
+        for exact in [form_chain(name, m).exact for m in (4, 6)[: 2 if name == "I" else 1]]:
             gains = {
                 exact.interval * (number - 1)
                 for response in exact.responses.values()
@@ -277,7 +276,7 @@ def acting_moments(words: Words) -> Iterator[Case]:
             said = {s for s in moments if s % 2 == ((words["odd"] if i % 2 else words["even"]) == "odd")}
             true = come if words["quantity"] == "functions" else {s for s in moments if gains[s][-1]}
             at = {"m": m, "z": z, "function": f"{letter}'_{i}"}
-            told = shown(exact, (letter, i), number)
+            told = table_scene(exact, (letter, i), number)
             yield Case(at, said & come if words["arrived"] else said, true, bool(true), told)
 
 
@@ -296,7 +295,7 @@ def unlisted(words: Words) -> Iterator[Case]:
 
 def masses(words: Words) -> Iterator[Case]:
     """Whether a heavier body changes exponents."""
-    for example, exact in (("I", collision(6)), ("II", drive(2)), ("III", driven_form("III", 2).exact)):
+    for example, exact in (("I", collision(6)), ("II", drive(2)), ("III", form_chain("III", 2).exact)):
         p = exact.chain.parameters
         for body in sorted(p.inertia if example == "II" else p.kappa):
             kappa = {i: value / (2 if i == body else 1) for i, value in p.kappa.items()}
@@ -317,10 +316,10 @@ def _exponents(chain: Chain) -> frozenset[fmpq]:
 def series(words: Words) -> Iterator[Case]:
     """The time since an interval began and a load came."""
     for example, form in FORMS.items():
-        driven = driven_form(example, 4)
+        motion = form_chain(example, 4)
         for n in (0, 1, 2):
-            scope = FormScope(right_form(example), driven, "f")
-            time = driven.loads[{"II": "M2", "III": "a"}[example]][1].time if example != "I" else 0
+            scope = FormScope(right_form(example), motion, "f")
+            time = motion.loads[{"II": "M2", "III": "a"}[example]][1].time if example != "I" else 0
             with scope.binding({"n": n, "d": 2 * n + 1, "half": "even", "z": AT, "k": 1, "s": 2, "i": 1}):
                 said, at = read_formula(words[example]), {"form": form, "n": n}
                 yield case(at, lambda: scope.value(said), AT - 2 * n - time)  # noqa: B023
@@ -353,17 +352,17 @@ def _counted(*, reflected_only: bool) -> Iterator[tuple[dict[str, object], int, 
                     true = exact.degree(letter, rod, interval, rate, source)
                     at = {"example": example, "m": m, "source": source, "body": body}
                     at |= {"function": f"{letter}_{rod}", "interval": interval}
-                    yield at, count(letter, rod, interval), true, shown(exact, (letter, rod), interval)
+                    yield at, count(letter, rod, interval), true, table_scene(exact, (letter, rod), interval)
 
 
 def earlier(words: Words) -> Iterator[Case]:
     """A solution put together from the gains that its form gives it in intervals."""
     for example in FORMS:
         m = {"I": 4}.get(example, 2)
-        driven = driven_form(example, m)
-        step, number = driven.exact.interval, 4
+        motion = form_chain(example, m)
+        step, number = motion.exact.interval, 4
         for letter, rod in functions(example, m):
-            scope = FormScope(right_form(example), driven, letter)
+            scope = FormScope(right_form(example), motion, letter)
             z = fmpq(step * number) - fmpq(2, 7)
             first = 1 if words["which"] == "all earlier intervals" else number - 1
             total: Any = 0
@@ -371,7 +370,7 @@ def earlier(words: Words) -> Iterator[Case]:
                 then = z if words["when"] == "the present z" else min(z, fmpq(step * p))
                 total = total + scope.total(rod, p, then) - scope.total(rod, p - 1, then)
             at = {"example": example, "m": m, "function": f"{letter}'_{rod}", "z": z}
-            yield Case(at, total, driven.wave(letter, rod, z), True, shown(driven.exact, (letter, rod), number))
+            yield Case(at, total, motion.wave(letter, rod, z), True, table_scene(motion.exact, (letter, rod), number))
 
 
 def changes_1(words: Words) -> Iterator[Case]:
@@ -395,7 +394,7 @@ def _stays(example: str, exact: Exact, said: Mapping[int, str]) -> Iterator[Case
         runs = [len(list(run)) for _, run in groupby(degree for degree in degrees if degree >= 0)]
         if lengths := {exact.interval * run for run in runs[1:-1]}:
             at = {"m": exact.m, "function": f"{letter}_{rod}", "body": body}
-            yield Case(at, {int(step)}, lengths, True, shown(exact, (letter, rod), numbers[-1]))
+            yield Case(at, {int(step)}, lengths, True, table_scene(exact, (letter, rod), numbers[-1]))
 
 
 def parts(words: Words) -> Iterator[Case]:
@@ -416,7 +415,7 @@ def slopes(words: Words) -> Iterator[Case]:
     for m in range(1, 6):
         exact, known = drive(m), drive(m).rates
         for half, (letter, i) in ((h, f) for h in HALVES for f in functions("II", m)):
-            scope = FormScope(right_form("II"), driven_form("II", m), letter)
+            scope = FormScope(right_form("II"), form_chain("II", m), letter)
             for r, s in moments(scope, half, i, alpha):
                 with scope.binding({"n": 0, "half": half, "i": i, "r": r, ALPHA: alpha}):
                     ends = [0, *(scope.whole(read_formula(f"L_{beta}")) for beta in (1, 2, 3))]
@@ -427,7 +426,9 @@ def slopes(words: Words) -> Iterator[Case]:
                         for body, (one, other) in enumerate(pairwise(powers), low + 1):
                             if min(one, other) >= 0:
                                 at = {"m": m, "n": n, "half": half, "function": f"{letter}_{i}", "s": s, "l": body}
-                                yield Case(at, slopes[words[part]], other - one, True, shown(exact, (letter, i), d))
+                                yield Case(
+                                    at, slopes[words[part]], other - one, True, table_scene(exact, (letter, i), d)
+                                )
 
 
 def by_4_2(words: Words) -> Iterator[Case]:
@@ -435,20 +436,20 @@ def by_4_2(words: Words) -> Iterator[Case]:
     order = {"derivatives": 1, "integrals of the derivatives": 0}[words["orders"]]
     strained = words["quantities"] == "velocities and strains"
     for example, m in (("I", 4), ("II", 2), ("III", 3)):
-        driven = driven_form(example, m)
+        motion = form_chain(example, m)
         for x, tau in product(range(m + 1), (fmpq(k) + fmpq(3, 7) for k in range(5))):
-            node, at = driven.exact.chain.nodes[x], {"example": example, "m": m, "x": x, "tau": tau}
+            node, at = motion.exact.chain.nodes[x], {"example": example, "m": m, "x": x, "tau": tau}
             found: list[Any] = []
             forces: Any = 0
             acceleration: Any = 0
             for rod in (rod for rod in (x, x + 1) if 1 <= rod <= m):
-                f, g = driven.waves_at(rod, x, tau, order)
-                found.append(f + g + driven.exact.chain.rod(rod).velocity * (1 if strained else tau))
+                f, g = motion.waves_at(rod, x, tau, order)
+                found.append(f + g + motion.exact.chain.rod(rod).velocity * (1 if strained else tau))
                 forces += (-node.alpha if rod == x else node.beta) * (g - f) / 2
-                acceleration = sum(driven.waves_at(rod, x, tau, 2))
+                acceleration = sum(motion.waves_at(rod, x, tau, 2))
             if strained:
                 for load in node.loads:
-                    forces += sum(c * driven.load(load.source, tau, k) for k, c in enumerate(load.coefficients) if c)
+                    forces += sum(c * motion.load(load.source, tau, k) for k, c in enumerate(load.coefficients) if c)
                 yield Case({**at, "claim": "forces"}, forces, node.inertia * acceleration)
             yield Case({**at, "claim": "both sides"}, found[0], found[-1], len(found) > 1)
 

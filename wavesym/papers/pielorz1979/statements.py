@@ -20,10 +20,17 @@ from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.network import network_of
 from wavesym.mechanics.probe import Probe
 from wavesym.papers.evaluation import Scope, span
-from wavesym.papers.exact_tables import drive, meeting, uneven_building
+from wavesym.papers.pielorz1979.chains import (
+    EXAMPLES,
+    LoadedChain,
+    drive,
+    example,
+    instants,
+    loads,
+    meeting,
+    uneven_building,
+)
 from wavesym.papers.pielorz1979.equations import arrival, is_complete
-from wavesym.papers.pielorz1979.scenes import example
-from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, instants, loads
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case
 from wavesym.papers.sentences import Words
@@ -150,9 +157,9 @@ def _follows(words: Words) -> Iterator[Case]:
 def _while_closed(velocities: tuple[int, ...], words: Words) -> Iterator[Case]:
     """A collision: whether contacts are closed at first, and whether (4.6) is its motion when it is said to be."""
     exact = meeting(velocities)
-    driven = DrivenChain(exact, loads(exact))
+    motion = LoadedChain(exact, loads(exact))
     contacts = range(2, exact.m, 2)
-    at_first = _strains(driven, contacts, fmpq(0))
+    at_first = _strains(motion, contacts, fmpq(0))
     closed = all(strain <= 0 for strain in at_first)
     if "than" in words:
         for x, strain in zip(contacts, at_first, strict=True):
@@ -162,18 +169,18 @@ def _while_closed(velocities: tuple[int, ...], words: Words) -> Iterator[Case]:
     strains = {"strain": [str(x) for x in contacts]}
     look = "the strain at a contact becomes positive: (4.6) goes on as if it could pull"
     falling = list(velocities) == sorted(velocities, reverse=True)  # as in every scene
-    seen = example(exact, driven.loads, UNTIL, strains, "wavesym run SCENE --samples 101", look) if falling else None
+    seen = example(exact, motion.loads, UNTIL, strains, "wavesym run SCENE --samples 101", look) if falling else None
     for tau in instants(UNTIL):
-        pulls = any(strain > 0 for strain in _strains(driven, contacts, tau))
+        pulls = any(strain > 0 for strain in _strains(motion, contacts, tau))
         closed = closed and (not pulls or words.get("hypothesis") != "stay closed")
         if closed or "hypothesis" not in words:
             at = {"velocities": velocities, "tau": tau, "what": "bodies that only touch move as (4.6) says"}
             yield Case(at, True, bool(arb(tau) < _first_opening(velocities)), example=seen)
 
 
-def _strains(driven: DrivenChain, contacts: range, tau: fmpq) -> list[float]:
+def _strains(motion: LoadedChain, contacts: range, tau: fmpq) -> list[float]:
     """The strain at contacts, as numbers whose signs are right."""
-    waves = (driven.waves_at(x, x, tau) for x in contacts)
+    waves = (motion.waves_at(x, x, tau) for x in contacts)
     return [float(g - f) for f, g in waves]
 
 

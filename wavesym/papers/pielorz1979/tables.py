@@ -14,7 +14,7 @@ from typing import Any
 
 from wavesym.derivation.table import Function as TableFunction
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, given, holds, items, places, sides, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, constants_in, holds, items, places, sides, span
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979.equations import within
 from wavesym.papers.pielorz1979.forms import (
@@ -27,16 +27,16 @@ from wavesym.papers.pielorz1979.forms import (
     Form,
     FormScope,
     Function,
-    compared,
-    driven_form,
+    compare_at,
     form_cases,
+    form_chain,
     functions,
     numbers,
-    only,
     reading_of,
     right_form,
     right_form_cases,
     rows,
+    single_range,
 )
 from wavesym.papers.pielorz1979.powers import PAIRS, power_cases, right_power_cases
 from wavesym.papers.pielorz1979.transcript import entries, ids, settled
@@ -50,7 +50,7 @@ from wavesym.papers.tree import (
     Symbol,
     Tree,
     latex,
-    replaced,
+    replace_part,
     symbols,
 )
 
@@ -87,10 +87,10 @@ def part_of_form(entry: PaperEntry) -> Test:
         right = right_form(name)
         own = {part for part in within(right.step) if _is_step(part) or _is_exponential(part)}
         (part,) = (part for part in own if isinstance(part, Call) is is_step)
-        said = [int(Scope().value(value)) for left, value in given(reading.ranges).items() if left == _AT_0]
+        said = [int(Scope().value(value)) for left, value in constants_in(reading.ranges).items() if left == _AT_0]
         if len(said) != len(reading.ranges):
             raise MeaninglessError("a range of something else")
-        tried = replace(right, step=replaced(right.step, part, reading.formula))
+        tried = replace(right, step=replace_part(right.step, part, reading.formula))
         for value in said or at_0:
             scope = type("At0", (FormScope,), {"heaviside_at_0": value})
             for found in form_cases(tried, scope=scope, chains=2):
@@ -187,12 +187,14 @@ def cells_in_text(entry: PaperEntry) -> Test:
             at = {"m": m, "function": f"f_{i}"}
             if left.name == "s":
                 first, last = (scope.whole(read_formula(rf"{end}_\alpha")) for end in "sR")
-                yield Case({**at, "claim": "r"}, span(only("r", reading.ranges), scope), tuple(range(first, last + 1)))
+                yield Case(
+                    {**at, "claim": "r"}, span(single_range("r", reading.ranges), scope), tuple(range(first, last + 1))
+                )
             for r, s in moments(scope, "even", i, 1) if left.name == "K" else ():
                 with scope.binding({"r": r}):
                     (beta,) = scope.indices(left)
                     first, last = (scope.whole(read_formula(f"L_{number}")) for number in (beta - 1, beta))
-                    own = span(only("l", reading.ranges), scope)
+                    own = span(single_range("l", reading.ranges), scope)
                     yield Case({**at, "s": s, "claim": "l"}, own, tuple(range(first + 1, last + 1)))
         yield from power_cases("II", {id: Reading(right, settled(id).ranges)}, ("T3.even.f",), part=part)
 
@@ -204,7 +206,7 @@ def first_columns() -> Iterator[tuple[int, int, FormScope]]:
     """f in the even half of Table 3, its first part: m, i, and the scope at i and n = 0."""
     for m in range(1, 6):
         for i in range(1, m + 1):
-            scope = FormScope(right_form("II"), driven_form("II", m), "f")
+            scope = FormScope(right_form("II"), form_chain("II", m), "f")
             with scope.binding({"i": i, "n": 0, "half": "even", ALPHA: 1}):
                 yield m, i, scope
 
@@ -301,12 +303,12 @@ def _interval_cases(name: str, heads: list[Reading], ends_too: bool) -> Iterator
         if ends_too or z.denom() != 1:
             yield Case({"z": z, "claim": "in one interval"}, len(inside), 1)
         for (letter, rod), number in product(functions(name, m), inside):
-            yield compared(_right_scope(name, letter), driven_form(name, m), (letter, rod), number, z)
+            yield compare_at(_right_scope(name, letter), form_chain(name, m), (letter, rod), number, z)
 
 
 @cache
 def _right_scope(name: str, letter: str) -> FormScope:
-    return FormScope(right_form(name), driven_form(name, SIZES[name][1]), letter)
+    return FormScope(right_form(name), form_chain(name, SIZES[name][1]), letter)
 
 
 def _inside(name: str, head: Reading, half: int, z: Any) -> list[int]:
@@ -331,7 +333,7 @@ def rest(entry: PaperEntry) -> Test:
             stated = set()
             for j in range(1, _REST + 1):
                 scope = Scope({"m": m, "j": j, "n": j - 1, "z": 1})
-                for place in places([only("i", reading.ranges)], scope):
+                for place in places([single_range("i", reading.ranges)], scope):
                     with scope.binding(place):
                         if scope.value(left.arguments[0]) == 1:
                             stated.add((*scope.indices(left.function), scope.value(right)))

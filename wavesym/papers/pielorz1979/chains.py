@@ -1,27 +1,154 @@
-"""What formulas of this paper are compared with: named functions of the derived laws on a chain, nothing read off them.
+"""The chains that the paper is tried on: their exact tables, their motion under loads, and scenes that show it.
 
-The exact tables (exact_tables.py) are the derived laws run; a `DrivenChain` is their response to loads with several
-steps, at rational instants, in numbers that are equal only if they are the same (exponentials.py).
+The exact tables are the derived laws run, with parameters in which nothing coincides by chance; a chain under loads is
+their response, at rational instants, in numbers that are equal only if they are the same (exact_numbers.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Any
 
 from flint import fmpq
 
 from wavesym.derivation.increments import Increment, combined, integrated, start
-from wavesym.derivation.table import Function
-from wavesym.mechanics.node import System
+from wavesym.derivation.table import Function, Rules, unit_response
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Family, Node, Parameters, Quantity, System
 from wavesym.papers.evaluation import MeaninglessError
-from wavesym.papers.exact_tables import Exact, collision, drive, uneven_building
-from wavesym.papers.exponentials import Exponentials
-from wavesym.systems.building import BUILDING_FORCE
+from wavesym.papers.exact_numbers import Exponentials
+from wavesym.papers.record import Reproduction
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
+
+INTERVALS = {"I": 9, "II": 14, "III": 9}
+"""How many intervals of every function are tabulated, per example."""
+
+Response = dict[Function, list[Increment]]
+
+
+@dataclass(frozen=True)
+class Exact:
+    """A chain and the increments of all its functions for a unit of every source."""
+
+    chain: Chain
+    interval: int
+    responses: dict[str, Response]
+
+    @property
+    def m(self) -> int:
+        return self.chain.m
+
+    def increment(self, source: str, letter: str, rod: int, interval: int) -> Increment:
+        """What a function gains in interval 1, 2, ...; nothing before. KeyError, IndexError beyond the table."""
+        return self.responses[source][Function(letter, rod)][interval - 1] if interval > 0 else {}
+
+    def degree(self, letter: str, rod: int, interval: int, rate: fmpq, source: str | None = None) -> int:
+        """The highest power at a rate, over all sources or for one; -1 where the rate does not occur."""
+        sources = self.responses if source is None else (source,)
+        return max(len(self.increment(s, letter, rod, interval).get(rate, ())) for s in sources) - 1
+
+    @property
+    def rates(self) -> dict[int, fmpq]:
+        """The rates of the bodies, by the number that kappa or gamma has for them."""
+        first = 1 if self.interval == 1 else 0
+        return {x + first: fmpq(node.rate) for x, node in enumerate(self.chain.nodes) if node.inertia}
+
+    def alive(self, letter: str, rod: int, interval: int) -> bool:
+        """Whether a function changes at all in an interval."""
+        return any(self.increment(source, letter, rod, interval) for source in self.responses)
+
+
+@cache
+def collision(m: int) -> Exact:
+    """Example I with unequal bodies."""
+    bodies = range(1, m, 2)
+    kappa = {i: fmpq(i + 2, 2 * i + 5) for i in bodies}
+    return _exact("I", Chain(COLLISION, m, Parameters(kappa=kappa, velocity={i: fmpq(5, i + 1) - i for i in bodies})))
+
+
+@cache
+def unequal_collision(m: int) -> Exact:
+    """Example I with unequal rods too."""
+    parameters = collision(m).chain.parameters
+    areas = {i: fmpq(i + 3, 2 * i + 1) for i in range(1, m + 1)}
+    return _exact("I", Chain(UNEQUAL_COLLISION, m, replace(parameters, inertia=areas)))
+
+
+@cache
+def meeting(velocities: tuple[int, ...]) -> Exact:
+    """Example I with equal bodies that have these velocities, falling or not."""
+    bodies = range(1, 2 * len(velocities), 2)
+    given = Parameters(
+        kappa=dict.fromkeys(bodies, fmpq(1, 2)), velocity=dict(zip(bodies, map(fmpq, velocities), strict=True))
+    )
+    return _exact("I", Chain(COLLISION, 2 * len(velocities), given))
+
+
+@cache
+def drive(m: int) -> Exact:
+    """Example II with unequal shafts and discs, all rates different."""
+    kappa = {i: fmpq(2 * i + 1, i + 3) for i in range(1, m + 1)}
+    return _exact(
+        "II", Chain(DRIVE, m, Parameters(kappa=kappa, inertia={i: fmpq(i + 4, 2 * i + 3) for i in range(1, m + 2)}))
+    )
+
+
+@cache
+def building(m: int) -> Exact:
+    """Example III with equal floors: kappa_1 = ... = kappa_(m-1), as the paper's coefficients have it."""
+    return _building(m, {i: fmpq(3, 5) for i in range(1, m)})
+
+
+@cache
+def uneven_building(m: int) -> Exact:
+    """Example III with a different mass on every floor."""
+    return _building(m, {i: fmpq(2 * i + 1, i + 4) for i in range(1, m)})
+
+
+@cache
+def grounded_building(m: int) -> Exact:
+    """The same, on a foundation that moves with the ground."""
+    return _building(m, {i: fmpq(2 * i + 1, i + 4) for i in range(1, m)}, BUILDING_GROUND)
+
+
+def _of_unequal_rods(m: Quantity, p: Parameters) -> tuple[Family, ...]:
+    """The nodes of a collision between rods that are A_i as stiff, and as heavy, as that of kappa."""
+
+    def unequal(family: Family) -> Family:
+        def at(x: Quantity) -> Node:
+            node = family.at(x)
+            left = p.inertia[x] if node.left else 0
+            right = p.inertia[x + 1] if node.right else 0
+            return replace(node, alpha=node.alpha * left, beta=node.beta * right)
+
+        return replace(family, at=at)
+
+    return tuple(map(unequal, COLLISION.families(m, p)))
+
+
+UNEQUAL_COLLISION = replace(COLLISION, name="collision of unequal rods", families=_of_unequal_rods)
+"""Its `inertia` are the A_i of (2.4)."""
+
+
+def _building(m: int, floors: dict[int, fmpq], system: System = BUILDING_FORCE) -> Exact:
+    return _exact("III", Chain(system, m, Parameters(kappa={0: fmpq(2, 7), **floors, m: fmpq(4, 11)})))
+
+
+def _exact(example: str, chain: Chain) -> Exact:
+    rules = Rules(chain)
+    wanted = {Function(letter, rod): INTERVALS[example] for letter in "fg" for rod in range(1, chain.m + 1)}
+    return Exact(chain, rules.interval, {source: unit_response(rules, source, wanted) for source in chain.sources})
+
+
+def with_parameters(exact: Exact, parameters: Parameters) -> Exact:
+    """The same chain with other parameters."""
+    system = exact.chain.system
+    example = "I" if system is COLLISION else "II" if system is DRIVE else "III"
+    return _exact(example, Chain(system, exact.m, parameters))
 
 
 @dataclass(frozen=True)
@@ -54,7 +181,7 @@ Loads = Mapping[str, Sequence[LoadStep]]
 
 
 @dataclass(frozen=True, eq=False)
-class DrivenChain:
+class LoadedChain:
     """A chain under loads: the motion that the derived laws give it."""
 
     exact: Exact
@@ -146,8 +273,8 @@ class DrivenChain:
         return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))
 
 
-class JumpingChain(DrivenChain):
-    """The jumps of a driven chain: what second derivatives have of f' and g' where these jump; all else has none."""
+class JumpingChain(LoadedChain):
+    """The jumps of a motion chain: what second derivatives have of f' and g' where these jump; all else has none."""
 
     def wave(self, letter: str, rod: int, z: fmpq, order: int = 1) -> Exponentials:
         """The jump of f' or g' of a rod at z, for order 2. MeaninglessError as for the motion."""
@@ -194,10 +321,10 @@ def _derived(increment: Increment) -> Increment:
 
 
 @cache
-def driven(example: str, m: int) -> DrivenChain:
+def loaded_chain(example: str, m: int) -> LoadedChain:
     """An example under loads in which nothing coincides: every source has pieces of its own, at times of its own."""
     exact = EXAMPLES[example].tables(m)
-    return DrivenChain(exact, loads(exact))
+    return LoadedChain(exact, loads(exact))
 
 
 def loads(exact: Exact) -> Loads:
@@ -229,3 +356,42 @@ def instants(
         found += [z, *(z + part for part in between)]
         z += 1
     return tuple(t for t in found if t < until)
+
+
+def example(
+    exact: Exact, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]], command: str, look: str
+) -> Callable[[], Reproduction]:
+    """A case's example: the chain under its loads as a scene, the command that shows it, and what to look at.
+
+    `outputs` are as in a scene, {"strain": ["1-"]}; `command` has SCENE for the file.
+    """
+    return lambda: Reproduction(written(exact.chain, loads, until, outputs), command, look)
+
+
+def written(chain: Chain, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]]) -> str:
+    """A chain under loads as a scene file."""
+    kind, given = _SYSTEMS.get(chain.system, ("building", ("kappa",)))
+    lines = ['name = "counterexample"', "", "[system]", f'type = "{kind}"', f"m = {chain.m}"]
+    values = {name: sorted(getattr(chain.parameters, name).items()) for name in given}
+    lines += [_listed(name, [value for _, value in numbered]) for name, numbered in values.items()]
+    if kind == "building":
+        base = "ground" if chain.system is BUILDING_GROUND else "force"
+        lines.append(f'base = "{base}"')
+    for source, pieces in loads.items() if kind != "collision" else ():
+        times, weights = [piece.time for piece in pieces], [piece.weight for piece in pieces]
+        lines += ["", "[[load]]"]
+        if kind == "drive":
+            lines += [f"body = {source.removeprefix('M')}", _listed("times", times), _listed("steps", weights)]
+        else:
+            other = "b" if source == "a" else "a"
+            lines += [_listed("times", times), _listed(source, weights), _listed(other, [0] * len(times))]
+    lines += ["", "[output]", f'until = "{until}"', *(_listed(name, places) for name, places in outputs.items())]
+    return "\n".join(lines) + "\n"
+
+
+_SYSTEMS = {COLLISION: ("collision", ("kappa", "velocity")), DRIVE: ("drive", ("kappa", "inertia"))}
+
+
+def _listed(name: str, values: Sequence[object]) -> str:
+    quoted = (f'"{value}"' for value in values)
+    return f"{name} = [{', '.join(quoted)}]"

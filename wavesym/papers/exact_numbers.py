@@ -1,4 +1,4 @@
-"""Sums of exponentials: the exact numbers that wave functions have at rational instants.
+"""Exact numbers that formulas are evaluated in: sums of exponentials, and values with their derivatives.
 
 sum_q c_q exp(q) with rational q and c_q. The exp(q) of different rational q are linearly independent over the rationals
 (Lindemann and Weierstrass), so that two of these numbers are equal only if all their c_q are: equality is decided, not
@@ -7,8 +7,10 @@ estimated.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 from flint import arb, fmpq
 
@@ -106,3 +108,57 @@ def _made(parts: dict[Key, fmpq]) -> Exponentials:
 def exponential(exponent: Exact) -> Exponentials:
     """e to a rational power."""
     return Exponentials({fmpq(exponent): fmpq(1)})
+
+
+@dataclass(frozen=True)
+class Jet:
+    """A value and its derivatives; they are exact numbers."""
+
+    value: Any
+    first: Any = 0
+    second: Any = 0
+
+    @classmethod
+    def of(cls, value: Any) -> Jet:
+        """A number as one that does not change."""
+        return value if isinstance(value, Jet) else cls(value)
+
+    def __add__(self, other: Any) -> Jet:
+        that = Jet.of(other)
+        return Jet(self.value + that.value, self.first + that.first, self.second + that.second)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Jet:
+        return Jet(-self.value, -self.first, -self.second)
+
+    def __sub__(self, other: Any) -> Jet:
+        return self + -Jet.of(other)
+
+    def __rsub__(self, other: Any) -> Jet:
+        return Jet.of(other) + -self
+
+    def __mul__(self, other: Any) -> Jet:
+        if not isinstance(other, Jet):
+            return Jet(self.value * other, self.first * other, self.second * other)
+        return Jet(
+            self.value * other.value,
+            self.first * other.value + self.value * other.first,
+            self.second * other.value + 2 * (self.first * other.first) + self.value * other.second,
+        )
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Jet:
+        return Jet(self.value / other, self.first / other, self.second / other)
+
+    def of_function(self, derivative: Callable[[int], Any], most: int = 2) -> Jet:
+        """A function of this; `derivative(order)` is what it is here: itself, its derivative, the next.
+
+        Those that nothing asks for are not taken: the second with `most` 1, and none of what does not change.
+        """
+        if self.first == 0 and self.second == 0:
+            return Jet(derivative(0))
+        first = derivative(1)
+        second = derivative(2) * (self.first * self.first) if most > 1 else 0
+        return Jet(derivative(0), first * self.first, second if self.second == 0 else second + first * self.second)
