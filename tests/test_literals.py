@@ -232,9 +232,9 @@ def test_the_march_has_its_operators_rounded_once(name: str) -> None:
     places = [at for k, at in enumerate(answer) if law[k % len(law)] == 1]
     assert places
     for at in sorted(set(places)):
-        row = matrix[at : at + 3 * size]
+        ratios, firsts, lasts = (matrix[at + k : at + 3 * size : 3] for k in range(3))
         # the rate is one of few small fractions: the one whose last ratio this is
-        step = Fraction(float(row[degree]) * 4 * degree).limit_denominator(1000)
+        step = Fraction(float(ratios[degree]) * 4 * degree).limit_denominator(1000)
         x = [Fraction(0)] + [step / (4 * k) for k in range(1, degree + 2)]
         ratio, first, last = ([Fraction(0)] * (degree + 2) for _ in range(3))
         for k in range(degree, 0, -1):
@@ -242,6 +242,6 @@ def test_the_march_has_its_operators_rounded_once(name: str) -> None:
             first[k] = (-1) ** k - ratio[k + 1] * first[k + 1]
             last[k] = 1 - ratio[k + 1] * last[k + 1]
         slack = -2 * ratio[1] * first[1] / (1 - 2 * ratio[1] * first[1])
-        assert not wrong(row[:size], [slack, *ratio[1:-1]])
-        assert not wrong(row[size : 2 * size], [2 * ratio[1] * last[1], *first[1:-1]])
-        assert not wrong(row[2 * size :], [Fraction(0), *last[1:-1]])
+        assert not wrong(ratios, [slack, *ratio[1:-1]])
+        assert not wrong(firsts, [2 * ratio[1] * last[1], *first[1:-1]])
+        assert not wrong(lasts, [Fraction(0), *last[1:-1]])
