@@ -1,6 +1,7 @@
 /* bound.c: a proved bound of the errors of a model, from what it sends itself.
  * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty line. */
 #include "blocks.c"
+#include "../root.h"
 
 static const slice nothing = {0};
 #if VECTOR
@@ -57,23 +58,10 @@ static real total_of(const slice *x)
     return sum[0];
 }
 
-/* No less than the root, and hardly more: half the sum of y and x/y is no less, whatever y is. */
-static real root(real x)
+/* No less than the root, and hardly more: Newton's steps end above it, but for rounding. */
+static real root_above(real x)
 {
-    real y = 1;
-    if (!(x > 0) || !finite_number(x)) {
-        return x > 0 ? positive_infinity() : 0;
-    }
-    while (y < x / y) {
-        y *= 2;
-    }
-    while (y / 4 > x / y) {
-        y /= 2;
-    }
-    for (int k = 0; k < 3; ++k) {
-        y = (y + x / y) / 2;
-    }
-    return y * (1 + 4 * unit);
+    return root(x) * (1 + 4 * unit);
 }
 
 /* Nothing, at first. */
@@ -136,7 +124,7 @@ static real start_joint(const laws *law, errors *w, int joint)
     const int n = states_of(joint), first = first_state[joint];
     real most = 0;
     for (int i = first; i < first + n; ++i) {
-        w->weight[i] = root(law->weight[i] / 2);
+        w->weight[i] = root_above(law->weight[i] / 2);
         w->reach[i] = w->weight[i] * (2 / law->weight[i]);
         w->end[i] = law->initial[i];
         w->energy += (roundings + 1) * unit * w->weight[i] * magnitude(law->initial[i]);
@@ -160,7 +148,7 @@ static void start_errors(march_state *m, const laws *law, errors *w)
     start_loads(w);
     w->energy = w->instant = w->all = 0;
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
-        w->length[panel] = root(2 * half_length[panel]);
+        w->length[panel] = root_above(2 * half_length[panel]);
         for (int state = 0; state <= NAME_STATES; ++state) {
             for (int k = 0; k < NAME_ROW; ++k) {
                 m->path[panel][state][k] = 0;
@@ -179,7 +167,7 @@ static void start_errors(march_state *m, const laws *law, errors *w)
         const real speed = start_joint(law, w, joint);
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
             const real fast = speed * (2 * half_length[panel]);
-            w->bent[panel][joint] = n > 0 ? root(1 + 2 * fast) + 1 + fast : 0;
+            w->bent[panel][joint] = n > 0 ? root_above(1 + 2 * fast) + 1 + fast : 0;
             for (int i = first; i < first + n; ++i) {
                 w->all += w->weight[i] * (w->bent[panel][joint] + 1);
                 for (int j = 0; j < points_of(joint); ++j) { /* what acts underflows, too */
@@ -190,7 +178,7 @@ static void start_errors(march_state *m, const laws *law, errors *w)
         }
         for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
             const real windows = (real)steps[arrive[port]], held = rounded * w->initial[arrive[port]];
-            w->passes[port] = root(law->impedance[port]);
+            w->passes[port] = root_above(law->impedance[port]);
             w->beyond[port] = 1;
             for (int j = 0; j < points_of(joint); ++j) {
                 w->beyond[port] += magnitude(ratio[port] *
@@ -208,7 +196,7 @@ static void start_errors(march_state *m, const laws *law, errors *w)
             w->instant += w->passes[port] * windows * held;
         }
     }
-    w->steady = root(steady);
+    w->steady = root_above(steady);
     for (int t = 0; t < first_term[NAME_STRANDS]; ++t) {
         w->track[term_gain[t]] = term_track[t];
     }

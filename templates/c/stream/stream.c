@@ -2,6 +2,7 @@
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
 #include "tables.h"
+#include "../root.h"
 #include "../series.h"
 #include "../joint.c"
 
@@ -52,28 +53,6 @@ static real size_of(const real *c)
 static int is_number(real x)
 {
     return x - x == 0;
-}
-
-/* Of a number that is 0 or more: the root of a number from 1/4 to 4, by Newton, times a power of 2. */
-static real root(real square)
-{
-    real power = 1;
-    real near = 1;
-    if (!(square > 0) || !is_number(square)) {
-        return square;
-    }
-    while (square > 4) {
-        square /= 4;
-        power *= 2;
-    }
-    while (square < (real)0.25) {
-        square *= 4;
-        power /= 2;
-    }
-    for (int k = 0; k < 6; ++k) {
-        near = (near + square / near) / 2;
-    }
-    return power * near;
 }
 
 /* y += M a, M by rows */

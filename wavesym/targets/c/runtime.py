@@ -137,7 +137,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         blocks=kernel("runtime/blocks.c", scene),
         peaks=kernel("runtime/peaks.c", scene),
         gradients=kernel("runtime/tangents.c", scene),
-        bound=kernel("runtime/bound.c", scene),
+        bound=kernels(scene, "root.h", "runtime/bound.c"),
         lanes=kernel("runtime/lanes.c", scene),
         batch=kernels(scene, "runtime/set.h", *march, "runtime/batch.c"),
         misfit=kernel("runtime/misfit.c", scene),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from wavesym.programs.program import Program
 from wavesym.programs.stream.parameters import MADE
 from wavesym.rendering import render
-from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, multiplied, parameter_fields
 from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description, constants
@@ -64,7 +64,7 @@ def source(scene: Description, program: Program) -> str:
         tables=tables_text("stream/tables.h", c_tables(program.tables, program.real)),
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
-        series=kernel("series.h", scene),
+        series=kernels(scene, "root.h", "series.h"),
         joint=kernel("joint.c", scene),
         kernel=kernel("stream/stream.c", scene),
         fields=_fields(program),
