@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated examples bench prove misra targets fuzz mutants check-all
+.PHONY: install demo test lint generated published examples bench prove misra targets fuzz mutants check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -74,6 +74,10 @@ generated: install
 		$(BIN)/wavesym tables $$scene -o generated/$$scene/tables.csv; \
 	done
 	$(BIN)/wavesym verify --published --format markdown > generated/errata.md
+
+# docs/published.md: what others printed, beside what is computed
+published: install
+	$(BIN)/python -m tools.published
 
 # the pictures of examples/, drawn anew by the commands of their pages
 examples: install

@@ -26,6 +26,7 @@ SHAPES = {"sine": "frequency", "half-sine": "duration", "exponential": "duration
 """Each shape, and what says how fast it is."""
 MOST_SAMPLES = 100_000
 _SHARE = Fraction(1, 4)  # of the tolerance
+_ROUND = 20  # samples in a period are a multiple of it, so that tops and simple fractions are among them
 _BITS, _DIGITS = 192, 96  # of samples, in balls and behind the point
 _RICKER = 2  # periods from the start to the top, and from there to the end
 _RICKER_ENDS = Fraction(1, 10**15)  # of its amplitude, which is left out before and after: 78 exp(-4 pi^2) is 5.6e-16
@@ -112,7 +113,8 @@ class ShapedLoad(Load):
 
     @cached_property
     def _parts(self) -> int:
-        return max(2, ceil(sqrt(float(self._bend) / (8 * float(self._tolerance * _SHARE)))))
+        needed = sqrt(float(self._bend) / (8 * float(self._tolerance * _SHARE)))
+        return _ROUND * max(1, ceil(needed / _ROUND))
 
     @property
     def _last(self) -> Fraction:

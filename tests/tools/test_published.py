@@ -1,0 +1,32 @@
+"""docs/published.md: printed numbers beside ours, computed again."""
+
+from __future__ import annotations
+
+import pytest
+
+from tools.published import PAGE, Compared, cases, compared, page
+
+
+@pytest.fixture(scope="module")
+def found() -> dict[tuple[str, int], list[Compared]]:
+    """All numbers, computed once."""
+    return {(case["scene"], k): compared(case, each) for case in cases() for k, each in enumerate(case["numbers"])}
+
+
+def test_the_page_is_what_is_computed_now(found: dict[tuple[str, int], list[Compared]]) -> None:
+    text = "".join(page(lambda case, numbers: found[case["scene"], case["numbers"].index(numbers)]))
+    assert PAGE.read_text(encoding="utf-8") == text
+
+
+def test_what_differs_has_a_reason(found: dict[tuple[str, int], list[Compared]]) -> None:
+    for case in cases():
+        for k, numbers in enumerate(case["numbers"]):
+            assert all(each.same for each in found[case["scene"], k]) == ("why" not in numbers), case["scene"]
+
+
+@pytest.mark.parametrize(
+    ("printed", "own", "same"),
+    [("10.304", 10.30449, True), ("10.304", 10.3046, False), ("11.8e6", 11849050.0, True), ("0.0008", 0.00086, False)],
+)
+def test_the_last_printed_digit_decides(printed: str, own: float, same: bool) -> None:
+    assert Compared(printed, own).same == same
