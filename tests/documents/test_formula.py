@@ -91,6 +91,22 @@ def test_a_function_in_c_is_the_output(name: str, symbolic: bool, tmp_path: Path
     agrees(made, output, [call(c_double(t), *values) for t in TAU])
 
 
+@pytest.mark.skipif(not at_hand(), reason="needs gcc or clang")
+@pytest.mark.parametrize(("until", "expected"), [(0.5, 0.0), (1.0, 1.0)], ids=["zero", "constant"])
+def test_what_does_not_change_is_c_without_a_warning(until: float, expected: float, tmp_path: Path) -> None:
+    parts = [{"joint": True, "name": "a"}, {"rod": 1}, "absorbing"]
+    load = [{"at": "a", "times": [0], "steps": [1]}]
+    output = {"until": until, "velocity": ["3/4"]}
+    made = Scene(name="pulse", system={"type": "chain", "parts": parts}, load=load, output=output)
+    source, library = tmp_path / "formula.c", tmp_path / "formula.so"
+    source.write_text(wavesym.formula(made, "velocity@3/4", format="c"))
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-shared", "-fPIC"]
+    run([*at_hand()[0].command, *flags, str(source), "-o", str(library), "-lm"], check=True)
+    call = CDLL(str(library)).pulse_velocity_3_4
+    call.restype = c_double
+    assert call(c_double(until)) == expected
+
+
 def test_a_coefficient_that_is_wrong_is_noticed() -> None:
     made = scene("drive_m1")
     text = wavesym.formula(made, "strain@0", format="sympy").replace("Integer(-8)", "Integer(-9)")

@@ -89,7 +89,8 @@ class Formula:
 
     def _c(self) -> str:
         gains = tuple(
-            CGain(repr(not_below(g.start)), repr(nearest(g.start)), tuple(_terms(g, _c_term))) for g in self.gains
+            CGain(repr(not_below(g.start)), repr(nearest(g.start)), _is_constant(g), tuple(_terms(g, _c_term)))
+            for g in self.gains
         )
         function = f"{self.scene}_{_identifier(self.name)}"
         return render("c/formula.c.j2", CFormula(self.title, function, tuple(self.letters.items()), gains))
@@ -97,10 +98,11 @@ class Formula:
 
 @dataclass(frozen=True)
 class CGain:
-    """What is added from a tau on: the first double that counts, the nearest one, and the terms."""
+    """What is added from a tau on: the first double that counts, the nearest one, whether it stays, and the terms."""
 
     first: str
     start: str
+    constant: bool
     terms: tuple[str, ...]
 
 
@@ -115,6 +117,10 @@ class CFormula:
 
 
 Term = Callable[[Number, Number, int], str]
+
+
+def _is_constant(gain: Gain) -> bool:
+    return all(rate == 0 and not any(row[1:]) for rate, row in gain.increment.items())
 
 
 def _terms(gain: Gain, term: Term) -> Iterator[str]:
