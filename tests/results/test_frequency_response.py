@@ -252,6 +252,63 @@ def test_ratios_of_every_mode_are_rayleighs() -> None:
         assert listed[name] == pytest.approx(rayleigh[name], rel=1e-5)
 
 
+def test_modes_left_out_may_be_damped_more_than_all_before() -> None:
+    """Forty ratios of 1/100, then 5: what is left out after 32 modes, or 64, has the greatest ratio there is."""
+    n, w = (np.arange(200_000) + 0.5) * np.pi, 8.0
+    ratios = np.where(np.arange(len(n)) < 40, 0.01, 5.0)
+    expected = np.sum(2 / (n * n - w * w + 2j * ratios * n * w))  # sin(n) = 1 or -1 at the tip, the mass is 1/2
+    rest = 20 * w / np.pi**3 / len(n) ** 2
+    damping = {"system.damping": ["1/100"] * 40 + ["500 %"], "output.tolerance": 1e-4}
+    damped = rod().with_(damping | {f"output.{quantity}": [] for quantity in ("strain", "velocity", "force", "drift")})
+    found = wavesym.frf(damped, [w])
+    value = found["displacement@tip"][0]
+    assert abs(value - expected) <= found.bound * abs(value) + rest
+    assert rest < 1e-9
+
+
+@pytest.mark.parametrize("damping", [None, "1/20", {"modes": [1, 2], "ratio": "1/20"}], ids=["none", "one", "rayleigh"])
+def test_what_stands_on_the_ground_moves_as_it_does_at_frequency_0(damping: object) -> None:
+    made = Scene.from_toml("building_m2").with_(
+        {"system.base": "ground", "system.damping": damping, "output.tolerance": 1e-6, "output.acceleration": [1, 2]}
+    )
+    found = wavesym.frf(made, [0.0, 0.5])
+    assert found["acceleration@1"][0] == found["acceleration@2"][0] == 1
+    assert np.isnan(found["velocity@0.5"][0])
+    assert found.poles == (0.0,)
+
+
+def test_a_band_may_begin_at_0() -> None:
+    """A rod on moving ground, with a mass and a dashpot on top: 1/(cos w - (m w - i c) sin w) in closed form."""
+    parts = [{"motion": "acceleration", "name": "g"}, {"rod": 1}, {"mass": "1/2", "dashpot": "1/10", "name": "top"}]
+    scene = Scene(
+        name="tower",
+        system={"type": "chain", "parts": parts},
+        load=[{"at": "g", "times": [0], "steps": [1]}],
+        output={"until": 1, "acceleration": ["top"], "displacement": ["top"]},
+    )
+    w = np.linspace(0, 2, 200_001)
+    expected = np.abs(1 / (np.cos(w) - (w / 2 - 0.1j) * np.sin(w)))
+    peaks = wavesym.frf(scene, [0.0, 2.0]).peaks()
+    assert expected.max() <= peaks["acceleration@top"].high <= expected.max() * (1 + 1e-6)
+    assert peaks["acceleration@top"].frequency == pytest.approx(w[expected.argmax()], abs=1e-5)
+    assert (peaks["displacement@top"].frequency, peaks["displacement@top"].amplitude) == (0.0, np.inf)
+
+
+def test_a_free_chain_has_strains_near_frequency_0() -> None:
+    """A force on one end of a free rod: strain sin(w/2)/sin(w) at its middle, which has no value at 0, but a limit."""
+    scene = Scene(
+        name="bar",
+        system={"type": "chain", "parts": [{"joint": True, "name": "a"}, {"rod": 1}, "free"]},
+        load=[{"at": "a", "times": [0], "steps": [1]}],
+        output={"until": 1, "strain": ["1/2"], "velocity": ["1/2"]},
+    )
+    peaks = wavesym.frf(scene, [0.0, 1.5]).peaks()
+    expected = np.sin(0.75) / np.sin(1.5)
+    assert peaks["strain@1/2"].low <= expected * (1 + ULP)
+    assert expected * (1 - ULP) <= peaks["strain@1/2"].high < expected * (1 + 1e-9)
+    assert (peaks["velocity@1/2"].frequency, peaks["velocity@1/2"].amplitude) == (0.0, np.inf)
+
+
 @pytest.mark.slow
 @settings(max_examples=6, deadline=None)
 @given(trees())

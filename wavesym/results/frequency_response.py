@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -169,17 +170,15 @@ def frequency_response(model: Model, load: HarmonicLoad, frequencies: ArrayLike)
     else:
         points = _Points(Transfer(model, load))
         for k, f in enumerate(given.tolist()):
-            found = points.at(f)
-            if found is not None:
-                values[:, k] = found[0]
-                errors = np.maximum(errors, found[1])
+            values[:, k], radii = points.at(f)
+            errors = np.fmax(errors, radii)
     largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
     relative = np.divide(errors, largest, out=np.zeros_like(errors), where=largest > 0)
     if relative.max(initial=0.0) > nearest(model.tolerance):
         raise ToleranceError(
             f"output.tolerance: {relative.max():.1e} reached (frequencies further from resonance help)"
         )
-    missing = np.isnan(values[0].real) if len(values) else np.zeros(len(given), bool)
+    missing = np.isnan(values.real).any(axis=0)
     return FrequencyResponse(
         name=model.name,
         load=load.label,
@@ -226,10 +225,10 @@ class _Points:
     transfer: Transfer
     bits: int = _BITS
 
-    def at(self, frequency: float) -> tuple[list[complex], list[float]] | None:
+    def at(self, frequency: float) -> tuple[list[complex], list[float]]:
         """The outputs at a frequency, both parts as the nearest doubles, and what these are wrong by before rounding.
 
-        None where there is no answer, as at a natural frequency. CostError where no bits tell.
+        nan where there is no answer, as at a natural frequency. CostError where no bits tell.
         """
         model, bits = self.transfer.model, self.bits
         before = [arb("inf") for _ in model.probes]
@@ -237,19 +236,25 @@ class _Points:
             with ctx.workprec(bits):
                 found = [acb(each) for each in self.transfer(angular(model, frequency))]
                 radii = [max(each.real.rad(), each.imag.rad()) for each in found]
-                if all(each.is_finite() for each in found):
-                    # frequencies of modes, which Rayleigh's damping takes, are known to so many bits and no more
-                    known = all(radius == 0 or 2 * radius > last for radius, last in zip(radii, before, strict=True))
-                    if known or all(_is_sharp(*each, bits) for each in zip(found, radii, strict=True)):
-                        self.bits = max(_BITS, bits * 7 // 8 if bits == self.bits else bits)
-                        return [complex(midpoint(v.real), midpoint(v.imag)) for v in found], [above(r) for r in radii]
-                    before = radii
+                finite = [k for k, each in enumerate(found) if each.is_finite()]
+                # frequencies of modes, which Rayleigh's damping takes, are known to so many bits and no more
+                known = all(radii[k] == 0 or 2 * radii[k] > before[k] for k in finite)
+                enough = known or all(_is_sharp(found[k], radii[k], bits) for k in finite)
+                if len(finite) == len(found) and enough:
+                    self.bits = max(_BITS, bits * 7 // 8 if bits == self.bits else bits)
+                    break
+                before = radii
             bits = bits * 3 // 2
-        if before[:1] and not before[0].is_finite():
-            return None
+        if enough:
+            return [_nearest(each) for each in found], [above(r) if r.is_finite() else nan for r in radii]
         raise CostError(
             f"frequency: more than {_MOST_BITS} bits at {frequency:g}, at most {_MOST_BITS} expected (fewer parts help)"
         )
+
+
+def _nearest(value: acb) -> complex:
+    """Both parts as doubles; nan where the value is not known."""
+    return complex(midpoint(value.real), midpoint(value.imag)) if value.is_finite() else complex(nan)
 
 
 def _is_sharp(value: acb, radius: arb, bits: int) -> bool:
@@ -275,10 +280,9 @@ def _modal(model: Model, load: HarmonicLoad, given: Vector, values: NDArray[np.c
                 left = errors
                 for k, f in enumerate(given.tolist()):
                     found = [acb(each) for each in transfer(angular(model, f))]
-                    if not all(each.is_finite() for each in found):
-                        continue
-                    values[:, k] = [complex(midpoint(each.real), midpoint(each.imag)) for each in found]
-                    errors = np.maximum(errors, left + [above(each.real.rad() + each.imag.rad()) for each in found])
+                    values[:, k] = [_nearest(each) for each in found]
+                    radii = [above(each.real.rad() + each.imag.rad()) if each.is_finite() else nan for each in found]
+                    errors = np.fmax(errors, left + radii)
                 largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
                 enough = (errors <= tolerance * largest).all()
         if enough:

@@ -73,17 +73,15 @@ class ModalTransfer:
         ]
         made: list[Quantity] = [acb(0) for _ in self.model.probes]
         for each in self._drives:
-            acting = self._acting(each, rate)
-            for k, shares in enumerate(each.shares):
+            for k, (probe, shares) in enumerate(zip(self.model.probes, each.shares, strict=True)):
                 moved = sum(
                     (answer * share for share, answer in zip(shares, answers, strict=True)), acb(each.static[k])
                 )
+                order = ORDERS.get(probe.quantity, 0)
+                made[k] = made[k] + self._acting(each, rate, order) * moved
                 if each.imposed is not None:
-                    moved = moved + each.imposed[k] / (rate * rate)
-                made[k] = made[k] + acting * moved
-        return [
-            each * rate ** ORDERS.get(probe.quantity, 0) for probe, each in zip(self.model.probes, made, strict=True)
-        ]
+                    made[k] = made[k] + self._acting(each, rate, order - 2) * each.imposed[k]
+        return made
 
     def left_out(self, w: arb) -> list[arb]:
         """What all modes after the first `count` can add to the amplitude of each output; None where that is open.
@@ -91,7 +89,7 @@ class ModalTransfer:
         Args:
             w: the frequency in rad per tau; a wide ball stands for all in it.
         """
-        last, most = self._frequencies[-1], self._ratios[-1]
+        last, most = self._frequencies[-1], self._most_left
         made = [arb(0) for _ in self.model.probes]
         if not last > w:
             return [arb("inf") for _ in made]
@@ -104,10 +102,10 @@ class ModalTransfer:
                 made[k] += acting * left * most_of_one * w**order
         return made
 
-    def _acting(self, each: ModalDrive, rate: Quantity) -> Quantity:
-        """The force on the point, or its acceleration."""
-        acting = drive(each.coefficients, rate)
-        return acting * rate if self.model.network.points[each.point].motion == "velocity" else acting
+    def _acting(self, each: ModalDrive, rate: Quantity, order: int = 0) -> Quantity:
+        """The force on the point, or its acceleration, differentiated `order` times."""
+        moves = self.model.network.points[each.point].motion == "velocity"
+        return drive(each.coefficients, rate, order + moves)
 
     @cached_property
     def _found(self) -> list[Mode]:
@@ -130,6 +128,14 @@ class ModalTransfer:
                 last = ratio
                 ratio = next(ratios, last)
         return made
+
+    @property
+    def _most_left(self) -> arb:
+        """The greatest ratio of all modes after the first `count`."""
+        assert self.model.damping is not None
+        ratios = self.model.damping.ratios
+        strained = sum(1 for n in self._frequencies if n != 0)
+        return arb(max(ratios[min(strained, len(ratios) - 1) :]))
 
     @cached_property
     def _drives(self) -> list[ModalDrive]:

@@ -26,6 +26,7 @@ from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 _BITS = 256
 _SHARE = arb(2) ** -33  # of the greatest amplitude: what peaks are enclosed to
 _LEAST = arb(2) ** -40  # of the band: an interval in which amplitudes are still not bounded has a pole
+_GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole at 0, where it is 4 or 16
 _MOST = 600_000  # intervals times parts
 _NEWTON = 3
 _PARTS = 64  # of the band at first
@@ -176,7 +177,17 @@ class _Interval:
 
 
 def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb, parts: int) -> None:
-    """Find the greatest amplitudes from one frequency to another. CostError."""
+    """Find the greatest amplitudes from one frequency to another. CostError.
+
+    What is not finite at 0 is searched from a 2^-40 of the band on: there it has a pole, or goes on as it comes.
+    """
+    if first.contains(0) and not all(square.is_finite() for square, _, _ in _squares(transfer, first)):
+        first = (last * _LEAST).mid()
+        near, next_to = _squares(transfer, first), _squares(transfer, 2 * first)
+        for search, (square, _, _), (later, _, _) in zip(found, near, next_to, strict=True):
+            if square > later * _GROWTH:
+                search.seen(first, square)
+                search.pole, search.at = True, arb(0)
     every = list(range(len(found)))
     edges = [(first + (last - first) * k / _PARTS).mid() for k in range(_PARTS + 1)]
     edges[0], edges[-1] = first.lower(), last.upper()
@@ -185,7 +196,6 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
             search.seen(edge, square)
     level, count = [_Interval(*each, every) for each in pairwise(edges)], 0
     allowed = _MOST // parts
-    least = (last - first) * _LEAST
     while level:
         count += len(level)
         if count > allowed:
@@ -207,7 +217,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
                 most = (whole[k][0] if each.low.contains(0) else rest).upper()
                 if found[k].pole or (most.is_finite() and found[k].excludes(most)):
                     continue
-                if each.high - each.low < least:
+                if each.high - each.low < (last - first).min(each.high) * _LEAST:
                     found[k].pole, found[k].at = True, each.middle
                 else:
                     open_for.append(k)

@@ -81,12 +81,16 @@ def harmonic_load(model: Model, sources: tuple[str, ...], wanted: str | int | No
     return HarmonicLoad(names[source], unit, drives)
 
 
-def drive(coefficients: tuple[fmpq, ...], rate: Quantity) -> Quantity:
-    """What a load exp(rate tau) does that as a unit step is a sum of powers of tau: by Laplace's transform."""
+def drive(coefficients: tuple[fmpq, ...], rate: Quantity, order: int = 0) -> Quantity:
+    """What a load exp(rate tau) does that as a unit step is a sum of powers of tau: by Laplace's transform.
+
+    It is differentiated `order` times, or integrated: at rate 0 it is finite where no integral is left of it.
+    """
     made: Quantity = acb(0)
     for power, c in enumerate(coefficients):
         if c != 0:
-            made = made + arb(c * factorial(power)) / rate**power
+            size, left = arb(c * factorial(power)), order - power
+            made = made + (size if left == 0 else size * rate**left if left > 0 else size / rate**-left)
     return made
 
 
@@ -113,11 +117,10 @@ class Transfer:
         rate = w * _I
         total: list[Quantity] = [acb(0) for _ in self.model.probes]
         for point, coefficients in self.load.drives:
-            acting = drive(coefficients, rate)
-            if motion := self.model.network.points[point].motion:
-                acting = acting / rate ** ORDERS[motion]
+            motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
             for k, (probe, moved) in enumerate(zip(self.model.probes, self._displaced(point, w), strict=True)):
-                total[k] = total[k] + acting * moved * rate ** ORDERS.get(probe.quantity, 0)
+                order = ORDERS.get(probe.quantity, 0) - motion
+                total[k] = total[k] + drive(coefficients, rate, order) * moved
         return total
 
     def _displaced(self, point: int, w: Quantity) -> list[Quantity]:
@@ -139,7 +142,9 @@ class Transfer:
             rigid_part = [share * self._of_shape(probe, shape) for probe in self.model.probes]
             return [each + r / (square * lag) - r / (w * w) for each, r in zip(made, rigid_part, strict=True)]
         imposed = self._undamped(point, arb(0))
-        return [u + (each - u) * (w * w) / (square * lag) for each, u in zip(moved, imposed, strict=True)]
+        # w^2/(v^2 (1 + i b w)), also at 0
+        share_of_w = w / (w - _I * a)
+        return [u + (each - u) * share_of_w for each, u in zip(moved, imposed, strict=True)]
 
     def _undamped(self, point: int, w: Quantity) -> list[Quantity]:
         amplitudes = self._harmonic.driven(point, w)
