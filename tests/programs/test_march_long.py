@@ -26,7 +26,7 @@ FOLLOW = """
 void follow(const double *tau, size_t count, const double *impedance, const double *mass, double *out, double *energy)
 {
     static march state;
-    begin_march(&state);
+    start_march(&state);
     for (size_t i = 0; i < count; ++i) {
         outputs_at(&state, tau[i], out + i * OUTPUTS);
         energy[i] = 0;
