@@ -8,22 +8,6 @@ from tests.papers.falsified import ENTRIES, judged
 
 
 @pytest.mark.parametrize(
-    ("id", "verdict"),
-    [
-        ("(2.1)", "misprint"),
-        ("(2.2)", "holds"),
-        ("def.v", "incomplete"),
-        ("def.f", "convention"),
-        ("T1.I.v", "unreadable"),
-    ],
-)
-def test_as_printed(id, verdict):
-    record = judged(id)
-    assert record.verdict == verdict, record.problems
-    assert record.mutations.tried == record.mutations.turned > 4
-
-
-@pytest.mark.parametrize(
     ("id", "changes"),
     [
         ("(2.1)", {"slip": {"corrected": ENTRIES["(2.1)"].printed}}),

@@ -117,6 +117,14 @@ def test_what_is_wrong_shows_where_and_what_is_right(judged):
         assert wrong or record.difference is None, record.id
 
 
+def test_what_is_printed_less_what_is_right(by_id):
+    assert by_id["(4.8).2"].difference is None
+    assert "2\\kappa_{i}f'_{i}(z)" in by_id["(4.8).5"].difference
+    assert r"\sum_{k=0}^{m + 1}" in by_id["(4.7).2"].difference
+    assert r"-\frac{1}{\kappa_{1}}" in by_id["(4.5).2"].difference
+    assert r"+ \frac{1}{\kappa_{i}}" in by_id["(4.5).2"].difference
+
+
 def test_survivors_are_explained(judged):
     survivors = [(record.id, change, why) for record in judged for change, why in record.mutations.survived]
     assert all(why for _, _, why in survivors)
@@ -145,6 +153,12 @@ def test_survivors_are_explained(judged):
         ("(4.12).F", "misprint"),
         ("T1.II.S", "convention"),
         ("text.22", "depends"),
+        *((id, "misprint") for id in ("(2.1)", "(2.3)", "(4.7).2", "(4.9).z", "text.29")),
+        *((id, "convention") for id in ("(2.4).2", "(4.5).2", "def.f", "text.5", "text.9.powers")),
+        *((id, "incomplete") for id in ("(4.6).contacts", "def.v", "text.T2", "text.T4", "text.9")),
+        *((id, "unreadable") for id in ("(4.3).kappa", "(4.4).A", "(4.5).kappa", "T1.I.v")),
+        *((id, "holds") for id in ("(2.2)", "(4.3).5", "(4.4).kappa", "(4.6).3", "(4.8).2", "III.9", "text.16")),
+        ("text.24", "depends"),
     ],
 )
 def test_known_verdicts(by_id, id, verdict):

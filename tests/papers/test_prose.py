@@ -62,14 +62,6 @@ def test_another_word_is_seen(id: str, before: str, after: str) -> None:
     assert verdict(id, before, after) == "untested"
 
 
-@pytest.mark.parametrize(
-    ("id", "expected"),
-    [("text.T2", "incomplete"), ("text.T4", "incomplete"), ("text.9", "incomplete"), ("text.5", "convention")],
-)
-def test_what_needs_a_hypothesis_says_so(id: str, expected: str) -> None:
-    assert verdict(id) == expected
-
-
 def test_ranges_of_powers_are_judged() -> None:
     told = entry("text.13.K_1")
     for last in ("2r-r_0+1", "2r-r_0-1"):

@@ -12,20 +12,6 @@ from wavesym.scene import lower
 
 
 @pytest.mark.parametrize(
-    ("id", "verdict"),
-    [
-        ("text.16", "holds"),
-        ("text.23", "holds"),
-        ("text.22", "depends"),
-        ("text.24", "depends"),
-        ("text.29", "misprint"),
-    ],
-)
-def test_verdicts(id: str, verdict: str) -> None:
-    assert judged(id).verdict == verdict
-
-
-@pytest.mark.parametrize(
     ("id", "word", "other"),
     [
         ("text.16", "slightly", "considerably"),

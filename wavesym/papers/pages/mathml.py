@@ -12,7 +12,7 @@ LONGEST = 90
 _REPLACED = (
     (' xmlns="http://www.w3.org/1998/Math/MathML"', ""),
     ('style="marked"', 'class="marked"'),
-    ('display="inline"', 'displaystyle="true"'),
+    ('display="block"', 'displaystyle="true"'),
 )
 
 
@@ -27,7 +27,7 @@ def mathml(tree: Tree) -> str:
         raise WavesymError("latex2mathml is not installed; `pip install 'wavesym[papers]'` brings it") from None
     found = []
     for piece in pieces(tree):
-        made = convert(piece.replace(r"\marked{", r"\style{marked}{"))
+        made = convert(piece.replace(r"\marked{", r"\style{marked}{"), display="block")
         for before, after in _REPLACED:
             made = made.replace(before, after)
         found.append(made)
