@@ -1,0 +1,160 @@
+"""Equations of a kind on one chain: both sides wherever they are said to hold, and what they say once together."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from functools import lru_cache, partial
+from typing import Any, ClassVar
+
+from flint import fmpq
+
+from wavesym.papers.entries import PaperEntry
+from wavesym.papers.evaluation import MeaninglessError, constants_in, items, sides, span
+from wavesym.papers.exact_numbers import Jet
+from wavesym.papers.pielorz1979.chains import (
+    EXAMPLES,
+    UNEQUAL_COLLISION,
+    LoadedChain,
+    example,
+)
+from wavesym.papers.pielorz1979.letters import Motion, Units
+from wavesym.papers.pielorz1979.transcript import others
+from wavesym.papers.record import Case, Reading, Reproduction, case, format_value
+from wavesym.papers.tree import Progression, Symbol, Tree, latex
+
+Place = Mapping[str, Any]
+"""Values of running letters."""
+Key = tuple[Any, ...]
+"""What an equation says: a letter or a word, and a number."""
+
+SLOW, FAST = Units(fmpq(2), fmpq(3), fmpq(5, 7)), Units(fmpq(5, 2), fmpq(1, 7), fmpq(3))
+_MOVING = "the exact motion of chains with all parameters different under loads of several steps"
+
+
+@lru_cache(maxsize=1000)
+def within(tree: Any) -> tuple[Any, ...]:
+    """A tree and all its parts."""
+    values = (getattr(tree, field.name) for field in fields(tree))
+    parts = (part for value in values for part in (value if isinstance(value, tuple) else (value,)))
+    return (tree, *(inner for part in parts if is_dataclass(part) for inner in within(part)))  # type: ignore[arg-type]
+
+
+class EquationGroup:
+    """Equations of a kind, tried on one chain: a record's, and which others there are.
+
+    Attributes:
+        against: what they are compared with.
+        letters: what a range may be of.
+        sizes: the m of each example.
+        units: of the chains, those of every other m.
+        velocities: whether a v is that of a "body" or of a "rod".
+        is_definition: whether the left side is known by the exact motion, and the right side is to be its value.
+        is_alone: whether the record says by itself all that is required, or beside others of its group.
+    """
+
+    against: ClassVar[str] = _MOVING
+    letters: ClassVar[frozenset[str]] = frozenset({"i", "x_{i}", "v_{0}", "S_{0}"})
+    sizes: ClassVar[Mapping[str, Iterable[int]]] = {name: example.sizes for name, example in EXAMPLES.items()}
+    units: ClassVar[tuple[Units, Units]] = (SLOW, FAST)
+    velocities: ClassVar[str] = "body"
+    is_definition: ClassVar[bool] = False
+    is_alone: ClassVar[bool] = True
+
+    def __init__(self, entry: PaperEntry, reading: Reading, motion: LoadedChain) -> None:
+        self.entry, self.reading = entry, reading
+        progressions = [r for r in reading.ranges if isinstance(r, Progression)]
+        self.ranges = {latex(r.variable): r for r in progressions}
+        if len(self.ranges) < len(progressions) or not self.ranges.keys() <= self.letters:
+            raise MeaninglessError("a range of something else")
+        constants = {name: value for name, value in constants_in(reading.ranges).items() if "_" in latex(name)}
+        self.scope = Motion(motion, self.units[motion.exact.m % 2], constants, self.velocities)
+
+    # what a kind has of its own
+
+    def places(self, equation: Tree) -> Iterator[Place]:
+        """Where an equation is said to hold."""
+        if "i" in self.ranges and Symbol("i") in within(equation):
+            yield from ({"i": i} for i in span(self.ranges["i"], self.scope))
+        else:
+            yield {}
+
+    def key(self, equation: Tree, place: Place) -> Key:
+        """What an equation says at a place."""
+        raise NotImplementedError
+
+    def required(self) -> Iterable[Key] | None:
+        """All that is to be said of the chain, once; None where that is not asked."""
+        raise NotImplementedError
+
+    def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
+        """How an instant is called, and what is bound then."""
+        yield {}, {}
+
+    def sides(self, equation: Tree) -> tuple[Callable[[], Any], Callable[[], Any]]:
+        """The values of both sides."""
+        left, right = sides(equation)
+        return partial(self.scope.value, left), partial(self.scope.value, right)
+
+    def more(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
+        """What else is said at a place."""
+        yield from ()
+
+    # the test
+
+    def cases(self, at: Place) -> Iterator[Case]:
+        """Both sides of each equation wherever it is said to hold, and what is said how often."""
+        said: Counter[Key] = Counter()
+        for equation in items(self.reading.formula):
+            for place in self.places(equation):
+                self.scope.bound |= place
+                said[self.key(equation, place)] += 1
+                here = {**at, **{name: place[name] for name in ("i", "x") if name in place}}
+                yield from self.more(equation, place, here)
+                for name, bound in self.instants(place):
+                    yield self.balance(equation, {**here, **name}, bound)
+        if (needed := self.required()) is None:
+            return
+        beside = Counter[Key]() if self.is_alone else self.beside()
+        total, required = said + beside, Counter(needed)
+        for key in sorted(total.keys() | required.keys(), key=str):
+            found = Case(
+                {**at, "how often it is given": "_".join(map(str, key))}, total[key], required[key], key in said
+            )
+            yield found if found.agrees else replace(found, example=self.scene(at, found))
+
+    def balance(self, equation: Tree, at: Place, bound: Place) -> Case:
+        """An equation at an instant: what is left of it, or its right side where it is a definition."""
+        left, right = self.sides(equation)
+        self.scope.seen = self.is_definition
+        with self.scope.binding({**self.scope.bound, **bound}):
+            if self.is_definition:
+                found = case(at, lambda: Jet.of(right()).value, Jet.of(left()).value)
+            else:
+                found = case(at, lambda: Jet.of(left() - right()).value, 0)
+        return replace(found, telling=self.scope.seen, example=None if found.agrees else self.scene(at, found))
+
+    def beside(self) -> Counter[Key]:
+        """What the other equations of the group say."""
+        known, key = self.scope.motion.known, ("beside", self.entry.kind, self.entry.id)
+        if key not in known:
+            known[key] = Counter[Key]()
+            for reading in others(self.entry.id, self.entry.kind):
+                group = type(self)(self.entry, reading, self.scope.motion)
+                for equation in items(reading.formula):
+                    for place in group.places(equation):
+                        group.scope.bound |= place
+                        known[key][group.key(equation, place)] += 1
+        found: Counter[Key] = known[key]
+        return found
+
+    def scene(self, at: Place, found: Case) -> Callable[[], Reproduction] | None:
+        """How a case is seen: what a scene says at its place, to be put into the equation."""
+        if self.scope.chain.system is UNEQUAL_COLLISION:  # no scene has it
+            return None
+        where = ", ".join(f"{name} = {format_value(value)}" for name, value in at.items())
+        x = min(max(fmpq(at.get("x", at.get("i", 1))), fmpq(0)), fmpq(self.scope.chain.m))
+        look = f"velocity@{x} and what stands beside it in the equation; with {where}, {found.printed} comes of it"
+        motion, outputs = self.scope.motion, {"velocity": [str(x)]}
+        return example(motion.exact, motion.loads, 8, outputs, "wavesym run SCENE --samples 1001", look)

@@ -1,0 +1,212 @@
+"""The equations that say what quantities are: inside rods, in other units, of loads and materials, and Table 1."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any, ClassVar
+
+from flint import fmpq
+
+from wavesym.papers.entries import PaperEntry
+from wavesym.papers.evaluation import MeaninglessError, holds, items, sides, span
+from wavesym.papers.pielorz1979.chains import (
+    LoadedChain,
+)
+from wavesym.papers.pielorz1979.equation_group import FAST, SLOW, EquationGroup, Key, Place
+from wavesym.papers.pielorz1979.letters import ONES, body_velocity, letter
+from wavesym.papers.reader import read_range
+from wavesym.papers.record import Case, Reading, case
+from wavesym.papers.tree import Call, Cases, Relation, Symbol, Tree, latex
+
+ROD_NUMBERS = read_range(r"i = 1, 2, \dots, m")
+
+
+class OfRods(EquationGroup):
+    """What is said of each rod."""
+
+    sizes: ClassVar[Mapping[str, Iterable[int]]] = {"I": (4, 6), "II": (1, 2), "III": (2, 3)}
+    velocities = "rod"
+
+    def __init__(self, entry: PaperEntry, reading: Reading, motion: LoadedChain) -> None:
+        super().__init__(entry, reading, motion)
+        late = self.scope.units.l / self.scope.units.c_f  # the t_k are those of (3.2) alone
+        self.scope.letters["t"] = lambda zero, rod: self.scope.start(zero, rod) * late
+
+    def numbers(self, equation: Tree) -> Iterable[int]:
+        """The rods."""
+        if "i" not in self.ranges:
+            raise MeaninglessError("i has no range")
+        return span(self.ranges["i"], self.scope)
+
+    def places(self, equation: Tree) -> Iterator[Place]:
+        return ({"i": i} for i in self.numbers(equation))
+
+    def key(self, equation: Tree, place: Place) -> Key:
+        return "rod", place["i"]
+
+    def required(self) -> Iterable[Key]:
+        return [("rod", rod) for rod in range(1, self.scope.chain.m + 1)] * len(items(self.reading.formula))
+
+    def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
+        """Somewhere in the rod."""
+        for part, tau in ((fmpq(2, 3), fmpq(31, 9)), (fmpq(1, 6), fmpq(2, 3))):
+            bound = {**self.scope.at(place["i"] - part, tau), "z": tau}
+            yield {"x": bound["x"], "t": bound["t"]}, bound
+
+
+class Interior(OfRods):
+    """(2.1), (2.2), (4.1): equations inside the rods, from the start on or at the start."""
+
+    against = "the exact motion of chains under loads, inside every rod; c_f and l are varied"
+
+    def more(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
+        """The places that are said to be inside."""
+        where = next((r for r in self.reading.ranges if isinstance(r, Relation)), None)
+        if where is None:
+            raise MeaninglessError("x has no range")
+        for x in (fmpq(sixth, 6) for sixth in range(6 * self.scope.chain.m + 1)):
+            with self.scope.binding({**self.scope.bound, **self.scope.at(x, fmpq(1))}):
+                inside = place["i"] - 1 < x < place["i"]
+                yield Case({**at, "x": x, "within": latex(where)}, holds(where, self.scope), inside, telling=False)
+
+
+class Definitions(OfRods):
+    """The quantities without dimensions: the same motion in both kinds of units."""
+
+    against = "the exact motion of chains under loads, with and without dimensions; c_f, l and U_0 are varied"
+
+
+class Loads(EquationGroup):
+    """(3.1), (3.2): the loads of bodies."""
+
+    against = "what acts on the body by its exact motion, under loads with several pieces, just after any jump"
+    sizes: ClassVar[Mapping[str, Iterable[int]]] = {"II": (1, 2, 3), "III": (2,)}
+    units = (ONES, ONES)
+    is_definition = True
+
+    def key(self, equation: Tree, place: Place) -> Key:
+        left = sides(equation)[0]
+        function = left.function if isinstance(left, Call) else left
+        if not isinstance(function, Symbol):
+            raise MeaninglessError(f"{latex(left)} is no load")
+        return letter(function), *self.scope.indices(function)
+
+    def required(self) -> Iterable[Key]:
+        return [("M", body) for body in range(1, self.scope.chain.m + 2)] if self.scope.is_drive else [(r"\ddoty", 0)]
+
+    def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
+        yield from (({"t": fmpq(half, 2)}, {"t": fmpq(half, 2)}) for half in range(6))
+
+
+class Constants(Loads):
+    """kappa, A and loads without dimensions, in terms of materials."""
+
+    against = "chains of bodies and rods in physical units whose nodes have the laws of the derivation"
+    sizes: ClassVar[Mapping[str, Iterable[int]]] = {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3, 4)}
+    units = (replace(SLOW, S_0=fmpq(7, 3)), replace(FAST, S_0=fmpq(2, 5)))
+
+    def required(self) -> Iterable[Key]:
+        name = letter(self._defined())
+        if name == r"\kappa":
+            return [(name, i) for i in self.scope.chain.system.indices(self.scope.chain.m)["kappa"]]
+        return [(name, body) for body in range(1, self.scope.chain.m + 2)]
+
+    def _defined(self) -> Symbol:
+        left = sides(self.reading.formula)[0]
+        function = left.function if isinstance(left, Call) else left
+        if not isinstance(function, Symbol) or len(function.below) != 1:
+            raise MeaninglessError(f"{latex(left)} is not defined")
+        return function
+
+    def key(self, equation: Tree, place: Place) -> Key:
+        self.scope.indices(self._defined())
+        return super().key(equation, place)
+
+    def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
+        yield {}, self.scope.at(0, fmpq(5, 4))
+
+
+class Rates(Constants):
+    """(4.11): gamma, which both its lines together give once."""
+
+    against = "the rates of the discs by their derived node laws, m = 1 ... 5"
+    sizes: ClassVar[Mapping[str, Iterable[int]]] = {"II": range(1, 6)}
+    is_alone = False
+
+    def _defined(self) -> Symbol:
+        return Symbol(r"\gamma", below=(Symbol("i"),))
+
+    def key(self, equation: Tree, place: Place) -> Key:
+        return Loads.key(self, equation, place)
+
+    def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
+        yield {}, {}
+
+
+class Table1(OfRods):
+    """The cells of Table 1: where and when the first disturbance reaches a rod, how it moves then, and its loads."""
+
+    against = "when and where the first disturbance arrives, and the clock with which (4.6)-(4.8) follow"
+    sizes: ClassVar[Mapping[str, Iterable[int]]] = {"I": (4, 6, 8), "II": (1, 2, 3), "III": (2, 3, 4)}
+    velocities = "body"
+    is_definition = True
+
+    def numbers(self, equation: Tree) -> Iterable[int]:
+        if isinstance(equation, Cases):
+            return [i for _, where in equation.branches for i in span(where, self.scope)]
+        return span(self.ranges.get("i", ROD_NUMBERS), self.scope)
+
+    def required(self) -> Iterable[Key]:
+        """The rods; of the loads the bodies that have one, too."""
+        numbers = {*range(1, self.scope.chain.m + 1)}
+        if self.entry.about["column"] == "S":
+            numbers |= {int(source[1:]) for source in self.scope.chain.sources if source[0] == "M"}
+        return [("rod", number) for number in numbers]
+
+    def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
+        yield {}, self.scope.at(0, fmpq(place["i"], 2))
+
+    def sides(self, equation: Tree) -> tuple[Callable[[], Any], Callable[[], Any]]:
+        scope, i = self.scope, self.scope.bound["i"]
+        if self.entry.about["column"] == "c_f^2":
+            value, root = sides(equation)
+            return lambda: (scope.units.c_f**2,) * 2, lambda: (scope.value(value), scope.value(root))
+        means: Mapping[str, Callable[[], Any]] = {
+            "x_0": lambda: scope.first(0, i).x0,
+            "tau_0": lambda: scope.first(0, i).tau0,
+            "v": lambda: body_velocity(scope.chain, i),
+            "S": lambda: scope.functions["S"](i, scope.bound["t"]) if self._is_body(i) else 0,
+        }
+        return means[self.entry.about["column"]], partial(scope.value, equation)
+
+    def _is_body(self, i: int) -> bool:
+        x = i - 1 if self.scope.is_drive else i
+        return 0 <= x <= self.scope.chain.m and bool(self.scope.chain.nodes[x].inertia)
+
+    def more(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
+        """The first disturbance itself."""
+        column, rod = self.entry.about["column"], place["i"]
+        if column in ("x_0", "tau_0") and 1 <= rod <= self.scope.chain.m:
+            time, ends = arrival(self.scope.chain, rod)
+            value = partial(self.scope.value, equation)
+            if column == "tau_0":
+                yield case({**at, "front": "time"}, value, time)
+            else:
+                yield case({**at, "front": "end"}, lambda: value() in ends, True)
+
+
+def arrival(chain: Any, rod: int, which: Callable[[Iterable[int]], int] = min) -> tuple[int, set[int]]:
+    """When the first disturbance reaches a rod (the last one, by max), and at which of its ends.
+
+    Disturbances come from loads, and from contacts that are struck.
+    """
+    struck = [
+        x
+        for x, node in enumerate(chain.nodes)
+        if node.loads or (node.left and node.right and node.left.velocity != node.right.velocity)
+    ]
+    times = {end: which(abs(end - x) for x in struck) for end in (rod - 1, rod)}
+    first = which(times.values())
+    return first, {end for end, time in times.items() if time == first}
