@@ -8,7 +8,7 @@ there are waves. Their one solution has to satisfy (4.6), (4.7) or (4.8), and (2
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import pytest
@@ -16,7 +16,7 @@ from flint import fmpq, fmpq_mat
 
 from tests.papers.falsified import ENTRIES
 from wavesym.derivation.table import Function
-from wavesym.papers.evaluation import MeaninglessError, Scope, items, range_of, sides, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.exact_numbers import Jet
 from wavesym.papers.pielorz1979.chains import Exact, LoadedChain
 from wavesym.papers.pielorz1979.coefficients import STEP, Alone, corrected, truth, unknowns
@@ -34,6 +34,14 @@ CONDITIONS = {"I": "(4.3).", "II": "(4.4).", "III": "(4.5)."}
 S, E = fmpq(5, 7), fmpq(11, 4)
 U_0, L, C, RHO = fmpq(3, 8), fmpq(7), fmpq(13, 6), fmpq(9, 5)
 AREA = {"F": fmpq(7, 6), "n": fmpq(4), "A": fmpq(2, 9)}
+
+
+def range_of(name: str, ranges: Iterable[Tree]) -> Progression:
+    """The range of a variable; MeaninglessError where it has none."""
+    for r in ranges:
+        if isinstance(r, Progression) and r.variable == Symbol(name):
+            return r
+    raise MeaninglessError(f"{name} has no range")
 
 
 def _right(id: str) -> Reading:

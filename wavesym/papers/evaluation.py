@@ -217,14 +217,6 @@ def holds(where: Tree, scope: Scope) -> bool:
     raise MeaninglessError(f"{latex(where)} is no range")
 
 
-def range_of(name: str, ranges: Iterable[Tree]) -> Progression:
-    """The range of a variable; MeaninglessError where it has none."""
-    for r in ranges:
-        if isinstance(r, Progression) and r.variable == Symbol(name):
-            return r
-    raise MeaninglessError(f"{name} has no range")
-
-
 def constants_in(ranges: Iterable[Tree]) -> dict[Tree, Tree]:
     """The constants that ranges say the value of, such as "v_0 = c_f U_0 / l"."""
     return {r.variable: r.shown[0] for r in ranges if isinstance(r, Progression) and len(r.shown) == 1 and not r.dots}

@@ -110,7 +110,8 @@ def _versions(record: Record) -> tuple[tuple[Line, ...], tuple[Line, ...]]:
             trees = mark_differences(one.tree, other.tree)
             one, other = (Formula(f.text, tree) for f, tree in zip((one, other), trees, strict=True))
         sentences = (one,), (other,)
-    ranges = [list(map(range_of_values, texts)) for texts in (entry.ranges, slip.ranges or entry.ranges)]
+    right = entry.ranges if slip.ranges is None else slip.ranges
+    ranges = [list(map(range_of_values, texts)) for texts in (entry.ranges, right)]
     if slip.ranges is not None and all(isinstance(range_, Formula) for side in ranges for range_ in side):
         before, after = ([range_.tree for range_ in side if isinstance(range_, Formula)] for side in ranges)
         differences = mark_range_differences(before, after)
