@@ -4,7 +4,7 @@ import pytest
 
 from wavesym.papers.pielorz1979 import coefficients
 from wavesym.papers.pielorz1979.paper import ADAPTERS
-from wavesym.papers.pielorz1979.transcript import entries, ids, settled
+from wavesym.papers.pielorz1979.transcript import entries, ids, right_reading
 from wavesym.papers.record import judge, reading
 
 
@@ -58,8 +58,8 @@ def test_a_correction_is_the_whole_formula():
 
 
 def test_the_list_by_itself():
-    assert coefficients.complete(4, 4)
-    assert not coefficients.complete(2, 2)
+    assert coefficients.gives_all(4, 4)
+    assert not coefficients.gives_all(2, 2)
 
 
 def test_every_correction_is_necessary():
@@ -77,4 +77,4 @@ def test_what_lines_differ_in():
 def test_what_the_list_lacks_is_said_in_words():
     short = reading(entries()["III.9"].printed, [r"j = 3, 4, \dots, m"])
     with pytest.raises(coefficients.NotGivenError, match=r"f_0\^\(1,2,1\) is in no line's range"):
-        list(coefficients.listed_values([short if id == "III.9" else settled(id) for id in ids("line")], 3, 2))
+        list(coefficients.listed_values([short if id == "III.9" else right_reading(id) for id in ids("line")], 3, 2))

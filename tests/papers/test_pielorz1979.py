@@ -207,7 +207,7 @@ DRAWN = random.Random(7).sample(FORMULAS, 24)
 def test_another_string_is_another_verdict(entry):
     """A fault written into the string that is right, whichever it is: what was said to hold no longer does."""
     test = ADAPTERS[entry.kind](entry)
-    text, ranges = entry.settled
+    text, ranges = entry.right_strings
     right = test.read(text, ranges)
     excused = {change for change, _ in entry.equivalent}
     faults = [wrong for change, wrong in test.faults(right) if change not in excused]
@@ -247,5 +247,5 @@ def test_what_is_wrong_and_becomes_otherwise_wrong_is_seen(entry):
 def test_faults_are_named_apart(judged):
     for record in islice(judged, 0, None, 9):
         test = ADAPTERS[record.entry.kind](record.entry)
-        names = [change for change, _ in test.faults(test.read(*record.entry.settled))]
+        names = [change for change, _ in test.faults(test.read(*record.entry.right_strings))]
         assert len(names) == len(set(names)) == record.mutations.tried

@@ -19,9 +19,9 @@ from wavesym.derivation.table import Function
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.exact_numbers import Jet
 from wavesym.papers.pielorz1979.chains import Exact, LoadedChain
-from wavesym.papers.pielorz1979.coefficients import STEP, Alone, corrected, truth, unknowns
+from wavesym.papers.pielorz1979.coefficients import STEP, Alone, right_lines, truth, unknowns
 from wavesym.papers.pielorz1979.letters import Motion
-from wavesym.papers.pielorz1979.transcript import settled
+from wavesym.papers.pielorz1979.transcript import right_reading
 from wavesym.papers.record import Reading, reading
 from wavesym.papers.tree import Call, Derivative, Progression, Symbol, Tree, latex
 
@@ -49,7 +49,7 @@ def _right(id: str) -> Reading:
     entry = ENTRIES[id]
     if entry.slip and entry.slip.verdict == "model":
         return reading(entry.printed, entry.ranges)
-    return settled(id)
+    return right_reading(id)
 
 
 RIGHT: Formulas = {
@@ -270,7 +270,7 @@ def disagreeing(wrong: Formulas | None = None) -> set[str]:
 def _turned(id: str, term: str, instead: str) -> Formulas:
     """A formula as it is right, but for a term that counts otherwise."""
     entry = ENTRIES[id]
-    text, ranges = entry.settled
+    text, ranges = entry.right_strings
     assert term in text
     return {id: reading(text.replace(term, instead), ranges)}
 
@@ -296,7 +296,7 @@ def test_a_formula_that_counts_otherwise_is_noticed(id: str, term: str, instead:
 
 def test_the_model_of_the_text_goes_with_no_other_formula() -> None:
     """(4.5).1 as the text has it is another chain than that of (4.8)."""
-    assert "(4.8).2" in disagreeing({"(4.5).1": settled("(4.5).1")})
+    assert "(4.8).2" in disagreeing({"(4.5).1": right_reading("(4.5).1")})
 
 
 def _against_the_list(lines: list[Reading]) -> set[str]:
@@ -315,8 +315,8 @@ def _against_the_list(lines: list[Reading]) -> set[str]:
     scope = Motion(LoadedChain(exact, {"a": (a,), "b": (b,)}))
     found = set()
     for id in ("(4.8).2", "(4.8).3", "(4.8).4", "(4.8).5"):
-        left, right = sides(settled(id).formula)
-        for i in span(range_of("i", settled(id).ranges), scope) if settled(id).ranges else (0,):
+        left, right = sides(right_reading(id).formula)
+        for i in span(range_of("i", right_reading(id).ranges), scope) if right_reading(id).ranges else (0,):
             for tenth in range(0, 20 * most, 7):
                 with scope.binding({"i": i, "z": fmpq(tenth, 10)}):
                     if scope.value(left) - scope.value(right) != 0:
@@ -326,6 +326,6 @@ def _against_the_list(lines: list[Reading]) -> set[str]:
 
 def test_the_list_of_coefficients_goes_with_the_equations() -> None:
     """III.1 to III.22 run by themselves, put into (4.12), and that into (4.8)."""
-    assert _against_the_list(corrected()) == set()
-    assert "(4.8).5" in _against_the_list(corrected("III.6"))
-    assert "(4.8).4" in _against_the_list(corrected("III.5"))
+    assert _against_the_list(right_lines()) == set()
+    assert "(4.8).5" in _against_the_list(right_lines("III.6"))
+    assert "(4.8).4" in _against_the_list(right_lines("III.5"))

@@ -126,7 +126,7 @@ def test_the_loads_drawn_bear_most_out() -> None:
     for number in (7, 8):
         said = section_5.statements(number).values()
         true = {
-            load.name: sum(section_5.true(figure(number), load, statement) for statement in said)
+            load.name: sum(section_5.is_true(figure(number), load, statement) for statement in said)
             for load in loads(number)
         }
         assert true[figures.drawn(number).name] == max(true.values())

@@ -77,7 +77,7 @@ class PaperEntry(_Data):
         return self.english or self.printed
 
     @property
-    def settled(self) -> tuple[str, tuple[str, ...]]:
+    def right_strings(self) -> tuple[str, tuple[str, ...]]:
         """What is right, as printed or as corrected: the formula, and its ranges."""
         if self.slip is None:
             return self.statement, (*self.ranges, *self.inferred)

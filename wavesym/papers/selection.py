@@ -52,7 +52,7 @@ class TracedText:
             spans += [(self.spans[start][0], self.spans[end - 1][1])] * len(new)
         return TracedText(text + self.text[end:], (*spans, *self.spans[end:]))
 
-    def edited(self, before: str, after: str) -> TracedText:
+    def edit(self, before: str, after: str) -> TracedText:
         """Plain text put for other plain text; where that is nothing, the next character has its place."""
         start = self.text.find(before)
         if after or start < 0:
@@ -94,7 +94,7 @@ def position(
     """
     traced, searched = _without_layout(source), plain(",".join(strings))
     for before, after, _ in edits:
-        traced = traced.edited(plain(before), plain(after))
+        traced = traced.edit(plain(before), plain(after))
     if not searched:
         return None
     starts = [match.start() for match in re.finditer(f"(?={re.escape(searched)})", traced.text)]

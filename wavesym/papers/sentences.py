@@ -136,7 +136,7 @@ def sentence_test(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Cas
             raise MeaninglessError("nothing is within its ranges")
 
     def test(entry: PaperEntry) -> Test:
-        against = _about(reader, entry.settled[0]).get("against", "nothing known")
+        against = _about(reader, entry.right_strings[0]).get("against", "nothing known")
         meant = _about(reader, entry.statement).get("convention")
 
         def as_meant(reading: Reading) -> Iterator[Case]:

@@ -20,10 +20,10 @@ from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, fig
 from wavesym.papers.pielorz1979.figures import (
     finding,
     findings,
+    is_true,
     meaning,
     printed_end,
     statements,
-    true,
 )
 from wavesym.papers.pielorz1979.measures import Finding
 from wavesym.papers.pielorz1979.paper import records
@@ -81,7 +81,7 @@ def redrawn(number: int, verdicts: Mapping[str, Record]) -> Figure:
 def drawn(number: int) -> TriedLoad:
     """The load that a figure is drawn with: the first of those under which most of its statements are true."""
     said = statements(number).values()
-    return max(loads(number), key=lambda load: sum(true(figure(number), load, statement) for statement in said))
+    return max(loads(number), key=lambda load: sum(is_true(figure(number), load, statement) for statement in said))
 
 
 def marks(number: int, found: Finding, text: str, load: TriedLoad) -> Iterator[Mark]:
@@ -148,7 +148,7 @@ def _measured(number: int, load: TriedLoad, statement: Sentence) -> Iterator[str
             those = [
                 f"{other.name} ({format_value(measured.value)})"
                 for other, measured in found
-                if true(figure(number), other, statement) == truth
+                if is_true(figure(number), other, statement) == truth
             ]
             yield f"{'true' if truth else 'false'} for {', '.join(those) or 'none of the loads tried'}"
 

@@ -12,7 +12,7 @@ from operator import attrgetter
 
 from wavesym import __version__
 from wavesym.papers.entries import Paper, PaperEntry
-from wavesym.papers.pages.lines import Code, Line, correction, formula, joined, prose, readable, statement
+from wavesym.papers.pages.lines import Code, Line, correction, formula, join_lines, prose, readable, statement
 from wavesym.papers.record import VERDICTS, Record, Verdict
 from wavesym.papers.tables import PrintedTable, TableHead, places
 
@@ -48,7 +48,7 @@ class Findings:
     only: str = ""
 
     @property
-    def shown(self) -> tuple[Record, ...]:
+    def visible(self) -> tuple[Record, ...]:
         """The records that are shown, of which the others are counted alone."""
         return tuple(record for record in self.records if self.only in ("", record.verdict))
 
@@ -73,7 +73,7 @@ class Findings:
     def errors(self) -> list[tuple[Record, ...]]:
         """What does not hold, in groups that are one error: one note in one place, or one line of a table."""
         groups: defaultdict[object, list[Record]] = defaultdict(list)
-        for record in self.shown:
+        for record in self.visible:
             if record.verdict != "holds":
                 groups[self._error(record)].append(record)
         return [tuple(group) for group in groups.values()]
@@ -123,7 +123,7 @@ class Field:
     @property
     def line(self) -> Line:
         """All of it in one line."""
-        return joined(self.lines)
+        return join_lines(self.lines)
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ def document(findings: Findings, format: str) -> Document:
         for group in findings.errors
     ]
     printed = [] if format == "markdown" else _printed_tables(findings)
-    held = [record for record in findings.shown if record.verdict == "holds"]
+    held = [record for record in findings.visible if record.verdict == "holds"]
     sections = [
         Section("", "", (counts(findings), statistics(findings))),
         Section("What does not hold as printed", "errors", tuple(errors)),
@@ -226,12 +226,12 @@ def appendices(findings: Findings) -> list[Section]:
     """What was edited, what was not judged, and what no case turns."""
     edits = tuple(
         (Cell((record.id,)), Cell((Code(before),)), Cell((Code(after),) if after else ("nothing",)), Cell((why,)))
-        for record in findings.shown
+        for record in findings.visible
         for before, after, why in record.entry.edits
     )
     survivors = tuple(
         (Cell((record.id,)), Cell((Code(change),)), Cell((because or "unknown",)))
-        for record in findings.shown
+        for record in findings.visible
         for change, because in record.mutations.survived
     )
     unjudged = tuple(
@@ -284,8 +284,8 @@ def _note(record: Record) -> Line:
 def _full_statement(record: Record) -> Line:
     """What is printed, in English too, and the ranges that are not printed."""
     parts = [*((prose(record.entry.printed), ("in English: ",)) if record.entry.english else ()), *statement(record)]
-    line = joined(parts) if not record.entry.english else (*joined(parts[:2]), *joined(parts[2:]))
-    inferred = joined([(formula(range_),) for range_ in record.entry.inferred])
+    line = join_lines(parts) if not record.entry.english else (*join_lines(parts[:2]), *join_lines(parts[2:]))
+    inferred = join_lines([(formula(range_),) for range_ in record.entry.inferred])
     return (*line, " (not printed: ", *inferred, ")") if inferred else line
 
 
@@ -348,7 +348,7 @@ def scene_file(record: Record) -> str:
 
 
 def _printed_tables(findings: Findings) -> list[Block]:
-    judged = {record.id: record for record in findings.shown}
+    judged = {record.id: record for record in findings.visible}
     scans = {
         place.id: place.scan.strip("$")
         for passage in findings.paper.passages

@@ -40,7 +40,7 @@ def text(findings: Findings) -> str:
 
     Records that were requested by name are all shown in full.
     """
-    shown, whole = findings.shown, findings.whole
+    shown, whole = findings.visible, findings.whole
     is_list = whole or len(findings.records) > 1
     tried, turned = findings.faults
     parts = []
@@ -115,7 +115,7 @@ def _plain(part: Inline) -> str:
 
 def as_json(findings: Findings) -> str:
     """A list of objects, one for each record in the order of print."""
-    return json.dumps([_object(record, findings) for record in findings.shown], ensure_ascii=False, indent=1) + "\n"
+    return json.dumps([_object(record, findings) for record in findings.visible], ensure_ascii=False, indent=1) + "\n"
 
 
 def _object(record: Record, findings: Findings) -> dict[str, object]:

@@ -138,6 +138,6 @@ def _compared_words(before: str, after: str) -> tuple[Line, Line]:
     )
 
 
-def joined(lines: Sequence[Line], separator: str = ", ") -> Line:
+def join_lines(lines: Sequence[Line], separator: str = ", ") -> Line:
     """Lines as one."""
     return tuple(part for number, line in enumerate(lines) for part in ((separator, *line) if number else line))

@@ -20,7 +20,7 @@ from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, pla
 from wavesym.papers.pielorz1979.chains import example
 from wavesym.papers.pielorz1979.forms import form_chain, look_up
 from wavesym.papers.pielorz1979.transcript import entry as transcribed
-from wavesym.papers.pielorz1979.transcript import ids, settled
+from wavesym.papers.pielorz1979.transcript import ids, right_reading
 from wavesym.papers.record import Case, Reading, Reproduction, Test, by_size, case, reading
 from wavesym.papers.tree import Symbol, Tree, latex, symbols
 
@@ -243,7 +243,7 @@ def _family(key: Key) -> tuple[str, tuple[int, ...]]:
 
 @cache
 def _given(id: str, m: int, n: int) -> frozenset[Key]:
-    return frozenset(key for _, key, _ in gives(settled(id), m, n))
+    return frozenset(key for _, key, _ in gives(right_reading(id), m, n))
 
 
 def _names(keys: Iterable[Key]) -> tuple[str, ...]:
@@ -292,9 +292,9 @@ def listed_values(lines: Iterable[Reading], m: int, most_n: int) -> Iterator[tup
                 yield key, alone(key), truth(m)(key)
 
 
-def corrected(but: str = "") -> list[Reading]:
+def right_lines(but: str = "") -> list[Reading]:
     """The list as it should be, but for a line that is as printed."""
-    return [_printed(id) if id == but else settled(id) for id in ids("line")]
+    return [_printed(id) if id == but else right_reading(id) for id in ids("line")]
 
 
 def _printed(id: str) -> Reading:
@@ -303,10 +303,10 @@ def _printed(id: str) -> Reading:
 
 
 @cache
-def complete(m: int, most_n: int) -> bool:
+def gives_all(m: int, most_n: int) -> bool:
     """Whether the corrected list gives every coefficient for an m."""
     try:
-        return all(value == true for _, value, true in listed_values(corrected(), m, most_n))
+        return all(value == true for _, value, true in listed_values(right_lines(), m, most_n))
     except MeaninglessError:
         return False
 
@@ -316,7 +316,7 @@ def consequence(id: str) -> str:
     """What becomes of the list where everything but this line is corrected."""
     for m in range(3, 6):
         try:
-            for key, value, true in listed_values(corrected(id), m, 6):
+            for key, value, true in listed_values(right_lines(id), m, 6):
                 if value != true:
                     return f"Without it the list by itself goes wrong: {key} becomes {value}, true is {true} (m = {m})."
         except MeaninglessError as error:
@@ -329,6 +329,6 @@ def sizes(entry: PaperEntry) -> Test:
 
     def cases(reading: Reading) -> Iterator[Case]:
         for m in range(2, 7):
-            yield Case({"m": m}, holds(reading.formula, Scope({"m": m})), complete(m, 5))
+            yield Case({"m": m}, holds(reading.formula, Scope({"m": m})), gives_all(m, 5))
 
     return Test("whether the list, run by itself, gives every coefficient, m = 2 ... 6, n = 0 ... 5", cases)

@@ -15,7 +15,7 @@ from wavesym.papers.pielorz1979.chains import (
     LoadedChain,
     instants,
 )
-from wavesym.papers.pielorz1979.equation_group import EquationGroup, Key, Place, within
+from wavesym.papers.pielorz1979.equation_group import EquationGroup, Key, Place, parts_of
 from wavesym.papers.pielorz1979.letters import DISPLACEMENTS, letter, rods_at
 from wavesym.papers.record import Case, Reading, Reproduction
 from wavesym.papers.tree import Call, Derivative, Symbol, Tree, latex
@@ -45,7 +45,7 @@ class Conditions(EquationGroup):
                 if not 0 <= x <= m:
                     raise MeaninglessError(f"there is no place x = {x}")
                 own = i
-                if i is None and Symbol("i") in within(equation):
+                if i is None and Symbol("i") in parts_of(equation):
                     own = next((n for n in (x, x + 1) if self._rods(equation, n) == set(rods_at(scope.chain, x))), x)
                 yield {"x": x} if own is None else {"i": own, "x": x}
 
@@ -65,18 +65,18 @@ class Conditions(EquationGroup):
 
     def _rods(self, equation: Tree, i: int | None) -> set[int]:
         """The rods that a condition is about; MeaninglessError where it is about another place than the node."""
-        for part in within(equation):
+        for part in parts_of(equation):
             is_moved = isinstance(part, Call) and letter(part.function) in DISPLACEMENTS.values()
             if is_moved and tuple(map(latex, part.arguments)) != (r"\bar{x}", r"\tau"):
                 raise MeaninglessError(f"{latex(part)} is not at the node")
         names = ("U", *DISPLACEMENTS.values())
         scope = Scope({"m": self.scope.chain.m} | ({} if i is None else {"i": i}))
-        moved = (part for part in within(equation) if isinstance(part, Symbol) and letter(part) in names)
+        moved = (part for part in parts_of(equation) if isinstance(part, Symbol) and letter(part) in names)
         return {rod for symbol in moved for rod in scope.indices(symbol)}
 
     def key(self, equation: Tree, place: Place) -> Key:
         """It compares velocities, as (2.3) does, or else forces, or how a node moves."""
-        found = [part for part in within(equation) if isinstance(part, Derivative)]
+        found = [part for part in parts_of(equation) if isinstance(part, Derivative)]
         alike = all(latex(part.by) in ("t", r"\tau") and part.order == 1 for part in found)
         return ("the rods move together" if alike else "forces are balanced"), place["x"]
 
@@ -86,7 +86,7 @@ class Conditions(EquationGroup):
             return [(together, x) for x in range(1, m)] if self.entry.id == "(2.3)" else None
         return [(balanced, x) for x in range(m + 1)] + [(together, x) for x in range(1, m)]
 
-    def more(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
+    def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
         rods = tuple(sorted(self._rods(equation, place.get("i"))))
         yield Case({**at, "what": "its rods"}, rods, rods_at(self.scope.chain, place["x"]), telling=False)
 
@@ -102,7 +102,7 @@ class Delays(EquationGroup):
 
     def key(self, equation: Tree, place: Place) -> Key:
         """The one function on the left, and its rod."""
-        calls = [part for part in within(sides(equation)[0]) if isinstance(part, Call)]
+        calls = [part for part in parts_of(sides(equation)[0]) if isinstance(part, Call)]
         found = {(call.function.name, self.scope.indices(call.function)) for call in calls}
         if len(found) != 1 or any(len(index) != 1 for _, index in found):
             raise MeaninglessError("its left side has not one function of one rod")
@@ -116,8 +116,8 @@ class Delays(EquationGroup):
         for z in instants(8, between=[fmpq(5, 6)]):  # waves have crossed the longest chain
             yield {"left less right side at z": z}, {"z": z}
 
-    def more(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
-        if any(part.primes == 2 for part in within(equation) if isinstance(part, Symbol)):
+    def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
+        if any(part.primes == 2 for part in parts_of(equation) if isinstance(part, Symbol)):
             self._across.scope.bound |= place
             for front in self._across.scope.motion.fronts:  # type: ignore[attr-defined]
                 name = "left less right side across a front at z"

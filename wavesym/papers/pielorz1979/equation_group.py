@@ -34,11 +34,11 @@ _MOVING = "the exact motion of chains with all parameters different under loads 
 
 
 @lru_cache(maxsize=1000)
-def within(tree: Any) -> tuple[Any, ...]:
+def parts_of(tree: Any) -> tuple[Any, ...]:
     """A tree and all its parts."""
     values = (getattr(tree, field.name) for field in fields(tree))
     parts = (part for value in values for part in (value if isinstance(value, tuple) else (value,)))
-    return (tree, *(inner for part in parts if is_dataclass(part) for inner in within(part)))  # type: ignore[arg-type]
+    return (tree, *(inner for part in parts if is_dataclass(part) for inner in parts_of(part)))  # type: ignore[arg-type]
 
 
 class EquationGroup:
@@ -75,7 +75,7 @@ class EquationGroup:
 
     def places(self, equation: Tree) -> Iterator[Place]:
         """Where an equation is said to hold."""
-        if "i" in self.ranges and Symbol("i") in within(equation):
+        if "i" in self.ranges and Symbol("i") in parts_of(equation):
             yield from ({"i": i} for i in span(self.ranges["i"], self.scope))
         else:
             yield {}
@@ -97,7 +97,7 @@ class EquationGroup:
         left, right = sides(equation)
         return partial(self.scope.value, left), partial(self.scope.value, right)
 
-    def more(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
+    def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
         """What else is said at a place."""
         yield from ()
 
@@ -111,12 +111,12 @@ class EquationGroup:
                 self.scope.bound |= place
                 said[self.key(equation, place)] += 1
                 here = {**at, **{name: place[name] for name in ("i", "x") if name in place}}
-                yield from self.more(equation, place, here)
+                yield from self.further_cases(equation, place, here)
                 for name, bound in self.instants(place):
                     yield self.balance(equation, {**here, **name}, bound)
         if (needed := self.required()) is None:
             return
-        beside = Counter[Key]() if self.is_alone else self.beside()
+        beside = Counter[Key]() if self.is_alone else self.said_by_others()
         total, required = said + beside, Counter(needed)
         for key in sorted(total.keys() | required.keys(), key=str):
             found = Case(
@@ -135,7 +135,7 @@ class EquationGroup:
                 found = case(at, lambda: Jet.of(left() - right()).value, 0)
         return replace(found, telling=self.scope.seen, example=None if found.agrees else self.scene(at, found))
 
-    def beside(self) -> Counter[Key]:
+    def said_by_others(self) -> Counter[Key]:
         """What the other equations of the group say."""
         known, key = self.scope.motion.known, ("beside", self.entry.kind, self.entry.id)
         if key not in known:

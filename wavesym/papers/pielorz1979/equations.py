@@ -38,7 +38,7 @@ from wavesym.papers.pielorz1979.quantities import (
     Rates,
     Table1,
 )
-from wavesym.papers.pielorz1979.transcript import settled
+from wavesym.papers.pielorz1979.transcript import right_reading
 from wavesym.papers.reader import read_range
 from wavesym.papers.record import Case, Reading, Test, case
 from wavesym.papers.tree import Call, Progression, Relation, Symbol, Tree, latex
@@ -82,7 +82,7 @@ def equation(entry: PaperEntry) -> Test:
     if entry.kind == "definition":
         conventions["a letter means the same with a bar"] = lambda reading: cases(_without_bar(reading))
     if entry.kind == "cell":
-        bodies = next(r for r in settled("(3.1)").ranges if isinstance(r, Progression))
+        bodies = next(r for r in right_reading("(3.1)").ranges if isinstance(r, Progression))
         conventions["i is the number of a body, as in (3.1)"] = with_range(bodies)
     return Test(
         group.against + (", on a foundation that moves with the ground" if base else ""),
@@ -126,7 +126,7 @@ def is_complete(number: str, m: int) -> bool:
     if (m - known.system.smallest) % known.system.step:
         return False
     entry = PaperEntry(id=number, kind="delay", printed="")
-    said = Delays(entry, Reading(None), loaded_chain(known.name, m)).beside()
+    said = Delays(entry, Reading(None), loaded_chain(known.name, m)).said_by_others()
     return said == Counter((name, rod) for name in "fg" for rod in range(1, m + 1))
 
 

@@ -78,7 +78,7 @@ def loads(figure: int, sense: int = 1) -> tuple[TriedLoad, ...]:
 
 
 @dataclass(frozen=True)
-class Described:
+class FigureScene:
     """What a caption describes: a figure, and its quantities: letter, index (0 where there is none), value."""
 
     figure: int
@@ -125,7 +125,7 @@ class Described:
 
 
 @cache
-def _units(described: Described, source: str, other: tuple[str, str] | None) -> Mapping[str, Array]:
+def _units(described: FigureScene, source: str, other: tuple[str, str] | None) -> Mapping[str, Array]:
     """The plotted outputs under a unit of one source, at once as they have much in common; or one that is not plotted.
 
     MeaninglessError where it is no output.
@@ -140,7 +140,7 @@ def _units(described: Described, source: str, other: tuple[str, str] | None) -> 
 
 
 @cache
-def contact_end(described: Described) -> str:
+def contact_end(described: FigureScene) -> str:
     """When the contact at x = 2 of Fig. 6 opens, to 20 digits. MeaninglessError where it does not."""
     ends = contact_ends(lower(described.scene(loads(6)[0], {"strain": ("2",)}, str(UNTIL))))
     if not ends:
@@ -148,7 +148,7 @@ def contact_end(described: Described) -> str:
     return ends[0].digits
 
 
-def described(figure: int, formula: Tree) -> Described:
+def read_caption(figure: int, formula: Tree) -> FigureScene:
     """What equations such as kappa_1 = 0.1 describe; m, where it is not given, is as large as the indices need.
 
     MeaninglessError where they are no quantities.
@@ -170,10 +170,10 @@ def described(figure: int, formula: Tree) -> Described:
         found[name] = fmpq(scope.value(right)) / scope.value(factor)
     last = max((index for _, index in found), default=0)
     found.setdefault(("m", 0), fmpq(last + {6: 1, 7: -1, 8: 0}[figure]))
-    return Described(figure, tuple((letter, index, value) for (letter, index), value in sorted(found.items())))
+    return FigureScene(figure, tuple((letter, index, value) for (letter, index), value in sorted(found.items())))
 
 
-def _system(described: Described) -> Mapping[str, object]:
+def _system(described: FigureScene) -> Mapping[str, object]:
     """The system of a scene. MeaninglessError where quantities are missing, or are too many."""
     values = {(letter, index): value for letter, index, value in described.quantities}
 
@@ -211,6 +211,6 @@ def _drive(rates: Sequence[fmpq]) -> Mapping[str, object]:
 
 
 @cache
-def figure(number: int) -> Described:
+def figure(number: int) -> FigureScene:
     """What the caption of a figure describes."""
-    return described(number, read_formula(entry(f"Fig.{number}.caption").printed))
+    return read_caption(number, read_formula(entry(f"Fig.{number}.caption").printed))

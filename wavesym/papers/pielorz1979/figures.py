@@ -25,12 +25,12 @@ from wavesym.papers.pielorz1979.figure_scenes import (
     PLOTTED,
     SAMPLES,
     SENSES,
-    Described,
+    FigureScene,
     TriedLoad,
     contact_end,
-    described,
     figure,
     loads,
+    read_caption,
 )
 from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding
 from wavesym.papers.pielorz1979.transcript import entries
@@ -77,31 +77,31 @@ def meaning(sentence: Sentence) -> str:
     return words
 
 
-def tried(number: int, sentence: Sentence) -> tuple[TriedLoad, ...]:
+def loads_tried(number: int, sentence: Sentence) -> tuple[TriedLoad, ...]:
     """The loads that a sentence is tried under."""
     return loads(number, SENSES[sentence.words.get("sense", "M_1 = M_2")])
 
 
-def finding(scene: Described, load: TriedLoad, sentence: Sentence) -> Finding:
+def finding(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> Finding:
     """What is measured under a load. MeaninglessError where there is nothing to measure."""
-    (drawn,) = (drawn for drawn in tried(scene.figure, sentence) if drawn.name == load.name)
+    (drawn,) = (drawn for drawn in loads_tried(scene.figure, sentence) if drawn.name == load.name)
     words = {place: word for place, word in sentence.words.items() if place != "listed"}
     return _measured(scene, drawn, Sentence(sentence.pattern, words))
 
 
 @cache
-def _measured(scene: Described, load: TriedLoad, sentence: Sentence) -> Finding:
+def _measured(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> Finding:
     return MEASURES[_known(sentence)["measure"]](sentence.words, partial(scene.curve, load))
 
 
-def true(scene: Described, load: TriedLoad, sentence: Sentence) -> bool:
+def is_true(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> bool:
     """Whether what a sentence says is so under a load. MeaninglessError."""
     return _bound(sentence)[1](finding(scene, load, sentence).value)
 
 
 def findings(number: int, sentence: Sentence) -> list[tuple[TriedLoad, Finding]]:
     """What is measured under each load."""
-    return [(load, finding(figure(number), load, sentence)) for load in tried(number, sentence)]
+    return [(load, finding(figure(number), load, sentence)) for load in loads_tried(number, sentence)]
 
 
 def _of(number: int, kind: str) -> Iterable[PaperEntry]:
@@ -122,12 +122,12 @@ def said_of_figure(entry: PaperEntry) -> Test:
     )
 
 
-def _cases(scene: Described, sentence: Sentence) -> Iterator[Case]:
+def _cases(scene: FigureScene, sentence: Sentence) -> Iterator[Case]:
     listed = sentence.words.get("listed")
-    for load in tried(scene.figure, sentence):
+    for load in loads_tried(scene.figure, sentence):
         claimed = listed is None or load.name in listed.split(LIST)
         try:
-            found, is_so = finding(scene, load, sentence), true(scene, load, sentence)
+            found, is_so = finding(scene, load, sentence), is_true(scene, load, sentence)
         except MeaninglessError as error:
             yield Case({"load": load.name}, claimed, Nothing(str(error)))
             continue
@@ -135,7 +135,7 @@ def _cases(scene: Described, sentence: Sentence) -> Iterator[Case]:
         yield Case(at, claimed, is_so, example=partial(_example, scene, load, found))
 
 
-def _observed(scene: Described, entry: PaperEntry) -> str:
+def _observed(scene: FigureScene, entry: PaperEntry) -> str:
     """Every load with its outcome."""
     try:
         sentence = READERS[scene.figure].sentence(entry.statement)
@@ -149,16 +149,16 @@ def _observed(scene: Described, entry: PaperEntry) -> str:
     return " ".join(parts)
 
 
-def _outcomes(scene: Described, sentence: Sentence) -> str:
+def _outcomes(scene: FigureScene, sentence: Sentence) -> str:
     outcomes: dict[bool, list[str]] = {True: [], False: []}
-    for load in tried(scene.figure, sentence):
-        outcomes[true(scene, load, sentence)].append(
+    for load in loads_tried(scene.figure, sentence):
+        outcomes[is_true(scene, load, sentence)].append(
             f"{load.name} ({format_value(finding(scene, load, sentence).value)})"
         )
     return "; ".join(f"{'true' if so else 'false'} under {', '.join(names)}" for so, names in outcomes.items() if names)
 
 
-def _example(scene: Described, load: TriedLoad, found: Finding) -> Reproduction:
+def _example(scene: FigureScene, load: TriedLoad, found: Finding) -> Reproduction:
     """The scene of a case, and where to look: the values of its curves at the spots."""
     points = dict.fromkeys(point for spot in found.spots for point in spot)
     outputs: dict[str, list[str]] = {}
@@ -172,7 +172,7 @@ def _example(scene: Described, load: TriedLoad, found: Finding) -> Reproduction:
     return _shown(scene, load, outputs or PLOTTED[scene.figure], look or "fewer than three swings")
 
 
-def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Reproduction:
+def _shown(scene: FigureScene, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Reproduction:
     described = scene.scene(load)
     chain = named_chain(described)
     assert chain is not None  # as the paper has it
@@ -191,7 +191,7 @@ def caption_of_figure(entry: PaperEntry) -> Test:
 
 def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
     """Each sentence, as printed, under some load at least: the load curves are not in the text."""
-    scene = described(number, formula)
+    scene = read_caption(number, formula)
 
     def near(read_off: float) -> bool:
         return abs(float(contact_end(scene)) - read_off) <= NEAR * read_off
@@ -201,7 +201,7 @@ def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
             sentence = READERS[number].sentence(printed)
         except UnreadableError as error:
             raise MeaninglessError(str(error)) from None
-        return any(true(scene, load, sentence) for load in tried(number, sentence))
+        return any(is_true(scene, load, sentence) for load in loads_tried(number, sentence))
 
     for entry in _of(number, "contact"):
         yield case({"said": entry.printed, "allowed": f"{NEAR:.0%}"}, partial(near, printed_end(entry)), True)

@@ -16,7 +16,7 @@ from flint import fmpq
 
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
 from wavesym.papers.pielorz1979.chains import Exact, LoadedChain, building, collision, drive, example, loads
-from wavesym.papers.pielorz1979.transcript import entries, ids, settled
+from wavesym.papers.pielorz1979.transcript import entries, ids, right_reading
 from wavesym.papers.record import Case, Reading, Reproduction, by_size, case
 from wavesym.papers.tree import Blank, Call, Minus, Number, Progression, Symbol, Tree, latex
 
@@ -52,7 +52,7 @@ def form_chain(name: str, m: int) -> LoadedChain:
 
 def reading_of(id: str, changed: Changed) -> Reading:
     """A record as it is changed, or as it is right; KeyError, MeaninglessError."""
-    return changed[id] if id in changed else settled(id)
+    return changed[id] if id in changed else right_reading(id)
 
 
 def rows(group: str, m: int, changed: Changed) -> dict[str, list[Function]]:
@@ -182,7 +182,7 @@ class Form:
 @cache
 def right_form(name: str) -> Form:
     """The form of an example's solutions as corrected."""
-    return Form.of(name, settled(FORMS[name]))
+    return Form.of(name, right_reading(FORMS[name]))
 
 
 class FormScope(Scope):

@@ -97,7 +97,7 @@ class HighestPowers:
         self._rates = {body: str(rate) for body, rate in exact.rates.items()}
         self._true: dict[tuple[str, int, int], Powers] = {}
 
-    def stated(self, requests: Iterable[tuple[Indices, Indices]]) -> Powers:
+    def powers_requested(self, requests: Iterable[tuple[Indices, Indices]]) -> Powers:
         """Those of the coefficients requested; all powers of a rate where any is requested more than once."""
         found: dict[tuple[str, str], list[int]] = {}
         twice = set()
@@ -139,7 +139,10 @@ class HighestPowers:
         except MeaninglessError as error:
             yield Case(at, Nothing(str(error)), {" ".join(key).strip(): power for key, power in true.items()})
             return
-        stated, sources = self.stated(requests), {f"M{upper[1]}" if self.name == "II" else "" for _, upper in requests}
+        stated, sources = (
+            self.powers_requested(requests),
+            {f"M{upper[1]}" if self.name == "II" else "" for _, upper in requests},
+        )
         for key in {**{key: power for key, power in true.items() if key[0] in sources}, **stated}:
             where = {**at, "moment": key[0], "rate": key[1]} if key[0] else {**at, "rate": key[1]}
             highest = true.get(key, -1)

@@ -61,7 +61,7 @@ class Interior(OfRods):
 
     against = "the exact motion of chains under loads, inside every rod; c_f and l are varied"
 
-    def more(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
+    def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
         """The places that are said to be inside."""
         where = next((r for r in self.reading.ranges if isinstance(r, Relation)), None)
         if where is None:
@@ -185,7 +185,7 @@ class Table1(OfRods):
         x = i - 1 if self.scope.is_drive else i
         return 0 <= x <= self.scope.chain.m and bool(self.scope.chain.nodes[x].inertia)
 
-    def more(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
+    def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
         """The first disturbance itself."""
         column, rod = self.entry.about["column"], place["i"]
         if column in ("x_0", "tau_0") and 1 <= rod <= self.scope.chain.m:

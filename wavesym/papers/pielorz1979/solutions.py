@@ -280,7 +280,7 @@ def acting_moments(words: Words) -> Iterator[Case]:
             yield Case(at, said & come if words["arrived"] else said, true, bool(true), told)
 
 
-def unlisted(words: Words) -> Iterator[Case]:
+def missing_function(words: Words) -> Iterator[Case]:
     """The functions without a row in Table 4."""
     call = read_formula(words["function"])
     assert isinstance(call, Call)
@@ -332,7 +332,7 @@ def meetings(words: Words) -> Iterator[Case]:
         yield Case(at, max(said, -1), true, true >= 0, told)
 
 
-def connected(words: Words) -> Iterator[Case]:
+def connection(words: Words) -> Iterator[Case]:
     """Whether places with the same number have the same highest power, in each example."""
     powers: dict[tuple[object, int], int] = {}
     for at, count, true, told in _counted(reflected_only=words["met"] == "reflected from"):
@@ -355,7 +355,7 @@ def _counted(*, reflected_only: bool) -> Iterator[tuple[dict[str, object], int, 
                     yield at, count(letter, rod, interval), true, table_scene(exact, (letter, rod), interval)
 
 
-def earlier(words: Words) -> Iterator[Case]:
+def earlier_intervals(words: Words) -> Iterator[Case]:
     """A solution put together from the gains that its form gives it in intervals."""
     for example in FORMS:
         m = {"I": 4}.get(example, 2)
@@ -509,12 +509,12 @@ SOLUTIONS: Mapping[str, Callable[[Words], Iterator[Case]]] = {
     "indices_4_10": partial(index_roles, "II"),
     "indices_4_12": partial(index_roles, "III"),
     "moments": acting_moments,
-    "unlisted": unlisted,
+    "unlisted": missing_function,
     "exponents": masses,
     "series": series,
-    "connected": connected,
+    "connected": connection,
     "meetings": meetings,
-    "earlier": earlier,
+    "earlier": earlier_intervals,
     "changes_1": changes_1,
     "changes_3": changes_3,
     "terms": parts,

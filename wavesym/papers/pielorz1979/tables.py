@@ -16,7 +16,7 @@ from wavesym.derivation.table import Function as TableFunction
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, constants_in, holds, items, places, sides, span
 from wavesym.papers.mutations import ends, mutations
-from wavesym.papers.pielorz1979.equation_group import within
+from wavesym.papers.pielorz1979.equation_group import parts_of
 from wavesym.papers.pielorz1979.forms import (
     ALPHA,
     EXACT,
@@ -39,7 +39,7 @@ from wavesym.papers.pielorz1979.forms import (
     single_range,
 )
 from wavesym.papers.pielorz1979.powers import PAIRS, power_cases, right_power_cases
-from wavesym.papers.pielorz1979.transcript import entries, ids, settled
+from wavesym.papers.pielorz1979.transcript import entries, ids, right_reading
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Reading, Test
 from wavesym.papers.tree import (
@@ -85,7 +85,7 @@ def part_of_form(entry: PaperEntry) -> Test:
 
     def cases(reading: Reading, at_0: Iterable[int] = (0, 1) if is_step else (1,)) -> Iterator[Case]:
         right = right_form(name)
-        own = {part for part in within(right.step) if _is_step(part) or _is_exponential(part)}
+        own = {part for part in parts_of(right.step) if _is_step(part) or _is_exponential(part)}
         (part,) = (part for part in own if isinstance(part, Call) is is_step)
         said = [int(Scope().value(value)) for left, value in constants_in(reading.ranges).items() if left == _AT_0]
         if len(said) != len(reading.ranges):
@@ -130,13 +130,13 @@ def cell(entry: PaperEntry) -> Test:
 
 
 def _in_motion(id: str, reading: Reading) -> Iterable[Case]:
-    return right_form_cases("II") if reading == settled(id) else form_cases(right_form("II"), {id: reading})
+    return right_form_cases("II") if reading == right_reading(id) else form_cases(right_form("II"), {id: reading})
 
 
 def _cell_cases(entry: PaperEntry, name: str, reading: Reading) -> Iterable[Case]:
     row = entry.about["row"]  # "alpha2.K_1", of the second part
     part = int(row[5]) if name == "II" and row[7] in "KL" else None
-    if reading == settled(entry.id):
+    if reading == right_reading(entry.id):
         return right_power_cases(name, entry.heads, part)
     return power_cases(name, {entry.id: reading}, entry.heads, part=part)
 
@@ -196,7 +196,7 @@ def cells_in_text(entry: PaperEntry) -> Test:
                     first, last = (scope.whole(read_formula(f"L_{number}")) for number in (beta - 1, beta))
                     own = span(single_range("l", reading.ranges), scope)
                     yield Case({**at, "s": s, "claim": "l"}, own, tuple(range(first + 1, last + 1)))
-        yield from power_cases("II", {id: Reading(right, settled(id).ranges)}, ("T3.even.f",), part=part)
+        yield from power_cases("II", {id: Reading(right, right_reading(id).ranges)}, ("T3.even.f",), part=part)
 
     part = None if entry.id.endswith("group") else 1
     return Test(f"{_POWERS}, the moments that act, and the ranges of this column of Table 3", cases)

@@ -31,10 +31,10 @@ def entry(id: str) -> PaperEntry:
 
 
 @cache
-def settled(id: str) -> Reading:
+def right_reading(id: str) -> Reading:
     """A record as it is right; KeyError where there is none, MeaninglessError where it cannot be read."""
     try:
-        return reading(*entry(id).settled)
+        return reading(*entry(id).right_strings)
     except UnreadableError as error:
         raise MeaninglessError(str(error)) from None
 
@@ -50,4 +50,4 @@ def others(id: str, kind: str) -> tuple[Reading, ...]:
     """Beside "(4.6).1": "(4.6).2", "(4.6).3", ... of its kind, as they are right; beside "(4.6)" all of them."""
     number, _, _ = id.partition(")")
     beside = (e for e in entries().values() if e.kind == kind and e.id != id)
-    return tuple(reading(*entry.settled) for entry in beside if entry.id.partition(")")[0] == number)
+    return tuple(reading(*entry.right_strings) for entry in beside if entry.id.partition(")")[0] == number)
