@@ -23,6 +23,7 @@ def _json(summary: Summary) -> str:
             "min": _peak(output.min),
             "max": _peak(output.max),
             "arrival": None if output.arrival is None else output.arrival.shown,
+            **({"title": output.title} if output.title else {}),
         }
         for output in summary.outputs
     ]
@@ -44,12 +45,12 @@ def _lines(summary: Summary) -> Iterable[str]:
         yield "-  it comes up to this value, and jumps then"
     if (drift := summary.largest_drift) is not None:
         peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
-        yield f"largest drift: {drift.name}, {number(peak.value)}{unit} at {number(peak.at.shown)}"
+        yield f"largest drift: {drift.label}, {number(peak.value)}{unit} at {number(peak.at.shown)}"
     yield f"{summary.how}: {summary.certain}"
 
 
 def _row(output: OutputSummary) -> tuple[str, ...]:
-    name = f"{output.name} [{output.unit}]" if output.unit else output.name
+    name = f"{output.label} [{output.unit}]" if output.unit else output.label
     arrival = "never" if output.arrival is None else number(output.arrival.shown)
     return (name, *_told(output.min), *_told(output.max), arrival)
 

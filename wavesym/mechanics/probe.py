@@ -14,7 +14,7 @@ class Probe:
     """An output: `quantity` on rod `rod`, `place` rod lengths from its left node (0 <= place <= 1).
 
     A `point` that no rod shows is watched itself (`rod` is 0 then). A drift is that of the whole rod. What users get is
-    `factor` times the dimensionless value, in `unit`. What it is a sum of, gauge.py says.
+    `factor` times the dimensionless value, in `unit`. `title` is its name for people. gauge.py has what it is a sum of.
     """
 
     name: str
@@ -24,6 +24,12 @@ class Probe:
     point: int | None = None
     factor: fmpq = _ONE
     unit: str = ""
+    title: str = ""
+
+    @property
+    def label(self) -> str:
+        """What people are shown: its title, or its name."""
+        return self.title or self.name
 
     @property
     def told(self) -> str:

@@ -52,7 +52,7 @@ class History:
 
     @property
     def name(self) -> str:
-        return self.output.name
+        return self.output.label
 
     @cached_property
     def points(self) -> Points:

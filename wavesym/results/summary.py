@@ -64,6 +64,12 @@ class OutputSummary:
     min: Peak
     max: Peak
     arrival: When | None
+    title: str = ""
+
+    @property
+    def label(self) -> str:
+        """What people are shown: its title, or its name."""
+        return self.title or self.name
 
     @property
     def largest(self) -> Peak:
@@ -220,6 +226,7 @@ def _outputs(model: Model, found: _Found) -> tuple[OutputSummary, ...]:
             _peak(model, least),
             _peak(model, greatest),
             None if first is None or (least, greatest) == NOTHING else instant(model, not_below(first), first),
+            probe.title,
         )
         for probe, (least, greatest), first in zip(model.probes, found.ranges, arrivals, strict=True)
     )

@@ -226,7 +226,7 @@ def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
 
 def _probe(output: Observable, scale: Scale | None) -> Probe:
     place = output.place
-    probe = Probe(output.name, output.quantity, place.rod, rational(place.part), place.point)
+    probe = Probe(output.name, output.quantity, place.rod, rational(place.part), place.point, title=output.title)
     if scale is None:
         return probe
     factor = rational(scale.factor(output.quantity, place.rod))

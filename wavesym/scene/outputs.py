@@ -35,7 +35,8 @@ QUANTITIES = ("strain", "velocity", "displacement", "acceleration", "force", "dr
 class Observable:
     """An output: a quantity at x (in rod lengths); of a drift x is the number of its rod.
 
-    `side` is the side as it matters: -1 or +1 for the strain at a rigid body inside the chain, 0 elsewhere.
+    `side` is the side as it matters: -1 or +1 for the strain at a rigid body inside the chain, 0 elsewhere. `title` is
+    its name for people, if it has one.
     """
 
     quantity: str
@@ -43,9 +44,14 @@ class Observable:
     side: int
     name: str
     place: Place = field(compare=False)
+    title: str = ""
 
 
-Positioned = Annotated[Position, PlainValidator(position_of), PlainSerializer(lambda at: at.written, return_type=str)]
+def _said(at: Position) -> str | dict[str, str]:
+    return {"at": at.written, "name": at.title} if at.title else at.written
+
+
+Positioned = Annotated[Position, PlainValidator(position_of), PlainSerializer(_said, return_type=str | dict[str, str])]
 Positions = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(listed)]
 EVERY = "all"
 """In place of a list of drifts: those of all rods of the main line."""
@@ -132,4 +138,5 @@ def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> I
                 taken = seen[quantity, place]
                 raise wrong(f"{text} given, another place than {taken} expected (both are the same)", *at)
             seen[quantity, place] = text
-            yield Observable(quantity, place.x, place.side, f"{quantity}@{position.written}", place)
+            name = f"{quantity}@{position.written}"
+            yield Observable(quantity, place.x, place.side, name, place, position.title)

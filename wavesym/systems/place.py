@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple, Self
 
-from wavesym.fields.numbers import exact, written
+from wavesym.fields.numbers import LONGEST, exact, written
+from wavesym.fields.table import shown, wrong
 
 
 class Position(NamedTuple):
     """A place as it is `written`: x (in rod lengths, or along a line) or a name, and its side.
 
-    -1 is the left one, +1 the right one, 0 where none is said.
+    -1 is the left one, +1 the right one, 0 where none is said. The `title` is what people are shown for it, if any.
     """
 
     written: str
     x: Fraction | None
     side: int
     name: str = ""
+    title: str = ""
+
+
+_UNNAMED = ('"', "\\", "/*", "*/", "$")
+"""What names for people have none of, as they go into comments of programs and into pictures."""
 
 
 class PlaceInUnits(str):
@@ -39,10 +46,32 @@ class PlaceInUnits(str):
 _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?")
 
 
+def titled(value: Mapping[str, object]) -> tuple[object, str]:
+    """The place and the name for people of an output that is a table. Raises the error of `table.wrong`."""
+    for key in value:
+        if key not in ("at", "name"):
+            raise wrong("unknown key, at or name expected", str(key))
+    for key in ("at", "name"):
+        if key not in value:
+            raise wrong("missing, a place expected" if key == "at" else "missing, a name for people expected", key)
+    title = value["name"]
+    if not isinstance(title, str) or not title.strip() or len(title) > LONGEST or not title.isprintable():
+        raise wrong(f"{shown(title)} given, a line of at most {LONGEST} characters expected", "name")
+    if bad := next((each for each in _UNNAMED if each in title), ""):
+        raise wrong(f"{shown(title)} given, a line without {bad} expected", "name")
+    return value["at"], title
+
+
 def position_of(value: object) -> Position:
-    """A position as TOML or Python has it: a number, or text such as "1/2+", "hammer" or "branch:1-"."""
+    """A position as TOML or Python has it: a number, text such as "1/2+", "hammer" or "branch:1-", or a table.
+
+    A table has such a place as `at`, and a `name` for people.
+    """
     if isinstance(value, Position):
         return value
+    if isinstance(value, Mapping):
+        place, title = titled(value)
+        return position_of(place)._replace(title=title)
     if isinstance(value, PlaceInUnits):
         return position_of(str(value))._replace(written=value.written)
     text = written(value)

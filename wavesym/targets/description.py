@@ -10,6 +10,7 @@ from textwrap import wrap
 from wavesym.exact.contacts.events import ContactEnd
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program
@@ -116,7 +117,7 @@ def describe(program: Program) -> Description:
         tolerance=_tolerance(model),
         trust="proved" if program.proved else "estimated",
         outputs=tuple(
-            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, probe.told)
+            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, _described(probe))
             for output, constant, probe in zip(program.outputs, constants(names), model.probes, strict=True)
         ),
         output_count=str(len(names)),
@@ -153,6 +154,11 @@ def _units(model: Model) -> str:
     if model.clock is None:
         return f"Everything is dimensionless: {model.labels.dimensions}, strain positive in tension."
     return f"Time is tau, of which one is {literal(nearest(model.clock.seconds))} s; outputs have the units below."
+
+
+def _described(probe: Probe) -> str:
+    """An output as a comment names it."""
+    return f"{probe.told}: {ascii(probe.title)[1:-1]}" if probe.title else probe.told
 
 
 def constants(names: Sequence[str]) -> list[str]:

@@ -39,7 +39,7 @@ def extremes_told(model: Model, found: Summary | WavesymError, scale: Timescale)
     head = ("Output", "Least", f"at {when}", "Greatest", f"at {when}", f"First moves at {when}")
     rows = (
         (
-            f"{each.name}, {each.unit}" if each.unit else each.name,
+            f"{each.label}, {each.unit}" if each.unit else each.label,
             *_peak(each.min),
             *_peak(each.max),
             "never" if each.arrival is None else number(each.arrival.shown),
@@ -62,7 +62,7 @@ def _drift(found: OutputSummary | None, scale: Timescale) -> str:
         return ""
     value = f"{number(found.largest.value)} {found.unit}".rstrip()
     when = f"{scale.symbol} = {number(found.largest.at.shown)} {scale.unit}".rstrip()
-    return f"Largest drift of a rod: {found.name}, {value} at {when}"
+    return f"Largest drift of a rod: {found.label}, {value} at {when}"
 
 
 def _peak(peak: Peak) -> tuple[str, str]:

@@ -25,6 +25,7 @@ from wavesym.scene.physical.rewritten import Rewritten
 from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
 from wavesym.systems import SYSTEMS, ExplicitChain, SystemTable, WrittenOut
+from wavesym.systems.place import titled
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
     "collision": PhysicalCollision,
@@ -173,4 +174,5 @@ def _until(value: object, seconds: Fraction) -> object:
 def _position(at: object, found: Rewritten, quantity: str, k: int) -> object:
     assert found.lines is not None  # places are lengths
     with placed(quantity, k):
-        return place(at, found.lines).position(found.rods.first.length)
+        written, title = titled(at) if isinstance(at, Mapping) else (at, "")
+        return place(written, found.lines).position(found.rods.first.length)._replace(title=title)
