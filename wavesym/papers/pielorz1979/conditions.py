@@ -91,7 +91,7 @@ class Conditions(EquationGroup):
         yield Case({**at, "what": "its rods"}, rods, rods_at(self.scope.chain, place["x"]), telling=False)
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
-        for tau in instants(6, between=[fmpq(5, 6)]):  # every node has moved, and every load has begun
+        for tau in instants(5, between=[fmpq(5, 6)]):  # every node has moved, and every load has begun
             yield {"left less right side at tau": tau}, self.scope.at(place["x"], tau)
 
 
@@ -113,7 +113,7 @@ class Delays(EquationGroup):
         return [(name, rod) for name in "fg" for rod in range(1, self.scope.chain.m + 1)]
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
-        for z in instants(8, between=[fmpq(5, 6)]):  # waves have crossed the longest chain
+        for z in instants(6, between=[fmpq(5, 6)]):  # every load has begun
             yield {"left less right side at z": z}, {"z": z}
 
     def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:

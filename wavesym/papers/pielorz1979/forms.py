@@ -24,7 +24,7 @@ FORMS = {"I": "(4.9)", "II": "(4.10)", "III": "(4.12)"}
 """The form of each example's solutions."""
 TABLE = {"I": "T2", "II": "T3", "III": "T4"}
 EXACT: Mapping[str, Callable[[int], Exact]] = {"I": collision, "II": drive, "III": building}
-INTERVALS = {"I": 4, "II": 2, "III": 4}
+INTERVALS = {"I": 3, "II": 2, "III": 3}
 """The numbers n = 0, 1, ... that forms are tried with; for each, example II has two intervals."""
 SIZES = {"I": (4, 6, 8), "II": (1, 2, 3), "III": (2, 3, 4)}
 WITHIN = (fmpq(0), fmpq(5, 7))
