@@ -73,6 +73,11 @@ class EquationGroup:
 
     # what a kind has of its own
 
+    @classmethod
+    def compared_with(cls, entry: PaperEntry) -> str:
+        """What a record is compared with."""
+        return cls.against
+
     def places(self, equation: Tree) -> Iterator[Place]:
         """Where an equation is said to hold."""
         if "i" in self.ranges and Symbol("i") in parts_of(equation):

@@ -85,7 +85,7 @@ def equation(entry: PaperEntry) -> Test:
         bodies = next(r for r in right_reading("(3.1)").ranges if isinstance(r, Progression))
         conventions["i is the number of a body, as in (3.1)"] = with_range(bodies)
     return Test(
-        group.against + (", on a foundation that moves with the ground" if base else ""),
+        group.compared_with(entry) + (", on a foundation that moves with the ground" if base else ""),
         cases,
         is_subtracted=not base,
         mathematics=(lambda reading: cases(reading, None)) if base else None,

@@ -148,10 +148,20 @@ class Rates(Constants):
 class Table1(OfRods):
     """The cells of Table 1: where and when the first disturbance reaches a rod, how it moves then, and its loads."""
 
-    against = "when and where the first disturbance arrives, and the clock with which (4.6)-(4.8) follow"
+    _AGAINST: ClassVar[Mapping[str, str]] = {
+        "c_f^2": "the stiffness of a rod over its inertia per length",
+        "x_0": "the end at which the first disturbance arrives, and the clock with which (4.6)-(4.8) follow",
+        "tau_0": "the time at which the first disturbance arrives, and the clock with which (4.6)-(4.8) follow",
+        "v": "the velocity of the body to which the rod is fixed",
+        "S": "the loads of the rigid bodies, and what acts on them by the exact motion",
+    }
     sizes: ClassVar[Mapping[str, Iterable[int]]] = {"I": (4, 6, 8), "II": (1, 2, 3), "III": (2, 3, 4)}
     velocities = "body"
     is_definition = True
+
+    @classmethod
+    def compared_with(cls, entry: PaperEntry) -> str:
+        return cls._AGAINST[entry.about["column"]]
 
     def numbers(self, equation: Tree) -> Iterable[int]:
         if isinstance(equation, Cases):
