@@ -642,7 +642,7 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
 
 
 def symbolic_tables(scene: Scene, intervals: int | None, format: str) -> tuple[list[str], Iterator[str]]:
-    """The table as rational functions of the parameters, csv or json: what the symbols stand for, then its lines.
+    """The table as rational functions of the parameters: what the symbols stand for, then its lines, in a format.
 
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """

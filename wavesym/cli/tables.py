@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Rational functions of kappa_i, r_i = J_i/J_(i+1), u_i = v_(i-1) - v_(i+1); equal parameters are one symbol.",
 )
+@click.option("--fragment", is_flag=True, help="LaTeX without a preamble, for a document that there is.")
 @click.option("-o", "out", type=PATH, metavar="FILE", help="Where the table goes.  [default: standard output]")
-def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, out: Path | None) -> None:
+def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, fragment: bool, out: Path | None) -> None:
     """Print the exact coefficients of every wave function.
 
     \b
@@ -41,16 +42,17 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, out
     from wavesym.documents.tables import table_lines
     from wavesym.writing import write_whole
 
-    if symbolic and format == "latex":
-        raise click.UsageError("--format: latex given, csv or json expected with --symbolic")
+    if fragment and format != "latex":
+        raise click.UsageError(f"--fragment: given with --format {format}, latex expected")
+    written = "fragment" if fragment else format
     if out is not None:
         refuse_scene(out)
     equations: list[str] = []
     with progress(f"tables {scene.name}"):
         if symbolic:
-            equations, lines = api.symbolic_tables(scene, intervals, format)
+            equations, lines = api.symbolic_tables(scene, intervals, written)
         else:
-            lines = table_lines(api.table(scene, intervals), scene.name, format)
+            lines = table_lines(api.table(scene, intervals), scene.name, written)
         if out is not None:
             write_whole({out: lines})
     for equation in equations:

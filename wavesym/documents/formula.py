@@ -16,6 +16,7 @@ from flint import fmpq
 from wavesym.derivation.increments import Increment, add, integrated, trimmed
 from wavesym.derivation.increments import start as begin
 from wavesym.derivation.table import Function, Rules, unit_response
+from wavesym.documents.latex_number import latex_number
 from wavesym.errors import CostError, UnservedError, WavesymError, did_you_mean
 from wavesym.exact.tables.signal import signals
 from wavesym.mechanics.model import Model
@@ -170,27 +171,16 @@ def _sympy_term(value: Number, rate: Number, power: int, since: fmpq) -> str:
     return "*".join([*parts, *([f"exp(-{_rational(rate)}*{w})"] if rate != 0 else [])])
 
 
-def _latex(value: object) -> str:
-    if isinstance(value, fmpq):
-        size = abs(value)
-        text = str(size.p) if size.q == 1 else rf"\tfrac{{{size.p}}}{{{size.q}}}"
-        return f"-{text}" if value < 0 else text
-    above, below = value.factored.parts if isinstance(value, Ratio) else (str(value), "1")
-    above, below = (re.sub(r"_(\w+)", r"_{\1}", each.replace("**", "^").replace("*", r"\,")) for each in (above, below))
-    above, below = (each.replace("kappa", r"\kappa") for each in (above, below))
-    return above if below == "1" else rf"\frac{{{above}}}{{{below}}}"
-
-
 def _latex_ago(since: fmpq) -> str:
-    return f" - {_latex(since)}" if since != 0 else ""
+    return f" - {latex_number(since)}" if since != 0 else ""
 
 
 def _latex_term(value: Number, rate: Number, power: int, since: fmpq) -> str:
     w = rf"(\tau{_latex_ago(since)})" if since != 0 else r"\tau"
     bare = power == 0 and rate == 0
-    number = "" if value == 1 and not bare else "-" if value == -1 and not bare else _latex(value)
+    number = "" if value == 1 and not bare else "-" if value == -1 and not bare else latex_number(value)
     number = rf"\left({number}\right)" if " + " in number or " - " in number else number
-    once = "" if isinstance(rate, fmpq) and rate == 1 else _latex(rate)
+    once = "" if isinstance(rate, fmpq) and rate == 1 else latex_number(rate)
     once = rf"\left({once}\right)" if " + " in once or " - " in once else once
     parts = [number, *([w + (f"^{{{power}}}" if power > 1 else "")] if power else [])]
     return r"\,".join(each for each in [*parts, *([f"e^{{-{once}{w}}}"] if rate != 0 else [])] if each)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from flint import fmpq
 
 from wavesym.derivation.table import Row, Table
+from wavesym.documents.latex_number import latex_number
 from wavesym.exact.tables.network_table import NetworkTable
 from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.factored import written
@@ -18,16 +19,22 @@ from wavesym.rendering import render_stream
 
 @dataclass(frozen=True)
 class LatexTable:
-    """templates/latex/tables.tex.j2; `rows` is read once. `starts` says when intervals start, and what w is."""
+    """templates/latex/tables.tex.j2 and tables_fragment.tex.j2, which is for a document that there is.
+
+    `rows` is read once. `starts` says when intervals start, and what w is.
+    """
 
     name: str
+    label: str
     starts: str
     rows: Iterator[tuple[str, ...]]
 
 
 def table_lines(table: Table | NetworkTable, name: str, format: str) -> Iterator[str]:
-    """The rows of a table as text. `format` is "csv", "json" or "latex"."""
-    return {"csv": _csv, "json": _json, "latex": _latex}[format](table, name)
+    """The rows of a table as text. `format` is "csv", "json", "latex", or "fragment": LaTeX to be \\input."""
+    if format in ("latex", "fragment"):
+        return _latex(table, name, fragment=format == "fragment")
+    return {"csv": _csv, "json": _json}[format](table, name)
 
 
 def _csv(table: Table | NetworkTable, name: str) -> Iterator[str]:
@@ -50,8 +57,8 @@ def _json(table: Table | NetworkTable, name: str) -> Iterator[str]:
 
 
 def symbolic_lines(table: Table, symbols: SymbolicChain, name: str, format: str) -> Iterator[str]:
-    """The rows of a table of rational functions as text. `format` is "csv" or "json"."""
-    return _csv(table, name) if format == "csv" else _symbolic_json(table, symbols, name)
+    """The rows of a table of rational functions as text. `format` is as of `table_lines`."""
+    return _symbolic_json(table, symbols, name) if format == "json" else table_lines(table, name, format)
 
 
 def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[str]:
@@ -71,10 +78,15 @@ def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[
     yield f'\n], "forms": {json.dumps(list(forms))}}}\n'
 
 
-def _latex(table: Table | NetworkTable, name: str) -> Iterator[str]:
+def _latex(table: Table | NetworkTable, name: str, *, fragment: bool) -> Iterator[str]:
     if isinstance(table, Table):
         starts = f"at the start of interval $n$, with $w = z - {table.interval}(n-1)$"
     else:
         starts = r"when it leaves its end of the rod, at the $\tau$ that is the interval, with $w$ the time since then"
-    rows = (tuple(str(value).replace("_", r"\_") for value in row) for row in table.rows())
-    return render_stream("latex/tables.tex.j2", LatexTable(name.replace("_", r"\_"), starts, rows))
+    rows = (tuple(map(_latex_cell, row)) for row in table.rows())
+    template = "latex/tables_fragment.tex.j2" if fragment else "latex/tables.tex.j2"
+    return render_stream(template, LatexTable(name.replace("_", r"\_"), name, starts, rows))
+
+
+def _latex_cell(value: object) -> str:
+    return latex_number(value) if isinstance(value, Ratio) else str(value).replace("_", r"\_")
