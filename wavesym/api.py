@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
+    from wavesym.derivation.equations import Equations
     from wavesym.derivation.table import Row, Table
     from wavesym.documents.advice import Advice
     from wavesym.exact.tables.network_table import NetworkTable
@@ -709,7 +711,24 @@ def formula(
     return symbolic_formula(model, output, in_rates(in_letters(chain)), chain.nodes[-1].velocity).written(format)
 
 
-def derive(source: str | Scene, m: int | None = None, format: str = "text") -> str:
+class Derivation(str):
+    """A derivation: text, and for the paper's systems SymPy objects, in the paper's letters.
+
+    `equations` has for each system (a building has two bases) `delay_equations` and `recurrences`: tuples of a SymPy
+    `equation` and the rods i = `first`, `first` + `step`, ... `last` that it holds for.
+    """
+
+    _systems: tuple[System, ...] = ()
+
+    @cached_property
+    def equations(self) -> tuple[Equations, ...]:
+        """Those of each system, for any m; none for a chain that is written out."""
+        from wavesym.derivation.equations import equations
+
+        return equations(self._systems)
+
+
+def derive(source: str | Scene, m: int | None = None, format: str = "text") -> Derivation:
     """The derivation of a system, or of a scene: boundary conditions, delay equations, coefficient recurrences.
 
     Args:
@@ -718,22 +737,34 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> s
         m: how many elastic elements; then every line is written out. A scene has its own.
         format: "text", "latex" or "json".
 
+    Returns:
+        The text, which has SymPy objects as `equations`.
+
     Raises:
         WavesymError: for an m that the system does not have.
 
     >>> import wavesym
     >>> print(wavesym.derive("drive", 1).splitlines()[0])
     drive, m = 1
+    >>> wavesym.derive("drive").equations[0].delay_equations[0].equation.lhs
+    Derivative(f(1, z), z)*kappa[1] + Derivative(f(1, z), (z, 2))
     """
     from wavesym.documents.derivation.document import derivation, network_derivation, scene_derivation
+    from wavesym.documents.derivation.statement import systems
     from wavesym.mechanics.symbolic import symbolic
 
     if isinstance(source, str):
-        return derivation(source, m, format)
+        made = Derivation(derivation(source, m, format))
+        made._systems = tuple(systems(source, m))
+        return made
     lowered = lower(source)
     lowered.refuse_damping()
     chain = named_chain(source)
-    return scene_derivation(source.name, symbolic(chain), format) if chain else network_derivation(lowered, format)
+    if chain is None:
+        return Derivation(network_derivation(lowered, format))
+    made = Derivation(scene_derivation(source.name, symbolic(chain), format))
+    made._systems = (chain.system,)
+    return made
 
 
 def walks(source: str | Scene, m: int | None, intervals: int, format: str = "text") -> str:
