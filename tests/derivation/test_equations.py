@@ -72,7 +72,7 @@ def test_tables_satisfy_the_recurrences(name: str) -> None:
                                         left = left.subs(f, Rational(str(value)))
                             assert sympy.simplify(left.replace(KroneckerDelta, lambda a, b: Integer(int(a == b)))) == 0
                             checked += 1
-    assert checked > 100
+    assert checked > 50
 
 
 def test_a_building_has_both_bases_and_text_stays_text() -> None:
