@@ -18,6 +18,7 @@ import pytest
 
 import wavesym
 from tests.support.patience import first_always
+from wavesym.scene.first_scene import KINDS
 
 ROOT = Path(wavesym.__file__).parents[1]
 SCENES = ("building_half_roof", "building_m2", "collision_m4", "drive_equal", "drive_m1")
@@ -158,7 +159,7 @@ def contents(project: Path) -> set[str]:
         "wavesym/papers/latex.lark",
         *(f"{path.relative_to(ROOT).as_posix()}" for path in (ROOT / "wavesym/papers").rglob("*.toml")),
         "wavesym/papers/pielorz1979/data/hashes.txt",
-        *(f"wavesym/scene/first/{system}.toml" for system in ("building", "collision", "drive")),
+        *(f"wavesym/scene/first/{kind}.toml" for kind in KINDS),
         "wavesym/methods/characteristics.c",
         "wavesym/py.typed",
         *(f"{info}/{name}" for name in ("METADATA", "RECORD", "WHEEL", "entry_points.txt", "licenses/LICENSE")),
