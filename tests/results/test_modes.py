@@ -146,3 +146,15 @@ def test_the_command_needs_neither_loads_nor_outputs(
     assert main(["modes", "rod.toml", "--count", "2", "--below", "3"]) == 2
     assert main(["run", "rod.toml"]) == 2
     assert "rod.toml: output: missing, a table expected" in capsys.readouterr().err
+
+
+def test_arms_of_one_length_have_modes_that_move_no_support() -> None:
+    """Three held rods from one mass: at pi two modes leave the mass at rest, and what their supports bear is 0."""
+    parts = ["fixed", {"rod": 1}, {"mass": 1, "name": "hub"}, {"rod": 1}, "fixed"]
+    arm = {"from": "hub", "name": "arm", "parts": [{"rod": 1}, "fixed"]}
+    scene = Scene(
+        name="star", system={"type": "chain", "parts": parts, "branch": [arm]}, output={"until": 1, "strain": [0]}
+    )
+    found = wavesym.modes(scene, 3)
+    assert [mode.omega for mode in found][1:] == pytest.approx([np.pi, np.pi], rel=1e-15)
+    assert [mode.effective_mass for mode in found][1:] == pytest.approx([0, 0], abs=1e-20)

@@ -277,7 +277,8 @@ def _effective_mass(network: Network, mode: Mode) -> float | None:
             force -= point.stiffness * moved
     whole = sum((point.mass for point in cut.points if not point.motion), arb(0))
     whole += sum((bar.impedance * bar.delay for bar in cut.bars), arb(0))
-    return midpoint((force / mode.frequency**2) ** 2 / whole)
+    moved = force / mode.frequency**2
+    return midpoint(moved * moved / whole)  # flint's power of a ball about 0 is no number
 
 
 def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
