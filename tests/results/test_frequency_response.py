@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 import wavesym
 from wavesym import Scene
 from wavesym.cli import main
+from wavesym.errors import UnservedError
 from wavesym.exact.modes.harmonic import Amplitudes
 from wavesym.mechanics.network import Network
 from wavesym.scene import lower
@@ -264,6 +265,21 @@ def test_modes_left_out_may_be_damped_more_than_all_before() -> None:
     value = found["displacement@tip"][0]
     assert abs(value - expected) <= found.bound * abs(value) + rest
     assert rest < 1e-9
+
+
+def test_equal_frequencies_with_ratios_of_their_own_are_refused() -> None:
+    """Which of the modes of three equal arms is the second, and which the third, is open."""
+    parts = ["fixed", {"rod": 1}, {"mass": 1, "name": "hub"}, {"rod": 1}, "fixed"]
+    arm = {"from": "hub", "name": "arm", "parts": [{"rod": 1}, "fixed"]}
+    star = Scene(
+        name="star",
+        system={"type": "chain", "parts": parts, "branch": [arm], "damping": ["1/100", "1/10", "1/5"]},
+        load=[{"at": "hub", "times": [0], "steps": [1]}],
+        output={"until": 1, "tolerance": 1e-4, "displacement": ["1/3"]},
+    )
+    with pytest.raises(UnservedError, match=r"system\.damping: 0\.1 and 0\.2 given for modes 2 and 3"):
+        wavesym.frf(star, [1.0])
+    assert np.isfinite(wavesym.frf(star.with_({"system.damping": ["1/100", "1/10", "1/10"]}), [1.0]).values).all()
 
 
 @pytest.mark.parametrize("damping", [None, "1/20", {"modes": [1, 2], "ratio": "1/20"}], ids=["none", "one", "rayleigh"])

@@ -20,8 +20,9 @@ from wavesym.exact.modes.harmonic import Quantity
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Statics
 from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import midpoint
 from wavesym.programs.modes.projection import Driver, modal_output, share
-from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.programs.modes.undamped import UndampedModes, damping_ratios
 from wavesym.results.transfer import ORDERS, HarmonicLoad, drive
 
 _I = acb(0, 1)
@@ -117,8 +118,12 @@ class ModalTransfer:
 
     @cached_property
     def _ratios(self) -> list[arb]:
-        """The damping ratio of each mode; a motion without strain has none."""
+        """The damping ratio of each mode; a motion without strain has none.
+
+        UnservedError where two modes with one frequency have ratios of their own.
+        """
         assert self.model.damping is not None  # who has none needs no modes
+        damping_ratios(self.model.damping, [midpoint(n) for n in self._frequencies if n != 0])
         ratios = iter(self.model.damping.ratios)
         last = ratio = next(ratios)
         made = []
