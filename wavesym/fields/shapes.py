@@ -136,7 +136,7 @@ class ShapedLoad(Load):
             enough = float(self._tolerance) * (count / MOST_SAMPLES) ** 2
             raise CostError(
                 f"load: {count} samples of a {self.shape} for a tolerance of {float(self._tolerance):.1e}, at most "
-                f"{MOST_SAMPLES} expected (output.tolerance = {enough:.1e} or more helps)"
+                f"{MOST_SAMPLES} expected (output.tolerance = {enough:.1e} or more, or fewer periods, help)"
             )
         size = rational(self.amplitude)
         with ctx.workprec(_BITS):
