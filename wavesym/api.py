@@ -349,8 +349,8 @@ def frf(
 
     Args:
         scene: a chain whose contacts do not open.
-        frequencies: (n,), in Hz, or w in rad per tau for a scene without units; None for `points` of them, equally
-            spaced from `low` to `high`.
+        frequencies: (n,), in Hz, or w in rad per tau for a scene without units, each the shortest decimal that reads
+            back to it; None for `points` of them, equally spaced from `low` to `high`.
         load: its number in the scene from 0 on, or the node it acts on; None where there is one load.
         low: the first frequency; None for one step above 0, where chains that nothing holds have no answer.
         high: the last one; None for that of the fifth mode without dashpots.

@@ -81,5 +81,5 @@ def frf(
             write_whole({out: text})
     for line in found.notes:
         click.echo(f"{scene.name}: {line}", err=True)
-    if out is None:
+    if out is None or (drawn and peaks):
         put(text)

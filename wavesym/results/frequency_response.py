@@ -113,7 +113,7 @@ class FrequencyResponse:
         return [
             f"per unit of {self.load}{self.load_unit and ' '}{self.load_unit}; right to {self.bound:.1e} of each "
             "output's largest amplitude here, proved",
-            *([f"no value at {poles} {unit}: nothing limits the answer there"] if poles else []),
+            *([f"no value at {poles} {unit}: there is none, or nothing limits it"] if poles else []),
         ]
 
     def to_pandas(self) -> Any:

@@ -112,7 +112,7 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Peaks:
         CostError: where too many intervals would be needed.
     """
     if not 0 <= low < high:
-        raise WavesymError(f"--from, --to: {low:g} to {high:g} is no band of frequencies")
+        raise WavesymError(f"--peaks: {low:g} to {high:g} is no band of frequencies; two that differ expected")
     with ctx.workprec(_BITS):
         first, last = angular(model, low), angular(model, high)
         for transfer, rests in _transfers(model, load, last):
