@@ -181,6 +181,27 @@ def test_a_fit_stops_at_the_limit(monkeypatch):
     assert len(outputs) == 1
 
 
+def test_pieces_that_others_have_too_are_made_once(monkeypatch):
+    """Where breakpoints are close, pieces of a half are those of a quarter but for the few that are cut."""
+    scene = wavesym.Scene(
+        name="close",
+        system={"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 2]},
+        load=[{"body": 1, "times": [f"{k}/10" for k in range(10)], "steps": [1] * 10}],
+        output={"until": 3, "strain": ["1/3", "1/2"]},
+    )
+    made = fits(scene)
+    asked, moved = [], []
+    segments, shortened = motion.Motion.segments, pieces._shortened
+    monkeypatch.setattr(motion.Motion, "segments", lambda *given: asked.append(given) or segments(*given))
+    monkeypatch.setattr(pieces, "_shortened", lambda *given: moved.append(given) or shortened(*given))
+    first = made.fitted(4)
+    before = len(moved)
+    again = made.fitted(2)
+    assert len(asked) == 2
+    assert len(moved) - before < made._least(2) / 4
+    assert first != again == fits(scene).fitted(2)
+
+
 def test_one_value_that_needs_many_bits_does_not_cost_the_others(monkeypatch):
     """A strain is exactly 0 at tau = 1, which no bits tell before it is smaller than all doubles; the next is not."""
     monkeypatch.setattr(reference, "_MODERATE", 0)

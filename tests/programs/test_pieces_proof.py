@@ -15,7 +15,7 @@ from wavesym.exact.tables.ball import Segment
 from wavesym.numbers import chebyshev
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.piece_grid import Pieces
-from wavesym.programs.pieces import _cut_off, _Cuts, _Fits, _shortened, _underflow
+from wavesym.programs.pieces import _Course, _cut_off, _Cuts, _Fits, _shortened, _underflow
 from wavesym.programs.program import ProgramOutput
 from wavesym.scene import lower
 
@@ -154,7 +154,7 @@ def fitted(polynomials: Sequence[arb_poly], tolerance: fmpq, real=DOUBLE):
     """Bound, largest value and powers of what is one of these polynomials in each unit of tau."""
     segments = [Segment(fmpq(n), {fmpq(0): polynomial}) for n, polynomial in enumerate(polynomials)]
     cuts = _Cuts([segment.start for segment in segments], len(segments) - fmpq(1, 8), 1, real)
-    return _Fits(lower(SIMPLE), real, tolerance)._output(segments, cuts, ctx.prec)
+    return _Fits(lower(SIMPLE), real, tolerance)._output(_Course(segments), cuts, ctx.prec)
 
 
 @pytest.mark.parametrize("power", [0, 1, 5])

@@ -47,6 +47,8 @@ _SHORTER = (2, 4, 8, 16, 32)
 _MOST_BITS = 1024
 # Pieces times four times the terms of a series, which are its bits: half a minute.
 _MOST_WORK = 15_000_000
+# Of all outputs as series, for the next number of pieces, in bytes.
+_MOST_KEPT = 256 << 20
 # Measured: seconds for a stretch of a wave, times its terms to the power of 3/2.
 _MOVED = 4e-7
 # The fastest are taken whose tables are no larger than this.
@@ -139,6 +141,7 @@ class _Fits:
         self._tau_max = model.horizon(real)
         self._motion = Motion(model, rational(self._tau_max))
         self._bits = self._motion.first_bits
+        self._known: dict[int, tuple[int, _Course]] = {}
         if self._bits > self._most_bits:
             raise CostError(
                 f"output.until: {self._bits} bits would be needed for pieces to tau = {self._tau_max:g}, at most "
@@ -215,12 +218,14 @@ class _Fits:
         grids: list[PieceGrid] = []
         bounds: dict[int, tuple[float, float]] = {}
         size = 0
+        keep = self._least(per_unit) * self._motion.terms(bits) * bits <= 8 * _MOST_KEPT
         for _, members in self._shared:
             columns = []
             for k in members:
-                segments = self._motion.segments(probes[k], bits)
-                cuts = _Cuts([segment.start for segment in segments], self._motion.until, per_unit, self._real)
-                fit = self._output(segments, cuts, bits)
+                course = self._course(k, bits, keep)
+                starts = [segment.start for segment in course.segments]
+                cuts = _Cuts(starts, self._motion.until, per_unit, self._real)
+                fit = self._output(course, cuts, bits)
                 if fit is None and k in self._silent:
                     fit = _nothing(cuts)
                 if fit is None:
@@ -234,18 +239,28 @@ class _Fits:
         outputs = tuple(ProgramOutput(probe.name, *bounds[k]) for k, probe in enumerate(probes))
         return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
 
+    def _course(self, output: int, bits: int, keep: bool) -> _Course:
+        """An output in so many bits, once for all numbers of pieces; with other bits the one before is dropped."""
+        known, course = self._known.get(output, (0, None))
+        if course is None or known != bits:
+            course = _Course(self._motion.segments(self._motion.probes[output], bits))
+            if keep:
+                self._known[output] = bits, course
+        return course
+
     def _output(
-        self, segments: Sequence[Segment], cuts: _Cuts, bits: int
+        self, course: _Course, cuts: _Cuts, bits: int
     ) -> tuple[tuple[float, float], list[tuple[float, ...]]] | None:
         """Bound and largest value of an output, and its powers on every piece; None where so many bits do not do."""
+        segments = course.segments
         if is_zero([segments[place] for place in cuts.places(segments)]):
             return _nothing(cuts)
         if self._motion.vanishes(Balls(segments).sizes(self._motion.until)):
             _, powers = _nothing(cuts)
             return (bound(NEGLIGIBLE_WAVE), 0.0), powers
-        if self._too_blurred(segments, cuts, bits):
+        if self._too_blurred(course, cuts, bits):
             return None
-        local = list(_on_pieces(segments, cuts))
+        local = list(course.on_pieces(cuts))
         scale = max(map(cuts.size, range(len(local)), local))
         if not scale > 0:
             return None
@@ -267,13 +282,14 @@ class _Fits:
         allowed = self._tolerance * scale
         return allowed, allowed.max(arb(self._real.roundoff) * scale) / 1000
 
-    def _too_blurred(self, segments: Sequence[Segment], cuts: _Cuts, bits: int) -> bool:
+    def _too_blurred(self, course: _Course, cuts: _Cuts, bits: int) -> bool:
         """Whether balls, which grow with time, hide the last piece, however large the largest value is."""
         largest = arb(0)
+        segments = course.segments
         for segment, end in zip(segments, [*(s.start for s in segments[1:]), self._motion.until], strict=True):
             (polynomial,) = segment.families.values()
             largest = largest.max(abs(polynomial(arb(0).union(arb(end - segment.start)))).upper())
-        (last,) = chebyshev.coefficients(list(_on_pieces(segments, cuts, len(cuts.middles) - 1)), bits)
+        (last,) = chebyshev.coefficients(list(course.on_pieces(cuts, len(cuts.middles) - 1)), bits)
         return not sum((c.rad() for c in last), arb(0)) < self._allowed(largest)[1]
 
 
@@ -282,13 +298,30 @@ def _nothing(cuts: _Cuts) -> tuple[tuple[float, float], list[tuple[float, ...]]]
     return (0.0, 0.0), [(0.0,)] * len(cuts.centres)
 
 
-def _on_pieces(segments: Sequence[Segment], cuts: _Cuts, first: int = 0) -> Iterator[arb_poly]:
-    """The output on every piece from the `first` on, in t; what is negligible is in the balls."""
-    negligible = max(abs(p[0]).lower() for segment in segments for p in segment.families.values()) * _NEGLIGIBLE
-    for place, centre, half in list(zip(cuts.places(segments), cuts.middles, cuts.halves, strict=True))[first:]:
-        segment = segments[place]
-        (polynomial,) = segment.families.values()
-        yield _shortened(polynomial(arb_poly([arb(centre - segment.start), arb(half)])), negligible)
+class _Course:
+    """An output in balls: its segments, and what it is on each piece, which other numbers of pieces have too.
+
+    Where breakpoints are close most pieces go from one to the next, however many are in a unit.
+    """
+
+    def __init__(self, segments: Sequence[Segment]) -> None:
+        self.segments = segments
+        self._on: dict[tuple[int, float, fmpq], arb_poly] = {}
+
+    @cached_property
+    def _negligible(self) -> arb:
+        return max(abs(p[0]).lower() for segment in self.segments for p in segment.families.values()) * _NEGLIGIBLE
+
+    def on_pieces(self, cuts: _Cuts, first: int = 0) -> Iterator[arb_poly]:
+        """The output on every piece from the `first` on, in t; what is negligible is in the balls."""
+        for key in list(zip(cuts.places(self.segments), cuts.centres, cuts.halves, strict=True))[first:]:
+            if key not in self._on:
+                place, centre, half = key
+                segment = self.segments[place]
+                (polynomial,) = segment.families.values()
+                moved = polynomial(arb_poly([arb(rational(centre) - segment.start), arb(half)]))
+                self._on[key] = _shortened(moved, self._negligible)
+            yield self._on[key]
 
 
 def _shortened(polynomial: arb_poly, negligible: arb) -> arb_poly:
