@@ -703,12 +703,12 @@ def formula(
             raise WavesymError(f"--until: {float(until):g} is not between 0 and the horizon of the scene")
         model = model.shortened(last)
     if not symbolic:
-        return output_formula(model, output).written(format)
+        return output_formula(model, output).render(format)
     from wavesym.derivation.rate_letters import in_rates
     from wavesym.mechanics.symbolic import symbolic as in_letters
 
     chain = _paper_chain(scene, model, "--symbolic", "formula")
-    return symbolic_formula(model, output, in_rates(in_letters(chain)), chain.nodes[-1].velocity).written(format)
+    return symbolic_formula(model, output, in_rates(in_letters(chain)), chain.nodes[-1].velocity).render(format)
 
 
 class Derivation(str):

@@ -36,7 +36,7 @@ def letters(title: str) -> dict[str, sympy.Rational]:
     return {name: sympy.Rational(value) for name, value in re.findall(r"(\w+) is (\S+?) in the scene", title)}
 
 
-def agrees(made: Scene, name: str, values: list[float]) -> None:
+def assert_agrees(made: Scene, name: str, values: list[float]) -> None:
     """Sums of terms that cancel: their rounding, for numbers of a moderate size."""
     expected = dict(zip((output.name for output in made.outputs), wavesym.run(made, TAU).values, strict=True))[name]
     assert values == pytest.approx(expected, abs=1e-9 * max(1.0, float(np.abs(expected).max())))
@@ -53,7 +53,7 @@ def test_an_expression_for_sympy_is_the_output(name: str, symbolic: bool) -> Non
     names = {each: getattr(sympy, each) for each in ("Heaviside", "Rational", "Integer", "exp")}
     expression = sympy.sympify(text, {**names, "tau": tau}).subs(values)
     assert expression.free_symbols <= {tau}
-    agrees(made, output, [float(expression.subs(tau, sympy.Rational(t)).evalf(30)) for t in TAU])
+    assert_agrees(made, output, [float(expression.subs(tau, sympy.Rational(t)).evalf(30)) for t in TAU])
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -71,7 +71,7 @@ def test_plain_text_is_the_output(name: str) -> None:
                     python = re.sub(r"(?<=[\w)]) (?=[\w(])", "*", terms.replace("^", "**"))
                     total += eval(python, {"exp": exp, "w": w})
             values.append(total)
-        agrees(made, output, values)
+        assert_agrees(made, output, values)
 
 
 @pytest.mark.skipif(not at_hand(), reason="needs gcc or clang")
@@ -88,7 +88,7 @@ def test_a_function_in_c_is_the_output(name: str, symbolic: bool, tmp_path: Path
     call = getattr(CDLL(str(library)), function)
     call.restype = c_double
     values = [c_double(float(value)) for value in letters(text.splitlines()[0]).values()]
-    agrees(made, output, [call(c_double(t), *values) for t in TAU])
+    assert_agrees(made, output, [call(c_double(t), *values) for t in TAU])
 
 
 @pytest.mark.skipif(not at_hand(), reason="needs gcc or clang")
@@ -114,7 +114,7 @@ def test_a_coefficient_that_is_wrong_is_noticed() -> None:
     tau = sympy.Symbol("tau")
     expression = sympy.sympify(text, {**names, "tau": tau})
     with pytest.raises(AssertionError):
-        agrees(made, "strain@0", [float(expression.subs(tau, sympy.Rational(t))) for t in TAU])
+        assert_agrees(made, "strain@0", [float(expression.subs(tau, sympy.Rational(t))) for t in TAU])
 
 
 def test_latex_has_the_same_terms() -> None:

@@ -102,10 +102,10 @@ def test_what_is_computed_wrong_is_in_the_bound(change, case, tmp_path):
     ],
 )
 def test_a_mistake_in_the_bound_is_seen(changes, tmp_path):
-    refuse(changes, "drive", tmp_path)
+    assert_refused(changes, "drive", tmp_path)
 
 
-def refuse(changes, case, folder):
+def assert_refused(changes, case, folder):
     """Errors of spoiled C are larger than its spoiled bound."""
     scene, numbers = CASES[case]
     made = BuiltModel(scene, list(numbers), folder, changes)
@@ -114,7 +114,7 @@ def refuse(changes, case, folder):
 
 
 def test_waves_that_are_sent_wrong_add_up_at_an_instant(tmp_path):
-    refuse((SENT, ("w->instant += w->passes[port]", "w->instant += 0 * w->passes[port]")), "building", tmp_path)
+    assert_refused((SENT, ("w->instant += w->passes[port]", "w->instant += 0 * w->passes[port]")), "building", tmp_path)
 
 
 STEPS = 150

@@ -24,7 +24,7 @@ from wavesym.mechanics.probe import Probe
 from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.numbers.ratio import Ratio
-from wavesym.rendering import render
+from wavesym.rendering import render as render_template
 
 MOST_TERMS = 2000
 _POWER = re.compile(r"(\w+|\([^()]*\))\*\*(\d+)")
@@ -61,7 +61,7 @@ class Formula:
     letters: Mapping[str, fmpq]
     seconds: fmpq | None
 
-    def written(self, format: str) -> str:
+    def render(self, format: str) -> str:
         """As text. `format` is "text", "latex", "sympy" or "c"."""
         return {"text": self._text, "latex": self._latex, "sympy": self._sympy, "c": self._c}[format]()
 
@@ -94,7 +94,7 @@ class Formula:
             for g in self.gains
         )
         function = f"{self.scene}_{_identifier(self.name)}"
-        return render("c/formula.c.j2", CFormula(self.title, function, tuple(self.letters.items()), gains))
+        return render_template("c/formula.c.j2", CFormula(self.title, function, tuple(self.letters.items()), gains))
 
 
 @dataclass(frozen=True)

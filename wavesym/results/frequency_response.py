@@ -170,7 +170,7 @@ def frequency_response(model: Model, load: HarmonicLoad, frequencies: ArrayLike)
     else:
         points = _Points(Transfer(model, load))
         for k, f in enumerate(given.tolist()):
-            values[:, k], radii = points.at(f)
+            values[:, k], radii = points.solve(f)
             errors = np.fmax(errors, radii)
     largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
     relative = np.divide(errors, largest, out=np.zeros_like(errors), where=largest > 0)
@@ -225,7 +225,7 @@ class _Points:
     transfer: Transfer
     bits: int = _BITS
 
-    def at(self, frequency: float) -> tuple[list[complex], list[float]]:
+    def solve(self, frequency: float) -> tuple[list[complex], list[float]]:
         """The outputs at a frequency, both parts as the nearest doubles, and what these are wrong by before rounding.
 
         nan where there is no answer, as at a natural frequency. CostError where no bits tell.

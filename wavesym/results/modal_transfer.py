@@ -109,12 +109,12 @@ class ModalTransfer:
         return drive(each.coefficients, rate, order + moves)
 
     @cached_property
-    def _found(self) -> list[Mode]:
+    def _mode_list(self) -> list[Mode]:
         return self.modes.spectrum.first(self.count)
 
     @cached_property
     def _frequencies(self) -> list[arb]:
-        return [mode.frequency for mode in self._found]
+        return [mode.frequency for mode in self._mode_list]
 
     @cached_property
     def _ratios(self) -> list[arb]:
@@ -144,7 +144,7 @@ class ModalTransfer:
 
     @cached_property
     def _drives(self) -> list[ModalDrive]:
-        found, cut = self._found, self.modes.spectrum.cut
+        found, cut = self._mode_list, self.modes.spectrum.cut
         statics = Statics(found[0].stiffness)
         outputs = [modal_output(self.model.network, cut, probe) for probe in self.model.probes]
         values = [[output.value(mode) for mode in found] for output in outputs]

@@ -131,7 +131,7 @@ class Modes:
         if shapes:
             nodes = list(self.modes[0].shape)
             table = [["node", *(f"mode {mode.number}" for mode in self.modes)]]
-            table += [[node, *(_shown(mode.shape[node]) for mode in self.modes)] for node in nodes]
+            table += [[node, *(_shape_text(mode.shape[node]) for mode in self.modes)] for node in nodes]
             lines += ["", *_aligned(table)]
         radius = max((mode.radius for mode in self.modes), default=0.0)
         return "\n".join([*lines, "", f"right to {radius:.1e} {per}, proved; {self.why}"]) + "\n"
@@ -286,7 +286,7 @@ def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in rows]
 
 
-def _shown(moved: complex) -> str:
+def _shape_text(moved: complex) -> str:
     return f"{moved.real:.5f}" if moved.imag == 0 else f"{abs(moved):.5f} at {np.degrees(np.angle(moved)):.1f} deg"
 
 

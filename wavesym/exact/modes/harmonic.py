@@ -82,10 +82,10 @@ class HarmonicNetwork:
     def branches(self, root: int) -> list[Branch]:
         """The branches that are reached from a point, each after those nearer to it."""
         if root not in self._branches:
-            self._branches[root] = self._reached(root)
+            self._branches[root] = self._branches_from(root)
         return self._branches[root]
 
-    def _reached(self, root: int) -> list[Branch]:
+    def _branches_from(self, root: int) -> list[Branch]:
         beside: dict[int, list[Branch]] = {}
         for branch in self._every:
             beside.setdefault(branch.near, []).append(branch)
@@ -165,7 +165,7 @@ class Amplitudes:
         a, b = self._at_far_end(branch)
         near, far = self._turned_to(branch, place)
         moved = a * far.sine + b * self._network.bars[bar].impedance * far.cosine
-        beside = self._beside(branch)
+        beside = self._parallel_resistance(branch)
         return scale * (moved if beside is None else moved + b * beside * (near.sine + far.sine))
 
     def slope(self, bar: int, place: fmpq) -> Quantity:
@@ -176,7 +176,7 @@ class Amplitudes:
         a, b = self._at_far_end(branch)
         near, far = self._turned_to(branch, place)
         slope = a * far.cosine - b * self._network.bars[bar].impedance * self._square * far.sine
-        beside = self._beside(branch)
+        beside = self._parallel_resistance(branch)
         if beside is not None:
             slope = slope + b * beside * (far.cosine - near.cosine)
         return scale * slope * (1 if branch.side else -1)
@@ -232,7 +232,7 @@ class Amplitudes:
 
     def _through(self, branch: Branch) -> tuple[Quantity, Quantity]:
         """N and D of a branch, seen from its near point."""
-        (a, b), beside = self._at_far_end(branch), self._beside(branch)
+        (a, b), beside = self._at_far_end(branch), self._parallel_resistance(branch)
         if branch.bar is None:
             return self._geared(branch, a * beside), a + b * beside
         bar = self._network.bars[branch.bar]
@@ -248,7 +248,7 @@ class Amplitudes:
 
     def _coupling(self, branch: Branch) -> Quantity:
         """What the far end moves by, times D and over B, when the near end does."""
-        beside = self._beside(branch)
+        beside = self._parallel_resistance(branch)
         if branch.bar is None:
             return beside
         bar = self._network.bars[branch.bar]
@@ -259,7 +259,7 @@ class Amplitudes:
         a, b = self._beyond[branch.far]
         return a, b if branch.ratios[1] == 1 else b * branch.ratios[1] ** 2
 
-    def _beside(self, branch: Branch) -> Quantity:
+    def _parallel_resistance(self, branch: Branch) -> Quantity:
         """How a spring and a dashpot resist; None where there are none."""
         if branch.damping != 0:
             return self._w * (_I * branch.damping) + branch.stiffness

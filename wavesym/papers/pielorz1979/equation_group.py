@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
@@ -41,7 +42,7 @@ def parts_of(tree: Any) -> tuple[Any, ...]:
     return (tree, *(inner for part in parts if is_dataclass(part) for inner in parts_of(part)))  # type: ignore[arg-type]
 
 
-class EquationGroup:
+class EquationGroup(ABC):
     """Equations of a kind, tried on one chain: a record's, and which others there are.
 
     Attributes:
@@ -85,13 +86,13 @@ class EquationGroup:
         else:
             yield {}
 
+    @abstractmethod
     def key(self, equation: Tree, place: Place) -> Key:
         """What an equation says at a place."""
-        raise NotImplementedError
 
+    @abstractmethod
     def required(self) -> Iterable[Key] | None:
         """All that is to be said of the chain, once; None where that is not asked."""
-        raise NotImplementedError
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
         """How an instant is called, and what is bound then."""
