@@ -245,11 +245,11 @@ def test_no_codec_that_a_store_names_is_run(
     assert files(folder) == every
     assert np.isfinite(zarr.open_array(folder / NAME / "max", mode="r")[0]).all()
     assert not witness.exists()
-    # what zarr would have done
+    # what zarr would have done; of the one chunk, since it reads several at once and stops at the first that is damaged
     chunk.write_bytes(pickle.dumps(Touching(witness)))
     (at / ".zarray").write_text(json.dumps(zarray | said))
     with pytest.raises(Exception):  # noqa: B017, PT011 whatever comes of it
-        np.asarray(zarr.open_array(at, mode="r")[:])
+        np.asarray(zarr.open_array(at, mode="r")[:1])
     assert witness.exists()
 
 
