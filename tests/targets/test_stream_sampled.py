@@ -123,9 +123,8 @@ FAULTS = {
 def test_a_bound_without_one_of_its_parts_is_less(monkeypatch):
     """What is lost at massless points is lost as waves, what is left of it as energy: without either it is less."""
     scene, truth = made(*SYSTEMS["base force"])
-    loads = samples(len(SAMPLINGS["golden"]), 1)
 
-    def ran(fault):
+    def ran(fault, sampling):
         def spoiled(file, of, kernel=written.kernel):
             text = kernel(file, of)
             if fault and file == "stream/stream.c":
@@ -133,15 +132,16 @@ def test_a_bound_without_one_of_its_parts_is_less(monkeypatch):
                 return text.replace(*FAULTS[fault])
             return text
 
+        loads = samples(len(SAMPLINGS[sampling]), 1)
         with monkeypatch.context() as patch:
             patch.setattr(written, "kernel", spoiled)
-            return driven(built(scene, room=0).start(), SAMPLINGS["golden"], loads, held=True)
+            return driven(built(scene, room=0).start(), SAMPLINGS[sampling], loads, held=True)
 
-    right = ran(None)
-    worst = np.max(truth.missed(right, 2))
-    assert worst < right.lost[-1]
-    assert ran("a kink").lost[-1] < worst
-    assert all(ran(fault).lost[-1] < 0.7 * right.lost[-1] for fault in ("a wave", "an energy"))
+    right = ran(None, "golden")
+    assert np.max(truth.missed(right, 2)) < right.lost[-1]
+    assert all(ran(fault, "golden").lost[-1] < 0.7 * right.lost[-1] for fault in ("a wave", "an energy"))
+    unseen = ran("a kink", "changing")
+    assert unseen.lost[-1] < np.max(truth.missed(unseen, 2))
 
 
 STOREY = {"height": "3.5 m", "stiffness": "678 MN/m", "column_mass": "2.66 t", "floor_mass": "35 t"}
@@ -169,7 +169,10 @@ def shaken(spacing):
     "spacing", ["0.001", pytest.param("0.0002", marks=pytest.mark.slow), pytest.param("0.02", marks=pytest.mark.slow)]
 )
 def test_a_record_in_seconds_has_room_for_all_of_its_samples(spacing):
-    """Samples whose spacing has no measure in common with the panels."""
+    """Samples whose spacing has no measure in common with the panels.
+
+    What is lost is told of the largest value of each output: within 9 ms a floor hardly moves, however large waves are.
+    """
     scene = shaken(spacing)
     response = wavesym.evaluator(scene)
     stream = built(scene, room=None if spacing == "0.02" else 40).start()
@@ -182,7 +185,7 @@ def test_a_record_in_seconds_has_room_for_all_of_its_samples(spacing):
     true = response([min((k + 1) * dtau, response.tau_max) for k in range(len(found))])
     worst = np.max(np.abs(np.array(found).T - true) / np.max(np.abs(true), axis=1, keepdims=True))
     assert worst < 1e-10
-    assert worst < stream.lost < 1e-9
+    assert worst < stream.lost < (1e-8 if spacing == "0.0002" else 1e-9)
 
 
 def test_room_is_known_from_the_scene_and_from_the_step():

@@ -46,29 +46,25 @@ BREAKS = {
     "a row too long": ("pieces_double_values", "counted < many ? 0 : counted - many + 1", "counted"),
     "an edge that belongs to the piece before": ("pieces_double_values", "tau < edge;", "tau <= edge;"),
     "a value out of range": ("closed_double_values", "tau >= 0 && tau <= CLOSED", "tau <= CLOSED"),
-    "a march too short": (
-        "march_double_values",
-        "state->window < cycle * CYCLE + phase",
-        "state->window + 1 < cycle * CYCLE + phase",
-    ),
+    "a phase too far": ("march_double_values", "phase + 1 < CYCLE && t >=", "phase < CYCLE && t >="),
     "a sample too far": ("blocks_double_values", "dtau < 0 ? count - 1 - i : i;", "dtau < 0 ? count - i : i;"),
     "an overflow": ("modes_double_stream", "return wrong ? 2 : 0;", "return 0;"),
     "a refusal that moves": (
         "stream_double_stream",
         "    if (wrong) {\n        return 1;",
-        "    state->seen += wrong;\n    if (wrong) {\n        return 1;",
+        "    state->age += wrong;\n    if (wrong) {\n        return 1;",
     ),
     "an alarm forgotten": ("stream_double_stream", "state->alarm |= !fine;", "state->alarm = !fine;"),
     "an instant too many": (
         "stream_double_stream",
-        "k < SIZE && instant[k] <= from",
-        "k <= SIZE && instant[k] <= from",
+        "k < SIZE; ++k) {\n        at[k] =",
+        "k <= SIZE; ++k) {\n        at[k] =",
     ),
     "a stream that should give nothing": ("tuned_double_tuned", "gain[k] = not_a_number();", ""),
     "a bad parameter": (
         "runtime_double_runtime",
-        "made->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);",
-        "made->built = 1;",
+        "b->status[set] == 0 && !finite ? 1 :",
+        "",
     ),
     "a lane of no size": (
         "runtime_double_runtime",
@@ -77,7 +73,7 @@ BREAKS = {
     ),
     "a section": ("runtime_double_runtime", "t >= from[at] && t < from[at + 1];", "t >= from[at];"),
     "a set too many": ("runtime_double_batch", "built = set >= 0 && set <", "built = set <"),
-    "a weight": ("runtime_double_batch", "missed[i] * missed[i]", "missed[i]"),
+    "a weight": ("runtime_double_batch", "v[k] * v[k]", "v[k]"),
 }
 
 

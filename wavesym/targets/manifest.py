@@ -16,7 +16,7 @@ CODE_AT_MOST = {
     "march": 8192,
     "hats": 0,
     "modes": 4096,
-    "stream": 8192,
+    "stream": 10240,
 }
 
 

@@ -216,6 +216,7 @@ static int made_of(stream *state, const name_parameters *parameters)
         if (shown_force[k] >= 0) {
             root_impedance[track[k]] = 0;
         }
+        fine &= is_number(root_impedance[track[k]]) && is_number(state_gain[track[k]]);
     }
     growth = fastest * (root(2 * fastest * step_length) + 2);
     fine &= is_number(growth);

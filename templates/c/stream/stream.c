@@ -677,7 +677,7 @@ static void raise_alarm(stream *state, const real *out)
     const real left = tolerance - state->lost_wave / all;
     const int lossless = !(state->lost_energy > 0) && is_number(state->lost_energy);
     int fine = lossless || (left >= 0 && energy * (energy / step_length + 2 * slope) <= left * left);
-    fine &= is_number(all) && is_number(state->lost_energy) && is_number(state->lost_wave);
+    fine &= is_number(all) && is_number(state->lost_energy) && is_number(state->lost_wave) && is_number(state->rounded);
     for (int output = 0; output < OUTPUTS; ++output) {
         fine &= is_number(out[output]);
     }
