@@ -118,7 +118,7 @@ def check_spacings(family):
 def test_spacings_as_drawn():
     family = modal.spacings(quietly)
     check_spacings(family)
-    assert "fractional parts" in family.curve("", "march")[-1].refused
+    assert "different remainders" in family.curve("", "march")[-1].refused
 
 
 def test_so_many_samples_are_a_whole_number_of_rods():

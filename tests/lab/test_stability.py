@@ -68,7 +68,7 @@ def test_reflections_as_drawn():
         assert closed[0].error < 1e-15
         assert closed[-1].error > 1e3
         assert not any(point.refused for point in family.curve(panel, "pieces"))
-        assert max(point.error for point in family.curve(panel, "march")) < 1e-11
+        assert max(point.error for point in family.curve(panel, "march")) < TOLERANCE
 
 
 def check_gaps(family):

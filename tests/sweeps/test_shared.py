@@ -13,7 +13,6 @@ import pytest
 
 pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
-from wavesym import Scene
 from wavesym.errors import WavesymError
 from wavesym.results.response import Response
 from wavesym.results.summary import Summary, summarised
@@ -277,4 +276,3 @@ def test_a_wrong_peak_would_be_seen() -> None:
     found["max"] = found["max"] * (1 + 1e-5)
     with pytest.raises(AssertionError):
         assert_alike(made, place, found)
-    assert isinstance(made.scene(place), Scene)

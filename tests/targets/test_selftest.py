@@ -125,8 +125,7 @@ CASES = [
     pytest.param("pieces", "single", "1e-4", marks=pytest.mark.slow),
 ]
 # what a march computes its waves with; `from`, where one polynomial ends and the next begins, is none of it
-WAVES = ("half_length", "since", "alpha", "beta", "motion", "rod", "ratio", "first", "last", "slack", "loss")
-WAVES += ("event_power", "start", "excess")
+WAVES = ("half_length", "since", "matrix", "push", "ratio", "initial_state", "event_power", "start", "excess")
 
 
 def unseen(program, name, right):
