@@ -4,7 +4,7 @@
 /* Models of up to NAME_WIDTH sets. Plain data, yours; only `build_batch` writes into it. It is read and written sooner
  * where it begins at a multiple of 64 bytes. */
 struct name_batch {
-    name_real series[NAME_WINDOWS * NAME_STRANDS * (NAME_DEGREE + 2)][NAME_WIDTH];
+    name_real series[NAME_SERIES][NAME_WIDTH];
     /* for `build_batch` alone: as many sets side by side as a vector holds */
     name_march_state work[NAME_WIDTH];
     name_march_tables tables[NAME_WIDTH];

@@ -3,12 +3,9 @@
 #include "blocks.c"
 #include "../root.h"
 
-static const slice nothing = {0};
 #if VECTOR
-#define MAGNITUDE(x) ((slice)((choice)(x) & ~(choice)(-nothing)))
 #define LARGER(x, y) ((slice)((((x) > (y)) & (choice)(x)) | (~((x) > (y)) & (choice)(y))))
 #else
-#define MAGNITUDE(x) magnitude(x)
 #define LARGER(x, y) ((x) > (y) ? (x) : (y))
 #endif
 
@@ -45,18 +42,6 @@ typedef struct {
 } errors;
 
 static const real alternating[17] = {1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1};
-
-static real total_of(const slice *x)
-{
-    real sum[LANES];
-    *(slice *)sum = *x;
-    for (int half = LANES / 2; half > 0; half /= 2) {
-        for (int lane = 0; lane < half; ++lane) {
-            sum[lane] += sum[lane + half];
-        }
-    }
-    return sum[0];
-}
 
 /* No less than the root, and hardly more: Newton's steps end above it, but for rounding. */
 static real root_above(real x)

@@ -241,7 +241,10 @@ static void OF(march_all)(OF(progress) *b)
 #undef OF
 #undef PICK
 #undef SIZE_OF
+#undef SIZES_OF
+#undef TOTAL_OF
 #undef ZERO
+#undef NOTHING
 #undef TEST
 #undef SOME
 #undef LANE

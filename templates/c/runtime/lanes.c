@@ -49,11 +49,18 @@ static int in_some(const mask *test)
     return found;
 }
 
+/* Of series with a set in each lane a pack is one number. */
+typedef wide pack_batch;
+enum { packed_batch = 1 };
+
 #define num wide
 #define OF(name) name##_batch
 #define PICK CHOSEN
 #define SIZE_OF(x) MAGNITUDES(x)
+#define SIZES_OF(x) MAGNITUDES(x)
+#define TOTAL_OF(x) (x)
 #define ZERO none
+#define NOTHING none
 #define TEST mask
 #define SOME(test) in_some(&(test))
 #define LANE(x, set) AT((x)[(set) / SETS], (set) % SETS)

@@ -5,4 +5,4 @@
     int degree[NAME_WINDOWS];   /* of the polynomials of each window */
     size_t place[NAME_WINDOWS]; /* where in `series` those of a window begin */
     name_real estimate;
-    name_real series[NAME_WINDOWS * NAME_STRANDS * (NAME_DEGREE + 2)];
+    name_real series[NAME_SERIES];

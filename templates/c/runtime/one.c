@@ -16,6 +16,29 @@ typedef name_extremes extremes;
 typedef name_march_state march_state;
 typedef name_march_tables march_tables;
 
+/* As many numbers of a series as are taken at once. */
+typedef slice pack;
+enum { packed = LANES };
+static const pack nothing = {0};
+
+static real total_of(const pack *x)
+{
+    real sum[LANES];
+    *(pack *)sum = *x;
+    for (int half = LANES / 2; half > 0; half /= 2) {
+        for (int lane = 0; lane < half; ++lane) {
+            sum[lane] += sum[lane + half];
+        }
+    }
+    return sum[0];
+}
+
+#if VECTOR
+#define MAGNITUDE(x) ((pack)((choice)(x) & ~(choice)(-nothing)))
+#else
+#define MAGNITUDE(x) magnitude(x)
+#endif
+
 /* `parts` vectors hold `lanes_in_all` sets; a TEST is one of each set. */
 enum { parts = 1, lanes_in_all = 1 };
 
@@ -23,7 +46,10 @@ enum { parts = 1, lanes_in_all = 1 };
 #define OF(name) name
 #define PICK(test, one, other) ((test) ? (one) : (other))
 #define SIZE_OF(x) magnitude(x)
+#define SIZES_OF(x) MAGNITUDE(x)
+#define TOTAL_OF(x) total_of(&(x))
 #define ZERO ((real)0)
+#define NOTHING nothing
 #define TEST int
 #define SOME(test) (test)
 #define LANE(x, set) ((x)[set])

@@ -67,8 +67,10 @@ static void OF(accumulate_term)(OF(march_state) *all, const real *inverse, const
     }
 }
 
-/* The same of both waves of a strand at once, which are all of it, and are not integrated; `sum` grows by magnitudes. */
-static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t, int window, int degree, num *c, num *sum)
+/* The same of both waves of a strand at once, which are all of it, and are not integrated; `sum` grows by magnitudes. What
+ * lies behind a series is written, too. */
+static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t, int window, int degree, num *c,
+                               OF(pack) *sum)
 {
     const num *w[OF(parts)], *v[OF(parts)];
     num one[OF(parts)], other[OF(parts)];
@@ -78,14 +80,14 @@ static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t,
         v[side] = all[side].waves[slot(term_track[t + 1], window, term_back[t + 1])][term_panel[t + 1]];
         one[side] = law[side].gain[term_gain[t]];
         other[side] = law[side].gain[term_gain[t + 1]];
-        c[(degree + 1) * OF(parts) + side] = ZERO;
     }
-    for (int k = 0; k <= degree; ++k) {
+    for (int k = 0; k <= degree + 1; k += OF(packed)) {
         UNROLLED
         for (int side = 0; side < OF(parts); ++side) {
-            const num now = one[side] * w[side][k] + other[side] * v[side][k];
-            c[k * OF(parts) + side] = now;
-            sum[side] += SIZE_OF(now);
+            const OF(pack) first = *(const OF(pack) *)(w[side] + k), second = *(const OF(pack) *)(v[side] + k);
+            const OF(pack) now = one[side] * first + other[side] * second;
+            *(OF(pack) *)(c + k * OF(parts) + side) = now;
+            sum[side] += SIZES_OF(now);
         }
     }
 }
@@ -95,12 +97,14 @@ static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t,
 static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(laws) *law, int window, int degree, int more,
                            num *c, num *weight)
 {
+    OF(pack) sum[OF(parts)];
+    num rest[OF(parts)];
+    for (int side = 0; side < OF(parts); ++side) {
+        sum[side] = NOTHING;
+        rest[side] = ZERO;
+    }
     for (int s = 0; s < NAME_STRANDS; ++s) {
         const int t = first_term[s], last = first_term[s + 1];
-        num sum[OF(parts)];
-        for (int side = 0; side < OF(parts); ++side) {
-            sum[side] = ZERO;
-        }
         if (!more && last - t == 2 && !term_summed[t] && !term_summed[t + 1]) {
             OF(accumulate_two)(all, law, t, window, degree, c, sum);
         } else {
@@ -112,14 +116,14 @@ static void OF(accumulate)(OF(march_state) *all, const real *inverse, const OF(l
             }
             for (int k = 0; k <= degree + 1; ++k) {
                 for (int side = 0; side < OF(parts); ++side) {
-                    sum[side] += SIZE_OF(c[k * OF(parts) + side]);
+                    rest[side] += SIZE_OF(c[k * OF(parts) + side]);
                 }
             }
         }
-        for (int side = 0; side < OF(parts); ++side) {
-            weight[side] += (real)(4 * (degree + 2)) * sum[side];
-        }
         c += (degree + 2) * OF(parts);
+    }
+    for (int side = 0; side < OF(parts); ++side) {
+        weight[side] += (real)(4 * (degree + 2)) * (rest[side] + TOTAL_OF(sum[side]));
     }
 }
 

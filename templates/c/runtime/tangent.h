@@ -4,7 +4,7 @@
 /* A model with its derivatives by every parameter, in the order of the parameters: their series lie as the model's. */
 struct name_tangent {
     name_model value;
-    name_real series[NAME_LANES][NAME_WINDOWS * NAME_STRANDS * (NAME_DEGREE + 2)];
+    name_real series[NAME_LANES][NAME_SERIES];
     /* for `tangent_estimate`: errors of values, at last and the sum of all windows; truncation errors of derivatives, the
      * largest velocity or mean of a wave (now and on the next window), and of what acts as laws change */
     name_parameters parameters;
