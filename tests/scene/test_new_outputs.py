@@ -39,12 +39,6 @@ def scene(system: object, **outputs: object) -> Scene:
 @pytest.mark.parametrize(
     ("system", "outputs", "line"),
     [
-        (BUILDING, {"acceleration": ["1/2"]}, "acceleration[0]: 1/2 given, a rigid mass expected"),
-        (BUILDING, {"acceleration": [1, 0]}, "acceleration[1]: 0 given, a rigid mass expected"),
-        (COLLISION, {"acceleration": [2]}, "acceleration[0]: 2 given, a rigid mass expected"),
-        (CHAIN, {"acceleration": ["step"]}, "acceleration[0]: step given, a rigid mass expected"),
-        (CHAIN, {"acceleration": ["base"]}, "acceleration[0]: base given, a rigid mass expected"),
-        (CHAIN, {"acceleration": [0.5]}, "acceleration[0]: 0.5 given, a rigid mass expected"),
         (BUILDING, {"acceleration": [1, "1+"]}, "acceleration[1]: 1+ given, another place than 1 expected"),
         (BUILDING, {"force": [1]}, 'force[0]: 1 given, a side of the body there expected: "1-" or "1+"'),
         (CHAIN, {"force": ["gear"]}, "force[0]: gear given, a side there expected"),

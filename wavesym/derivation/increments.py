@@ -92,6 +92,19 @@ def integrated(increment: Increment) -> Increment:
     return solve(DERIVATIVE, increment, _ZERO)
 
 
+def differentiated(increment: Increment) -> Increment:
+    """The derivative, of an increment that does not jump: (k + 1) F[g,k+1] - g F[g,k]."""
+    return trimmed(
+        {
+            rate: [
+                (k + 1) * after - rate * value
+                for k, (value, after) in enumerate(zip(powers, [*powers[1:], _ZERO], strict=True))
+            ]
+            for rate, powers in increment.items()
+        }
+    )
+
+
 def combined(parts: Iterable[tuple[fmpq, Increment]]) -> Increment:
     """A sum of increments that start together, each with its factor."""
     total: Increment = {}

@@ -10,7 +10,9 @@ each front carries and every fixed s. With all of them times s, and t = 1/s, a j
 Computed modulo a prime at a random t, a sum that is not 0 is taken for 0 with a chance of less than one in 2**70: as a
 rational function of t its numerator has a degree below 2**50, and t is one of 2**127 numbers.
 
-Of what arrives at the end of the horizon only the jump is seen, and that is the sum at t = 0.
+Of what arrives at the end of the horizon only the jump is seen, and that is the sum at t = 0. Of an acceleration it is
+the slope there of a sum Q with Q(0) = 0: Q(p) / p modulo the prime p, where Q(p) is known modulo p^2. So all is
+computed modulo p^2, and t = p stands for 0.
 """
 
 from __future__ import annotations
@@ -24,12 +26,13 @@ from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
 
 from wavesym.derivation.exact_rule import joint_rule
 from wavesym.exact.joints.joint import JointLaw, joint_ends
-from wavesym.mechanics.gauge import Gauge
+from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 
 _PRIME = 2**127 - 1
-_FIELD = fmpz_mod_ctx(_PRIME)
+_MODULUS = _PRIME**2
+_FIELD, _RING = fmpz_mod_ctx(_PRIME), fmpz_mod_ctx(_MODULUS)
 _T = 0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357 % _PRIME  # drawn once, so that the same scene makes the same files
 
 
@@ -70,7 +73,18 @@ _Sums = Mapping[fmpq, int]
 
 def _gains(model: Model, until: fmpq) -> Iterator[tuple[_Sums, _Sums]]:
     """What each output gains at each instant, and by how much it jumps there; both in transforms."""
-    return zip(_Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums(), strict=True)
+    orders = [_highest(terms) for terms in model.sums.values()]
+    at_once = _Fronts(model, until, _PRIME if any(orders) else 0).sums()
+    jumps = (
+        defaultdict(int, {time: value // _PRIME**order % _PRIME for time, value in sums.items()})
+        for order, sums in zip(orders, at_once, strict=True)
+    )
+    return zip(_Fronts(model, until, _T).sums(), jumps, strict=True)
+
+
+def _highest(terms: Sum) -> int:
+    """The highest order of the readings of an output, 0 at least: what is computed of it is times t to this power."""
+    return max([0, *(reading.order for _, reading in terms)])
 
 
 class _Fronts:
@@ -91,44 +105,45 @@ class _Fronts:
         ends: dict[End, list[tuple[int, fmpq, int]]] = defaultdict(list)
         points: dict[int, list[tuple[int, int]]] = defaultdict(list)
         for k, probe in enumerate(self._model.probes):
+            highest = _highest(self._model.sums[probe])
             for weight, reading in self._model.sums[probe]:
                 if (point := reading.point) is None:
-                    for end, way, heard in self._heard(weight, reading):
+                    for end, way, heard in self._heard(weight, reading, highest):
                         bar = network.bars[end.bar]
                         ends[end].append((k, way * bar.delay, heard))
                         # what a bar holds is there until something is sent into it
-                        sums[k][fmpq(0)] = (sums[k][fmpq(0)] + heard * _modular(bar.held(end.side))) % _PRIME
+                        sums[k][fmpq(0)] = (sums[k][fmpq(0)] + heard * _modular(bar.held(end.side))) % _MODULUS
                 elif reading.quantity == "load":
                     for time, value in self._joints[network.joint_of[point]].acts(point):
                         if time <= self._until:
-                            sums[k][time] = (sums[k][time] + _modular(weight) * value) % _PRIME
+                            sums[k][time] = (sums[k][time] + _modular(weight) * value) % _MODULUS
                 else:
-                    points[point].append((k, self._counted(weight, reading)))
+                    points[point].append((k, self._counted(weight, reading, highest)))
         self._begin()
         while self._order:
             time, number = heappop(self._order)
             sent, moved = self._joints[number].to(self._coming.pop((time, number)), time)
             for point, value in moved.items():
                 for k, counted in points[point]:
-                    sums[k][time] = (sums[k][time] + counted * value) % _PRIME
+                    sums[k][time] = (sums[k][time] + counted * value) % _MODULUS
             for end, value in sent.items():
                 for k, delay, counted in ends[end]:
                     if time + delay <= self._until:
-                        sums[k][time + delay] = (sums[k][time + delay] + counted * value) % _PRIME
+                        sums[k][time + delay] = (sums[k][time + delay] + counted * value) % _MODULUS
                 if value:
                     self._arrive(time + network.bars[end.bar].delay, network.beyond(end), value)
         return sums
 
-    def _counted(self, weight: fmpq, reading: Gauge) -> int:
-        """What a velocity counts; that of which an output is the integral is divided by s."""
-        return _modular(weight) * (self._t if reading.order < 0 else 1) % _PRIME
+    def _counted(self, weight: fmpq, reading: Gauge, highest: int) -> int:
+        """What a velocity counts, times t to the `highest` power; t to the order less where it is differentiated."""
+        return _modular(weight) * pow(self._t, highest - reading.order, _MODULUS) % _MODULUS
 
-    def _heard(self, weight: fmpq, reading: Gauge) -> Iterator[tuple[End, fmpq, int]]:
+    def _heard(self, weight: fmpq, reading: Gauge, highest: int) -> Iterator[tuple[End, fmpq, int]]:
         """From which ends of its bar it is read, how far away (a part of the bar), and what each wave counts."""
         over = 1 / self._network.bars[reading.rod - 1].speed if reading.quantity == "strain" else fmpq(1)
         right, left = reading.weights
-        yield End(reading.rod - 1, 0), reading.place, self._counted(weight * over * right, reading)
-        yield End(reading.rod - 1, 1), 1 - reading.place, self._counted(weight * over * left, reading)
+        yield End(reading.rod - 1, 0), reading.place, self._counted(weight * over * right, reading, highest)
+        yield End(reading.rod - 1, 1), 1 - reading.place, self._counted(weight * over * left, reading, highest)
 
     def _begin(self) -> None:
         """What is on its way before anything is sent: the state at tau = 0, and the loads."""
@@ -143,7 +158,7 @@ class _Fronts:
         number = self._network.joint_of[self._network.point_at(end)]
         if self._meet(time, number):
             here = self._coming[time, number]
-            here[end] = (here.get(end, 0) + value) % _PRIME
+            here[end] = (here.get(end, 0) + value) % _MODULUS
 
     def _meet(self, time: fmpq, number: int) -> bool:
         """That something happens at a joint; whether that can still be felt."""
@@ -167,7 +182,7 @@ class _Answer:
         self._ends = joint_ends(network, joint)
         self._free = [k for k, given in enumerate(law.given) if given is None]
         rows = [[self._factor(k, b) for b in self._free] for k in self._free]
-        self._inverse = fmpz_mod_mat(rows, _FIELD).inv() if rows else None
+        self._inverse = _inverse(rows) if rows else None
         self._loads: dict[fmpq, dict[int, int]] = defaultdict(dict)
         place = {point: k for k, point in enumerate(joint.points)}
         self._place = place
@@ -178,7 +193,7 @@ class _Answer:
                         k = place[point]
                         value = self._transformed(network.points[point].action(unit))
                         here = self._loads[load.time]
-                        here[k] = (here.get(k, 0) + _modular(load.weight) * value) % _PRIME
+                        here[k] = (here.get(k, 0) + _modular(load.weight) * value) % _MODULUS
 
     def acts(self, point: int) -> Iterator[tuple[fmpq, int]]:
         """The loads on a point, each with when it begins or changes."""
@@ -194,11 +209,11 @@ class _Answer:
         law, t = self._law, self._t
         c, k = _modular(law.damping[a][b]), _modular(law.stiffness[a][b])
         if law.mass[a] == 0:
-            return (c + k * t) % _PRIME
-        return ((_modular(law.mass[a]) if a == b else 0) + c * t + k * t * t) % _PRIME
+            return (c + k * t) % _MODULUS
+        return ((_modular(law.mass[a]) if a == b else 0) + c * t + k * t * t) % _MODULUS
 
     def _transformed(self, coefficients: tuple[fmpq, ...]) -> int:
-        return sum(_modular(c) * factorial(n) * pow(self._t, n, _PRIME) for n, c in enumerate(coefficients))
+        return sum(_modular(c) * factorial(n) * pow(self._t, n, _MODULUS) for n, c in enumerate(coefficients))
 
     def to(self, came: Mapping[End, int], time: fmpq) -> tuple[dict[End, int], dict[int, int]]:
         """What it sends into its ends when this arrives, and the velocities of its points; as changes of both."""
@@ -214,23 +229,31 @@ class _Answer:
         for k, given in enumerate(law.given):
             if given is not None:
                 start = _modular(network.points[self._joint.points[k]].velocity) if begins else 0
-                q[k] = (loads.get(k, 0) + start) % _PRIME
+                q[k] = (loads.get(k, 0) + start) % _MODULUS
         right = []
         for a in self._free:
             value = push[a] * (1 if law.mass[a] == 0 else t)
             if begins and law.mass[a] != 0:
                 value += _modular(law.mass[a] * network.points[self._joint.points[a]].velocity)
             value -= sum(self._factor(a, b) * moved for b, moved in q.items())
-            right.append([value % _PRIME])
+            right.append([value % _MODULUS])
         if self._inverse is not None:
-            found = self._inverse * fmpz_mod_mat(right, _FIELD)
+            found = self._inverse * fmpz_mod_mat(right, _RING)
             q |= {a: int(found[n, 0]) for n, a in enumerate(self._free)}
         sent = {}
         for end, k, ratio, _ in self._ends:
             value = _modular(ratio) * q[k] - came.get(end, 0)
-            sent[end] = (value - (_modular(network.bars[end.bar].held(end.side)) if begins else 0)) % _PRIME
+            sent[end] = (value - (_modular(network.bars[end.bar].held(end.side)) if begins else 0)) % _MODULUS
         return sent, {point: q[k] for point, k in self._place.items()}
 
 
+def _inverse(rows: list[list[int]]) -> fmpz_mod_mat:
+    """That of a matrix modulo p^2, from the one modulo p by Newton's step X (2 - A X)."""
+    known = fmpz_mod_mat([[int(c) for c in row] for row in fmpz_mod_mat(rows, _FIELD).inv().tolist()], _RING)
+    product = (fmpz_mod_mat(rows, _RING) * known).tolist()
+    left = [[2 * (a == b) - int(c) for b, c in enumerate(row)] for a, row in enumerate(product)]
+    return known * fmpz_mod_mat(left, _RING)
+
+
 def _modular(value: fmpq) -> int:
-    return int(value.p) * pow(int(value.q), -1, _PRIME) % _PRIME
+    return int(value.p) * pow(int(value.q), -1, _MODULUS) % _MODULUS

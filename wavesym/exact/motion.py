@@ -16,6 +16,7 @@ from wavesym.exact.arrivals import smooth_starts
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.joints.enclosed import STILL, Enclosed, shift, weighted_sum
 from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.jumps import refuse_jumps
 from wavesym.exact.joints.network_waves import Acting, NetworkWaves, Waves
 from wavesym.exact.tables.ball import Segment
 from wavesym.mechanics.gauge import Weighted
@@ -49,6 +50,7 @@ class Motion:
 
     def __init__(self, model: Model, until: fmpq) -> None:
         model.refuse_damping()
+        refuse_jumps(model, until)
         self.until = until
         self.probes = model.probes
         self._model, self._network = model, model.network
@@ -227,7 +229,13 @@ class Motion:
 
             return waves(self._network, self._acting, known, bits)
         with ctx.workprec(bits):
-            return NetworkWaves(self._network, self._breakpoints.joints, self._acting, self.terms(bits))
+            return NetworkWaves(
+                self._network,
+                self._breakpoints.joints,
+                self._acting,
+                self.terms(bits),
+                derivatives=any(reading.order > 0 for reading in self._model.watched),
+            )
 
 
 def _segments(
@@ -236,7 +244,8 @@ def _segments(
     """An output on each of these stretches, which come in order; where it `begins` it is 0."""
     terms = model.sums[probe]
     plain, summed = (
-        [each for each in terms if each.reading.order == order and each.reading.quantity != "load"] for order in (0, -1)
+        [each for each in terms if (each.reading.order < 0) == below and each.reading.quantity != "load"]
+        for below in (False, True)
     )
     loads = [
         (weight, Acting(model.network, reading.point, model.loads))
@@ -273,13 +282,14 @@ def _sum(parts: Iterable[tuple[fmpq, Enclosed]]) -> Enclosed:
 
 
 def _values(waves: Waves, terms: Iterable[Weighted], start: fmpq) -> Iterator[tuple[fmpq, Enclosed]]:
-    """What sums of strains and velocities are made of from tau = `start` on, with factors.
+    """What sums of strains, velocities and accelerations are made of from tau = `start` on, with factors.
 
     That is the left-going wave of a rod less, or plus, the right-going one.
     """
     for weight, reading in terms:
+        sent, points = (waves.rates, waves.accelerations) if reading.order > 0 else (waves.sent, waves.velocities)
         if reading.point is not None:
-            yield weight, _velocity(waves, reading.point, start)
+            yield weight, shift(*points[reading.point].at(start))
             continue
         bar = waves.network.bars[reading.rod - 1]
         if reading.place in (0, 1):
@@ -287,18 +297,14 @@ def _values(waves: Waves, terms: Iterable[Weighted], start: fmpq) -> Iterator[tu
             if reading.quantity == "strain":
                 if waves.is_bare(end, start):
                     continue
-            elif (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
-                yield weight * bar.ratios[end.side], _velocity(waves, point, start)
+            elif (point := waves.network.point_at(end)) in points:  # prescribed: as exact as it is given
+                yield weight * bar.ratios[end.side], shift(*points[point].at(start))
                 continue
         over = 1 / bar.speed if reading.quantity == "strain" else fmpq(1)
         right, left = reading.weights
         for factor, side, way in ((right, 0, reading.place), (left, 1, 1 - reading.place)):
-            known, offset = waves.sent[End(reading.rod - 1, side)].at(start - way * bar.delay)
+            known, offset = sent[End(reading.rod - 1, side)].at(start - way * bar.delay)
             yield weight * factor * over, shift(known, offset)
-
-
-def _velocity(waves: Waves, point: int, start: fmpq) -> Enclosed:
-    return shift(*waves.velocities[point].at(start))
 
 
 def waves_size(model: Model) -> int:

@@ -3,7 +3,8 @@
     force                 impedance * speed * strain
     drift of a rod        displacement of its far end less that of its near one
     relative              displacement less that of the foundation, or of the end that moves as it is told
-    acceleration          all that acts on a mass, over the mass: rods, spring and dashpot to the ground, links, loads
+    acceleration          all that acts on a mass, over the mass: rods, spring and dashpot to the ground, links, loads;
+                          where nothing has mass the derivative of the velocity
 
 What touches a mass pushes it with all that acts on what touches, as that has no mass; where it is open that is nothing.
 """
@@ -20,12 +21,15 @@ from wavesym.mechanics.network import End, Network
 from wavesym.mechanics.probe import Probe
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
+ORDERS = {"displacement": -1, "acceleration": 1}
+"""How often waves are differentiated in quantities: others are what they are."""
 
 
 @dataclass(frozen=True)
 class Gauge:
-    """`quantity` (strain, velocity or displacement) `place` rod lengths from the left end of a rod, or of a `point`.
+    """`quantity` (strain, velocity, displacement, acceleration) `place` rod lengths from the left end of a rod.
 
+    Or that of a `point`.
     The right-going wave has come so far from that end, the left-going one 1 - place from the other. A "load" is what
     acts on a point. `rod` is 0 where a point is read.
     """
@@ -47,8 +51,8 @@ class Gauge:
 
     @property
     def order(self) -> int:
-        """0 for what is read as it is, -1 for the integral of a velocity: a displacement."""
-        return -1 if self.quantity == "displacement" else 0
+        """How often the waves are differentiated: -1 for an integral, a displacement; 1 for an acceleration."""
+        return ORDERS.get(self.quantity, 0)
 
 
 class Weighted(NamedTuple):
@@ -78,7 +82,10 @@ def _parts(network: Network, probe: Probe) -> Iterator[Weighted]:
             if point is None:
                 end = End(probe.rod - 1, int(probe.place))
                 point, ratio = network.point_at(end), network.bars[end.bar].ratios[end.side]
-            yield from _times(ratio / network.points[point].mass, _acting(network, point))
+            if network.points[point].mass != 0 and (probe.point is not None or probe.place in (0, 1)):
+                yield from _times(ratio / network.points[point].mass, _acting(network, point))
+            else:
+                yield Weighted(_ONE, here)
         case "force":
             bar = network.bars[probe.rod - 1]
             yield Weighted(bar.impedance * bar.speed, Gauge("strain", probe.rod, probe.place))

@@ -332,13 +332,16 @@ def problem_of(model: Model) -> Problem:
 
 
 def undamped_problem(model: Model) -> Problem:
-    """State the problem of a model for methods that know no modes.
+    """State the problem of a model for methods that know no modes, and have no accelerations.
 
     Raises:
-        UnservedError: contacts open and close, or modes are damped.
+        UnservedError: contacts open and close, modes are damped, or what has no mass is accelerated.
     """
     model.refuse_damping()
-    return problem_of(model)
+    problem = problem_of(model)
+    if any(reading.order > 0 for reading in problem.readings):
+        raise UnservedError("output.acceleration: a place without mass given, one with mass expected")
+    return problem
 
 
 def gridded_problem(model: Model) -> Problem:
@@ -391,14 +394,15 @@ def _coefficients(exact: Sequence[fmpq]) -> tuple[float, float, float]:
 def output_terms(problem: Problem, probe: Probe) -> Iterator[tuple[float, Gauge]]:
     """So many times strains, velocities, displacements and loads on points: what an output is the sum of.
 
-    How a mass is accelerated the balance of forces says. What contacts hold together has no mass but that one:
-    multiplied by how fast its points would move together, and added up, their balances are without pushes, whether
-    contacts are open or closed. Where modes are damped more acts on it than rods and loads, so that it is read.
+    How a mass is accelerated the balance of forces says; what has none is read. What contacts hold together has no
+    mass but that one: multiplied by how fast its points would move together, and added up, their balances are without
+    pushes, whether contacts are open or closed. Where modes are damped more acts on it than rods and loads, so that it
+    is read.
     """
     bar, here = probe.rod - 1, Gauge(probe.quantity, probe.rod, probe.place, probe.point)
     match probe.quantity:
-        case "acceleration" if problem.modal is None:
-            yield from _acceleration(problem, probe)
+        case "acceleration" if problem.modal is None and (known := _acceleration(problem, probe)):
+            yield from known
         case "force":
             yield float(problem.impedance[bar] * problem.speed[bar]), replace(here, quantity="strain")
         case "drift":
@@ -411,22 +415,30 @@ def output_terms(problem: Problem, probe: Probe) -> Iterator[tuple[float, Gauge]
             yield 1.0, here
 
 
-def _acceleration(problem: Problem, probe: Probe) -> Iterator[tuple[float, Gauge]]:
-    """All that acts on a mass, and on what touches it, but loads and pushes as they work where points are so fast."""
+def _acceleration(problem: Problem, probe: Probe) -> list[tuple[float, Gauge]]:
+    """All that acts on a mass, and on what touches it, but loads and pushes as they work where points are so fast.
+
+    Nothing where there is no mass.
+    """
     point, ratio = probe.point, 1.0
     if point is None:
+        if probe.place not in (0, 1):
+            return []
         end = 2 * (probe.rod - 1) + int(probe.place)
         point, ratio = int(problem.end_points[end]), float(problem.end_ratios[end])
+    if problem.mass[point] == 0:
+        return []
+    found: list[tuple[float, Gauge]] = []
     speeds = problem.rigid_motion(point)[0] * (ratio / float(problem.mass[point]))
     stiffness = np.repeat(problem.impedance * problem.speed, 2) * np.tile([1.0, -1.0], len(problem.speed))
     for end, force in enumerate((speeds @ problem.onto * stiffness).tolist()):
         if speeds[problem.end_points[end]]:
-            yield force, Gauge("strain", end // 2 + 1, fmpq(end % 2))
+            found.append((force, Gauge("strain", end // 2 + 1, fmpq(end % 2))))
     unit = np.eye(problem.points)
     for matrix, quantity in ((-problem.damping, "velocity"), (-problem.stiffness, "displacement"), (unit, "load")):
         held = speeds @ matrix
-        for number in np.flatnonzero(held).tolist():
-            yield float(held[number]), _at_point(quantity, number)
+        found += [(float(held[number]), _at_point(quantity, number)) for number in np.flatnonzero(held).tolist()]
+    return found
 
 
 def _at_point(quantity: str, point: int) -> Gauge:

@@ -10,7 +10,7 @@ from typing import Protocol
 
 from wavesym.fields.loads import Load
 from wavesym.fields.table import Written, shown
-from wavesym.mechanics.network import End, Network
+from wavesym.mechanics.network import Network
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines
 
@@ -45,10 +45,6 @@ class Watching:
         if quantity == "drift":
             return self._rod(position, text)
         place = self.system.located(position, _LIKE.get(quantity, quantity), self.loads)
-        if quantity == "acceleration" and not self._heavy(place):
-            raise MisplacedError(
-                f"{text} given, a rigid mass expected (where nothing has mass a front that passes is an impulse)"
-            )
         if quantity == "relative":
             self._refuse_groundless(text)
         return place
@@ -72,14 +68,6 @@ class Watching:
         if position.side or k.denominator != 1 or not 1 <= k <= len(rods):
             raise MisplacedError(f"{text} given, the number of a rod from 1 to {len(rods)} expected")
         return Place(k, 0, position.name, rods[int(k) - 1] + 1, Fraction(1))
-
-    def _heavy(self, place: Place) -> bool:
-        """Whether a place is at a rigid mass."""
-        if place.point is not None:
-            return self._network.points[place.point].mass != 0
-        if place.part not in (0, 1):
-            return False
-        return self._network.points[self._network.point_at(End(place.rod - 1, int(place.part)))].mass != 0
 
     def _refuse_groundless(self, text: str) -> None:
         if self.system.type == "building":

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from wavesym.mechanics.gauge import Gauge
+from wavesym.mechanics.gauge import ORDERS, Gauge
 from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import gauss
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
@@ -70,7 +70,7 @@ class Motion:
     changes: list[Change] = field(default_factory=list)
 
     def at(self, reading: Gauge, taus: Sequence[float]) -> Array:
-        """Evaluate a strain, velocity or displacement.
+        """Evaluate a strain, velocity, displacement or acceleration.
 
         Args:
             reading: what is read, on a bar or at a point.
@@ -84,8 +84,8 @@ class Motion:
         """
         if not all(0 <= tau <= self.until for tau in taus):
             raise ValueError(f"tau outside [0, {self.until}]")
-        integral = reading.quantity == "displacement"
-        parts = [self._sent(side, number, taus, late, integral) for side, number, late in self._read(reading)]
+        order = ORDERS.get(reading.quantity, 0)
+        parts = [self._sent(side, number, taus, late, order) for side, number, late in self._read(reading)]
         if len(parts) == 1:
             return parts[0]
         right, left = parts
@@ -114,6 +114,9 @@ class Motion:
         largest = float(np.max(np.abs(self._coefficients)))
         if reading.quantity == "displacement":
             largest *= max(self.until, 1.0)
+        if reading.quantity == "acceleration":  # Markov's inequality, on each panel
+            panels = np.max(np.abs(self._coefficients), axis=(1, 2, 3)) / self._widths
+            largest = 2 * self.points**2 * float(np.max(panels))
         relative = _ROUNDINGS * self.points * len(self.starts) * float(UNIT_ROUNDOFF)
         return max(relative, 10 * SAME if len(self.problem.gaps) else 0.0) * largest
 
@@ -143,8 +146,11 @@ class Motion:
     def _widths(self) -> Array:
         return np.array([float(width) for width in self.widths])
 
-    def _sent(self, side: int, number: int, taus: Sequence[float], late: Fraction, integral: bool) -> Array:
-        """A wave that was sent so long before, or its integral since then: which panel that is, is decided exactly."""
+    def _sent(self, side: int, number: int, taus: Sequence[float], late: Fraction, order: int) -> Array:
+        """A wave that was sent so long before, its derivative (`order` 1) or its integral since then (-1).
+
+        Which panel that is, is decided exactly.
+        """
         times = np.array(taus, dtype=float) - float(late)
         panel = np.searchsorted(self._starts, times, side="right") - 1
         beside = np.append(self._starts, np.inf)
@@ -155,7 +161,10 @@ class Motion:
         before = self.problem.start_waves[number, side] if number < len(self.problem.delays) else 0.0
         x = np.clip(2 * (times - self._starts[panel]) / self._widths[panel] - 1, -1, 1)
         series = self._coefficients[panel, side, number]
-        if not integral:
+        if order > 0:
+            steeper = 2 * legendre.legder(series, axis=1) / self._widths[panel, np.newaxis]
+            return np.where(panel < 0, 0.0, np.sum(legendre.legvander(x, self.points - 2) * steeper, axis=1))
+        if order == 0:
             return np.where(panel < 0, before, np.sum(legendre.legvander(x, self.points - 1) * series, axis=1))
         since = legendre.legvander(x, self.points)
         orders = np.arange(1, self.points)

@@ -164,6 +164,7 @@ class SpaceTimeGrid:
         most = {
             "displacement": 1 / float(np.min(impedance)),
             "velocity": 1 / lightest,
+            "acceleration": 0.0,  # none is read where contacts are
             "strain": 1 / lightest / slowest,
         }
         return np.array([most[reading.quantity] for reading in self.problem.readings])
@@ -186,7 +187,11 @@ class SpaceTimeGrid:
         amplifies it): a displacement sees all those of its past, a difference those on whose fronts it lies.
         """
         slope = steps / float(self.step)
-        sizes = {"displacement": float(steps * steps), "velocity": slope}
+        sizes = {
+            "displacement": float(steps * steps),
+            "velocity": slope,
+            "acceleration": 4 * steps / float(self.step) ** 2,
+        }
         speed, readings = self.problem.speed, self.problem.readings
         found = [sizes.get(reading.quantity, slope / speed[reading.rod - 1]) for reading in readings]
         return _ROUNDINGS * float(UNIT_ROUNDOFF) * np.array(found)
@@ -217,6 +222,9 @@ class SpaceTimeGrid:
                     terms = [(0, j, 1.0)]
                 case "velocity":
                     terms = [(1, j, half), (-1, j, -half)]
+                case "acceleration":
+                    bent = 1 / float(self.step) ** 2
+                    terms = [(1, j, bent), (0, j, -2 * bent), (-1, j, bent)]
                 case _ if j in (0, cells):  # the end itself is where it is between two steps
                     out = 1 if j == 0 else -1
                     terms = [(0, j + out, out * 2 * slope), (1, j, -out * slope), (-1, j, -out * slope)]

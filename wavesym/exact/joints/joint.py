@@ -23,7 +23,7 @@ and what is not known goes on unchanged where a contact opens or closes, as no m
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count, islice
 from math import isqrt
@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
 from wavesym.derivation.exact_rule import joint_rule
-from wavesym.exact.joints.enclosed import Enclosed, Terms, scale_terms
+from wavesym.exact.joints.enclosed import Enclosed, Terms, scale_terms, weighted_sum
 from wavesym.mechanics.network import End, Joint, Network
 
 if TYPE_CHECKING:
@@ -274,6 +274,47 @@ class JointMotion:
         self.places, h = u, arb(length)
         self.round([arb_poly(c)(h) for c in q], [arb_poly(c)(h) for c in u] if self.law.springs else [])
         return result
+
+    def accelerations(
+        self,
+        forces: Sequence[Enclosed],
+        rates: Sequence[Enclosed],
+        velocities: Sequence[Enclosed],
+        prescribed: Sequence[fmpq_poly],
+    ) -> list[Enclosed]:
+        """The derivatives of the `velocities` that `move` found for the last stretch.
+
+        Args:
+            forces: s on the points, and `rates`, its derivatives; on points with mass s alone matters.
+            rates: M q' = s - C q - K u of points with mass, C q' = s' - K q of those without.
+            velocities: q, as `move` gave it.
+            prescribed: the velocities of the points whose motion is given.
+        """
+        law = self.law
+        found = {k: Enclosed.of(each.derivative()) for k, each in enumerate(prescribed) if law.given[k] is not None}
+        for k in law.heavy:
+            share = 1 / law.mass[k]
+            slow = [(-share * c, velocities[b]) for b, c in enumerate(law.damping[k])]
+            places = self.places if law.springs else [[]] * len(law.mass)
+            sprung = [
+                (-share * c, Enclosed(arb_poly(u), arb(0))) for c, u in zip(law.stiffness[k], places, strict=True)
+            ]
+            total = weighted_sum([(share, forces[k]), *slow, *sprung])
+            strained = arb(share) * arb(law.stiffness[k][k]).sqrt() * self.strained
+            found[k] = replace(total, error=(total.error + strained).upper())
+        right = [
+            weighted_sum(
+                [
+                    (fmpq(1), rates[k]),
+                    *((-law.damping[k][b], each) for b, each in found.items()),
+                    *((-c, velocities[b]) for b, c in enumerate(law.stiffness[k])),
+                ]
+            )
+            for k in law.light
+        ]
+        for row, k in enumerate(law.light):
+            found[k] = weighted_sum([(law.inverse[row, n], each) for n, each in enumerate(right)])
+        return [found[k] for k in range(len(law.mass))]
 
     def relax(
         self, relaxation: Relaxation, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int

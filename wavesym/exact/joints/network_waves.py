@@ -60,11 +60,15 @@ class SentWave:
 
 
 class Waves:
-    """What is sent into the bars of a network: at first what they hold; and the velocities that no bar shows."""
+    """What is sent into the bars of a network: at first what they hold; and the velocities that no bar shows.
+
+    `rates` and `accelerations` are their derivatives.
+    """
 
     def __init__(self, network: Network) -> None:
         self.network = network
         self.sent: dict[End, SentWave] = {}
+        self.rates: dict[End, SentWave] = {}
         for number, bar in enumerate(network.bars):
             for side in (0, 1):
                 held = bar.held(side)
@@ -76,6 +80,7 @@ class Waves:
             for number, point in enumerate(network.points)
             if number not in shown or point.motion is not None
         }
+        self.accelerations: dict[int, SentWave] = {}
 
     def is_bare(self, end: End, tau: fmpq) -> bool:
         """Whether nothing acts at an end of a bar from an instant on, so that it is not strained."""
@@ -83,9 +88,14 @@ class Waves:
 
     def arriving(self, number: int, start: fmpq, length: fmpq | None = None) -> list[Enclosed]:
         """What comes to the ends at a joint from an instant on, in the time since then (and for so long)."""
+        return self._arriving(self.sent, number, start, length)
+
+    def _arriving(
+        self, sent: Mapping[End, SentWave], number: int, start: fmpq, length: fmpq | None = None
+    ) -> list[Enclosed]:
         waves = []
         for end, _ in self.network.joints[number].ends:
-            known, offset = self.sent[self.network.beyond(end)].at(start - self.network.bars[end.bar].delay)
+            known, offset = sent[self.network.beyond(end)].at(start - self.network.bars[end.bar].delay)
             if length is None:
                 waves.append(shift(known, offset))
             elif length < _BRIEF:
@@ -96,12 +106,21 @@ class Waves:
 
 
 class NetworkWaves(Waves):
-    """The waves of the joints whose breakpoints are given, at the working precision."""
+    """The waves of the joints whose breakpoints are given, at the working precision; their `derivatives`, too."""
 
     def __init__(
-        self, network: Network, breakpoints: Mapping[int, Sequence[fmpq]], loads: Sequence[Applied], terms: int
+        self,
+        network: Network,
+        breakpoints: Mapping[int, Sequence[fmpq]],
+        loads: Sequence[Applied],
+        terms: int,
+        *,
+        derivatives: bool = False,
     ) -> None:
         super().__init__(network)
+        if derivatives:
+            self.rates = {end: SentWave(list(wave.starts), [STILL]) for end, wave in self.sent.items()}
+            self.accelerations = {point: SentWave() for point in self.velocities}
         self._breakpoints = breakpoints
         self._terms = terms
         self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in breakpoints}
@@ -119,16 +138,31 @@ class NetworkWaves(Waves):
 
     def _move(self, number: int, start: fmpq, length: fmpq) -> None:
         joint = self.network.joints[number]
-        arriving = self.arriving(number, start)
-        for (end, _), wave in zip(
-            joint.ends, self._joints[number].sends(arriving, start, length, self._terms), strict=True
-        ):
-            self.sent[end].starts.append(start)
-            self.sent[end].stretches.append(wave)
-        for k, point in enumerate(joint.points):
-            if point in self.velocities:
-                self.velocities[point].starts.append(start)
-                self.velocities[point].stretches.append(self._joints[number].velocities[k])
+        arriving, moving = self.arriving(number, start), self._joints[number]
+        sent = moving.sends(arriving, start, length, self._terms)
+        self._keep(self.sent, self.velocities, joint, start, sent, moving.velocities)
+        if self.rates:
+            arriving_rates = self._arriving(self.rates, number, start)
+            rates, accelerations = moving.derivatives(sent, arriving, arriving_rates)
+            self._keep(self.rates, self.accelerations, joint, start, rates, accelerations)
+
+    @staticmethod
+    def _keep(
+        sent: Mapping[End, SentWave],
+        points: Mapping[int, SentWave],
+        joint: Joint,
+        start: fmpq,
+        waves: Sequence[Enclosed],
+        velocities: Sequence[Enclosed],
+    ) -> None:
+        """What a joint sends from `start` on, and how the points move that no bar shows."""
+        for (end, _), wave in zip(joint.ends, waves, strict=True):
+            sent[end].starts.append(start)
+            sent[end].stretches.append(wave)
+        for point, velocity in zip(joint.points, velocities, strict=True):
+            if point in points:
+                points[point].starts.append(start)
+                points[point].stretches.append(velocity)
 
 
 class _MovingJoint:
@@ -148,7 +182,7 @@ class _MovingJoint:
 
         Where nothing has mass or springs factors are exact, so that an absorbing end sends back exactly 0.
         """
-        acting = [load.on(start) for load in self._loads]
+        self._acting = acting = [load.on(start) for load in self._loads]
         forces = forces_on(self._ends, arriving, acting)
         if self._scatters:
             moving = scatter(self._motion.law, forces, {})
@@ -160,6 +194,35 @@ class _MovingJoint:
             weighted_sum(collect(outgoing_terms(end, moving[end.place], wave)))
             for end, wave in zip(self._ends, arriving, strict=True)
         ]
+
+    def derivatives(
+        self, sent: Sequence[Enclosed], arriving: Sequence[Enclosed], rates: Sequence[Enclosed]
+    ) -> tuple[list[Enclosed], list[Enclosed]]:
+        """Those of what was `sent` last, and of the points' velocities, from what arrived and its `rates`.
+
+        A derivative is not told by a polynomial that is near a function: where it is not the function itself, the law
+        of the joint has it.
+        """
+        if all(each.error == 0 for each in (*sent, *self.velocities)):
+            return [_derivative(each) for each in sent], [_derivative(each) for each in self.velocities]
+        forces = forces_on(self._ends, arriving, self._acting)
+        force_rates = forces_on(self._ends, rates, [each.derivative() for each in self._acting])
+        moving = self._motion.accelerations(
+            [weighted_sum(each) for each in forces],
+            [weighted_sum(each) for each in force_rates],
+            self.velocities,
+            self._acting,
+        )
+        return [
+            weighted_sum([(end.ratio, moving[end.place]), (fmpq(-1), rate)])
+            for end, rate in zip(self._ends, rates, strict=True)
+        ], moving
+
+
+def _derivative(known: Enclosed) -> Enclosed:
+    """That of a polynomial."""
+    exact = known.exact
+    return Enclosed(known.polynomial.derivative(), arb(0), None if exact is None else exact.derivative())
 
 
 class Acting:

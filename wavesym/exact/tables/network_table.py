@@ -64,7 +64,7 @@ class RuledNetwork:
         else:
             bar = self.network.bars[reading.rod - 1]
             held = bar.strain if reading.quantity == "strain" else bar.velocity
-        return trimmed({fmpq(0): [held] if reading.order == 0 else [fmpq(0), held]})
+        return trimmed({fmpq(0): {-1: [fmpq(0), held], 0: [held], 1: []}[reading.order]})
 
     def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
         """The loads, and the start where anything moves then."""

@@ -13,10 +13,11 @@ from math import inf
 
 from flint import fmpq
 
-from wavesym.derivation.increments import Increment, combined, integrated
+from wavesym.derivation.increments import Increment, combined, differentiated, integrated
 from wavesym.derivation.increments import start as start_of
 from wavesym.derivation.table import Function
 from wavesym.errors import CostError
+from wavesym.exact.joints.jumps import refuse_jumps
 from wavesym.exact.tables.network_joints import unit_at
 from wavesym.exact.tables.network_table import RuledNetwork
 from wavesym.mechanics.gauge import readings
@@ -49,7 +50,9 @@ def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signa
     CostError where the tables would have more than `most` numbers.
     """
     model.refuse_damping()
-    return observed(RuledNetwork(model.network), model.probes, model.loads, rational(model.horizon(real)), most)
+    until = rational(model.horizon(real))
+    refuse_jumps(model, until)
+    return observed(RuledNetwork(model.network), model.probes, model.loads, until, most)
 
 
 def refuse_many(model: Model, most: float) -> None:
@@ -88,7 +91,7 @@ def observed(
         responses[source] = ruled.responses(source, reach, most)
     signals = []
     for probe, terms in zip(probes, read, strict=True):
-        gains: dict[int, _Gains] = {0: defaultdict(list), -1: defaultdict(list)}
+        gains: dict[int, _Gains] = {order: defaultdict(list) for order in (0, -1, 1)}
         for weight, reading in terms:
             here = gains[reading.order]
             for load in loads:
@@ -101,7 +104,7 @@ def observed(
                     acts = unit_at(ruled.network.points[reading.point], load.source)
                     here[load.time].append((weight * load.weight, acts))
         moving = combined((weight, ruled.motion(reading)) for weight, reading in terms if parts[reading])
-        signals.append(_signal(probe, gains[0], gains[-1], moving, until))
+        signals.append(_signal(probe, gains, moving, until))
     return tuple(signals)
 
 
@@ -109,10 +112,12 @@ _Gains = dict[fmpq, list[tuple[fmpq, Increment]]]
 """What is gained at each instant, with factors."""
 
 
-def _signal(probe: Probe, gains: _Gains, sums: _Gains, moving: Increment, until: fmpq) -> Signal:
-    """From what an output gains, and what that gains of which it is the integral."""
-    for time, group in sums.items():
-        gains[time].append((fmpq(1), integrated(combined(group))))
+def _signal(probe: Probe, every: dict[int, _Gains], moving: Increment, until: fmpq) -> Signal:
+    """From what an output gains, and what that gains of which it is the integral, or the derivative; by order."""
+    gains = every[0]
+    for order, change in ((-1, integrated), (1, differentiated)):
+        for time, group in every[order].items():
+            gains[time].append((fmpq(1), change(combined(group))))
     merged = {time: combined(group) for time, group in sorted(gains.items())}
     if moving:
         merged[fmpq(0)] = combined([(fmpq(1), merged.get(fmpq(0), {})), (fmpq(1), moving)])

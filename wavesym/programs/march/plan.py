@@ -19,7 +19,7 @@ from typing import Any
 from flint import fmpq, fmpq_poly
 
 from wavesym.derivation.exact_rule import joint_rule
-from wavesym.errors import CostError, SpacingError
+from wavesym.errors import CostError, SpacingError, UnservedError
 from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
@@ -201,6 +201,12 @@ def march_plan(
     network = model.network
     network.refuse_contacts()
     model.refuse_damping()
+    for probe, terms in model.sums.items():
+        if any(reading.order > 0 for _, reading in terms):
+            raise UnservedError(
+                f"output.acceleration: {probe.name}: a place without mass given, one with mass expected in a march "
+                "(pieces and `run` serve it)"
+            )
     tau_max = model.horizon(real)
     until = rational(tau_max)
     reached = model.reached(until)

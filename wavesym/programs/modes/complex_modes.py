@@ -84,7 +84,12 @@ class ComplexModes(ModalModel[ComplexProjection]):
         network = self.model.network
         network.refuse_contacts()
         refuse_absorbing(network)
-        found = self.spectrum.first(count)
+        found = self.spectrum.first(count)  # only then it is known how bars are cut
+        for probe in self.accelerated():
+            raise UnservedError(
+                f"output.acceleration: {probe.name}: a place without mass given, one with mass expected in modes with "
+                "dashpots (pieces and `run` serve it)"
+            )
         with ctx.workprec(_BITS), series():
             return project_complex(found, self.cut, self.outputs, self.drivers)
 

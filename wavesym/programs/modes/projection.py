@@ -25,11 +25,15 @@ from wavesym.programs.modes.loads import Numbers
 
 @dataclass(frozen=True)
 class ModalOutput:
-    """What is differentiated in time `order` times: sums of weights times how far points move, or times a slope."""
+    """What is differentiated in time `order` times: sums of weights times how far points move, or times a slope.
+
+    It is `massive` where all these points have mass.
+    """
 
     order: int
     points: Mapping[int, fmpq]
     slope: tuple[fmpq, End] | None = None
+    massive: bool = True
 
     def value(self, shape: Mode | Shape) -> Quantity:
         """What it is of a shape."""
@@ -41,14 +45,14 @@ class ModalOutput:
     @property
     def power(self) -> int:
         """In how high a power of 1/w^2 its squares are summed up over all modes by `total`."""
-        return 2 if self.slope else 0 if self.order == 2 else 1
+        return 2 if self.slope else 0 if self.order == 2 and self.massive else 1
 
     def total(self, statics: Statics) -> arb:
         """The sum over all modes with strain of its square over w^(2 power)."""
         if self.slope:
             weight, end = self.slope
             return statics.broken(end) * weight * weight
-        if self.order == 2:  # of masses alone
+        if self.order == 2 and self.massive:
             network, free = statics.stiffness.network, statics.free
             total = sum((arb(b * b / network.points[point].mass) for point, b in self.points.items()), arb(0))
             part = sum((free[point] * b for point, b in self.points.items()), arb(0)) if free else arb(0)
@@ -119,13 +123,12 @@ def modal_output(network: Network, pieces: Cut, probe: Probe) -> ModalOutput:
             return ModalOutput(0, _sum(_moving(pieces, ends[1], factor), _moving(pieces, ends[0], -factor)))
     if probe.point is not None:
         points = {probe.point: factor}
-    elif probe.quantity == "acceleration":
-        points = {network.point_at(End(probe.rod - 1, int(probe.place))): factor}
     else:
         points = _moving(pieces, pieces.end(probe.rod - 1, probe.place), factor)
     if probe.quantity == "relative":
         points = _sum(points, {ground(network): -factor})
-    return ModalOutput({"velocity": 1, "acceleration": 2}.get(probe.quantity, 0), points)
+    massive = all(pieces.network.points[point].mass != 0 for point in points)
+    return ModalOutput({"velocity": 1, "acceleration": 2}.get(probe.quantity, 0), points, massive=massive)
 
 
 def _moving(pieces: Cut, end: End, weight: fmpq) -> dict[int, fmpq]:

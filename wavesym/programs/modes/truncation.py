@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, isqrt, log
@@ -15,6 +15,7 @@ from flint import fmpq
 from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.modes.cuts import Cut
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.loads import LinearLoads, Numbers, Roughness, linear_loads, roughness
@@ -108,6 +109,12 @@ class ModalModel(ABC, Generic[K]):
     @abstractmethod
     def system(self, known: K, count: int) -> ModalSystem:
         """The system of the first `count` modes."""
+
+    def accelerated(self) -> Iterator[Probe]:
+        """The accelerations of what has no mass."""
+        for probe, output in zip(self.model.probes, self.outputs, strict=True):
+            if output.order == 2 and not output.massive:
+                yield probe
 
     def refuse(self) -> None:
         """UnservedError for what no modes serve, CostError for too much."""

@@ -158,7 +158,14 @@ class UndampedModes(ModalModel[Projection]):
     def project(self, count: int) -> Projection:
         """The first modes. UnservedError for what modes do not serve."""
         self.refuse()
-        found = self.spectrum.first(count)
+        found = self.spectrum.first(count)  # only then it is known how bars are cut
+        pushed = [each for each in self.drivers if self.cut.network.points[each.point].motion is None]
+        for probe in self.accelerated():
+            if pushed:
+                raise UnservedError(
+                    f"output.acceleration: {probe.name}: a place without mass under a force given, one with mass, or a "
+                    "motion of the ground in place of the force, expected in modes (pieces and `run` serve it)"
+                )
         return project(found, self.cut, self.outputs, self.drivers)
 
     def rule(self, known: Projection) -> DampingRatios:

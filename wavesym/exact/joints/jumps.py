@@ -1,0 +1,155 @@
+"""Where fronts with a jump of velocity can pass, so that an acceleration would be an impulse.
+
+A front passes a joint with what its law does at once: a point with mass keeps its velocity, C q = s of the others, and
+n q - a goes back into an end. Each front is followed alone, to where it first comes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from heapq import heappop, heappush
+
+from flint import fmpq
+
+from wavesym.derivation.exact_rule import joint_rule
+from wavesym.errors import WavesymError
+from wavesym.exact.joints.joint import JointLaw, joint_ends
+from wavesym.mechanics.gauge import Gauge
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import End, Network
+
+_ZERO = fmpq(0)
+
+
+def refuse_jumps(model: Model, until: fmpq) -> None:
+    """WavesymError where an acceleration is read, by then, where a front with a jump of velocity can pass."""
+    readings = [(probe, reading) for probe, terms in model.sums.items() for _, reading in terms if reading.order > 0]
+    if not readings:
+        return
+    first = readings[0][0].name
+    if model.network.contacts:
+        raise WavesymError(
+            f"output.acceleration: {first}: a place without mass given, one with mass expected where contacts close "
+            "(they make velocities jump)"
+        )
+    fronts = _fronts(model)
+    for probe, reading in readings:
+        if (found := fronts.first(reading)) is not None and found[0] <= until:
+            cause = "the chain starts with a jump of velocity" if found[1] is None else model.told(found[1])
+            raise WavesymError(
+                f"output.acceleration: {probe.name}: a front with a jump of velocity can pass there ({cause}), a place "
+                "with mass or loads that do not jump expected"
+            )
+
+
+@dataclass(frozen=True)
+class _Fronts:
+    """When a jump first leaves each end, and each point first jumps; with the load that makes it, None at the start."""
+
+    network: Network
+    sent: Mapping[End, tuple[fmpq, Applied | None]]
+    moved: Mapping[int, tuple[fmpq, Applied | None]]
+
+    def first(self, reading: Gauge) -> tuple[fmpq, Applied | None] | None:
+        """When one first passes what is read, if it does."""
+        if reading.point is not None:
+            return self.moved.get(reading.point)
+        if reading.place in (0, 1):
+            return self.moved.get(self.network.point_at(End(reading.rod - 1, int(reading.place))))
+        delay, coming = self.network.bars[reading.rod - 1].delay, []
+        for side, way in ((0, reading.place), (1, 1 - reading.place)):
+            if (end := End(reading.rod - 1, side)) in self.sent:
+                coming.append((self.sent[end][0] + way * delay, self.sent[end][1]))
+        return min(coming, key=lambda each: each[0], default=None)
+
+
+def _fronts(model: Model) -> _Fronts:
+    network = model.network
+    answers = [_Answer(network, number) for number in range(len(network.joints))]
+    sent: dict[End, tuple[fmpq, Applied | None]] = {}
+    moved: dict[int, tuple[fmpq, Applied | None]] = {}
+    count = 0
+    coming: list[tuple[fmpq, int, End, Applied | None]] = []
+
+    def leave(time: fmpq, cause: Applied | None, jumps: Mapping[int, fmpq], waves: Mapping[End, fmpq]) -> None:
+        nonlocal count
+        for point, jump in jumps.items():
+            if jump != 0 and (point not in moved or time < moved[point][0]):
+                moved[point] = time, cause
+        for end, jump in waves.items():
+            if jump != 0:
+                heappush(coming, (time, count := count + 1, end, cause))
+
+    for answer in answers:
+        leave(_ZERO, None, *answer.start())
+        for load, acts in answer.loads(model):
+            leave(load.time, load, *answer.to({}, acts))
+    while coming:
+        time, _, end, cause = heappop(coming)
+        if end in sent:
+            continue
+        sent[end] = time, cause
+        there = network.beyond(end)
+        answer = answers[network.joint_of[network.point_at(there)]]
+        leave(time + network.bars[end.bar].delay, cause, *answer.to({there: fmpq(1)}, {}))
+    return _Fronts(network, sent, moved)
+
+
+class _Answer:
+    """What a joint does at once."""
+
+    def __init__(self, network: Network, number: int) -> None:
+        self._network, self._joint = network, network.joints[number]
+        self._ends = joint_ends(network, self._joint)
+
+    @cached_property
+    def _law(self) -> JointLaw:
+        return JointLaw.of(self._network, self._joint)
+
+    def loads(self, model: Model) -> Iterator[tuple[Applied, dict[int, fmpq]]]:
+        """The first load of each source that jumps here, and what it does to which point."""
+        for point in self._joint.points:
+            for unit in self._network.points[point].loads:
+                here = self._network.points[point]
+                jump = here.action(unit)[0]
+                if jump != 0 and (here.mass == 0 or here.motion is not None):
+                    acting = [load for load in model.loads if load.source == unit.source]
+                    if acting:
+                        yield min(acting, key=lambda each: each.time), {point: jump}
+
+    def start(self) -> tuple[dict[int, fmpq], dict[End, fmpq]]:
+        """The jumps at tau = 0, when all goes on that is held."""
+        network, points = self._network, self._network.points
+        if network.at_rest(self._joint):
+            return {}, {}
+        held = {end: network.bars[end.bar].held(1 - end.side) for end, *_ in self._ends}
+        kept = {
+            point: points[point].velocity
+            for point in self._joint.points
+            if points[point].mass != 0 or points[point].motion is not None
+        }
+        moved, sent = self.to(held, kept)
+        return (
+            {point: q - points[point].velocity for point, q in moved.items()},
+            {end: wave - network.bars[end.bar].held(end.side) for end, wave in sent.items()},
+        )
+
+    def to(self, waves: Mapping[End, fmpq], acts: Mapping[int, fmpq]) -> tuple[dict[int, fmpq], dict[End, fmpq]]:
+        """How points and the waves that are sent jump when waves arrive, and loads jump.
+
+        `acts` has forces on points that are free and have no mass, of the others velocities.
+        """
+        law, points = self._law, self._joint.points
+        forces = [joint_rule().load * acts.get(point, _ZERO) for point in points]
+        for each in self._ends:
+            forces[each.place] += each.force * waves.get(each.end, _ZERO)
+        known = [_ZERO if k in law.light else acts.get(point, _ZERO) for k, point in enumerate(points)]
+        q = list(known)
+        right = [forces[k] - sum((c * v for c, v in zip(law.damping[k], known, strict=True)), _ZERO) for k in law.light]
+        for row, k in enumerate(law.light):
+            q[k] = sum((law.inverse[row, n] * value for n, value in enumerate(right)), _ZERO)
+        sent = {each.end: each.ratio * q[each.place] - waves.get(each.end, _ZERO) for each in self._ends}
+        return dict(zip(points, q, strict=True)), sent
