@@ -49,7 +49,9 @@ typedef real slice;
 enum { LANES = sizeof(slice) / sizeof(real) };
 
 /* Of functions whose counts of vectors and outputs are known where they are called. */
-#if defined(__GNUC__) && !defined(__FRAMAC__)
+#if defined(__clang__) && defined(__AVX512F__) && VECTOR
+#define WITHIN static inline __attribute__((always_inline, min_vector_width(512))) /* else it takes halves of vectors */
+#elif defined(__GNUC__) && !defined(__FRAMAC__)
 #define WITHIN static inline __attribute__((always_inline))
 #elif defined(_MSC_VER)
 #define WITHIN static __forceinline
