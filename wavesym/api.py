@@ -799,12 +799,19 @@ def inspect(scene: Scene, stage: str | None = None, format: str = "text") -> str
 
     Args:
         scene: what is looked at.
-        stage: "scene", "model", "laws", "table", "program", or None for a summary.
+        stage: "scene", "model", "laws", "table", "program", or "summary" (None).
         format: "text" or "json".
     """
     from wavesym.documents.inspection.document import SUMMARY, inspection
 
     return inspection(scene, stage or SUMMARY, format)
+
+
+def inspect_lines(scene: Scene, stage: str | None, format: str) -> Iterator[str]:
+    """The same in parts, as they are known: what the model is before programs are tried."""
+    from wavesym.documents.inspection.document import SUMMARY, inspection_lines
+
+    return inspection_lines(scene, stage or SUMMARY, format)
 
 
 def plot(scene: Scene, path: str | PathLike[str] | None = None, kind: str = "history") -> Figure:

@@ -395,7 +395,7 @@ def test_a_linear_factor_as_one_writes_it(linear: tuple[int, int], expected: str
 
 
 def test_the_options_are_the_stages() -> None:
-    assert ["summary", *command.STAGES] == list(document._STAGES)
+    assert command.STAGES == list(document._STAGES)
 
 
 @pytest.mark.parametrize(
@@ -450,3 +450,21 @@ def test_a_scene_that_is_no_stream_says_why() -> None:
     samples = {"body": 1, "spacing": "1/2", "samples": [0, 1, 0]}
     damped = Scene.from_toml("drive_m1").with_({"system.damping": 0.05, "load": [samples], "output.tolerance": "1e-2"})
     assert told(damped)["stream"] == {"refusal": "system.damping: given, none expected (only modes serve it)"}
+
+
+def test_what_the_model_is_comes_before_programs_are_tried(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    seen = []
+
+    def attempts(model: object) -> tuple[object, ...]:
+        seen.append(capsys.readouterr().out)
+        return choice.attempts(model)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("wavesym.documents.inspection.summary.attempts", attempts)
+    assert main(["inspect", "drive_m1", "--stage", "summary"]) == 0
+    rest = capsys.readouterr().out
+    assert "Outputs: a quantity at a place" in seen[0]
+    assert "Programs tried" not in seen[0]
+    assert "Programs tried" in rest
+    assert seen[0] + rest == wavesym.api.inspect(scene("drive_m1"))

@@ -143,6 +143,9 @@ def test_the_command_needs_neither_loads_nor_outputs(
     assert main(["modes", "rod.toml", "-o", "rod.svg"]) == 0
     assert "none is missed" in capsys.readouterr().out
     assert Path("rod.svg").stat().st_size > 1000
+    assert main(["modes", "rod.toml", "-o", "rod.bmp"]) == 2
+    assert "rod.bmp given, a name that ends in .svg, .png, .pdf, .txt, .json, .csv, or" in capsys.readouterr().err
+    assert not Path("rod.bmp").exists()
     assert main(["modes", "rod.toml", "--count", "2", "--below", "3"]) == 2
     assert main(["run", "rod.toml"]) == 2
     assert "rod.toml: output: missing, a table expected" in capsys.readouterr().err

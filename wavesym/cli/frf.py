@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, PICTURES, SCENE, decimals, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SCENE, decimals, is_drawn, put, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -63,9 +62,7 @@ def frf(
     context = click.get_current_context()
     if at is not None and not low is high is points is None:
         raise click.UsageError("--at and --from, --to or --points given, one of them expected", context)
-    drawn = out is not None and out.suffix.lower() in PICTURES
-    if drawn and not find_spec("matplotlib"):
-        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+    drawn = is_drawn(out, (".csv", ".json"))
     if out is not None:
         refuse_unwritable(out)
         refuse_scene(out)

@@ -12,12 +12,12 @@ from wavesym.cli.progress import progress
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
-STAGES = ["scene", "model", "laws", "table", "program"]
+STAGES = ["summary", "scene", "model", "laws", "table", "program"]
 
 
 @click.command()
 @click.argument("scene", type=SCENE)
-@click.option("--stage", type=click.Choice(STAGES), help="What this stage makes of it.  [default: a summary of all]")
+@click.option("--stage", type=click.Choice(STAGES), help="What this stage makes of it.  [default: summary]")
 @click.option(
     "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
 )
@@ -32,6 +32,10 @@ def inspect(scene: Scene, stage: str | None, format: str) -> None:
     """
     from wavesym import api
 
-    with progress(f"inspect {scene.name}"):
-        text = api.inspect(scene, stage, format)
-    put(text)
+    lines = api.inspect_lines(scene, stage, format)
+    while True:
+        with progress(f"inspect {scene.name}"):
+            line = next(lines, None)
+        if line is None:
+            break
+        put(line)

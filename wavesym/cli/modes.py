@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, PICTURES, SceneParameter, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SceneParameter, is_drawn, put, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -58,9 +57,7 @@ def modes(
     context = click.get_current_context()
     if count is not None and below is not None:
         raise click.UsageError("--count and --below given, one of them expected", context)
-    drawn = out is not None and out.suffix.lower() in PICTURES
-    if drawn and not find_spec("matplotlib"):
-        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+    drawn = is_drawn(out, (".txt", ".json", ".csv"))
     if ranges and (below is not None or shapes or drawn):
         raise click.UsageError("--range and --below, --shapes or a picture given, one of them expected", context)
     if out is not None:

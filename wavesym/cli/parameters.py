@@ -6,9 +6,10 @@ import math
 import os
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from glob import escape, glob
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -106,6 +107,18 @@ def each_blamed(scenes: Iterable[Scene], stack: ExitStack) -> Iterator[Scene]:
         stack.pop_all()
         stack.enter_context(_blamed(scene, file))
         yield scene
+
+
+def is_drawn(out: Path | None, texts: Sequence[str]) -> bool:
+    """Whether a file is a picture by its suffix, or else one of some texts. UsageError for another suffix."""
+    suffix = "" if out is None else out.suffix.lower()
+    context = click.get_current_context()
+    if suffix not in (*PICTURES, *texts, ""):
+        known = ", ".join((*PICTURES, *texts))
+        raise click.UsageError(f"-o: {out} given, a name that ends in {known}, or in no suffix, expected", context)
+    if suffix in PICTURES and not find_spec("matplotlib"):
+        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+    return suffix in PICTURES
 
 
 class RatioParameter(click.ParamType[Any]):

@@ -29,11 +29,17 @@ _STAGES: Mapping[str, Callable[[Scene], Iterable[Section]]] = {
 
 def inspection(scene: Scene, stage: str = SUMMARY, format: str = "text") -> str:
     """A stage ("scene", "model", "laws", "table", "program") or the summary of a scene, as "text" or "json"."""
+    return "".join(inspection_lines(scene, stage, format))
+
+
+def inspection_lines(scene: Scene, stage: str, format: str) -> Iterator[str]:
+    """The same as it is known: of text, what the model is before programs are tried."""
     sections = _STAGES[stage](scene)
     if format == "json":
         content = {"name": scene.name, "stage": stage, **{section.key: plain(section) for section in sections}}
-        return json.dumps(content, indent=2, allow_nan=False) + "\n"
-    return "".join(f"{line}\n" for line in _lines(scene.name, stage, sections))
+        yield json.dumps(content, indent=2, allow_nan=False) + "\n"
+        return
+    yield from (f"{line}\n" for line in _lines(scene.name, stage, sections))
 
 
 def _lines(name: str, stage: str, sections: Iterable[Section]) -> Iterator[str]:
