@@ -1,4 +1,4 @@
-"""Messages of errors: whoever reads one learns what is too much, how much it is, how much may be, and what helps."""
+"""Messages of errors: what is wrong, and what to write; where too much is asked for how much, the limit, what helps."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KEY = (
     r"(output|output\.until|load|frequency|system|system\.(m|parts)|"
     r"--below|--count|--intervals|--peaks|--points|--to|--until|\{asked\})"
 )
-FORM = re.compile(rf"{KEY}: .+ expected.* \(.+ helps?\)")
+FORM = re.compile(rf"{KEY}: .+, the limit.* is .+ \(.+ helps?\)")
 PASSED_ON = re.compile(r".*\{error\} \(.+ helps?\)")  # the sentence of another error, which says how much
 
 
@@ -46,10 +46,34 @@ def complete(message: str) -> bool:
     if PASSED_ON.fullmatch(message):
         return True
     left = message.replace("{asked}", "", 1)
-    return bool(FORM.fullmatch(message)) and "at most" in left and left.count("{") > 1 and ";" not in message
+    return bool(FORM.fullmatch(message)) and left.count("{") > 1 and ";" not in message
 
 
 SOURCES = [path for path in sorted(PACKAGE.rglob("*.py")) if "CostError(" in path.read_text(encoding="utf-8")]
+
+
+RAISED = re.compile(r"((?<!Meaningless)Error|wrong|damaged|refused)$")
+STALE = re.compile(r"\b(expected|given)(\b|,)")
+"""How messages once said it: what was there, and what should be, but neither what is wrong nor what to write."""
+
+
+def raised(source: str) -> Iterator[str]:
+    """The texts of all errors that a source makes: calls of exceptions and of what makes them."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call) and RAISED.search(ast.unparse(node.func)):
+            for argument in node.args:
+                if isinstance(argument, ast.JoinedStr | ast.Constant):
+                    yield re.sub(r"\{[^{}]*\}", "", text(argument))
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: path.relative_to(PACKAGE).as_posix())
+def test_a_message_says_what_is_wrong_not_what_was_given_and_expected(path: Path) -> None:
+    assert [message for message in raised(path.read_text(encoding="utf-8")) if STALE.search(message)] == []
+
+
+def test_a_stale_message_is_seen() -> None:
+    (message,) = raised('raise wrong(f"{value} given, a list expected")')
+    assert STALE.search(message)
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(PACKAGE).as_posix())
@@ -66,11 +90,11 @@ def test_there_are_such_errors() -> None:
     "message",
     [
         '"output.until: too far"',
-        'f"output.until: {size} bytes, at most {most} expected"',
-        'f"{size} bytes, at most {most} expected (a shorter horizon helps)"',
-        'f"load: many bytes, at most {most} expected (fewer samples help)"',
+        'f"output.until: {size} bytes, the limit is {most}"',
+        'f"{size} bytes, the limit is {most} (a shorter horizon helps)"',
+        'f"load: many bytes, the limit is {most} (fewer samples help)"',
         'f"load: {size} bytes would be too many (fewer samples help)"',
-        'f"load: {size} bytes, at most {most} expected; more (fewer samples help)"',
+        'f"load: {size} bytes, the limit is {most}; more (fewer samples help)"',
     ],
 )
 def test_an_incomplete_message_is_seen(message: str) -> None:

@@ -469,11 +469,13 @@ def _stepped_modes(scene: Scene, lowered: Model, request: Request, tested: bool)
     if not request.target:
         return make(lowered, request, tested=tested)
     if request.runtime:
-        raise WavesymError(f"runtime: {','.join(request.runtime)} given with modes and --target, nothing expected")
+        raise WavesymError(
+            f"--runtime: {','.join(request.runtime)} does not go with modes and --target; leave --runtime out"
+        )
     if request.step is not None:
-        raise WavesymError(f"--step: {request.step} given with modes, nothing expected (loads say what it is)")
+        raise WavesymError(f"--step: {request.step} does not go with modes, whose loads say the step; leave --step out")
     if not scene.load:
-        raise UnservedError("load: none given with modes and --target, at least one expected (it is an input)")
+        raise UnservedError("load: none, and it is the input of an FMU with modes; write at least one [[load]]")
     return make(lowered, replace(request, evaluator="modes"), tested=tested)
 
 
@@ -788,8 +790,8 @@ def _paper_chain(scene: Scene, lowered: Model, option: str, command: str) -> Cha
     chain = named_chain(scene)
     if chain is None:
         raise UnservedError(
-            f"system.type: {lowered.labels.type} given with {option}, collision, drive or building expected "
-            f"(`{command}` without {option} serves a chain)"
+            f"system.type: {lowered.labels.type} has no {option}, as collision, drive and building have; "
+            f"`{command}` without {option} takes a chain"
         )
     return chain
 

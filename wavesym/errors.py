@@ -29,7 +29,7 @@ class WavesymError(ValueError):
     ...     wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "out", language="fortran")
     ... except wavesym.WavesymError as error:
     ...     print(error)
-    language: fortran given, c, numpy or all expected
+    language: fortran is unknown; write c, numpy or all
     """
 
     status: ClassVar[int] = 2
@@ -47,7 +47,7 @@ class SceneError(WavesymError):
     ...     print(error.path)
     ...     print(error.what)
     system.kappa[0]
-    -1 given, a positive number expected
+    -1 is not positive; write a number above 0
     """
 
     def __init__(self, what: str, path: str = "", file: str = "scene") -> None:
@@ -68,7 +68,7 @@ class CostError(WavesymError):
     ...     wavesym.evaluator(scene)([1.0])
     ... except wavesym.CostError as error:
     ...     print(error)
-    output.until: 3 nodes times 1e+06 units of tau are 3e+06 stretches to keep, at most 20000 expected (a \
+    output.until: 3 nodes times 1e+06 units of tau are 3e+06 stretches to keep, the limit is 20000 (a \
 shorter horizon helps)
     """
 
@@ -81,8 +81,8 @@ class UnservedError(WavesymError):
     ...     wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "out", evaluator="modes")
     ... except wavesym.UnservedError as error:
     ...     print(error)
-    load: M1 jumps by 1 at tau = 0, no jump expected in modes (a steep ramp in place of a step helps, or `start`, one \
-spacing, of a record)
+    load: M1 jumps by 1 at tau = 0, and modes support no jump (write a steep ramp, or `start`, one spacing, of a \
+record)
     """
 
 

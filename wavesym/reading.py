@@ -12,33 +12,33 @@ from wavesym.errors import SceneError
 LARGEST_FILE = 16 * 2**20  # bytes
 
 
-def read_bytes(path: str | PathLike[str], expected: str) -> tuple[str, bytes]:
+def read_bytes(path: str | PathLike[str], wanted: str) -> tuple[str, bytes]:
     """The name a path (or `-`, standard input) goes by in messages, and the bytes there.
 
-    Raises SceneError where it cannot be read or is larger than LARGEST_FILE; `expected` says what it should be.
+    Raises SceneError where it cannot be read or is larger than LARGEST_FILE; `wanted` says what it should be.
     """
     path = os.fspath(path)
     file = "<stdin>" if path == "-" else path
     try:
         content = _limited(path)
     except OSError as error:
-        raise SceneError(f"{error.strerror}, {expected} expected", file=file) from None
+        raise SceneError(f"{error.strerror}; write {wanted}", file=file) from None
     except ValueError:  # a 0 byte in the path
-        raise SceneError(f"no path, {expected} expected", file=file) from None
+        raise SceneError(f"not a path; write {wanted}", file=file) from None
     if len(content) > LARGEST_FILE:
-        raise SceneError(f"larger than {LARGEST_FILE >> 20} MB, {expected} of at most that expected", file=file)
+        raise SceneError(f"larger than {LARGEST_FILE >> 20} MB; write {wanted} of at most that", file=file)
     return file, content
 
 
-def read_text(path: str | PathLike[str], expected: str) -> tuple[str, str]:
+def read_text(path: str | PathLike[str], wanted: str) -> tuple[str, str]:
     """The same with the text there. Raises SceneError where that is empty or no UTF-8, too."""
-    file, content = read_bytes(path, expected)
+    file, content = read_bytes(path, wanted)
     try:
         text = content.decode("utf-8-sig")  # with the mark that some editors put first
     except UnicodeDecodeError as error:
-        raise SceneError(f"byte {error.start} is not UTF-8, {expected} expected", file=file) from None
+        raise SceneError(f"byte {error.start} is not UTF-8; write {wanted}", file=file) from None
     if not text.strip():
-        raise SceneError(f"empty, {expected} expected", file=file)
+        raise SceneError(f"empty; write {wanted}", file=file)
     return file, text
 
 

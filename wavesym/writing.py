@@ -36,7 +36,7 @@ def write_whole(files: Mapping[Path, Content]) -> None:
     special = [path for path in files if path.exists() and not path.is_file()]
     for path in special:
         if path.is_dir():
-            raise IsADirectoryError(21, "Is a directory, a file expected", str(path))
+            raise IsADirectoryError(21, "Is a directory; write the path of a file", str(path))
     # a link stays a link: what it points to is replaced
     asked = {Path(os.path.realpath(path)): path for path in files if path not in special}
     drafts: dict[Path, Path] = {}

@@ -142,7 +142,10 @@ def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> No
         (["run", "mine.toml", "--samples", "0"], "wavesym run: Invalid value for '--samples': 0 is not in the range"),
         (["run", "mine.toml", "--samples", "1e3"], "wavesym run: Invalid value for '--samples'"),
         (["run", "mine.toml", "--samples", "10000001"], "wavesym run: Invalid value for '--samples'"),
-        (["run", "mine.toml", "--samples", "3", "--at", "x"], "wavesym run: --samples and --at given"),
+        (
+            ["run", "mine.toml", "--samples", "3", "--at", "x"],
+            "wavesym run: --samples and --at exclude each other; write one of them",
+        ),
         (["tables", "mine.toml", "--intervals", "0"], "wavesym tables: Invalid value for '--intervals'"),
         (
             ["tables", "mine.toml", "--format", "xml"],
@@ -153,11 +156,11 @@ def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> No
         (["plot", "-o", "x.svg"], "wavesym plot: Missing argument 'SCENE'"),
         (
             ["plot", "mine.toml", "--published", "-o", "x"],
-            "wavesym plot: SCENE and --published given, one of them expected",
+            "wavesym plot: SCENE and --published exclude each other; write one of them",
         ),
         (["derive", "train"], "wavesym derive: Invalid value for '{collision|drive|building}'"),
         (["derive", "drive", "--m", "x"], "wavesym derive: Invalid value for '--m'"),
-        (["derive", "drive", "--m", "0"], "wavesym derive: --m: 0 given"),
+        (["derive", "drive", "--m", "0"], "wavesym derive: --m: 0 is not supported; write 1 ... 100"),
     ],
 )
 def test_wrong_usage(arguments: list[str], expected: str, door: Door, capsys: pytest.CaptureFixture[str]) -> None:
@@ -170,10 +173,10 @@ def test_wrong_usage(arguments: list[str], expected: str, door: Door, capsys: py
 def test_a_wrong_scene_is_refused_by_every_command(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     Path("bad.toml").write_text(SCENE.replace("[1, 2]", "[1]"))
     more = ["-o", "mine.svg"] if command == "plot" else []
-    expected = "bad.toml: system.inertia: 1 numbers given, 2 expected (m + 1)"
+    expected = "bad.toml: system.inertia: 1 numbers; write 2 (m + 1)"
     assert refused(capsys, command, "bad.toml", *more) == expected
-    assert refused(capsys, command, "nowhere.toml", *more).startswith("nowhere.toml: No such file or directory, ")
-    assert refused(capsys, command, ".", *more).startswith(".: Is a directory, ")
+    assert refused(capsys, command, "nowhere.toml", *more).startswith("nowhere.toml: No such file or directory")
+    assert refused(capsys, command, ".", *more).startswith(".: Is a directory")
 
 
 def test_generate(door: Door, capsys: pytest.CaptureFixture[str]) -> None:
@@ -224,7 +227,7 @@ def test_plot_says_aside_what_its_picture_leaves_out(door: Door, capsys: pytest.
 
 
 def test_plot_of_another_kind_of_file(capsys: pytest.CaptureFixture[str]) -> None:
-    assert refused(capsys, "plot", "mine.toml", "-o", "mine.txt").endswith(".svg, .png, .pdf expected")
+    assert refused(capsys, "plot", "mine.toml", "-o", "mine.txt").endswith("write a name that ends in .svg, .png, .pdf")
 
 
 def test_plot_without_matplotlib(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -245,13 +248,13 @@ def test_run_at_what_is_no_time(wrong: str, door: Door, capsys: pytest.CaptureFi
     Path("at.txt").write_text(f"0\n{wrong}\n", encoding="utf-8")
     line = refused(capsys, "run", "mine.toml", "--at", "at.txt", "-o", "out.csv")
     assert line.startswith("at.txt: line 2: ")
-    assert line.endswith(" given, a decimal expected")
+    assert line.endswith(" is not a number; write one such as 0.25")
 
 
 def test_where_nothing_can_be_written(door: Door, capsys: pytest.CaptureFixture[str]) -> None:
     Path("folder").mkdir()
     door.run_csv = lambda *_: []
-    assert refused(capsys, "run", "mine.toml", "-o", "folder") == "folder: Is a directory, a file expected"
+    assert refused(capsys, "run", "mine.toml", "-o", "folder") == "folder: Is a directory; write the path of a file"
     assert refused(capsys, "run", "mine.toml", "-o", "mine.toml/out.csv") == "mine.toml/out.csv: Not a directory"
     Path("loop").symlink_to("loop")
     assert refused(capsys, "run", "mine.toml", "-o", "loop") == f"loop: {os.strerror(errno.ELOOP)}"
@@ -289,7 +292,7 @@ def process(*arguments: str, stdin: bytes = b"") -> subprocess.CompletedProcess[
 def test_as_a_process() -> None:
     done = process("run", "-", stdin=SCENE.replace("until = 2", "until = -2").encode())
     assert done.returncode == 2
-    assert done.stderr.decode().splitlines() == ["<stdin>: output.until: -2 given, a positive number expected"]
+    assert done.stderr.decode().splitlines() == ["<stdin>: output.until: -2 is not positive; write a number above 0"]
     assert done.stdout == b""
     assert process("run", "-", stdin=b"\xff\xfe").stderr.count(b"\n") == 1
 

@@ -40,14 +40,20 @@ def test_walk_polynomials(arguments, format, capsys):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["drive", "--walks"], "wavesym derive: --walks: --m M expected"),
-        (["drive", "--walks", "--m", "0"], "wavesym derive: --m: 0 given, 1 ... 100 expected"),
+        (
+            ["drive", "--walks"],
+            "wavesym derive: --walks: walks are those of one chain; with the name of a system write --m M too",
+        ),
+        (["drive", "--walks", "--m", "0"], "wavesym derive: --m: 0 is not supported; write 1 ... 100"),
         (["drive", "--walks", "--m", "60", "--intervals", "60"], "wavesym derive: --intervals: the walk polynomials"),
-        (["drive", "--intervals", "3"], "wavesym derive: --intervals given without --walks"),
+        (["drive", "--intervals", "3"], "wavesym derive: --intervals: of walks only; write --walks too"),
         (["train"], "wavesym derive: Invalid value for '{collision|drive|building}' or SCENE: 'train' is neither"),
-        (["mine.toml", "--m", "2"], "wavesym derive: --m given for a scene"),
-        (["drive", "--m", "0"], "wavesym derive: --m: 0 given, 1 ... 100 expected"),
-        (["bad.toml"], "bad.toml: system.inertia: 1 numbers given, 2 expected (m + 1)"),
+        (
+            ["mine.toml", "--m", "2"],
+            "wavesym derive: --m: a scene has its own m; leave --m out, or write the name of a system",
+        ),
+        (["drive", "--m", "0"], "wavesym derive: --m: 0 is not supported; write 1 ... 100"),
+        (["bad.toml"], "bad.toml: system.inertia: 1 numbers; write 2 (m + 1)"),
         (["."], ".: Is a directory"),
         ([], "wavesym derive: Missing argument"),
     ],
@@ -67,4 +73,4 @@ def test_a_scene_on_a_system_too_long_to_read(folder, capsys):
     text = SCENE.replace("m = 1", "m = 101").replace("[1]", f"[{kappa}]").replace("[1, 2]", f"[{inertia}]")
     (folder / "long.toml").write_text(text)
     assert main(["derive", "long.toml"]) == 2
-    assert "system.m: 101 given, at most 100 expected" in capsys.readouterr().err
+    assert "system.m: 101 is more than can be written out; write 100 or less" in capsys.readouterr().err

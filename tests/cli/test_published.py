@@ -85,7 +85,7 @@ def test_a_scene_is_no_formula_and_a_formula_no_scene(capsys: pytest.CaptureFixt
 @pytest.mark.parametrize("option", [["--reproduce"], ["--format", "html"]])
 def test_options_of_published_alone(option: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     line = answer(capsys, *option, status=2)
-    assert f"{option[0]} given without --published" in line
+    assert f"{option[0]}: of the paper only; write --published too" in line
 
 
 def test_a_counterexample_is_printed_as_a_scene_and_a_command(capsys: pytest.CaptureFixture[str]) -> None:
@@ -134,5 +134,5 @@ def test_only_one_verdict_is_shown_after_counts_of_all(capsys: pytest.CaptureFix
     assert not any(f"\n{id} " in text for id in right)
     listed = json.loads(answer(capsys, "--published", "--only", "misprint", "--format", "json"))
     assert [record["id"] for record in listed] == wrong
-    assert answer(capsys, "--published", "--only", "wrong", status=2).startswith("--only: wrong given, ")
-    assert "--only given without --published" in answer(capsys, "--only", "holds", status=2)
+    assert answer(capsys, "--published", "--only", "wrong", status=2).startswith("--only: wrong is unknown")
+    assert "--only: of the paper only; write --published too" in answer(capsys, "--only", "holds", status=2)

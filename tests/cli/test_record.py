@@ -61,13 +61,13 @@ def test_it_is_drawn_with_its_peak(tmp_path, capsys, suffix):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["a.txt", "--unit", "m/s^2"], "a.txt: --unit m/s^2 given, g expected, as in the file, or none"),
-        (["a.txt", "--column", "x"], "a.txt: column given, none expected"),
-        (["none.at2"], "none.at2: No such file or directory, a file of AT2 or CSV expected"),
+        (["a.txt", "--unit", "m/s^2"], "a.txt: --unit m/s^2 is not that of the file; write g, or none"),
+        (["a.txt", "--column", "x"], "a.txt: an AT2 file has one column"),
+        (["none.at2"], "none.at2: No such file or directory; write a file of AT2 or CSV"),
         (["bad.csv"], "bad.csv: line 4: column 2 (accel_g) is no decimal"),
-        (["a.txt", "-o", "a.doc"], "a.doc: no picture"),
-        (["a.txt", "-o", "a.txt"], "wavesym record: -o: a.txt is the record itself, another file expected"),
-        (["uneven.csv"], "uneven.csv: line 5: the time 0.05 given, 0.04 expected"),
+        (["a.txt", "-o", "a.doc"], "a.doc: not a picture; write a name that ends in .svg, .png, .pdf"),
+        (["a.txt", "-o", "a.txt"], "wavesym record: -o: a.txt is the record itself; write another file"),
+        (["uneven.csv"], "uneven.csv: line 5: the time 0.05 should be 0.04"),
         (["a.txt", "--unit", "\x1b[2J"], "--unit: "),
     ],
 )

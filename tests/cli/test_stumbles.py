@@ -36,7 +36,7 @@ def wavesym_in_a_shell(line: str) -> subprocess.CompletedProcess[str]:
 def test_a_closed_standard_output_is_one_line(line: str) -> None:
     done = wavesym_in_a_shell(line)
     assert done.returncode == 2
-    assert done.stderr == "wavesym: standard output is closed, an open one expected\n"
+    assert done.stderr == "wavesym: standard output is closed; open it, or write a file with -o\n"
 
 
 def test_many_samples_come_while_they_are_computed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -62,15 +62,15 @@ def test_a_byte_order_mark_is_no_part_of_a_scene() -> None:
 
 def test_a_scene_and_a_sweep_are_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
     Path("sweep.toml").write_text('scene = "mine.toml"\n[vary]\n"output.until" = [1, 2]\n')
-    assert refused(capsys, "run", "sweep.toml").startswith("sweep.toml: a sweep given, a scene expected")
-    assert refused(capsys, "sweep", "mine.toml", "-o", "made").startswith("mine.toml: a scene given, a sweep expected")
+    assert refused(capsys, "run", "sweep.toml").startswith("sweep.toml: this is a sweep, not a scene")
+    assert refused(capsys, "sweep", "mine.toml", "-o", "made").startswith("mine.toml: this is a scene, not a sweep")
     assert not Path("made").exists()
 
 
 @pytest.mark.parametrize("command", ["run", "tables", "plot", "chart"])
 def test_a_scene_is_not_replaced_by_what_is_made_of_it(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     line = refused(capsys, command, "mine.toml", "-o", "./mine.toml")
-    assert "mine.toml is the scene itself, another file expected" in line
+    assert "mine.toml is the scene itself; write another file" in line
     Path("linked.toml").symlink_to("mine.toml")
     assert "linked.toml is the scene itself" in refused(capsys, command, "mine.toml", "-o", "linked.toml")
     assert Path("mine.toml").read_text() == SCENE
@@ -121,9 +121,9 @@ def test_what_was_meant_is_asked(capsys: pytest.CaptureFixture[str]) -> None:
         "wavesym: No such command 'genrate'. Did you mean \"generate\"?"
     )
     assert "Did you mean" not in refused(capsys, "zzz")
-    assert refused(capsys, "run", "building_m3").endswith('expected. Did you mean "building_m2"?')
+    assert refused(capsys, "run", "building_m3").endswith('. Did you mean "building_m2"?')
     Path("mine.toml").write_text(SCENE.replace("until", "untill"))
-    assert refused(capsys, "run", "mine.toml").endswith('expected. Did you mean "until"?')
+    assert refused(capsys, "run", "mine.toml").endswith('. Did you mean "until"?')
 
 
 @pytest.mark.parametrize("name", builtin_names())
@@ -166,24 +166,24 @@ def test_a_scene_to_start_from_takes_a_record(capsys: pytest.CaptureFixture[str]
 
 def test_from_python_what_is_wrong_is_told() -> None:
     scene = wavesym.Scene.from_toml("drive_m1")
-    with pytest.raises(wavesym.WavesymError, match=r"^language: fmu given, c, numpy or all expected$"):
+    with pytest.raises(wavesym.WavesymError, match=r"^language: fmu is unknown; write c, numpy or all$"):
         wavesym.generate(scene, language="fmu")
     with pytest.raises(
-        wavesym.WavesymError, match=r"^evaluator: clsed given, auto, closed, pieces, march or modes expected$"
+        wavesym.WavesymError, match=r"^evaluator: clsed is unknown; write auto, closed, pieces, march or modes$"
     ):
         wavesym.generate(scene, evaluator="clsed")
-    with pytest.raises(wavesym.WavesymError, match=r"^precision: half given, double or single expected$"):
+    with pytest.raises(wavesym.WavesymError, match=r"^precision: half is unknown; write double or single$"):
         wavesym.generate(scene, precision="half")
     for wanted in (wavesym.evaluator, wavesym.summary, wavesym.tables, wavesym.generate):
-        with pytest.raises(wavesym.SceneError, match="str given, a Scene expected"):
+        with pytest.raises(wavesym.SceneError, match="str is not a Scene"):
             wanted("drive_m1")  # type: ignore[operator]
-    with pytest.raises(wavesym.SceneError, match="str given, a Scene expected"):
+    with pytest.raises(wavesym.SceneError, match="str is not a Scene"):
         wavesym.model("drive_m1", ["load"])  # type: ignore[arg-type]
     with pytest.raises(wavesym.WavesymError, match=r'^runtime: "kappa" is not a list of names; write \["kappa"\]$'):
         wavesym.model(scene, "kappa")
-    with pytest.raises(wavesym.WavesymError, match=r'^--runtime: kapa given, .* expected. Did you mean "kappa"\?$'):
+    with pytest.raises(wavesym.WavesymError, match=r'^--runtime: kapa is unknown; write .*. Did you mean "kappa"\?$'):
         wavesym.model(scene, ["kapa"])
-    with pytest.raises(wavesym.WavesymError, match=r"^--runtime: x given, kappa, inertia or load expected$"):
+    with pytest.raises(wavesym.WavesymError, match=r"^--runtime: x is unknown; write kappa, inertia or load$"):
         wavesym.model(scene, ["x"])
     assert issubclass(wavesym.CostError, wavesym.WavesymError)
     assert issubclass(wavesym.ToleranceError, wavesym.WavesymError)
@@ -204,13 +204,13 @@ def test_a_scene_with_other_values() -> None:
         ("system.kapa[1]", 'system.kapa[1]: nothing called "kapa". Did you mean "kappa"?'),
         ("system.kappa[9]", "system.kappa[9]: nothing at [9]"),
         ("output.until[0]", "output.until[0]: nothing at [0]"),
-        ("system..m", 'system..m: no path, one such as "output.until" or "load[0].times[2]" expected'),
-        ("", 'scene: no path, one such as "output.until" or "load[0].times[2]" expected'),
+        ("system..m", 'system..m: not a path; write one such as "output.until" or "load[0].times[2]"'),
+        ("", 'scene: not a path; write one such as "output.until" or "load[0].times[2]"'),
         (
             "output.untill",
-            "output.untill: unknown key, until, tolerance, strain, velocity, displacement, acceleration, force, drift",
+            "output.untill: unknown key",
         ),
-        ("system.kappa[1]", "system.kappa[1]: -1 given, a positive number expected"),
+        ("system.kappa[1]", "system.kappa[1]: -1 is not positive; write a number above 0"),
     ],
 )
 def test_a_path_that_leads_nowhere(path: str, wrong: str) -> None:

@@ -130,9 +130,9 @@ def test_what_has_no_formula_says_so() -> None:
         wavesym.formula(made, "strain@9")
     with pytest.raises(WavesymError, match="--until: 5 is not between 0 and the horizon"):
         wavesym.formula(made, "strain@0", 5)
-    with pytest.raises(CostError, match=r"--until: \d+ terms, at most 2000 expected \(an earlier one"):
+    with pytest.raises(CostError, match=r"--until: \d+ terms, the limit is 2000 \(an earlier one"):
         wavesym.formula(Scene.from_toml("drive_m1").with_({"output.until": 90}), "strain@0")
-    with pytest.raises(UnservedError, match="collision, drive or building expected"):
+    with pytest.raises(UnservedError, match="as collision, drive and building have"):
         wavesym.formula(scene("stepped_shaft"), scene("stepped_shaft").outputs[0].name, symbolic=True)
     touching = {"system.contacts": "open", "output.displacement": [0], "output.strain": ["1-"]}
     parting = Scene.from_toml("collision_m4").with_(touching)

@@ -51,4 +51,4 @@ def test_a_fragment_has_no_preamble(capsys: pytest.CaptureFixture[str]) -> None:
     body = part.partition("\n")[2].strip()
     assert body in whole
     assert main(["tables", "drive_m1", "--fragment"]) == 2
-    assert "--fragment: given with --format csv, latex expected" in capsys.readouterr().err
+    assert "--fragment: csv has no fragments; write --format latex" in capsys.readouterr().err

@@ -118,7 +118,7 @@ def test_bits_are_doubled_until_they_tell():
     asked.clear()
     assert precise(partial(attempt, 400), 100, 400) == "told"
     asked.clear()
-    with pytest.raises(ArithmeticError, match="more than 400 bits would be needed, at most 400"):
+    with pytest.raises(ArithmeticError, match="more than 400 bits would be needed, the limit is 400"):
         precise(partial(attempt, 401), 100, 400)
     assert asked == [100, 200, 400]
     asked.clear()

@@ -239,10 +239,10 @@ def test_sums_over_all_modes_are_known(name):
 def test_what_has_no_modes_is_refused():
     """Dashpots, absorbing ends and contacts in one line."""
     dashpot = chain(["fixed", {"rod": 1}, {"mass": 1, "dashpot": 1, "name": "hammer"}, {"rod": 1}, "free"])
-    with pytest.raises(UnservedError, match="at hammer given, none expected in modes"):
+    with pytest.raises(UnservedError, match="at hammer is not supported by modes"):
         frequencies(dashpot.network, 1)
     contact = chain([{"mass": 1, "velocity": 1}, "contact", {"rod": 1}, "fixed"], velocity=["0-"])
-    with pytest.raises(UnservedError, match="a contact at 0 given"):
+    with pytest.raises(UnservedError, match="the contact at 0 is not supported by modes"):
         frequencies(contact.network, 1)
 
 
@@ -301,5 +301,5 @@ def test_the_shapes_of_a_cluster_are_proved(monkeypatch):
 def test_shapes_that_cannot_be_told_are_refused(monkeypatch):
     monkeypatch.setattr(equal_frequencies, "_APART", (2,))
     monkeypatch.setattr(found, "_TIMES", (1, 8))
-    with pytest.raises(UnservedError, match=r"frequencies meet near 0\.86.*pieces and march serve it"):
+    with pytest.raises(UnservedError, match=r"frequencies meet near 0\.86.*take pieces or march"):
         frequencies(CLUSTERS["beyond most bits"].network, 5)

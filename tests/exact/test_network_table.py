@@ -361,7 +361,9 @@ def test_what_would_be_large_is_counted_first(monkeypatch: pytest.MonkeyPatch) -
     parts = [{"mass": 1, "name": "a"}, {"rod": 1}, {"mass": "1/3"}, {"rod": 1}, {"mass": "5/7"}, {"rod": 1}]
     system = {"type": "chain", "parts": parts}
     few = lower(Scene(name="few", system=system, load=load, output={"until": 4, "velocity": [0]})).network
-    assert re.match(r"output.until: the tables would .* at most .* \(a shorter horizon.* helps\)", refusal(few, 600))
+    assert re.match(
+        r"output.until: the tables would .* the limit is .* \(a shorter horizon.* helps\)", refusal(few, 600)
+    )
 
 
 def test_a_joint_that_does_not_split_is_named_with_its_polynomial() -> None:
@@ -376,8 +378,8 @@ def test_a_joint_that_does_not_split_is_named_with_its_polynomial() -> None:
         Scene(name="no", system={"type": "chain", "parts": parts}, output={"until": 4, "velocity": [0]})
     ).network
     assert refusal(network) == (
-        "system: the joint at bob has the polynomial s^2 + s + 1, one with factors s + g, g rational, expected for "
-        "exact tables"
+        "system: the joint at bob has the polynomial s^2 + s + 1, and exact tables support only those "
+        "with factors s + g, g rational (take pieces, march or `run`)"
     )
     held = replace(network, points=(replace(network.points[0], stiffness=fmpq(0)), *network.points[1:]))
     assert "the joint at x = 3-, x = 3+ has the polynomial 21 s^2 + 35 s + 15," in refusal(held)
@@ -391,8 +393,8 @@ def test_contacts_are_refused(speed: int) -> None:
     bars = Bar(0, 1, one, one, one, velocity=fmpq(speed)), Bar(2, 3, one, one, one)
     network = Network(points, bars, (Link(1, 2, contact=True, gap=one, place="1"),))
     line = (
-        "system: the contact at 1 opens and closes, none that does expected (pieces and `run` serve it, not tables, "
-        "closed form or march)"
+        "system: the contact at 1 opens and closes, which tables, closed form and march do not support "
+        "(take pieces or `run`)"
     )
     assert refusal(network) == line
     model = replace(lower(Scene.from_toml("stepped_shaft")), network=network, loads=())

@@ -103,5 +103,8 @@ def test_tables_that_would_be_large_are_refused_before_they_are_made(monkeypatch
         raise AssertionError("a table was begun")
 
     monkeypatch.setattr("wavesym.exact.tables.network_table.departures", made)
-    with pytest.raises(CostError, match=r"^output.until: the tables would hold .* at most 1.0e\+01 expected"):
+    with pytest.raises(
+        CostError,
+        match=r"^output.until: the tables would hold .* the limit is 1.0e\+01",
+    ):
         signals(lower(scene(40, strain=["1/2"])), most=10)

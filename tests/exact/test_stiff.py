@@ -107,7 +107,7 @@ def test_soft_springs_are_not_cut(right: str) -> None:
 @pytest.mark.parametrize("middle", [GROUND, LIGHT], ids=["mass", "massless"])
 def test_what_would_be_cut_too_often_is_refused_at_once(middle: list[dict[str, Any]], right: str) -> None:
     known = model(table(middle, 10**12, ("1", right), 20))
-    with pytest.raises(CostError, match=rf"a rate of up to .* stretches .*at most {MOST_BREAKPOINTS} expected"):
+    with pytest.raises(CostError, match=rf"a rate of up to .* stretches .*the limit is {MOST_BREAKPOINTS}"):
         Motion(known, fmpq(20))
 
 

@@ -256,7 +256,7 @@ def test_other_formats_and_what_is_none(drawn, tmp_path):
 
     save(drawn[0], tmp_path / "a" / "chart.png")
     assert (tmp_path / "a" / "chart.png").read_bytes().startswith(b"\x89PNG")
-    with pytest.raises(SceneError, match="no picture"):
+    with pytest.raises(SceneError, match="not a picture"):
         save(drawn[0], tmp_path / "chart.txt")
 
 
@@ -281,7 +281,7 @@ def test_measured_through(monkeypatch):
 def test_a_file_that_is_no_picture_is_refused_before_the_work(capsys, tmp_path):
     pytest.importorskip("matplotlib")
     assert main(["chart", "drive_m1", "-o", str(tmp_path / "chart.txt")]) == 2
-    assert ".svg, .png, .pdf expected" in capsys.readouterr().err
+    assert "write a name that ends in .svg, .png, .pdf" in capsys.readouterr().err
 
 
 def test_command(monkeypatch, tmp_path):

@@ -104,7 +104,7 @@ def test_rods_alone_have_no_masses_on_springs():
         Scene(name="scene", system={"type": "chain", "parts": parts}, load=load, output={"until": 5, "velocity": ["2"]})
     )
     massless, consistent = given.candidates
-    assert "parts without mass that nothing holds" in massless.refused
+    assert "parts without mass; write a mass or a support" in massless.refused
     assert consistent.worst > 0.1
 
 

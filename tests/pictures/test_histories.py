@@ -227,7 +227,7 @@ def test_same_histories_same_bytes(tmp_path: Path) -> None:
 def test_a_picture_that_cannot_be_written_leaves_nothing(suffix: str, tmp_path: Path) -> None:
     folder = tmp_path / f"folder.{suffix}"
     folder.mkdir()
-    with pytest.raises(IsADirectoryError, match="a file expected"):
+    with pytest.raises(IsADirectoryError, match="write the path of a file"):
         save(draw(fabricated(1)), folder)
     assert [path.name for path in tmp_path.rglob("*")] == [folder.name]
 

@@ -82,7 +82,7 @@ def test_numbers_of_99_characters_are_generated_and_run():
 def test_a_long_record_is_not_for_closed_forms_nor_large_ones_for_pieces(samples, outputs, idle):
     scene = record(samples, outputs)
     for asked in (choice._WORTH_TRYING, 1e5):
-        with pytest.raises(CostError, match=r"^load: .* increments would arrive at the outputs, at most"):
+        with pytest.raises(CostError, match=r"^load: .* increments would arrive at the outputs, the limit"):
             choice.refuse_many(lower(scene), asked)
     assert Reference(lower(scene)).signals is None
     with pytest.raises(pieces._TooLarge if outputs == 2000 else Begun):
@@ -122,11 +122,14 @@ def test_a_heavy_shaft_for_long_is_refused_by_all_but_the_tables(monkeypatch):
     for name, why in (("pieces", r"\d+ bits would be needed for pieces"), ("march", r"polynomials of degree")):
         with pytest.raises(CostError, match=rf"^output.until: .*{why}"):
             choose(lower(scene), name)
-    with pytest.raises(ToleranceError, match=r"pieces: .*at most 1024 expected.*; march: .* polynomials of deg"):
+    with pytest.raises(
+        ToleranceError,
+        match=r"pieces: .*the limit is 1024.*; march: .* polynomials of deg",
+    ):
         choose(lower(scene))
     assert Reference(lower(scene)).signals is not None
     three = drive([10000] * 3, [1] * 4, 200)
-    with pytest.raises(CostError, match=r"^output.until: .* more than 131072 bits would be needed, at most"):
+    with pytest.raises(CostError, match=r"^output.until: .* more than 131072 bits would be needed, the limit"):
         Reference(lower(three)).values([20.0 * k for k in range(11)])
 
 
@@ -237,6 +240,6 @@ def test_pieces_take_no_longer_than_they_are_worth_where_a_closed_form_serves(mo
     monkeypatch.setattr(choice, "_OF_MANY", 0.1)
     chosen = choice.choose(model)
     assert chosen.name == "closed"
-    assert "s, at most 0.1 s expected where another program serves (--evaluator pieces helps)" in chosen.reason
+    assert "s, the limit where another program serves is 0.1 s (--evaluator pieces helps)" in chosen.reason
     monkeypatch.setattr(choice, "_OF_MANY", 5)
     assert " expected where another program serves" not in choice.choose(model.shortened(fmpq(1, 100))).reason

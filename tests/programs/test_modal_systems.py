@@ -283,7 +283,9 @@ def test_equal_frequencies_are_damped_alike_or_refused():
     assert np.any(np.diff(made.frequencies) == 0)
     error = np.abs(values(model, made, taus) - exact).max(axis=1)
     assert np.all(error <= made.errors + rounding(model, made))
-    with pytest.raises(UnservedError, match=r"^system.damping: 0.05 and 0.1 given for modes 2 and 3, which have one"):
+    with pytest.raises(
+        UnservedError, match=r"^system.damping: 0.05 and 0.1 for modes 2 and 3, which have one frequency, 0.860334"
+    ):
         modal_system(replace(model, damping=Damping((fmpq(1, 20), fmpq(1, 20), fmpq(1, 10)))))
 
 
@@ -323,10 +325,10 @@ def test_what_modes_do_not_serve_is_refused():
     step = {"times": [0], "a": [1], "b": [0]}
     with pytest.raises(UnservedError, match="jumps"):
         modal_system(building(["1", "1"], [step]))
-    with pytest.raises(UnservedError, match="at tau = 0 given, rest expected"):
+    with pytest.raises(UnservedError, match="at tau = 0 is not supported by modes"):
         modal_system(chain(["fixed", {"rod": 1, "velocity": 1}, {"mass": 1, "name": "n"}], [PUSH]))
     told = chain([{"motion": "velocity", "name": "n"}, {"rod": 1}, {"mass": 1}], [PUSH])
-    with pytest.raises(UnservedError, match="a motion of told velocity given at n"):
+    with pytest.raises(UnservedError, match="the motion at n prescribes a velocity"):
         modal_system(told)
     with pytest.raises(
         ToleranceError, match=r"1e-13 cannot be met: modes: 4000 modes.*a bound of about .* for velocity@1/2"
@@ -335,7 +337,7 @@ def test_what_modes_do_not_serve_is_refused():
 
 
 def test_many_rods_are_refused_at_once():
-    with pytest.raises(CostError, match=r"^system: 400 rods in modes, at most 129 expected"):
+    with pytest.raises(CostError, match=r"^system: 400 rods in modes, the limit is 129"):
         modal_system(building(["1"] * 401, [samples(3)]))
 
 

@@ -196,7 +196,7 @@ def test_loads_are_put_together_from_their_ramps():
     assert [str(time) for time in made.times] == ["0", "1", "3"]
     assert [[str(value) for value in row] for row in made.samples] == [["0", "0"], ["0", "0"], ["4", "0"]]
     assert [str(slope) for slope in made.slopes] == ["0", "1/2"]
-    with pytest.raises(UnservedError, match=r"weight=3\), no jump expected in modes"):
+    with pytest.raises(UnservedError, match=r"weight=3\), and modes support no jump"):
         linear_loads([Applied("a", exact(0), exact(3))], [("a", "b")], exact(6), str)
 
 

@@ -46,9 +46,9 @@ def test_what_was_asked_for_is_in_the_files(model):
 @pytest.mark.parametrize(
     ("request_", "words"),
     [
-        (Request(evaluator="spline"), "evaluator: spline given, auto, closed, pieces, march or modes expected"),
-        (Request(precision="half"), "precision: half given, double or single expected"),
-        (Request(optimize="cost"), "optimize: cost given, speed or size expected"),
+        (Request(evaluator="spline"), "evaluator: spline is unknown; write auto, closed, pieces, march or modes"),
+        (Request(precision="half"), "precision: half is unknown; write double or single"),
+        (Request(optimize="cost"), "optimize: cost is unknown; write speed or size"),
     ],
 )
 def test_a_word_that_is_none_of_those_is_refused(request_, words):

@@ -156,6 +156,7 @@ def test_whose_rates_are_too_much_is_said(monkeypatch):
     plan = march_plan(NARROW, DOUBLE)
     monkeypatch.setattr(choosing, "_HIGHEST", 20)
     with pytest.raises(
-        CostError, match=r"^output.until: rates to [\d.]+ need .* expected \(a shorter horizon helps\)$"
+        CostError,
+        match=r"^output.until: rates to [\d.]+ need .* the limit is .* \(a shorter horizon helps\)$",
     ):
         choosing._enough(plan, LEAST, 1e-12)

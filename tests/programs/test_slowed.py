@@ -200,7 +200,8 @@ def test_what_dashpots_leave_no_modes_of_is_refused():
     end = {"joint": True, "name": "end", "dashpot": "2/3"}
     swallowing = chain(["fixed", {"rod": 1, "impedance": "2/3"}, end], [{**PUSH, "at": "end"}])
     with pytest.raises(
-        UnservedError, match=r"^system: dashpots as large as the impedance at end given.*march serve it"
+        UnservedError,
+        match=r"^system: dashpots as large as the impedance at end return nothing.*pieces or march",
     ):
         modal_system(swallowing)
     between = [
@@ -215,7 +216,7 @@ def test_what_dashpots_leave_no_modes_of_is_refused():
     with pytest.raises(UnservedError, match="dashpots as large as the impedance at n"):
         modal_system(chain(between, [PUSH]))
     floating = chain([{"mass": 1, "name": "n", "dashpot": 1}, {"rod": 1}, {"mass": 1}], [PUSH])
-    with pytest.raises(UnservedError, match="a chain that dashpots alone, or nothing, hold given"):
+    with pytest.raises(UnservedError, match="dashpots alone, or nothing, hold the chain"):
         modal_system(floating)
 
 
@@ -223,9 +224,11 @@ def test_what_modes_with_dashpots_do_not_tell_apart_is_refused():
     """Equal branches, which are served without dashpots; and a place inside a rod that has a dashpot beside it."""
     same = [{"from": "n", "name": name, "parts": [{"rod": 1}, {"mass": 1}]} for name in "ab"]
     parts = ["fixed", {"rod": 1, "dashpot": "1/3"}, {"mass": 1, "name": "n"}, {"rod": 1}, {"mass": 1}]
-    with pytest.raises(UnservedError, match=r"^system: two frequencies meet near 0\.86.*march serve it"):
+    with pytest.raises(UnservedError, match=r"^system: two frequencies meet near 0\.86.*pieces or march"):
         modal_system(chain(parts, [PUSH], same, velocity=["n"]))
-    with pytest.raises(UnservedError, match=r"^output: velocity@1/2 inside a rod with a spring or dashpot beside it"):
+    with pytest.raises(
+        UnservedError, match=r"^output: velocity@1/2 is inside a rod with a spring or dashpot beside it"
+    ):
         modal_system(chain(parts, [PUSH], velocity=["1/2"]))
 
 

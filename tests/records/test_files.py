@@ -126,34 +126,34 @@ def test_a_column_is_chosen_by_its_name(tmp_path):
     path = made(tmp_path, "time,note,acc x [g],acc y [g]\n0,on,1,2\n1,,3,4\n")
     assert read_record(path, "acc y").samples == (2, 4)
     assert read_record(path, "acc x [g]").samples == (1, 3)
-    with pytest.raises(SceneError, match=r"line 1: 3 columns given, `column` expected to say which \(note, acc x"):
+    with pytest.raises(SceneError, match=r"line 1: 3 columns of samples; write `column` to say which \(note, acc x"):
         read_record(path)
-    with pytest.raises(SceneError, match="line 1: no column called z given, one expected"):
+    with pytest.raises(SceneError, match="line 1: no column called z; write the name of one"):
         read_record(path, "z")
-    with pytest.raises(SceneError, match="column given, none expected"):
+    with pytest.raises(SceneError, match="an AT2 file has one column"):
         read_record(EL_CENTRO.with_suffix(".at2"), "z")
 
 
 def test_rounded_times_are_even_where_spacing_is_told(tmp_path):
     read = read_record(made(tmp_path, "time,x\n0,1\n0.0033,2\n0.0067,3\n0.0100,4\n"))
     assert read.even(Fraction(1, 300)) == Fraction(1, 300)
-    with pytest.raises(SceneError, match=r"line 4: the time 0.0067 given, 0.0066 expected .* `spacing` in the scene"):
+    with pytest.raises(SceneError, match=r"line 4: the time 0.0067 should be 0.0066.* `spacing` in the scene"):
         read.even()
-    with pytest.raises(SceneError, match=r"line 3: the time 0.0033 given, 0.005 expected .*as `spacing` says"):
+    with pytest.raises(SceneError, match=r"line 3: the time 0.0033 should be 0.005.*as `spacing` says"):
         read.even(Fraction(1, 200))
 
 
 DAMAGED = [
     # wrong counts
-    (AT2.replace("5,", "6,"), "line 6: the file ends after 5 numbers, the 6 of NPTS on line 4 expected"),
-    (AT2.replace("5,", "4,"), "line 6: more numbers than the 4 of NPTS on line 4 given"),
-    (AT2.replace("5,", "999999,"), "line 6: the file ends after 5 numbers, the 999999 of NPTS"),
-    (AT2.replace("5,", "1000000000,"), "line 4: NPTS = 1000000000 given, at most 1000000 expected"),
-    (AT2.replace("5,", "0,"), "line 4: NPTS = 0 given, at least 1 expected"),
-    (AT2.replace(".0200", "0"), "line 4: DT = 0 given, more than 0 expected"),
-    (AT2.replace(".0200", "-.02"), "line 4: DT = -.02 given, more than 0 expected"),
-    (AT2.replace(".0200", "+-e"), "line 4: NPTS and DT expected, such as"),
-    (AT2.replace("NPTS=   5, DT=", "NPTS=   5, TD="), "line 4: NPTS and DT expected, such as"),
+    (AT2.replace("5,", "6,"), "line 6: the file ends after 5 numbers of the 6 of NPTS on line 4; write all of them"),
+    (AT2.replace("5,", "4,"), "line 6: more numbers than the 4 of NPTS on line 4"),
+    (AT2.replace("5,", "999999,"), "line 6: the file ends after 5 numbers of the 999999 of NPTS"),
+    (AT2.replace("5,", "1000000000,"), "line 4: NPTS = 1000000000 is too many; write at most 1000000"),
+    (AT2.replace("5,", "0,"), "line 4: NPTS = 0 is no record; write at least 1"),
+    (AT2.replace(".0200", "0"), "line 4: DT = 0 is not positive; write more than 0"),
+    (AT2.replace(".0200", "-.02"), "line 4: DT = -.02 is not positive; write more than 0"),
+    (AT2.replace(".0200", "+-e"), "line 4: no NPTS and DT; write them as in"),
+    (AT2.replace("NPTS=   5, DT=", "NPTS=   5, TD="), "line 4: no NPTS and DT; write them as in"),
     (HEAD + "NPTS=   5, DT=   .0200 SEC\n", "line 4: the file ends after 0 numbers"),
     # no numbers
     (AT2.replace("3.", "nan"), "line 5: word 3 is no decimal"),
@@ -167,22 +167,22 @@ DAMAGED = [
     (CSV.replace("-0.5", "NaN"), "line 4: column 2 (accel_g) is no decimal"),
     (CSV.replace("-0.5", ""), "line 4: column 2 (accel_g) is no decimal"),
     (CSV.replace("0.02", "1/50"), "line 4: column 1 (time_s) is no decimal"),
-    (CSV.replace("-0.5", "-0,5"), "line 4: 3 columns given, the 2 of the header expected"),
-    (CSV.replace("0.04,3", "0.04"), "line 5: 1 columns given, the 2 of the header expected"),
+    (CSV.replace("-0.5", "-0,5"), "line 4: 3 columns, but 2 in the header; write as many"),
+    (CSV.replace("0.04,3", "0.04"), "line 5: 1 columns, but 2 in the header; write as many"),
     # uneven times
-    (CSV.replace("0.04", "0.05"), "line 5: the time 0.05 given, 0.04 expected (samples 0.02 apart, as the first two"),
-    (CSV.replace("0.04,3\n", ""), "line 5: the time 0.06 given, 0.04 expected"),
-    (CSV.replace("0.06", "0.04"), "line 6: the time 0.04 given, more than the 0.04 before it expected"),
-    (CSV.replace("0.02", "0"), "line 4: the time 0 given, more than the 0 before it expected"),
+    (CSV.replace("0.04", "0.05"), "line 5: the time 0.05 should be 0.04; write samples 0.02 apart, as the first two"),
+    (CSV.replace("0.04,3\n", ""), "line 5: the time 0.06 should be 0.04"),
+    (CSV.replace("0.06", "0.04"), "line 6: the time 0.04 is not later than the 0.04 before it"),
+    (CSV.replace("0.02", "0"), "line 4: the time 0 is not later than the 0 before it; write times in rising order"),
     # headers
-    (CSV.replace("time_s,accel_g\n", ""), "line 2: a header line expected, such as time,acceleration"),
-    ("time\n0\n1\n", "line 1: one column of times given, a column of samples expected"),
-    ("time,x\n# nothing\n", "line 1: the file ends after its header, a row of numbers expected"),
+    (CSV.replace("time_s,accel_g\n", ""), "line 2: no header; write one such as time,acceleration"),
+    ("time\n0\n1\n", "line 1: only a column of times; write a column of samples"),
+    ("time,x\n# nothing\n", "line 1: the file ends after its header; write rows of numbers"),
     # no text
-    (b"\x89PNG\r\n\x1a\n\x00\x00", "line 1: byte 0x89 is not UTF-8, a file of AT2 or CSV expected"),
+    (b"\x89PNG\r\n\x1a\n\x00\x00", "line 1: byte 0x89 is not UTF-8; write a file of AT2 or CSV"),
     (AT2.encode() + b"\n\xff\xfe", "line 8: byte 0xff is not UTF-8"),
-    ("", "empty, a file of AT2 or CSV expected"),
-    (" \n\n", "empty, a file of AT2 or CSV expected"),
+    ("", "empty; write a file of AT2 or CSV"),
+    (" \n\n", "empty; write a file of AT2 or CSV"),
 ]
 
 
@@ -196,9 +196,7 @@ def test_a_line_says_which_line_is_damaged(tmp_path, text, said):
 
 
 def test_what_is_cut_within_its_header_is_no_at2(tmp_path):
-    with pytest.raises(
-        SceneError, match="line 3: the file ends, three lines of text and one with NPTS and DT expected"
-    ):
+    with pytest.raises(SceneError, match="line 3: the file ends, three lines of text and one with no NPTS and DT"):
         read_record(made(tmp_path, HEAD, "a.at2"))
 
 
@@ -215,9 +213,9 @@ def test_what_is_no_file_on_a_disk_is_refused_at_once(tmp_path):
         large: "larger than 16 MB",
     }
     for path, said in cases.items():
-        with pytest.raises(SceneError, match=f"^{re.escape(str(path))}: {said}, a file of AT2 or CSV"):
+        with pytest.raises(SceneError, match=f"^{re.escape(str(path))}: {said}; write a file of AT2 or CSV"):
             read_record(path)
-    with pytest.raises(SceneError, match="no path"):
+    with pytest.raises(SceneError, match="not a path"):
         read_record("a\0b")
 
 
@@ -234,7 +232,7 @@ def test_the_unit_behind_dt_counts(tmp_path, written, step):
 
 @pytest.mark.parametrize("unit", ["MIN", "USEC", "Hz", "SECRET"])
 def test_another_word_behind_dt_is_refused(tmp_path, unit):
-    with pytest.raises(SceneError, match="line 4: the unit behind DT is not known, SEC or MSEC expected"):
+    with pytest.raises(SceneError, match="line 4: the unit behind DT is not known; write SEC or MSEC"):
         read_record(made(tmp_path, AT2.replace("SEC", unit)))
 
 
@@ -393,15 +391,15 @@ def test_cells_are_read_as_spreadsheets_write_them(tmp_path, text):
         # what may mean two things: a comma that parts thousands, or columns
         (
             "time_s;accel_g\n0.00;0.1\n0.02;1,234\n",
-            'line 3: 1,234 given, a decimal with "." as before expected',
+            'line 3: 1,234 is not a number; write a decimal with "." as before',
         ),
-        ("time_s;accel_g\n0.00;0,1\n", 'line 2: 0,1 given, a decimal with "." as before expected'),
+        ("time_s;accel_g\n0.00;0,1\n", 'line 2: 0,1 is not a number; write a decimal with "." as before'),
         ("time_s;accel_g\n0,0;1.234,5\n", "line 2: column 2 (accel_g) is no decimal"),
         ("time_s;accel_g\n0,0;1,234,5\n", "line 2: column 2 (accel_g) is no decimal"),
         ('time_s,accel_g\n"0,0","1,5"\n', "line 2: column 1 (time_s) is no decimal"),
         ("accel_g\n1,5\n", "line 2: column 1 (accel_g) is no decimal"),
-        ("0,0;1,5\n0,1;2,5\n", "line 1: a header line expected"),
-        ('time_s,accel_g\n0,"1\n', "line 2: quotes around whole cells expected"),
+        ("0,0;1,5\n0,1;2,5\n", "line 1: no header"),
+        ('time_s,accel_g\n0,"1\n', "line 2: quotes inside a cell; write them around whole cells"),
         ('time_s,accel_g\n0,1"2"\n', "line 2: column 2 (accel_g) is no decimal"),
     ],
 )

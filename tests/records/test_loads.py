@@ -219,30 +219,38 @@ def test_a_path_counts_from_the_file_of_the_scene(tmp_path, monkeypatch, capsys)
     made(folder, TAU.replace("0.8", "0.7"), "a.csv")
     assert main(["run", "there/s.toml"]) == 2
     err = capsys.readouterr().err
-    assert err.startswith(f"there/s.toml: load[0].record: {folder / 'a.csv'}: line 4: the time 0.7 given, 0.8 expected")
+    assert err.startswith(f"there/s.toml: load[0].record: {folder / 'a.csv'}: line 4: the time 0.7 should be 0.8")
     assert err.count("\n") == 1
 
 
 @pytest.mark.parametrize(
     ("text", "load", "said"),
     [
-        (AT2, {}, r"load\[0\].record: a file that says s and g given, numbers without units expected"),
-        (CSV, {}, r"load\[0\].record: a file that says s and g given"),
-        ("t,x [kN]\n0,1\n1,1\n", {}, r"load\[0\].record: a file that says kN given"),
+        (AT2, {}, r"load\[0\].record: the file says s and g, but the scene has no units"),
+        (CSV, {}, r"load\[0\].record: the file says s and g, but the scene has no units"),
+        ("t,x [kN]\n0,1\n1,1\n", {}, r"load\[0\].record: the file says kN, but the scene has no units"),
         (
             "x\n1\n",
             {},
-            r"load\[0\].spacing: missing, the time between samples expected \(the file does not say it\)",
+            r"load\[0\].spacing: missing, and the file does not say it; write the time between samples",
         ),
-        ("x\n1\n", {"spacing": 0}, r"load\[0\].spacing: 0 given, a positive number expected"),
-        (TAU, {"spacing": "1/2"}, r"load\[0\].record: .*: line 3: the time 0.4 given, 0.5 expected"),
-        (TAU, {"start": 1}, r"load\[0\].start: 1 given, 0 expected, as in the file, or none"),
-        ("x\n1\n", {"spacing": 1, "start": "1/2"}, r"load\[0\].start: a first sample after 0.5 steps given, at 0 or"),
-        ("x\n1\n", {"spacing": 1, "start": -1}, r"load\[0\].start: a first sample after -1 steps given"),
-        ("t,x\n1,1\n3,1\n", {}, r"load\[0\].record: a first sample after 0.5 steps given"),
-        (TAU, {"column": "b"}, r"load\[0\].record: .*: line 1: no column called b given, one expected \(a\)"),
-        (TAU, {"column": 2}, r"load\[0\].column: 2 given, the name of a column expected"),
-        (TAU, {"times": [0]}, r"load\[0\].times: unknown key, column, spacing, start, scale or record expected"),
+        ("x\n1\n", {"spacing": 0}, r"load\[0\].spacing: 0 is not positive; write a number above 0"),
+        (TAU, {"spacing": "1/2"}, r"load\[0\].record: .*: line 3: the time 0.4 should be 0.5"),
+        (TAU, {"start": 1}, r"load\[0\].start: 1, but the file says 0; write that, or nothing"),
+        (
+            "x\n1\n",
+            {"spacing": 1, "start": "1/2"},
+            r"load\[0\].start: a first sample after 0.5 steps, but the load comes from 0",
+        ),
+        (
+            "x\n1\n",
+            {"spacing": 1, "start": -1},
+            r"load\[0\].start: a first sample after -1 steps, but the load comes from 0",
+        ),
+        ("t,x\n1,1\n3,1\n", {}, r"load\[0\].record: a first sample after 0.5 steps, but the load comes from 0"),
+        (TAU, {"column": "b"}, r"load\[0\].record: .*: line 1: no column called b; write the name of one \(a\)"),
+        (TAU, {"column": 2}, r"load\[0\].column: 2 is not a name; write that of a column"),
+        (TAU, {"times": [0]}, r"load\[0\].times: unknown key; write column, spacing, start, scale or record"),
     ],
 )
 def test_what_does_not_fit_is_refused_in_a_line(tmp_path, text, load, said):
@@ -281,21 +289,21 @@ def test_a_physical_record_has_the_units_of_its_file_or_of_the_scene(tmp_path):
 @pytest.mark.parametrize(
     ("text", "more", "said"),
     [
-        (CSV, 'unit = "m/s^2"', r'unit: "m/s\^2" given, g expected, as in the file, or none'),
-        (AT2, 'spacing = "25 ms"', 'spacing: "25 ms" given, 0.02 s expected, as in the file, or none'),
-        (CSV, 'start = "1 s"', 'start: "1 s" given, 0 s expected, as in the file, or none'),
-        (CSV.replace("accel_g", "a"), "", r'unit: missing, the unit of the samples such as "g" expected'),
+        (CSV, 'unit = "m/s^2"', r'unit: "m/s\^2", but the file says g; write that, or nothing'),
+        (AT2, 'spacing = "25 ms"', 'spacing: "25 ms", but the file says 0.02 s; write that, or nothing'),
+        (CSV, 'start = "1 s"', 'start: "1 s", but the file says 0 s; write that, or nothing'),
+        (CSV.replace("accel_g", "a"), "", r'unit: missing; write the unit of the samples, such as "g"'),
         (
             CSV.replace("accel_g", "force [kN]"),
             "",
-            r'record: .*quake.txt: line 2: "kN" given \(a force\), an acceleration such as',
+            r'record: .*quake.txt: line 2: "kN" is a force, not an acceleration',
         ),
         (
             CSV.replace("time_s", "time [parsec]"),
             "",
-            r'record: .*quake.txt: line 2: "parsec" given \(a length\), a time such as',
+            r'record: .*quake.txt: line 2: "parsec" is a length, not a time',
         ),
-        (AT2, "start = 1", "start: 1 given, a time such as"),
+        (AT2, "start = 1", 'start: 1 is not a time; write one such as "20 ms"'),
         (AT2.replace("-.25", "nan"), "", r"record: .*quake.txt: line 5: word 2"),
     ],
 )

@@ -88,4 +88,4 @@ def test_the_command_takes_quantities(tmp_path, capsys: pytest.CaptureFixture[st
         assert row["hz"]["low"] < row["hz"]["high"]
         assert row["period"]["low"] == pytest.approx(1 / row["hz"]["high"])
     assert main(["modes", str(file), "--range", "x"]) == 2
-    assert "PATH=A..B expected" in capsys.readouterr().err
+    assert "write PATH=A..B" in capsys.readouterr().err

@@ -159,7 +159,7 @@ def test_the_command_prints_csv_and_draws(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["building_m2"], "output.acceleration: none given"),
+        (["building_m2"], "output.acceleration: none, and a response spectrum needs one"),
         (["building_m2", "--damping", "1"], "--damping"),
         (["building_m2", "-o", "floors.txt"], "floors.txt"),
     ],
@@ -173,7 +173,9 @@ def test_a_wrong_request_is_one_line(arguments, said, capsys):
 
 
 def test_too_short_a_horizon_is_refused():
-    with pytest.raises(wavesym.WavesymError, match=r"^output.until: 3 tau given, at least 4.* tau expected"):
+    with pytest.raises(
+        wavesym.WavesymError, match=r"^output.until: 3 tau is too short for a response spectrum; write 4.* tau"
+    ):
         spectra(lower(floor(3)), 0.05)
 
 
@@ -181,7 +183,7 @@ def test_a_scene_without_accelerations_is_refused_by_its_file(tmp_path, capsys):
     file = tmp_path / "mine.toml"
     file.write_text(builtin_text("building_m2"))
     assert main(["spectrum", str(file)]) == 2
-    expected = "output.acceleration: none given, at least one expected for a response spectrum"
+    expected = "output.acceleration: none, and a response spectrum needs one; write acceleration = [PLACE]"
     assert capsys.readouterr().err == f"{file}: {expected}\n"
 
 

@@ -68,9 +68,9 @@ def test_extreme_neighbours_refuse_nobody(model):
 
 
 def test_other_data_are_refused(model):
-    with pytest.raises(WavesymError, match=r"data: an array of shape \(2,\) given, \(\d, 2\) expected"):
+    with pytest.raises(WavesymError, match=r"data: an array of shape \(2,\); write one of shape \(\d, 2\)"):
         model.misfit([0, 1], [1, 2])
-    with pytest.raises(WavesymError, match="data: an infinite number given"):
+    with pytest.raises(WavesymError, match="data: an infinite number; write finite ones, and NaN where there is none"):
         model.misfit([1.0], np.full((len(model.outputs), 1), np.inf))
-    with pytest.raises(WavesymError, match="tau: 0 to 4 expected"):
+    with pytest.raises(WavesymError, match="tau: beyond the data; where there are data write 0 to 4"):
         model.misfit([7.0], np.zeros((len(model.outputs), 1)))

@@ -143,12 +143,12 @@ def test_no_set_and_no_instant_are_empty(model):
 @pytest.mark.parametrize(
     ("parameters", "message"),
     [
-        ({"inertia": [1, 1, 1, 1]}, "inertia given, kappa or load expected"),
-        ({"kappa": [1, 2]}, r"kappa: an array of shape \(2,\) given, \(sets, 3\) expected"),
-        ({"kappa": 1}, r"kappa: an array of shape \(\) given, \(sets, 3\) expected"),
-        ({"kappa": ["a", "b", "c"]}, "kappa: an array of numbers expected"),
-        ({"kappa": [1, 1j, 1]}, "kappa: an array of numbers expected"),
-        ({"kappa": [[1, 1, 1]] * 2, "load": [[1, 1]] * 3}, "2 and 3 sets given"),
+        ({"inertia": [1, 1, 1, 1]}, "inertia: not a parameter of this model; write kappa or load"),
+        ({"kappa": [1, 2]}, r"kappa: an array of shape \(2,\); write one of shape \(sets, 3\)"),
+        ({"kappa": 1}, r"kappa: an array of shape \(\); write one of shape \(sets, 3\)"),
+        ({"kappa": ["a", "b", "c"]}, "kappa: not numbers; write an array of them"),
+        ({"kappa": [1, 1j, 1]}, "kappa: not numbers; write an array of them"),
+        ({"kappa": [[1, 1, 1]] * 2, "load": [[1, 1]] * 3}, "2 and 3 sets; write as many of each parameter"),
     ],
 )
 def test_other_arrays_are_refused(model, parameters, message):

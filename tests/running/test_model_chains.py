@@ -332,8 +332,12 @@ def test_it_compiles_without_a_warning(make, language, tmp_path):
 @pytest.mark.parametrize(
     ("scene", "names", "message"),
     [
-        (shaft(NUMBERS[shaft]), ["kappa"], "kappa given, mass, dashpot, impedance, velocity or load expected"),
-        (shaft(NUMBERS[shaft]), ["spring"], "spring given, mass, dashpot"),
+        (
+            shaft(NUMBERS[shaft]),
+            ["kappa"],
+            "--runtime: kappa is unknown; write mass, dashpot, impedance, velocity or load",
+        ),
+        (shaft(NUMBERS[shaft]), ["spring"], "spring is unknown; write mass, dashpot, impedance, velocity or load"),
         (wavesym.Scene.from_toml("examples/chains/mass_on_fixed_bar.toml"), ["mass"], "the contact at 0 opens"),
     ],
 )

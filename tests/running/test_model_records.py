@@ -145,8 +145,11 @@ BESIDE = {"load": [{"spacing": "2/3", "samples": SAMPLES}, {"times": [1], "a": [
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        (MANY, "load: times at a spacing of 0.3017 leave 8 different remainders of the step 1, at most 7 expected"),
-        (BESIDE, "--runtime: load given where samples act beside another load on the same body"),
+        (
+            MANY,
+            "load: times at a spacing of 0.3017 leave 8 different remainders of the step 1, the limit in a march is 7",
+        ),
+        (BESIDE, "--runtime: load where samples act beside another load on the same body is not supported"),
     ],
 )
 def test_records_that_are_refused(changes, expected, monkeypatch):

@@ -1,4 +1,4 @@
-"""Every mistake is one line: where it is, what is wrong, what was expected."""
+"""Every mistake is one line: where it is, what is wrong, what to write."""
 
 from __future__ import annotations
 
@@ -65,134 +65,159 @@ MISTAKES = [
         DRIVE,
         'name = "good"',
         'name = "good"\ncolour = 1',
-        "colour: unknown key, name, units, system, load or output expected",
+        "colour: unknown key; write name, units, system, load or output",
     ),
-    (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key, type, m, kappa, inertia or damping expected"),
-    (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key, times, body, steps or ramps expected'),
+    (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key; write type, m, kappa, inertia or damping"),
+    (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key; write times, body, steps or ramps'),
     (DRIVE, "until", "untl", "output.untl: unknown key"),
     (DRIVE, 'name = "good"', "", "name: missing"),
-    (DRIVE, "kappa = [1, 1]", "", "system.kappa: missing, a list of m positive numbers expected"),
-    (DRIVE, "body = 3", "", "load[0].body: missing, the number of a body, 1 to m + 1 expected"),
+    (DRIVE, "kappa = [1, 1]", "", "system.kappa: missing; write a list of m positive numbers"),
+    (DRIVE, "body = 3", "", "load[0].body: missing; write the number of a body, 1 to m + 1"),
     (DRIVE, "until = 10", "", "output.until: missing"),
-    (BUILDING, 'base = "force"', "", 'system.base: missing, "force" or "ground" expected'),
-    (BUILDING, 'base = "force"', 'base = "rock"', 'system.base: "rock" given, "force" or "ground" expected'),
-    (BUILDING, "a = [1, 0]\nb = [0, 1]", "", "load[0]: no numbers given, a or b expected"),
-    (BUILDING, '"1/5"\nsamples = [0, 0.1]', '"1/5"', "load[1].samples: missing, a list of numbers expected"),
-    (BUILDING, "samples = [0, 0.1]", "record = 3", "load[1].record: 3 given, the path of a file expected"),
+    (BUILDING, 'base = "force"', "", 'system.base: missing; write "force" or "ground"'),
+    (BUILDING, 'base = "force"', 'base = "rock"', 'system.base: "rock" is not a base; write "force" or "ground"'),
+    (BUILDING, "a = [1, 0]\nb = [0, 1]", "", "load[0]: no numbers; write a or b"),
+    (BUILDING, '"1/5"\nsamples = [0, 0.1]', '"1/5"', "load[1].samples: missing; write a list of numbers"),
+    (BUILDING, "samples = [0, 0.1]", "record = 3", "load[1].record: 3 is not a path"),
     (BUILDING, "samples = [0, 0.1]", 'record = "?"', "load[1].record: "),
-    (BUILDING, "samples = [0, 0.1]", 'record = "?"\ncolum = "a"', "load[1].colum: unknown key, column, spacing,"),
+    (BUILDING, "samples = [0, 0.1]", 'record = "?"\ncolum = "a"', "load[1].colum: unknown key"),
     (BUILDING, 'spacing = "1/5"', "", "load[1].spacing: missing"),
-    (BUILDING, 'spacing = "1/5"', "times = [0]", "load[1].times: unknown key, spacing or samples expected"),
-    (BUILDING, "times = [0,", "body = 1\ntimes = [0,", "load[0].body: unknown key, times, a or b expected"),
+    (BUILDING, 'spacing = "1/5"', "times = [0]", "load[1].times: unknown key; write spacing or samples"),
+    (BUILDING, "times = [0,", "body = 1\ntimes = [0,", "load[0].body: unknown key; write times, a or b"),
     # the system
-    (DRIVE, '"drive"', '"train"', 'system.type: "train" given, "collision", "drive", "building" or "chain" expected'),
-    (DRIVE, 'type = "drive"', "", 'system.type: missing, "collision", "drive", "building" or "chain" expected'),
-    (DRIVE, 'type = "drive"', "type = []", "system.type: a list given"),
-    (COLLISION, "m = 4", "m = 5", "system.m: 5 given, an even integer of at least 4 expected"),
-    (COLLISION, "m = 4", "m = 2", "system.m: 2 given, an even integer of at least 4 expected"),
-    (DRIVE, "m = 2", "m = 0", "system.m: 0 given, an integer of at least 1 expected"),
-    (BUILDING, "m = 2", "m = 0", "system.m: 0 given, an integer of at least 1 expected"),
-    (DRIVE, "m = 2", "m = -2", "system.m: -2 given"),
-    (DRIVE, "m = 2", "m = 2.0", "system.m: 2.0 given, an integer expected"),
-    (DRIVE, "m = 2", "m = true", "system.m: true given, an integer expected"),
-    (DRIVE, "m = 2", 'm = "2"', 'system.m: "2" given, an integer expected'),
-    (DRIVE, "kappa = [1, 1]", "kappa = [1]", "system.kappa: 1 numbers given, 2 expected (m)"),
-    (DRIVE, "[1, 1, 1]", "[1, 1]", "system.inertia: 2 numbers given, 3 expected (m + 1)"),
-    (BUILDING, ', "1/5"]', "]", "system.kappa: 2 numbers given, 3 expected (m + 1)"),
-    (COLLISION, "[0.1, 0.2]", "[]", "system.kappa: 0 numbers given, 2 expected (m/2)"),
-    (COLLISION, "[1, -0.5]", "[1, 0, -1]", "system.velocity: 3 numbers given, 2 expected (m/2)"),
-    (COLLISION, "m = 4", "m = 100000000000", "system.kappa: 2 numbers given, 50000000000 expected (m/2)"),
-    (DRIVE, "m = 2", "m = 100000000000", "system.kappa: 2 numbers given, 100000000000 expected (m)"),
-    (BUILDING, "m = 2", "m = 100000000000", "system.kappa: 3 numbers given, 100000000001 expected (m + 1)"),
-    (BUILDING, "m = 2", f"m = {HUGE}", "system.kappa: 3 numbers given, a number of about "),
-    (COLLISION, "m = 4", f"m = {HUGE}", "system.kappa: 2 numbers given, a number of about "),
+    (
+        DRIVE,
+        '"drive"',
+        '"train"',
+        'system.type: "train" is not a system; write "collision", "drive", "building" or "chain"',
+    ),
+    (DRIVE, 'type = "drive"', "", 'system.type: missing; write "collision", "drive", "building" or "chain"'),
+    (DRIVE, 'type = "drive"', "type = []", "system.type: a list is not a system"),
+    (COLLISION, "m = 4", "m = 5", "system.m: 5 is not an even integer of 4 or more; write one"),
+    (COLLISION, "m = 4", "m = 2", "system.m: 2 is not an even integer of 4 or more; write one"),
+    (DRIVE, "m = 2", "m = 0", "system.m: 0 is not an integer of 1 or more; write one"),
+    (BUILDING, "m = 2", "m = 0", "system.m: 0 is not an integer of 1 or more; write one"),
+    (DRIVE, "m = 2", "m = -2", "system.m: -2 is not an integer of 1 or more; write one"),
+    (DRIVE, "m = 2", "m = 2.0", "system.m: 2.0 is not an integer; write one without point or quotes, such as 2"),
+    (DRIVE, "m = 2", "m = true", "system.m: true is not an integer; write one without point or quotes, such as 2"),
+    (DRIVE, "m = 2", 'm = "2"', 'system.m: "2" is not an integer; write one without point or quotes, such as 2'),
+    (DRIVE, "kappa = [1, 1]", "kappa = [1]", "system.kappa: 1 numbers; write 2 (m)"),
+    (DRIVE, "[1, 1, 1]", "[1, 1]", "system.inertia: 2 numbers; write 3 (m + 1)"),
+    (BUILDING, ', "1/5"]', "]", "system.kappa: 2 numbers; write 3 (m + 1)"),
+    (COLLISION, "[0.1, 0.2]", "[]", "system.kappa: 0 numbers; write 2 (m/2)"),
+    (COLLISION, "[1, -0.5]", "[1, 0, -1]", "system.velocity: 3 numbers; write 2 (m/2)"),
+    (COLLISION, "m = 4", "m = 100000000000", "system.kappa: 2 numbers; write 50000000000 (m/2)"),
+    (DRIVE, "m = 2", "m = 100000000000", "system.kappa: 2 numbers; write 100000000000 (m)"),
+    (BUILDING, "m = 2", "m = 100000000000", "system.kappa: 3 numbers; write 100000000001 (m + 1)"),
+    (BUILDING, "m = 2", f"m = {HUGE}", "system.kappa: 3 numbers; write a number of about 4000 digits (m + 1)"),
+    (COLLISION, "m = 4", f"m = {HUGE}", "system.kappa: 2 numbers; write a number of about 3999 digits (m/2)"),
     (COLLISION, "m = 4", f"m = {HUGE}1", "system.m: a number of about "),
-    (COLLISION, "[1, -0.5]", "[1, 1.5]", "system.velocity[1]: 3/2 given, at most 1 expected, as on its left"),
-    (COLLISION, "[0.1, 0.2]", "[0.1, 0]", "system.kappa[1]: 0 given, a positive number expected"),
-    (COLLISION, "[0.1, 0.2]", "[-0.1, 0.2]", "system.kappa[0]: -0.1 given, a positive number expected"),
-    (DRIVE, "[1, 1, 1]", "[1, 1, -0.0]", "system.inertia[2]: -0.0 given, a positive number expected"),
-    (BUILDING, '["1/4"', '["0/4"', 'system.kappa[0]: "0/4" given, a positive number expected'),
-    (DRIVE, "kappa = [1, 1]", "kappa = 1", "system.kappa: 1 given, a list expected"),
-    (DRIVE, "kappa = [1, 1]", 'kappa = "11"', 'system.kappa: "11" given, a list expected'),
+    (
+        COLLISION,
+        "[1, -0.5]",
+        "[1, 1.5]",
+        "system.velocity[1]: 3/2 is more than the 1 on its left, and the bodies would part",
+    ),
+    (COLLISION, "[0.1, 0.2]", "[0.1, 0]", "system.kappa[1]: 0 is not positive; write a number above 0"),
+    (COLLISION, "[0.1, 0.2]", "[-0.1, 0.2]", "system.kappa[0]: -0.1 is not positive; write a number above 0"),
+    (DRIVE, "[1, 1, 1]", "[1, 1, -0.0]", "system.inertia[2]: -0.0 is not positive; write a number above 0"),
+    (BUILDING, '["1/4"', '["0/4"', 'system.kappa[0]: "0/4" is not positive; write a number above 0'),
+    (DRIVE, "kappa = [1, 1]", "kappa = 1", "system.kappa: 1 is not a list; write [ ] around it"),
+    (
+        DRIVE,
+        "kappa = [1, 1]",
+        'kappa = "11"',
+        'system.kappa: "11" is not a list; write [ ] around it',
+    ),
     # numbers
-    (DRIVE, "kappa = [1, 1]", "kappa = [1, nan]", "system.kappa[1]: nan given, a number expected"),
-    (DRIVE, "kappa = [1, 1]", "kappa = [inf, 1]", "system.kappa[0]: inf given, a number expected"),
-    (DRIVE, "kappa = [1, 1]", "kappa = [1, 1e400]", "system.kappa[1]: 1e400 given, an exponent from"),
+    (DRIVE, "kappa = [1, 1]", "kappa = [1, nan]", "system.kappa[1]: nan is not a number"),
+    (DRIVE, "kappa = [1, 1]", "kappa = [inf, 1]", "system.kappa[0]: inf is not a number"),
+    (DRIVE, "kappa = [1, 1]", "kappa = [1, 1e400]", "system.kappa[1]: 1e400 is too large or too small"),
     (
         DRIVE,
         "kappa = [1, 1]",
         'kappa = ["1/0", 1]',
-        'system.kappa[0]: "1/0" given, a denominator other than 0 expected',
+        'system.kappa[0]: "1/0" divides by 0; write another denominator',
     ),
-    (DRIVE, "kappa = [1, 1]", "kappa = [\"__import__('os')\", 1]", "system.kappa[0]: \"__import__('os')\" given"),
-    (DRIVE, "kappa = [1, 1]", "kappa = [true, 1]", "system.kappa[0]: true given, a number expected"),
-    (DRIVE, "kappa = [1, 1]", "kappa = [[1], 1]", "system.kappa[0]: a list given, a number expected"),
-    (DRIVE, "kappa = [1, 1]", "kappa = [1979-05-27, 1]", "system.kappa[0]: a value of type date given"),
-    (DRIVE, "kappa = [1, 1]", 'kappa = ["\u0661", 1]', 'system.kappa[0]: "\\u0661" given, a number expected'),
-    (DRIVE, "until = 10", "until = nan", "output.until: nan given, a number expected"),
+    (
+        DRIVE,
+        "kappa = [1, 1]",
+        "kappa = [\"__import__('os')\", 1]",
+        "system.kappa[0]: \"__import__('os')\" is not a number",
+    ),
+    (DRIVE, "kappa = [1, 1]", "kappa = [true, 1]", "system.kappa[0]: true is not a number"),
+    (DRIVE, "kappa = [1, 1]", "kappa = [[1], 1]", "system.kappa[0]: a list is not a number"),
+    (DRIVE, "kappa = [1, 1]", "kappa = [1979-05-27, 1]", "system.kappa[0]: a value of type date is not a number"),
+    (DRIVE, "kappa = [1, 1]", 'kappa = ["\u0661", 1]', 'system.kappa[0]: "\\u0661" is not a number'),
+    (DRIVE, "until = 10", "until = nan", "output.until: nan is not a number"),
     # loads
-    (COLLISION, "[output]", "[[load]]\nbody = 1\n[output]", "load: loads given, none expected"),
-    (DRIVE, "[[load]]", "[load]", "load: a table given, a list expected"),
+    (COLLISION, "[output]", "[[load]]\nbody = 1\n[output]", "load: a collision has its velocities; leave [[load]] out"),
+    (DRIVE, "[[load]]", "[load]", "load: a table is not a list; write [ ] around it"),
     (DRIVE, 'name = "good"', 'name = "good"\nload = 3', "no TOML, "),
-    (DRIVE, "body = 3", "body = 0", "load[0].body: 0 given, a body from 1 to 3 expected"),
-    (DRIVE, "body = 3", "body = 4", "load[0].body: 4 given, a body from 1 to 3 expected"),
+    (DRIVE, "body = 3", "body = 0", "load[0].body: 0 is not the number of a body; write 1 to 3"),
+    (DRIVE, "body = 3", "body = 4", "load[0].body: 4 is not the number of a body; write 1 to 3"),
     (DRIVE, "body = 3", f"body = {HUGE}", "load[0].body: a number of about "),
-    (DRIVE, "body = 3", "body = 1.0", "load[0].body: 1.0 given, an integer expected"),
-    (DRIVE, "[0, 3]", "[3, 0]", "load[0].times[1]: 0 given, more than the 3 before it expected"),
-    (DRIVE, "[0, 3]", "[3, 3.0]", "load[0].times[1]: 3 given, more than the 3 before it expected"),
-    (DRIVE, "[0, 3]", "[-1, 3]", "load[0].times[0]: -1 given, a time of at least 0 expected"),
-    (DRIVE, "[0, 3]", "[0, 3, nan]", "load[0].times[2]: nan given"),
-    (DRIVE, "[0, 3]", "[0]", "load[0].steps: 2 numbers given, 1 expected (as many as times)"),
-    (BUILDING, "b = [0, 1]", "b = [0]", "load[0].b: 1 numbers given, 2 expected (as many as times)"),
-    (BUILDING, '"1/5"\nsamples', "0\nsamples", "load[1].spacing: 0 given, a positive number expected"),
-    (BUILDING, "[0, 0.1]", "[]", "load[1].samples: no numbers given, at least 1 expected"),
-    (BUILDING, "[0, 0.1]", '[0, "x"]', 'load[1].samples[1]: "x" given, a number expected'),
+    (
+        DRIVE,
+        "body = 3",
+        "body = 1.0",
+        "load[0].body: 1.0 is not an integer; write one without point or quotes, such as 2",
+    ),
+    (DRIVE, "[0, 3]", "[3, 0]", "load[0].times[1]: 0 is not later than the 3 before it; write times in rising order"),
+    (DRIVE, "[0, 3]", "[3, 3.0]", "load[0].times[1]: 3 is not later than the 3 before it; write times in rising order"),
+    (DRIVE, "[0, 3]", "[-1, 3]", "load[0].times[0]: -1 is before the start; write a time of 0 or later"),
+    (DRIVE, "[0, 3]", "[0, 3, nan]", 'load[0].times[2]: nan is not a number; write an integer, a decimal or "p/q"'),
+    (DRIVE, "[0, 3]", "[0]", "load[0].steps: 2 numbers for 1 times; write 1, one for each"),
+    (BUILDING, "b = [0, 1]", "b = [0]", "load[0].b: 1 numbers for 2 times; write 2, one for each"),
+    (BUILDING, '"1/5"\nsamples', "0\nsamples", "load[1].spacing: 0 is not positive; write a number above 0"),
+    (BUILDING, "[0, 0.1]", "[]", "load[1].samples: no numbers; write at least 1"),
+    (BUILDING, "[0, 0.1]", '[0, "x"]', 'load[1].samples[1]: "x" is not a number'),
     # outputs
-    (DRIVE, "until = 10", "until = -1", "output.until: -1 given, a positive number expected"),
-    (DRIVE, "until = 10", "until = 0", "output.until: 0 given, a positive number expected"),
+    (DRIVE, "until = 10", "until = -1", "output.until: -1 is not positive; write a number above 0"),
+    (DRIVE, "until = 10", "until = 0", "output.until: 0 is not positive; write a number above 0"),
     (DRIVE, "until = 10", "until = 1e12", "output.until: 1000000000000 would cost at least 500000000000 intervals"),
     (DRIVE, "until = 10", "until = 1e300", "output.until: a number of about "),
-    (BUILDING, "1e-8", "0", "output.tolerance: 0 given, a number between 0 and 1 expected"),
-    (BUILDING, "1e-8", "1", "output.tolerance: 1 given, a number between 0 and 1 expected"),
+    (BUILDING, "1e-8", "0", "output.tolerance: 0 is not between 0 and 1; write a tolerance such as 1e-10"),
+    (BUILDING, "1e-8", "1", "output.tolerance: 1 is not between 0 and 1; write a tolerance such as 1e-10"),
     (
         DRIVE,
         "strain = [0.5]",
         "",
-        "output: no positions given, at least one of strain, velocity, displacement, acceleration, force",
+        "output: no positions",
     ),
-    (DRIVE, "strain = [0.5]", "strain = []", "output: no positions given"),
-    (DRIVE, "[0.5]", "[0, 2.5]", "output.strain[1]: 2.5 given, a position from 0 to 2 expected"),
-    (DRIVE, "[0.5]", '["-1/2"]', "output.strain[0]: -1/2 given, a position from 0 to 2 expected"),
-    (DRIVE, "[0.5]", '["2.0001-"]', "output.strain[0]: 2.0001- given, a position from 0 to 2 expected"),
-    (DRIVE, "[0.5]", "[1]", 'output.strain[0]: 1 given, a side of the body there expected: "1-" or "1+"'),
+    (DRIVE, "strain = [0.5]", "strain = []", "output: no positions"),
+    (DRIVE, "[0.5]", "[0, 2.5]", "output.strain[1]: 2.5 is not on the chain; write a position from 0 to 2"),
+    (DRIVE, "[0.5]", '["-1/2"]', "output.strain[0]: -1/2 is not on the chain; write a position from 0 to 2"),
+    (DRIVE, "[0.5]", '["2.0001-"]', "output.strain[0]: 2.0001- is not on the chain; write a position from 0 to 2"),
+    (DRIVE, "[0.5]", "[1]", 'output.strain[0]: 1 has two sides, of the body there; write "1-" or "1+"'),
     (BUILDING, "strain = [0.5]", "strain = [1.0]", '"1.0-" or "1.0+"'),
-    (COLLISION, '["1-"]', '[2, "3"]', 'output.strain[1]: 3 given, a side of the body there expected: "3-" or "3+"'),
-    (DRIVE, "[0.5]", '["1-+"]', 'output.strain[0]: "1-" given, a number expected'),
-    (DRIVE, "[0.5]", '["-"]', 'output.strain[0]: "" given, a number expected'),
-    (DRIVE, "[0.5]", '[0.5, "1/2"]', "output.strain[1]: 1/2 given, another place than 0.5 expected"),
-    (DRIVE, "[0.5]", '["1+", "1-", "1.0+"]', "output.strain[2]: 1.0+ given, another place than 1+ expected"),
-    (DRIVE, "[0.5]", '[0, "0+"]', "output.strain[1]: 0+ given, another place than 0 expected"),
-    (BUILDING, "[0.5, 2]", '["1-", "1+"]', "output.velocity[1]: 1+ given, another place than 1- expected"),
+    (COLLISION, '["1-"]', '[2, "3"]', 'output.strain[1]: 3 has two sides, of the body there; write "3-" or "3+"'),
+    (DRIVE, "[0.5]", '["1-+"]', 'output.strain[0]: "1-" is not a number'),
+    (DRIVE, "[0.5]", '["-"]', 'output.strain[0]: "" is not a number'),
+    (DRIVE, "[0.5]", '[0.5, "1/2"]', "output.strain[1]: 1/2 is the same place as 0.5"),
+    (DRIVE, "[0.5]", '["1+", "1-", "1.0+"]', "output.strain[2]: 1.0+ is the same place as 1+"),
+    (DRIVE, "[0.5]", '[0, "0+"]', "output.strain[1]: 0+ is the same place as 0"),
+    (BUILDING, "[0.5, 2]", '["1-", "1+"]', "output.velocity[1]: 1+ is the same place as 1-"),
     # names
     *(
-        (DRIVE, '"good"', f'"{name}"', f'name: "{name}" given, a name that is no keyword of C, C++ or Python expected')
+        (DRIVE, '"good"', f'"{name}"', f'name: "{name}" is a keyword of C, C++ or Python; write another name')
         for name in ("int", "lambda", "None", "bitor", "class", "restrict", "constexpr", "typeof", "co_await", "match")
     ),
     *(
         (DRIVE, '"good"', f'"{name}"', "name: ")
         for name in ("", "1st", "_x", "a-b", "a b", "n\u00e4me", "\uff41", "a\\n", "../x", "x" * 64)
     ),
-    (DRIVE, '"good"', "1.5", "name: 1.5 given, "),
-    (DRIVE, '"good"', "3", "name: 3 given, "),
+    (DRIVE, '"good"', "1.5", "name: 1.5 is not an identifier"),
+    (DRIVE, '"good"', "3", "name: 3 is not an identifier"),
     # not TOML, or not a scene
     (DRIVE, "[output]", "[output", "no TOML, "),
     (DRIVE, "until = 10", "until = 10\nuntil = 11", "no TOML, "),
-    (DRIVE, "until = 10", "until = 10\nx = " + "9" * 5000, "an integer of more than 4300 digits, fewer expected"),
+    (DRIVE, "until = 10", "until = 10\nx = " + "9" * 5000, "an integer has more than 4300 digits; write fewer"),
     (DRIVE, "until = 10", "until = 10\nx = " + "[" * 100000, "tables or lists too deep in one another"),
     (DRIVE, DRIVE, "system = 3", "name: missing"),
-    (DRIVE, DRIVE, 'name = "s"\nsystem = 3\noutput = 4', "system: 3 given, a table expected"),
+    (DRIVE, DRIVE, 'name = "s"\nsystem = 3\noutput = 4', "system: 3 is not a table; write [system]"),
     (DRIVE, DRIVE, "# nothing\n", "name: missing"),
-    (DRIVE, DRIVE, " \n", "empty, "),
+    (DRIVE, DRIVE, " \n", "empty; write a TOML file"),
 ]
 
 
@@ -222,10 +247,10 @@ def test_the_scenes_that_mistakes_are_made_in_are_right(tmp_path: Path, good: st
 @pytest.mark.parametrize(
     ("content", "expected"),
     [
-        (b"", "empty, "),
-        (b"\x7fELF\x02\x01\x01\x00\x00\xff\xfe", "byte 9 is not UTF-8, "),
+        (b"", "empty; write a TOML file"),
+        (b"\x7fELF\x02\x01\x01\x00\x00\xff\xfe", "byte 9 is not UTF-8; write a TOML file"),
         (b"\x00\x01\x02", "no TOML, "),
-        ('name = "b\u00fccher"'.encode("latin-1"), "byte 9 is not UTF-8, "),
+        ('name = "b\u00fccher"'.encode("latin-1"), "byte 9 is not UTF-8; write a TOML file"),
         (b'name = "half', "no TOML, "),
     ],
 )
@@ -239,13 +264,11 @@ def test_a_file_that_is_no_text(tmp_path: Path, content: bytes, expected: str) -
 
 
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(
-        SceneError, match=r"^nowhere\.toml: No such file or directory, a TOML file, - or a built-in scene"
-    ):
+    with pytest.raises(SceneError, match=r"^nowhere.toml: No such file or directory"):
         Scene.from_toml("nowhere.toml")
-    with pytest.raises(SceneError, match="Is a directory, a TOML file"):
+    with pytest.raises(SceneError, match="Is a directory"):
         Scene.from_toml(tmp_path)
-    with pytest.raises(SceneError, match="no path, "):
+    with pytest.raises(SceneError, match="not a path; "):
         Scene.from_toml("a\0b")
     with pytest.raises(SceneError) as refused:
         Scene.from_toml("two\nlines")
@@ -254,26 +277,26 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="no such device here")
 def test_an_endless_file_is_refused() -> None:
-    with pytest.raises(SceneError, match=r"^/dev/zero: larger than 16 MB, "):
+    with pytest.raises(SceneError, match=r"^/dev/zero: larger than 16 MB"):
         Scene.from_toml("/dev/zero")
 
 
 def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(DRIVE.encode())))
     assert Scene.from_toml("-").name == "good"
-    with pytest.raises(SceneError, match=r"^<stdin>: empty, "):
+    with pytest.raises(SceneError, match=r"^<stdin>: empty"):
         Scene.from_toml("-")
     monkeypatch.setattr(sys, "stdin", None)
-    with pytest.raises(SceneError, match=r"^<stdin>: No standard input, "):
+    with pytest.raises(SceneError, match=r"^<stdin>: No standard input"):
         Scene.from_toml("-")
 
 
 def test_from_python_the_file_is_the_scene() -> None:
-    with pytest.raises(SceneError, match=r"^scene: name: missing, an identifier of C expected$"):
+    with pytest.raises(SceneError, match=r"^scene: name: missing; write an identifier of C$"):
         Scene()
     with pytest.raises(SceneError, match=r"^scene: self: unknown key"):
         Scene(self=1)
-    with pytest.raises(ValueError, match=r"^scene: system: a list given, a table expected$"):
+    with pytest.raises(ValueError, match=r"^scene: system: a list is not a table; write \[system\]$"):
         Scene(name="s", system=[], output={})
 
 

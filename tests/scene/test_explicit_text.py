@@ -76,7 +76,9 @@ def test_what_is_written_out_already_stays() -> None:
         system={"type": "chain", "parts": [{"mass": 1, "velocity": Fraction(1)}, {"rod": 1}]},
         output={"until": 1, "velocity": [0]},
     )
-    with pytest.raises(UnservedError, match="chain given"):
+    with pytest.raises(
+        UnservedError, match="chain has all of its parts written already; write collision, drive or building"
+    ):
         explicit_text(scene)
     assert lower(scene).network.bars[0].delay == fmpq(1)
 

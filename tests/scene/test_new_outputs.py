@@ -39,27 +39,31 @@ def scene(system: object, **outputs: object) -> Scene:
 @pytest.mark.parametrize(
     ("system", "outputs", "line"),
     [
-        (BUILDING, {"acceleration": [1, "1+"]}, "acceleration[1]: 1+ given, another place than 1 expected"),
-        (BUILDING, {"force": [1]}, 'force[0]: 1 given, a side of the body there expected: "1-" or "1+"'),
-        (CHAIN, {"force": ["gear"]}, "force[0]: gear given, a side there expected"),
-        (BUILDING, {"drift": [0]}, "drift[0]: 0 given, the number of a rod from 1 to 3 expected"),
-        (BUILDING, {"drift": [4]}, "drift[0]: 4 given, the number of a rod from 1 to 3 expected"),
-        (BUILDING, {"drift": ["1+"]}, "drift[0]: 1+ given, the number of a rod from 1 to 3 expected"),
-        (DRIVE, {"drift": ["1/2"]}, "drift[0]: 1/2 given, the number of a rod from 1 to 2 expected"),
-        (CHAIN, {"drift": ["a:2"]}, "drift[0]: a:2 given, the number of a rod from 1 to 1 expected"),
-        (CHAIN, {"drift": ["gear"]}, "drift[0]: gear given, the number of a rod expected, on a branch after its name"),
-        (CHAIN, {"drift": [1, "1"]}, "drift[1]: 1 given, another place than 1 expected"),
-        (DRIVE, {"relative": [1]}, "relative[0]: 1 given, a building or a chain expected"),
-        (COLLISION, {"relative": [1]}, "relative[0]: 1 given, a building or a chain expected"),
+        (BUILDING, {"acceleration": [1, "1+"]}, "acceleration[1]: 1+ is the same place as 1"),
+        (BUILDING, {"force": [1]}, 'force[0]: 1 has two sides, of the body there; write "1-" or "1+"'),
+        (CHAIN, {"force": ["gear"]}, 'force[0]: gear has two sides; write "gear-" or "gear+"'),
+        (BUILDING, {"drift": [0]}, "drift[0]: 0 is not the number of a rod; write 1 to 3"),
+        (BUILDING, {"drift": [4]}, "drift[0]: 4 is not the number of a rod; write 1 to 3"),
+        (BUILDING, {"drift": ["1+"]}, "drift[0]: 1+ is not the number of a rod; write 1 to 3"),
+        (DRIVE, {"drift": ["1/2"]}, "drift[0]: 1/2 is not the number of a rod; write 1 to 2"),
+        (CHAIN, {"drift": ["a:2"]}, "drift[0]: a:2 is not the number of a rod; write 1 to 1"),
+        (
+            CHAIN,
+            {"drift": ["gear"]},
+            "drift[0]: gear is not a rod; write the number of one, on a branch after its name",
+        ),
+        (CHAIN, {"drift": [1, "1"]}, "drift[1]: 1 is the same place as 1"),
+        (DRIVE, {"relative": [1]}, "relative[0]: 1, but a drive has no foundation"),
+        (COLLISION, {"relative": [1]}, "relative[0]: 1, but a collision has no foundation"),
         (
             {"type": "chain", "parts": [{"mass": 1}, {"rod": 1}, "fixed"]},
             {"relative": [0]},
-            "relative[0]: 0 given, a chain with 1 motion end expected, which it is relative to (0 there)",
+            "relative[0]: 0 is relative to the one end that moves, and there are 0; write a chain with 1 motion end",
         ),
         (
             {"type": "chain", "parts": [{"motion": "velocity"}, {"rod": 1}, {"motion": "acceleration"}]},
             {"relative": [0]},
-            "relative[0]: 0 given, a chain with 1 motion end expected, which it is relative to (2 there)",
+            "relative[0]: 0 is relative to the one end that moves, and there are 2; write a chain with 1 motion end",
         ),
     ],
 )
@@ -77,7 +81,7 @@ def test_a_force_needs_a_side_only_where_it_jumps() -> None:
         "force@step", "force@0", "force@4", "force@3-", "force@3+", "force@a:0"
     ]  # fmt: skip
     for place in ("step", 4):
-        with pytest.raises(SceneError, match="a side there expected"):
+        with pytest.raises(SceneError, match="has two sides"):
             scene(CHAIN, strain=[place])
     taus = np.linspace(0, 3, 50)
     load = [{"at": "gear", "times": [0], "steps": [1]}]
@@ -131,7 +135,7 @@ def test_a_named_system_written_out_has_the_same_outputs(
 
 
 def test_without_a_motion_end_nothing_is_relative_when_it_is_written_out() -> None:
-    with pytest.raises(WavesymError, match=r'output.relative: given with base = "force", "ground" expected'):
+    with pytest.raises(WavesymError, match=r'output.relative: base = "force" has no foundation that moves'):
         explicit_text(scene({**BUILDING, "base": "force"}, relative=[3]))
 
 
@@ -146,5 +150,5 @@ def test_all_drifts_are_those_of_every_rod() -> None:
         output={"until": 1, "drift": "all"},
     )
     assert [output.name for output in chain.outputs] == ["drift@1", "drift@2", "drift@3"]
-    with pytest.raises(SceneError, match=r'output\.drift: "each" given, a list or "all" expected'):
+    with pytest.raises(SceneError, match=r'output\.drift: "each" is not a list; write \[1, 2, 3\], or "all"'):
         building.with_({"output.drift": "each"})

@@ -88,10 +88,10 @@ def test_the_page_speaks_of_lengths(bar: Path) -> None:
 @pytest.mark.parametrize(
     ("place", "right"),
     [
-        ("2.5 m", '"2.5 m" given, a side there expected: "2.5 m-" or "2.5 m+"'),
-        ("2100 mm", '"2100 mm" given, the name or place of a node expected'),
-        ("3.9 m", '"3.9 m" given, a node that can move expected (a "fixed" end cannot)'),
-        ("4 m", '"4 m" given, a place from 0 to 3.9 m expected'),
+        ("2.5 m", '"2.5 m" has two sides; write "2.5 m-" or "2.5 m+"'),
+        ("2100 mm", '"2100 mm" is not a node; write the name or place of one'),
+        ("3.9 m", '"3.9 m" is a "fixed" end, which cannot move; write a node that can'),
+        ("4 m", '"4 m" is not on the chain; write a place from 0 to 3.9 m'),
     ],
 )
 def test_a_refused_place_of_a_load_is_the_one_that_was_written(place: str, right: str, tmp_path: Path) -> None:
@@ -109,7 +109,7 @@ def test_refusals_of_programs(tmp_path: Path) -> None:
     with pytest.raises(WavesymError, match="what acts at 1200 mm jumps by 1000 N at 0 ms"):
         make(lower(scene(plain, tmp_path / "bar.toml")), Request("modes"))
     damped = plain.replace('"fixed"', '"absorbing"').replace('type = "chain"', 'type = "chain"\ndamping = 0.01')
-    with pytest.raises(WavesymError, match="damping: given with a dashpot or an absorbing end at 3900 mm"):
+    with pytest.raises(WavesymError, match="damping: stands beside a dashpot or an absorbing end at 3900 mm"):
         scene(damped, tmp_path / "bar.toml")
 
 

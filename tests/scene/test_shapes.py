@@ -101,18 +101,21 @@ def test_a_pile_under_half_a_sine() -> None:
     [
         (
             {"shape": "saw", "amplitude": 1},
-            'load[0].shape: "saw" given, "sine", "half-sine", "exponential" or "ricker"',
+            'load[0].shape: "saw" is not a shape',
         ),
-        ({"shape": "sine", "amplitude": 1}, "load[0].frequency: missing, a positive number expected (of a sine)"),
-        ({"shape": "sine", "amplitude": 1, "frequency": 0}, "load[0].frequency: 0 given, a positive number expected"),
+        ({"shape": "sine", "amplitude": 1}, "load[0].frequency: missing, and a sine has it; write a positive number"),
+        (
+            {"shape": "sine", "amplitude": 1, "frequency": 0},
+            "load[0].frequency: 0 is not positive; write a number above 0",
+        ),
         (
             {"shape": "sine", "amplitude": 1, "frequency": 1, "duration": 1},
-            "load[0].duration: given, none expected (a sine has a frequency)",
+            "load[0].duration: not of a sine; write frequency",
         ),
         ({"shape": "sine", "frequency": 1}, "load[0].amplitude: missing"),
         (
             {"shape": "sine", "amplitude": 1, "frequency": 1, "start": -1},
-            "load[0].start: -1 given, a time of at least 0",
+            "load[0].start: -1 is before the start; write a time of 0 or later",
         ),
     ],
 )

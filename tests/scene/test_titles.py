@@ -74,12 +74,12 @@ def test_names_and_units(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("position", "message"),
     [
-        ({"at": 0}, "output.force[0].name: missing, a name for people expected"),
-        ({"name": "x"}, "output.force[0].at: missing, a place expected"),
+        ({"at": 0}, "output.force[0].name: missing; write a name for people"),
+        ({"name": "x"}, "output.force[0].at: missing; write a place"),
         ({"at": 0, "name": ""}, "output.force[0].name"),
         ({"at": 0, "name": "a\nb"}, "output.force[0].name"),
-        ({"at": 0, "name": "*/ int x;"}, "a line without */ expected"),
-        ({"at": 0, "name": "x", "unit": "N"}, "output.force[0].unit: unknown key, at or name expected"),
+        ({"at": 0, "name": "*/ int x;"}, '"*/ int x;" is not a name for people; write a line without */'),
+        ({"at": 0, "name": "x", "unit": "N"}, "output.force[0].unit: unknown key; write at or name"),
     ],
 )
 def test_what_is_no_name_gets_one_line(position: dict[str, object], message: str) -> None:

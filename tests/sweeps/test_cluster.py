@@ -253,7 +253,7 @@ def test_a_worker_with_another_wavesym_is_refused(lab: Lab) -> None:
     code, err = finished(lab.client())
     assert code == 2, err
     assert err.count("\n") == 1
-    assert f"wavesym 99.1 found at a worker, {__version__} expected" in err
+    assert f"wavesym 99.1 at a worker, {__version__} here; install the same" in err
     assert lab.computed() == []
     assert lab.marks() == 0
 

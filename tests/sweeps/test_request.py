@@ -73,50 +73,77 @@ DRIVE = 'scene = "drive_m1"\n'
     ("text", "expected"),
     [
         ("x =", "sweep.toml: no TOML"),
-        ('[vary]\n"output.until" = [1]', "sweep.toml: scene: missing, the path of a scene expected"),
-        (DRIVE, "sweep.toml: nothing that is varied given"),
-        (DRIVE + "[vari]", "sweep.toml: vari: unknown key, scene, records, zip, vary or keep expected. Did you"),
+        ('[vary]\n"output.until" = [1]', "sweep.toml: scene: missing; write the path of a scene"),
+        (DRIVE, "sweep.toml: nothing is varied; write a table [vary], or records"),
+        (DRIVE + "[vari]", "sweep.toml: vari: unknown key; write scene, records, zip, vary or keep. Did you"),
         ('scene = "nowhere.toml"\n[vary]\n"output.until" = [1]', "nowhere.toml: No such file"),
-        (DRIVE + '[vary]\n"output.until" = []', 'vary."output.until": no values given, at least 1 expected'),
-        (DRIVE + '[vary]\n"output.until" = 3', 'vary."output.until": 3 given, a list of values expected'),
+        (DRIVE + '[vary]\n"output.until" = []', 'vary."output.until": no values; write at least 1'),
+        (DRIVE + '[vary]\n"output.until" = 3', 'vary."output.until": 3 is not a list of values'),
         (DRIVE + '[vary]\n"output.till" = [3]', 'vary."output.till": unknown key'),
         (DRIVE + '[vary]\n"system.kappa[7]" = [3]', 'vary."system.kappa[7]": nothing at [7]'),
         (DRIVE + '[vary]\n"sistem.kappa[0]" = [3]', 'vary."sistem.kappa[0]": nothing called "sistem". Did you mean'),
-        (DRIVE + '[vary]\n"a b" = [3]', 'vary."a b": no path'),
-        (DRIVE + '[vary]\n"output.until" = [3, 4, "6/2"]', '"6/2" given as [0] and again as [2], once expected'),
-        (DRIVE + '[vary]\n"output.until" = { from = 1, to = 1, count = 2 }', "given as [0] and again as [1]"),
-        (DRIVE + '[vary]\n"output.until" = { from = 1, to = 2, count = 0 }', ".count: 0 given, at least 1 expected"),
-        (DRIVE + '[vary]\n"output.until" = { from = 1, to = 2, count = 1 }', "at least 2 expected"),
+        (
+            DRIVE + '[vary]\n"a b" = [3]',
+            'vary."a b": not a path; write one such as "output.until" or "load[0].times[2]"',
+        ),
+        (DRIVE + '[vary]\n"output.until" = [3, 4, "6/2"]', '"6/2" stands at [0] and again at [2]; write it once'),
+        (
+            DRIVE + '[vary]\n"output.until" = { from = 1, to = 1, count = 2 }',
+            '"1" stands at [0] and again at [1]; write it once',
+        ),
+        (DRIVE + '[vary]\n"output.until" = { from = 1, to = 2, count = 0 }', ".count: 0 values; write at least 1"),
+        (
+            DRIVE + '[vary]\n"output.until" = { from = 1, to = 2, count = 1 }',
+            'vary."output.until".count: 1 value, but `from` and `to` differ; write 2 or more',
+        ),
         (DRIVE + '[vary]\n"output.until" = { from = 0, to = 2, count = 3, log = true }', "two numbers of one sign"),
-        (DRIVE + '[vary]\n"output.until" = { from = 1, to = "2 s", count = 3 }', "a number in no unit expected"),
+        (DRIVE + '[vary]\n"output.until" = { from = 1, to = "2 s", count = 3 }', "write a number in no unit"),
         (
             DRIVE + '[vary]\n"output.until" = { from = 1, to = 2, count = 1_000_000_000 }',
-            "vary: 1000000000 cases given",
+            "vary: 1000000000 cases, the limit is 10000000; write fewer values",
         ),
         (
             DRIVE + "[vary]\n" + "".join(f'"{p}" = {{ from = 1, to = 2, count = 1000 }}\n' for p in ("a", "b", "c")),
-            "vary: 1000000000 cases given, at most 10000000 expected (fewer values help)",
+            "vary: 1000000000 cases, the limit is 10000000; write fewer values",
         ),
         (
             DRIVE + '[vary]\nzip = true\n"output.until" = [3, 4]\n"system.kappa[0]" = [1]',
             "2 of output.until, 1 of system",
         ),
-        (DRIVE + '[vary]\n"system.kappa" = [[1]]\n"system.kappa[0]" = [1]', "given beside"),
-        (DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nsummary = ["mean"]', 'keep.summary[0]: "mean" given, min, max'),
-        (DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nhistories = 1', "keep.histories: 1 samples given"),
-        (DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nsummary = []', "keep: nothing given"),
-        (DRIVE + 'records = "*.at2"', "records: 0 loads with a record in the scene, 1 expected"),
+        (
+            DRIVE + '[vary]\n"system.kappa" = [[1]]\n"system.kappa[0]" = [1]',
+            'vary."system.kappa[0]": "system.kappa" is varied too, and one is part of the other',
+        ),
+        (
+            DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nsummary = ["mean"]',
+            'keep.summary[0]: "mean" is not a statistic; write min, max, tau_min, tau_max or arrival',
+        ),
+        (
+            DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nhistories = 1',
+            "keep.histories: 1 samples; write 2 to 1000000",
+        ),
+        (
+            DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nsummary = []',
+            "keep: keeps nothing; write a summary or histories",
+        ),
+        (DRIVE + 'records = "*.at2"', "records: 0 loads of the scene have a record; write one that has"),
         (
             DRIVE + "[vary]\n" + "".join(f'"load[{k}].body" = [1]\n' for k in range(31)),
-            "vary: 31 dimensions given, at most",
+            "vary: 31 dimensions, the limit is 30",
         ),
         (
             DRIVE + '[vary]\n"output.until" = ["\\u0000", 1979-05-27]\n"output.tolerance" = ["x"]\nx = [1]',
             'vary."x": a whole table',
         ),
-        ('scene = "frame.toml"\nrecords = "\\u0000"', 'records[0]: no file found at "\\x00"'),
-        ('scene = "frame.toml"\nrecords = "*.csv"', 'records[0]: no file found at "*.csv"'),
-        (DRIVE + '[vary]\n"output" = [{ until = 3, strain = [0] }]', 'vary."output": a whole table given'),
+        (
+            'scene = "frame.toml"\nrecords = "\\u0000"',
+            'records[0]: no file at "\\x00"; write that of an AT2 or CSV file',
+        ),
+        ('scene = "frame.toml"\nrecords = "*.csv"', 'records[0]: no file at "*.csv"; write that of an AT2 or CSV file'),
+        (
+            DRIVE + '[vary]\n"output" = [{ until = 3, strain = [0] }]',
+            'vary."output": a whole table; write a field in it, such as "output.until"',
+        ),
     ],
 )
 def test_what_is_wrong_with_a_sweep_is_one_line(folder: Path, text: str, expected: str) -> None:
@@ -153,7 +180,9 @@ def test_zipped_fields_run_side_by_side(folder: Path) -> None:
     ]
     inside = text.replace("zip = true\n[vary]\n", "[vary]\nzip = true\n")
     assert planned(folder, inside).sha256 == made.sha256
-    assert "again as [2]" in refused(folder, text.replace("[1, 2, 1]", "[1, 2, 1]").replace("[3, 4, 5]", "[3, 4, 3]"))
+    assert "again at [2]; write it once" in refused(
+        folder, text.replace("[1, 2, 1]", "[1, 2, 1]").replace("[3, 4, 5]", "[3, 4, 3]")
+    )
 
 
 @pytest.mark.slow

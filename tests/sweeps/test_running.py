@@ -71,7 +71,7 @@ def test_a_sweep_that_is_done_is_not_done_again(tmp_path: Path, computed: list[i
 def test_the_folder_of_another_sweep_is_refused(tmp_path: Path, computed: list[int]) -> None:
     run(SWEEP, tmp_path)
     before = files(tmp_path)
-    with pytest.raises(WavesymError, match=r"the folder of another sweep given .*, its own or a new one expected"):
+    with pytest.raises(WavesymError, match=r"the folder of another sweep .*; write its own or a new one"):
         run({**SWEEP, "keep": {"summary": ["max"]}}, tmp_path)
     assert files(tmp_path) == before
 
@@ -197,7 +197,7 @@ def test_a_case_that_refuses_leaves_its_reason_and_the_others_go_on(tmp_path: Pa
             {
                 "case": 1,
                 "values": {"system.kappa[0]": "-1"},
-                "reason": "scene: system.kappa[0]: -1 given, a positive number expected",
+                "reason": "scene: system.kappa[0]: -1 is not positive; write a number above 0",
             }
         ],
     }
@@ -294,7 +294,7 @@ def in_namespace(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
 
 def test_what_is_missing_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(WavesymError, match=r"zarr not installed, the extra `sweep` expected \(pip install"):
+    with pytest.raises(WavesymError, match=r"zarr not installed; write pip install -e '.\[sweep\]'"):
         run(SWEEP, tmp_path)
 
 

@@ -179,7 +179,7 @@ def test_sets_that_their_program_refuses_are_computed_alone() -> None:
     cases = computed(made := planned({"scene": short, "vary": {"system.kappa[0]": kappa}}))
     for place, found, _ in cases[-4:]:
         assert_alike(made, place, found)
-    assert "a positive number expected" in cases[-1][2]
+    assert "is not positive; write a number above 0" in cases[-1][2]
     assert np.isnan(cases[-1][1]["max"]).all()
 
 

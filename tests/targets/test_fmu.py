@@ -143,14 +143,20 @@ def test_what_no_scene_changes_is_shipped_as_it_stands(name):
 
 
 REFUSED = {
-    "language": ({"language": "numpy"}, "language: numpy given with --target, c expected"),
-    "precision": ({"precision": "single"}, "precision: single given with --target, double expected"),
-    "runtime": ({"runtime": ["load"]}, "--runtime: load given with a stream, other parameters expected"),
-    "modes": ({"runtime": ["kappa"], "evaluator": "modes"}, "runtime: kappa given with modes and --target"),
-    "package": ({"package": True}, "--package: True given with --target, nothing expected"),
-    "evaluator": ({"evaluator": "march"}, "--evaluator: march given with --stream, auto expected"),
-    "step": ({"evaluator": "modes", "step": Fraction(1, 8)}, "--step: 1/8 given with --evaluator modes"),
-    "target": ({"target": "fmu1"}, "target: fmu1 given, fmu2 or fmu3 expected"),
+    "language": ({"language": "numpy"}, "language: numpy does not go with --target; write c"),
+    "precision": ({"precision": "single"}, "precision: single does not go with --target; write double"),
+    "runtime": ({"runtime": ["load"]}, "--runtime: load, but the inputs of a stream are its loads"),
+    "modes": (
+        {"runtime": ["kappa"], "evaluator": "modes"},
+        "runtime: kappa does not go with modes and --target; leave --runtime out",
+    ),
+    "package": ({"package": True}, "--package: True does not go with --target; leave it out"),
+    "evaluator": ({"evaluator": "march"}, "--evaluator: march does not go with --stream; write auto"),
+    "step": (
+        {"evaluator": "modes", "step": Fraction(1, 8)},
+        "--step: 1/8 does not go with --evaluator modes, whose loads say the step",
+    ),
+    "target": ({"target": "fmu1"}, "target: fmu1 is unknown; write fmu2 or fmu3"),
 }
 
 
@@ -165,7 +171,7 @@ def test_what_is_not_served_is_refused_in_one_line(case, tmp_path):
 
 def test_check_has_nothing_to_compare(capsys):
     assert main(["generate", "drive_m1", "--target", "fmu2", "--check"]) == 2
-    assert "--check given with --target fmu2, nothing expected" in capsys.readouterr().err
+    assert "--check: binaries of --target fmu2 differ by compiler" in capsys.readouterr().err
 
 
 def test_without_any_compiler_it_says_so(monkeypatch, tmp_path):

@@ -232,14 +232,14 @@ def test_its_selftest_sees_what_is_broken(tmp_path):
 @pytest.mark.parametrize(
     ("scene", "runtime", "message"),
     [
-        (BUILDING, ["velocity"], "--runtime: velocity given, kappa or load expected"),
-        (COLLISION, ["load"], "--runtime: load given, kappa or velocity expected"),
-        (COLLISION, ["kappa", "kappa"], "--runtime: kappa given twice, once expected"),
-        (COLLISION, [""], "--runtime: nothing given, kappa or velocity expected"),
+        (BUILDING, ["velocity"], "--runtime: velocity is unknown; write kappa or load"),
+        (COLLISION, ["load"], "--runtime: load is unknown; write kappa or velocity"),
+        (COLLISION, ["kappa", "kappa"], "--runtime: kappa stands twice; write it once"),
+        (COLLISION, [""], "--runtime: an empty name is unknown; write kappa or velocity"),
         (
             wavesym.Scene.from_toml("stepped_shaft"),
             ["kappa"],
-            "--runtime: kappa given, mass, dashpot, impedance, velocity or load",
+            "--runtime: kappa is unknown; write mass, dashpot, impedance, velocity or load",
         ),
     ],
 )
@@ -251,7 +251,7 @@ def test_what_is_not_served_is_refused(scene, runtime, message, tmp_path):
 
 @pytest.mark.parametrize("more", [{"language": "all"}, {"evaluator": "march"}, {"optimize": "size"}])
 def test_other_options_are_refused(more, tmp_path):
-    with pytest.raises(WavesymError, match="with --runtime"):
+    with pytest.raises(WavesymError, match=r"go with --runtime|--runtime makes C"):
         wavesym.generate(BUILDING, tmp_path / "none", runtime=["kappa"], **more)
 
 

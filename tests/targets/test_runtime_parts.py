@@ -139,22 +139,25 @@ def test_a_chain_has_rates(tmp_path):
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (["--with", "peaks"], "--with: peaks given without --runtime, nothing expected"),
-        (["--kappa-max", "3"], "--kappa-max: 3 given without --runtime, nothing expected"),
-        (["--runtime", "kappa", "--with", "peak"], 'peak given, peaks, gradients, .* expected. Did you mean "peaks"?'),
-        (["--runtime", "kappa", "--with", "bound,bound"], "--with: bound given twice, once expected"),
+        (["--with", "peaks"], "--with: peaks goes with --runtime only; leave --with out"),
+        (["--kappa-max", "3"], "--kappa-max: 3 goes with --runtime only; leave --kappa-max out"),
+        (
+            ["--runtime", "kappa", "--with", "peak"],
+            'peak is unknown; write peaks, gradients, .*. Did you mean "peaks"?',
+        ),
+        (["--runtime", "kappa", "--with", "bound,bound"], "--with: bound stands twice; write it once"),
         (
             ["--runtime", "kappa", "--with", ""],
-            "--with: nothing given, peaks, gradients, batch, misfit or bound",
+            "--with: an empty name is unknown; write peaks, gradients, batch, misfit or bound",
         ),
-        (["--runtime", "kappa", "--stream", "--with", "peaks"], "--with: peaks given with --stream, nothing expected"),
+        (["--runtime", "kappa", "--stream", "--with", "peaks"], "--with: peaks does not go with --stream; leave"),
         (
             ["--runtime", "kappa", "--target", "fmu2", "--kappa-max", "3"],
-            "--kappa-max: 3 given with --target fmu2",
+            "--kappa-max: 3 does not go with --target fmu2",
         ),
-        (["--runtime", "load", "--kappa-max", "3"], "--kappa-max: 3 given with --runtime load, nothing expected"),
-        (["--runtime", "kappa", "--kappa-max", "0"], "0 given, a positive number such as 5 or 1/2 expected"),
-        (["--runtime", "kappa", "--kappa-max", "nan"], "nan given, a positive number such as 5 or 1/2 expected"),
+        (["--runtime", "load", "--kappa-max", "3"], "--kappa-max: 3 with --runtime load: bodies stay as heavy"),
+        (["--runtime", "kappa", "--kappa-max", "0"], "0 is not a positive number; write one such as 5 or 1/2"),
+        (["--runtime", "kappa", "--kappa-max", "nan"], "nan is not a positive number; write one such as 5 or 1/2"),
         (["--runtime", "kappa", "--kappa-max", "1e9"], "for kappa up to 1e.09 need .* a smaller --kappa-max, helps"),
     ],
 )

@@ -238,7 +238,7 @@ def test_what_is_refused_changes_nothing_and_a_copy_goes_on():
         assert np.array_equal(stream.state, before)
     other = stream.copy()
     assert np.array_equal(stream.step(0.4, [0.5])[1], other.step(0.4, [0.5])[1])
-    with pytest.raises(WavesymError, match=r"loads: 2 given, 1 expected \(M1\)"):
+    with pytest.raises(WavesymError, match=r"loads: 2 values for 1 loads; write one for each of M1"):
         stream.step(0.1, [1.0, 2.0])
 
 
@@ -258,7 +258,7 @@ def test_what_rounding_may_do_is_said_where_it_is_more_than_was_asked_for(precis
 @pytest.mark.parametrize("step", ["0", "-1/8", "soon", "1e-400"])
 def test_a_step_is_a_positive_number(step, capsys):
     assert main(["generate", "drive_m1", "--stream", "--step", step]) == 2
-    assert f"{step} given, a positive number of tau such as 0.1 or 1/8 expected" in capsys.readouterr().err
+    assert f"{step} is not a positive number of tau; write one such as 0.1 or 1/8" in capsys.readouterr().err
 
 
 @pytest.mark.slow
@@ -273,16 +273,20 @@ def test_nothing_is_left_out_as_a_stream_has_no_horizon():
 
 REFUSED = {
     "bouncing": ({"stream": True}, "chained", "opens and closes"),
-    "damped": ({"stream": True}, "damped", "system.damping: given, none expected"),
-    "language": ({"stream": True, "language": "numpy"}, "drive_m1", "numpy given with --stream, c expected"),
-    "evaluator": ({"stream": True, "evaluator": "pieces"}, "drive_m1", "pieces given with --stream, auto expected"),
+    "damped": ({"stream": True}, "damped", "system.damping: supported by modes only"),
+    "language": ({"stream": True, "language": "numpy"}, "drive_m1", "--stream makes C, not numpy; write c"),
+    "evaluator": ({"stream": True, "evaluator": "pieces"}, "drive_m1", "pieces does not go with --stream; write auto"),
     "runtime": (
         {"stream": True, "runtime": ["load"]},
         "drive_m1",
-        "load given with a stream, other parameters expected",
+        "load, but the inputs of a stream are its loads",
     ),
-    "step": ({"step": Fraction(1, 8)}, "drive_m1", "1/8 given without --stream"),
-    "modes": ({"stream": True, "step": Fraction(1, 8), "evaluator": "modes"}, "drive_m1", "1/8 given with --evaluator"),
+    "step": ({"step": Fraction(1, 8)}, "drive_m1", "1/8 is that of a stream"),
+    "modes": (
+        {"stream": True, "step": Fraction(1, 8), "evaluator": "modes"},
+        "drive_m1",
+        "1/8 does not go with --evaluator",
+    ),
     "beyond": ({"stream": True}, "beyond", "output: a stream needs numbers beyond the range of double precision"),
     "nothing left": ({"stream": True}, "weak", "rounding may leave nothing of strain@0.5"),
 }

@@ -72,18 +72,18 @@ def test_each_set_is_the_scene_that_has_it(gears):
 
 
 def test_parameters_are_named_and_counted(gears):
-    with pytest.raises(WavesymError, match="kappa: 3 given, 2 expected"):
+    with pytest.raises(WavesymError, match="kappa: 3 values; write 2"):
         gears.start(kappa=[1, 2, 3])
-    with pytest.raises(WavesymError, match="load: given, kappa, inertia expected"):
+    with pytest.raises(WavesymError, match="load: not a parameter of this stream; write kappa, inertia"):
         gears.start(load=[1])
 
 
 @pytest.mark.parametrize(
     ("names", "said"),
     [
-        (["load"], "--runtime: load given with a stream, other parameters expected"),
-        (["velocity"], "--runtime: velocity given, kappa, inertia or load expected"),
-        (["kappa", "kappa"], "--runtime: kappa given twice, once expected"),
+        (["load"], "--runtime: load, but the inputs of a stream are its loads"),
+        (["velocity"], "--runtime: velocity is unknown; write kappa, inertia or load"),
+        (["kappa", "kappa"], "--runtime: kappa stands twice; write it once"),
     ],
 )
 def test_what_is_no_parameter_is_refused(names, said):

@@ -105,4 +105,4 @@ def test_wrong_tables_fail_by_every_route_that_can_see_them(monkeypatch):
 @pytest.mark.parametrize("arguments", [["--derived", "drive_m1"], ["--derived", "--published"]])
 def test_one_thing_at_a_time(arguments, capsys):
     assert main(["verify", *arguments]) == 2
-    assert "more than one of SCENE, --published and --derived given" in capsys.readouterr().err
+    assert "SCENE, --published and --derived exclude each other" in capsys.readouterr().err

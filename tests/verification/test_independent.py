@@ -237,5 +237,5 @@ def test_verify_exits_with_1(
 
 def test_a_system_that_is_not_read_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(READERS, "drive")
-    with pytest.raises(UnservedError, match=r"system\.type: drive given, collision, building, chain expected"):
+    with pytest.raises(UnservedError, match=r"system.type: drive is not supported by integrators"):
         api.verify([Scene.from_toml("drive_m1")])

@@ -171,9 +171,9 @@ def test_an_output_that_does_not_move_before_an_integration_ends_is_not_judged_b
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (["--stream", "--evaluator", "march"], "--evaluator: march given with --stream, auto expected"),
-        (["--runtime", "speed"], "--runtime: speed given, kappa, inertia or load expected"),
-        (["--published", "--stream"], "--stream given with --published"),
+        (["--stream", "--evaluator", "march"], "--evaluator: march does not go with --stream; write auto"),
+        (["--runtime", "speed"], "--runtime: speed is unknown; write kappa, inertia or load"),
+        (["--published", "--stream"], "of scenes only; leave it out, or --published"),
     ],
 )
 def test_a_wrong_request_is_one_line(options: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -100,7 +100,7 @@ def cli(context: click.Context) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and give its exit status; what goes wrong for a user is one line on standard error."""
     if sys.stdout is None:
-        return _refused("wavesym: standard output is closed, an open one expected", WRONG_REQUEST)
+        return _refused("wavesym: standard output is closed; open it, or write a file with -o", WRONG_REQUEST)
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="surrogateescape")  # the name of a file may be no UTF-8
     gc.set_threshold(*_SELDOM)

@@ -75,11 +75,11 @@ def derive(source: str | Scene, m: int | None, format: str, walks: bool, interva
     from wavesym import api
 
     if m is not None and not isinstance(source, str):
-        raise click.UsageError("--m given for a scene, which has its own m; it is for the name of a system")
+        raise click.UsageError("--m: a scene has its own m; leave --m out, or write the name of a system")
     if walks and isinstance(source, str) and m is None:
-        raise click.UsageError("--walks: --m M expected with the name of a system, since walks are those of one chain")
+        raise click.UsageError("--walks: walks are those of one chain; with the name of a system write --m M too")
     if intervals is not None and not walks:
-        raise click.UsageError("--intervals given without --walks; it is for --walks only")
+        raise click.UsageError("--intervals: of walks only; write --walks too")
     try:
         with progress(f"derive {source if isinstance(source, str) else source.name}"):
             text = api.walks(source, m, intervals or WALKED, format) if walks else api.derive(source, m, format)

@@ -61,7 +61,7 @@ def frf(
 
     context = click.get_current_context()
     if at is not None and not low is high is points is None:
-        raise click.UsageError("--at and --from, --to or --points given, one of them expected", context)
+        raise click.UsageError("--at excludes --from, --to and --points; write one or the other", context)
     drawn = is_drawn(out, (".csv", ".json"))
     if out is not None:
         refuse_unwritable(out)

@@ -21,12 +21,12 @@ FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tol
 
 
 class PositiveParameter(click.ParamType[Fraction]):
-    """A positive number, exact: a decimal, or p/q; `expected` says so, with an example."""
+    """A positive number, exact: a decimal, or p/q; `form` says so, with an example."""
 
     name = "number"
 
-    def __init__(self, expected: str) -> None:
-        self.expected = expected
+    def __init__(self, form: str) -> None:
+        self.form = form
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Fraction:
         """The number."""
@@ -37,12 +37,12 @@ class PositiveParameter(click.ParamType[Fraction]):
         except ValueError:
             number = Fraction(0)
         if number <= 0:
-            self.fail(f"{value} given, {self.expected} expected", param, ctx)
+            self.fail(f"{value} is not {self.form}", param, ctx)
         return number
 
 
-STEP = PositiveParameter("a positive number of tau such as 0.1 or 1/8")
-KAPPA = PositiveParameter("a positive number such as 5 or 1/2")
+STEP = PositiveParameter("a positive number of tau; write one such as 0.1 or 1/8")
+KAPPA = PositiveParameter("a positive number; write one such as 5 or 1/2")
 
 
 @click.command()
@@ -122,7 +122,9 @@ def generate(
     from wavesym import api
 
     if only_check and target:
-        raise click.UsageError(f"--check given with --target {target}, nothing expected: binaries differ by compiler")
+        raise click.UsageError(
+            f"--check: binaries of --target {target} differ by compiler and cannot be compared; leave --target out"
+        )
     request = Request.checked(
         evaluator=evaluator,
         precision=precision,

@@ -56,10 +56,10 @@ def modes(
 
     context = click.get_current_context()
     if count is not None and below is not None:
-        raise click.UsageError("--count and --below given, one of them expected", context)
+        raise click.UsageError("--count and --below exclude each other; write one of them", context)
     drawn = is_drawn(out, (".txt", ".json", ".csv"))
     if ranges and (below is not None or shapes or drawn):
-        raise click.UsageError("--range and --below, --shapes or a picture given, one of them expected", context)
+        raise click.UsageError("--range excludes --below, --shapes and a picture; write one of them", context)
     if out is not None:
         refuse_unwritable(out)
         refuse_scene(out)

@@ -86,14 +86,14 @@ def refuse_scene(out: Path) -> None:
     scene = Path(scene_argument())
     with suppress(OSError):  # a scene that is no file
         if out.samefile(scene):
-            raise click.UsageError(f"-o: {out} is the scene itself, another file expected", click.get_current_context())
+            raise click.UsageError(f"-o: {out} is the scene itself; write another file", click.get_current_context())
 
 
 def refuse_unwritable(out: Path, *, folder: bool = False) -> None:
     """OSError where a file, or one in a folder, cannot be written: before the work that takes long."""
     place = out / "_" if folder else out
     if not folder and out.is_dir():
-        raise IsADirectoryError(21, "Is a directory, a file expected", str(out))
+        raise IsADirectoryError(21, "Is a directory; write the path of a file", str(out))
     there = next(each for each in (place, *place.absolute().parents) if each.exists())
     if there != place and not there.is_dir():
         raise NotADirectoryError(20, "Not a directory", str(there))
@@ -115,7 +115,9 @@ def is_drawn(out: Path | None, texts: Sequence[str]) -> bool:
     context = click.get_current_context()
     if suffix not in (*PICTURES, *texts, ""):
         known = ", ".join((*PICTURES, *texts))
-        raise click.UsageError(f"-o: {out} given, a name that ends in {known}, or in no suffix, expected", context)
+        raise click.UsageError(
+            f"-o: {out} is not a picture nor a table; write a name that ends in {known}, or in no suffix", context
+        )
     if suffix in PICTURES and not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
     return suffix in PICTURES
@@ -166,6 +168,6 @@ def decimals(path: Path) -> list[float]:
     for count, line in enumerate(text.split("\n"), 1):
         if written := line.partition("#")[0].strip():
             if not _DECIMAL.fullmatch(written) or not math.isfinite(float(written)):
-                raise SceneError(f"{shown(written)} given, a decimal expected", f"line {count}", file)
+                raise SceneError(f"{shown(written)} is not a number; write one such as 0.25", f"line {count}", file)
             numbers.append(float(written))
     return numbers

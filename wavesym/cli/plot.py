@@ -42,7 +42,7 @@ def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
     """
     context = click.get_current_context()
     if published and scene:
-        raise click.UsageError("SCENE and --published given, one of them expected", context)
+        raise click.UsageError("SCENE and --published exclude each other; write one of them", context)
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
 

@@ -31,7 +31,7 @@ def record(file: Path, unit: str | None, column: str | None, out: Path | None) -
             raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
         refuse_unwritable(out)
         if out.exists() and file.exists() and out.samefile(file):
-            raise click.UsageError(f"-o: {out} is the record itself, another file expected", context)
+            raise click.UsageError(f"-o: {out} is the record itself; write another file", context)
     from wavesym import api
 
     with progress(f"record {file}"):

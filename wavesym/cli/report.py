@@ -43,7 +43,7 @@ def report(scene: Scene | Path, out: Path) -> None:
       wavesym report building_m2 -o building.html
     """
     if out.suffix.lower() not in (".html", ".htm"):
-        raise click.UsageError(f"-o: {out} given, a name that ends in .html expected", click.get_current_context())
+        raise click.UsageError(f"-o: {out} is not a page; write a name that ends in .html", click.get_current_context())
     refuse_unwritable(out)
     if isinstance(scene, Path):
         from wavesym import api

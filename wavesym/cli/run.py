@@ -44,7 +44,7 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
       wavesym run collision_m4 --samples 101 -o collision.csv
     """
     if samples is not None and at is not None:
-        raise click.UsageError("--samples and --at given, one of them expected", click.get_current_context())
+        raise click.UsageError("--samples and --at exclude each other; write one of them", click.get_current_context())
     taus = decimals(at) if at is not None else None
 
     from wavesym import api

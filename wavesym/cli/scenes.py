@@ -19,7 +19,7 @@ def scenes(name: str | None, explicit: bool) -> None:
     from wavesym.scene.explicit_text import explicit_text
 
     if explicit and name is None:
-        raise click.UsageError("--explicit given without NAME, the name of a built-in scene expected")
+        raise click.UsageError("--explicit: of no scene; write the NAME of a built-in one before it")
     if name is not None:
         scene = Scene.from_toml(name) if explicit else None
         if scene is None or (name in builtin_names() and scene.system.type == "chain"):

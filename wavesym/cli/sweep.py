@@ -45,7 +45,7 @@ def sweep(
 
     if tell or table:
         if out or workers or scheduler or retry_failed:
-            raise click.UsageError("--status and --table given with what is for computing, a folder alone expected")
+            raise click.UsageError("--status and --table read a folder alone; leave out what is for computing")
         if table:
             refuse_unwritable(table)
             api.sweep_table(source, table)
@@ -56,7 +56,7 @@ def sweep(
     if out is None:
         raise click.UsageError("-o DIR is missing: a folder for the results")
     if workers and scheduler:
-        raise click.UsageError("--workers and --scheduler given, one of them expected")
+        raise click.UsageError("--workers and --scheduler exclude each other; write one of them")
     refuse_unwritable(out, folder=True)
     start = monotonic()
     with progress(f"sweep {source}") as line:

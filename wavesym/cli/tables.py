@@ -43,7 +43,7 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, fra
     from wavesym.writing import write_whole
 
     if fragment and format != "latex":
-        raise click.UsageError(f"--fragment: given with --format {format}, latex expected")
+        raise click.UsageError(f"--fragment: {format} has no fragments; write --format latex")
     written = "fragment" if fragment else format
     if out is not None:
         refuse_scene(out)

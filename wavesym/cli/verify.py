@@ -64,13 +64,15 @@ def verify(
       wavesym verify collision_m4 drive_m1 --evaluator march
     """
     if published + derived + (bool(asked) and not published) > 1:
-        raise click.UsageError("more than one of SCENE, --published and --derived given, at most one expected")
+        raise click.UsageError("SCENE, --published and --derived exclude each other; write one of them")
     for option in ("--format" if format else "", "--reproduce" if reproduce else "", "--only" if only else ""):
         if option and not published:
-            raise click.UsageError(f"{option} given without --published; it is for --published only")
+            raise click.UsageError(f"{option}: of the paper only; write --published too")
     options = {"evaluator": evaluator, "precision": precision, "runtime": runtime, "stream": stream or None}
     for option in (name for name, value in options.items() if value is not None and (published or derived)):
-        raise click.UsageError(f"--{option} given with --{'published' if published else 'derived'}; it is for scenes")
+        raise click.UsageError(
+            f"--{option}: of scenes only; leave it out, or --{'published' if published else 'derived'}"
+        )
     with progress("verify") as line:
         from wavesym import api
         from wavesym.scene import Scene, builtin_names

@@ -127,15 +127,15 @@ def refuse_size(size: Size, asked: str, most: float = inf, parts: str = "fewer r
     fewer = "a shorter horizon" if asked == "output.until" else "fewer intervals"
     if size.bytes > LARGEST:
         raise CostError(
-            f"{asked}: the tables of coefficients would take {size.bytes:.1e} bytes, "
-            f"at most {LARGEST:.1e} expected ({fewer} or {parts} helps)"
+            f"{asked}: the tables of coefficients would take {size.bytes:.1e} bytes, the limit is {LARGEST:.1e} "
+            f"({fewer} or {parts} helps)"
         )
     if size.work > min(most, MOST_WORK):
         digits = size.bytes / max(size.coefficients, 1) * log10(2) * 8
         raise CostError(
-            f"{asked}: the tables would hold {size.coefficients:.1e} coefficients of about {digits:.0e} digits, work "
-            f"for {size.work:.1e} short ones, at most {min(most, MOST_WORK):.1e} expected ({fewer}, or "
-            "fewer digits in the scene's numbers, helps)"
+            f"{asked}: the tables would hold {size.coefficients:.1e} coefficients of about {digits:.0e} digits, "
+            f"work for {size.work:.1e} short ones, the limit is {min(most, MOST_WORK):.1e} ({fewer}, or fewer "
+            "digits in the scene's numbers, helps)"
         )
 
 
@@ -233,6 +233,6 @@ def refuse_costly(chain: Chain, intervals: int | None, until: fmpq) -> None:
         )
         foretold = f"about {terms:.1e}" if terms < inf else "more than 1e+30"
         raise CostError(
-            f"{asked}: the symbolic tables would have {foretold} terms in {count} intervals, at most "
-            f"{LARGEST_SYMBOLIC:.1e} expected ({fewer}, or more that is equal in the scene, helps)"
+            f"{asked}: the symbolic tables would have {foretold} terms in {count} intervals, the limit is "
+            f"{LARGEST_SYMBOLIC:.1e} ({fewer}, or more that is equal in the scene, helps)"
         )

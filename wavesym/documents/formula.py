@@ -323,7 +323,7 @@ def _formula(model: Model, probe: Probe, gains: Sequence[Gain], letters: Mapping
     count = sum(len(powers) for gain in gains for powers in gain.increment.values())
     if count > MOST_TERMS:
         raise CostError(
-            f"--until: {count} terms, at most {MOST_TERMS} expected (an earlier one or fewer changes of loads help)"
+            f"--until: {count} terms, the limit is {MOST_TERMS} (an earlier one or fewer changes of loads help)"
         )
     seconds = model.clock.seconds if model.clock else None
     text = " ".join(str(each) for g in gains for rate, row in g.increment.items() for each in (rate, *row))

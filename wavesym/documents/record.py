@@ -79,10 +79,10 @@ def record_lines(path: Path, unit: str | None, column: str | None = None) -> tup
         WavesymError: for what is no unit.
     """
     if unit is not None and not _UNIT.fullmatch(unit):
-        raise WavesymError(f"--unit: {shown(unit)} given, a unit such as g or m/s^2 expected")
+        raise WavesymError(f"--unit: {shown(unit)} is not a unit; write one such as g or m/s^2")
     found = read_record(path, column)
     if unit is not None and found.unit not in ("", unit):
-        raise SceneError(f"--unit {unit} given, {found.unit} expected, as in the file, or none", file=found.file)
+        raise SceneError(f"--unit {unit} is not that of the file; write {found.unit}, or none", file=found.file)
     rows = list(_rows(RecordFacts(found, unit or found.unit)))
     width = max(len(name) for name, _ in rows)
     lines = [printable(f"{found.file}: {found.kind}"), *(f"  {name.ljust(width)}  {value}" for name, value in rows)]

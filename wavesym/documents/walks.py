@@ -100,8 +100,8 @@ def _response(
         terms += sum(len(waves[-1]) for node in sent for waves in node)
         if terms > MOST_TERMS:
             raise CostError(
-                f"--intervals: the walk polynomials of {tau} of {times} units of tau have {terms:.1e} terms, at "
-                f"most {MOST_TERMS:.1e} expected (fewer intervals help)"
+                f"--intervals: the walk polynomials of {tau} of {times} units of tau have {terms:.1e} terms, the "
+                f"limit is {MOST_TERMS:.1e} (fewer intervals help)"
             )
         if tau == times:
             break

@@ -176,8 +176,8 @@ class Breakpoints:
         return CostError(
             f"output.until: springs make {len(self._last)} nodes swing at a rate of up to "
             f"{float(SWING / min(self._bearable.values())):.3g}, which are {count} stretches by tau = "
-            f"{float(self._until):g}, at most {MOST_BREAKPOINTS} expected (softer springs, heavier bodies or a shorter "
-            "horizon help)"
+            f"{float(self._until):g}, the limit is {MOST_BREAKPOINTS} (softer springs, heavier bodies or a "
+            "shorter horizon help)"
         )
 
     # equal delays
@@ -237,8 +237,9 @@ class Breakpoints:
         for count, (time, number) in enumerate(front_times(self._network, sources, self._last), 1):
             if count > MOST_BREAKPOINTS:
                 raise CostError(
-                    f"output.until: fronts meet joints more than {MOST_BREAKPOINTS} times by tau = {float(time):g}, at "
-                    f"most {MOST_BREAKPOINTS} expected (a shorter horizon or lengths with a larger common measure help)"
+                    f"output.until: fronts meet joints more than {MOST_BREAKPOINTS} times by tau = "
+                    f"{float(time):g}, the limit is {MOST_BREAKPOINTS} (a shorter horizon or lengths with a "
+                    "larger common measure help)"
                 )
             if time > 0:
                 found[number].append(time)

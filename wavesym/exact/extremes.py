@@ -76,14 +76,14 @@ def extremes(model: Model) -> list[Range]:
     UnservedError where modes are damped.
     """
     if model.damping is not None:
-        raise UnservedError("system.damping: given, none expected (modes serve it)")
+        raise UnservedError("system.damping: supported by modes only (leave it out, or take modes)")
     motion = Motion(model, rational(model.horizon()))
     pieces = motion.stretches + sum(len(motion.starts(probe)) for probe in motion.probes)
     if (seconds := pieces * motion.terms(motion.first_bits) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
         raise CostError(
-            f"output.until: true extremes of {len(motion.probes)} outputs, with their waves {pieces} polynomials in "
-            f"{motion.first_bits} bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter "
-            "horizon or fewer outputs help)"
+            f"output.until: true extremes of {len(motion.probes)} outputs, with their waves {pieces} polynomials "
+            f"in {motion.first_bits} bits, would take about {seconds:.0f} s, the limit is {_MOST_SECONDS} (a "
+            "shorter horizon or fewer outputs help)"
         )
     zero = identically_zero(model, motion.until)
     return [NOTHING if nothing else _range(motion, probe) for probe, nothing in zip(motion.probes, zero, strict=True)]

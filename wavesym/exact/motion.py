@@ -59,13 +59,13 @@ class Motion:
         self._solved: dict[int, Waves] = {}
         if (kept := self._breakpoints.crossings) > MOST_STRETCHES:
             raise CostError(
-                f"output.until: {self._breakpoints.label} are {kept:g} stretches to keep, at most {MOST_STRETCHES} "
-                "expected (a shorter horizon helps)"
+                f"output.until: {self._breakpoints.label} are {kept:g} stretches to keep, the limit is "
+                f"{MOST_STRETCHES} (a shorter horizon helps)"
             )
         if (loaded := self._breakpoints.stretches) > MOST_LOADED:
             raise CostError(
-                f"load: {self._breakpoints.label} are {loaded} stretches between loads, at most {MOST_LOADED} expected "
-                "(fewer load times help)"
+                f"load: {self._breakpoints.label} are {loaded} stretches between loads, the limit is "
+                f"{MOST_LOADED} (fewer load times help)"
             )
 
     @cached_property
@@ -161,8 +161,8 @@ class Motion:
         seconds = segments * terms**1.5 * _COMPOSED + taus * len(self.probes) * terms * _EVALUATED
         if seconds > MOST_SECONDS:
             raise CostError(
-                f"output: {taus} values of {len(self.probes)} outputs to tau = {float(self.until):g} would take about "
-                f"{seconds:.0f} s, at most {MOST_SECONDS} expected (fewer outputs, samples or load times help)"
+                f"output: {taus} values of {len(self.probes)} outputs to tau = {float(self.until):g} would take "
+                f"about {seconds:.0f} s, the limit is {MOST_SECONDS} (fewer outputs, samples or load times help)"
             )
 
     @property
@@ -214,7 +214,7 @@ class Motion:
             if (size := self.size_in(bits)) > _LARGEST:
                 raise CostError(
                     f"output.until: the waves of {self._breakpoints.label} with {bits} bits would take {size:.1e} "
-                    f"bytes, at most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
+                    f"bytes, the limit is {_LARGEST:.1e} (a shorter horizon or fewer load times help)"
                 )
             self._solved[bits] = self._waves(bits)
         return self._solved[bits]

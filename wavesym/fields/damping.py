@@ -37,9 +37,9 @@ def damping_ratio(value: object, *at: str | int) -> Fraction:
     percent = percentage(value)
     number = exact(value) if percent is None else percent
     if number < 0:
-        raise wrong(f"{shown(value)} given, a ratio of at least 0 expected", *at)
+        raise wrong(f"{shown(value)} is negative; write a ratio of 0 or more", *at)
     if number > _LARGEST:
-        raise wrong(f"{shown(value)} given, a ratio of at most {_LARGEST} expected", *at)
+        raise wrong(f"{shown(value)} is too large a ratio; write {_LARGEST} or less", *at)
     if number > 1 and percent is None:
         written = _percent_text(number / 100), _percent_text(number)
         what = f'{shown(value)} is above critical damping; write "{written[0]}" or "{written[1]}", whichever is meant'
@@ -58,7 +58,7 @@ def _damping(value: object) -> Damping | None:
         return _rayleigh(value)
     if isinstance(value, Sequence) and not isinstance(value, str):
         if not 0 < len(value) <= _MOST:
-            raise wrong(f"{len(value)} ratios given, 1 to {_MOST} expected")
+            raise wrong(f"{len(value)} ratios; write 1 to {_MOST} of them")
         return Damping(tuple(rational(damping_ratio(each, k)) for k, each in enumerate(value)))
     return Damping((rational(damping_ratio(value)),))
 
@@ -67,20 +67,20 @@ def _rayleigh(table: Mapping[Any, object]) -> Damping:
     for key in table:
         if key not in _KEYS:
             meant = did_you_mean(str(key)[:40], _KEYS)
-            raise wrong(f"unknown key, modes or ratio expected{meant and f'. {meant}'}", str(key))
+            raise wrong(f"unknown key; write modes or ratio{meant and f'. {meant}'}", str(key))
     for key in _KEYS:
         if key not in table:
-            expected = "the numbers of two modes" if key == "modes" else "a ratio"
-            raise wrong(f"missing, {expected} expected", key)
+            form = "the numbers of two modes" if key == "modes" else "a ratio"
+            raise wrong(f"missing; write {form}", key)
     modes = table["modes"]
     if not isinstance(modes, Sequence) or isinstance(modes, str) or len(modes) != 2:
-        raise wrong(f"{shown(modes)} given, a list of two modes expected", "modes")
+        raise wrong(f"{shown(modes)} is not a list of two modes; write [1, 3]", "modes")
     for k, number in enumerate(modes):
         if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= _MOST:
-            raise wrong(f"{shown(number)} given, the number of a mode from 1 to {_MOST} expected", "modes", k)
+            raise wrong(f"{shown(number)} is not the number of a mode; write an integer from 1 to {_MOST}", "modes", k)
     first, second = sorted(modes)
     if first == second:
-        raise wrong(f"{first} given twice, two modes expected", "modes")
+        raise wrong(f"{first} stands twice; write two modes such as [1, 3]", "modes")
     return Damping((rational(damping_ratio(table["ratio"], "ratio")),), (first, second))
 
 

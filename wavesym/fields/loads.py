@@ -63,19 +63,23 @@ class TimedLoad(Load):
     @classmethod
     def _increasing(cls, times: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         if times and times[0] < 0:
-            raise wrong(f"{shown(times[0])} given, a time of at least 0 expected", 0)
+            raise wrong(f"{shown(times[0])} is before the start; write a time of 0 or later", 0)
         for k, (before, time) in enumerate(pairwise(times), 1):
             if time <= before:
-                raise wrong(f"{shown(time)} given, more than the {shown(before)} before it expected", k)
+                raise wrong(
+                    f"{shown(time)} is not later than the {shown(before)} before it; write times in rising order", k
+                )
         return times
 
     @model_validator(mode="after")
     def _one_a_time(self) -> Self:
         for name, numbers in zip(self.lists, self._numbers, strict=True):
             if numbers and len(numbers) != len(self.times):
-                raise wrong(f"{len(numbers)} numbers given, {len(self.times)} expected (as many as times)", name)
+                raise wrong(
+                    f"{len(numbers)} numbers for {len(self.times)} times; write {len(self.times)}, one for each", name
+                )
         if self.times and not any(self._numbers):
-            raise wrong(f"no numbers given, {' or '.join(self.lists)} expected")
+            raise wrong(f"no numbers; write {' or '.join(self.lists)}")
         return self
 
     @property
@@ -116,7 +120,7 @@ class SampledLoad(Load):
     @classmethod
     def _some(cls, samples: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         if not samples:
-            raise wrong("no numbers given, at least 1 expected")
+            raise wrong("no numbers; write at least 1")
         return samples
 
     @property

@@ -56,9 +56,12 @@ def exact(value: object) -> Fraction:
     elif isinstance(value, Rational) and not isinstance(value, bool):
         number = _fraction(value)
     else:
-        raise wrong(f'{shown(value)} given, a number expected (an integer, a decimal or "p/q")')
+        raise wrong(f'{shown(value)} is not a number; write an integer, a decimal or "p/q"')
     if number and not _SMALLEST <= abs(number) <= _LARGEST:
-        raise wrong(f"{shown(value)} given, 0 or a size from 1e-{LARGEST_EXPONENT} to 1e{LARGEST_EXPONENT} expected")
+        raise wrong(
+            f"{shown(value)} is too large or too small; write 0 or a size from 1e-{LARGEST_EXPONENT} to "
+            f"1e{LARGEST_EXPONENT}"
+        )
     return number
 
 
@@ -72,25 +75,30 @@ def percentage(value: object) -> Fraction | None:
 def _fraction(value: Rational) -> Fraction:
     number = Fraction(int(value.numerator), int(value.denominator))  # of NumPy's integers too
     if max(number.numerator.bit_length(), number.denominator.bit_length()) > _MOST_BITS:
-        raise wrong(f"{shown(number)} given, at most {_MOST_BITS} bits in numerator and denominator expected")
+        raise wrong(
+            f"{shown(number)} has too many digits; write at most {_MOST_BITS} bits in numerator and denominator"
+        )
     return number
 
 
 def _parsed(text: str, value: object) -> Fraction:
     """The number that `text` writes; `value` is what the message shows where it writes none."""
     if len(text) > LONGEST:  # before anything is done with it
-        raise wrong(f"{shown(value)} given, a number of at most {LONGEST} characters expected")
+        raise wrong(f"{shown(value)} is too long; write a number of at most {LONGEST} characters")
     if ratio := _RATIO.fullmatch(text):
         above, below = int(ratio[1]), int(ratio[2])
         if not below:
-            raise wrong(f"{shown(value)} given, a denominator other than 0 expected")
+            raise wrong(f"{shown(value)} divides by 0; write another denominator")
         return Fraction(above, below)
     if decimal := _DECIMAL.fullmatch(text):
         whole, digits, exponent = decimal[1], decimal[2] or "", int(decimal[3] or 0)
         if abs(exponent) > LARGEST_EXPONENT:  # before ten is raised to it
-            raise wrong(f"{shown(value)} given, an exponent from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT} expected")
+            raise wrong(
+                f"{shown(value)} is too large or too small; write an exponent from -{LARGEST_EXPONENT} to "
+                f"{LARGEST_EXPONENT}"
+            )
         return int(whole + digits) * Fraction(10) ** (exponent - len(digits))
-    raise wrong(f'{shown(value)} given, a number expected (an integer, a decimal or "p/q")')
+    raise wrong(f'{shown(value)} is not a number; write an integer, a decimal or "p/q"')
 
 
 def decimal_text(value: Fraction) -> str:
@@ -106,13 +114,13 @@ def decimal_text(value: Fraction) -> str:
 def _positive(value: object) -> Fraction:
     number = exact(value)
     if number <= 0:
-        raise wrong(f"{shown(value)} given, a positive number expected")
+        raise wrong(f"{shown(value)} is not positive; write a number above 0")
     return number
 
 
 def _integer(value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral):
-        raise wrong(f"{shown(value)} given, an integer expected")
+        raise wrong(f"{shown(value)} is not an integer; write one without point or quotes, such as 2")
     return int(value)
 
 

@@ -49,19 +49,24 @@ def quantity(value: object, dimension: str) -> Fraction:
     `dimension` is a name in `DIMENSIONS`. "g" is the acceleration of gravity where an acceleration (or its rate) is
     expected, else the gram. Raises (as does every validator here) the error of `table.wrong`.
     """
-    expected = f'{with_article(dimension)} such as "{DIMENSIONS[dimension].example}" expected'
+    what = f"{shown(value)} is not {_example(dimension)}"
     if not isinstance(value, str) or isinstance(value, Written):
-        raise wrong(f"{shown(value)} given, {expected}")
+        raise wrong(what)
     if len(value) > LONGEST:  # before anything is done with it
-        raise wrong(f"{shown(value)} given, at most {LONGEST} characters expected")
+        raise wrong(f"{shown(value)} is too long; write at most {LONGEST} characters")
     if not (found := _QUANTITY.fullmatch(value)):
-        raise wrong(f"{shown(value)} given, {expected}")
+        raise wrong(what)
     meaning = _fitting(found[2], dimension, value)
     number = exact(found[1]) * meaning.factor
     if number and not 1 / _LARGEST <= abs(number) <= _LARGEST:
-        size = f"0 or a size from 1e-{LARGEST_EXPONENT} to 1e{LARGEST_EXPONENT} in SI base units expected"
-        raise wrong(f"{shown(value)} given, {size}")
+        size = f"0 or a size from 1e-{LARGEST_EXPONENT} to 1e{LARGEST_EXPONENT} in SI base units"
+        raise wrong(f"{shown(value)} is too large or too small; write {size}")
     return number
+
+
+def _example(dimension: str) -> str:
+    """A dimension, and how one writes it: `a length; write one such as "3.5 m"`."""
+    return f'{with_article(dimension)}; write one such as "{DIMENSIONS[dimension].example}"'
 
 
 def parted(value: object) -> tuple[Fraction, str] | None:
@@ -76,9 +81,9 @@ def unit(value: object, dimension: str) -> Fraction:
     """A unit without a number, such as "mm" or "kN*m": how many SI base units it is. Raises that of `table.wrong`."""
     example = DIMENSIONS[dimension].example.partition(" ")[2]
     if not isinstance(value, str) or isinstance(value, Written):
-        raise wrong(f'{shown(value)} given, a unit such as "{example}" expected')
+        raise wrong(f'{shown(value)} is not a unit; write one such as "{example}"')
     if len(value) > LONGEST:
-        raise wrong(f"{shown(value)} given, at most {LONGEST} characters expected")
+        raise wrong(f"{shown(value)} is too long; write at most {LONGEST} characters")
     return _fitting(value, dimension, value).factor
 
 
@@ -91,7 +96,6 @@ def _fitting(text: str, dimension: str, value: str) -> _Meaning:
     """What a unit means, which is one of a dimension; `value` is what the message shows where it is none."""
     meaning = _meaning(text, value, gravity=dimension in ("acceleration", "jerk"))
     if not fits(meaning.powers, DIMENSIONS[dimension]):
-        expected = f'{with_article(dimension)} such as "{DIMENSIONS[dimension].example}" expected'
         others = (slip.sub(right, text) for slip, right in _SLIPS)
         meant = (
             other
@@ -99,27 +103,27 @@ def _fitting(text: str, dimension: str, value: str) -> _Meaning:
             if other != text and fits(_meaning(other, value, gravity=False).powers, DIMENSIONS[dimension])
         )
         hint = next((f'. Did you mean "{other}"?' for other in meant), "")
-        raise wrong(f"{shown(value)} given ({called(meaning.powers)}), {expected}{hint}")
+        raise wrong(f"{shown(value)} is {called(meaning.powers)}, not {_example(dimension)}{hint}")
     return meaning
 
 
 def _meaning(text: str, value: str, *, gravity: bool) -> _Meaning:
     if not _UNIT.fullmatch(text):
-        grammar = 'a number and units joined by * and /, with powers up to ^9, expected, such as "3 kN*s/m^2"'
-        raise wrong(f"{shown(value)} given, {grammar}")
+        grammar = 'a number and units joined by * and /, with powers up to ^9, such as "3 kN*s/m^2"'
+        raise wrong(f"{shown(value)} is not a quantity; write {grammar}")
     factors = _FACTOR.findall(text)
     if len(factors) > _MOST_FACTORS:
-        raise wrong(f"{shown(value)} given, at most {_MOST_FACTORS} names of units expected")
+        raise wrong(f"{shown(value)} has too many units; write at most {_MOST_FACTORS}")
     factor, powers = Fraction(1), dict[str, int]()
     for sign, name, written in factors:
         power = int(written or 1) * (-1 if sign == "/" else 1)
         if name in _AMBIGUOUS:
-            raise wrong(f"{shown(value)} given, {shown(name)} in it is two units; write {_AMBIGUOUS[name]}")
+            raise wrong(f"{shown(value)}: {shown(name)} is two units; write {_AMBIGUOUS[name]}")
         one = _named("standard_gravity" if gravity and name == "g" else name)
         if one is None:
             meant = did_you_mean(name, _names())
-            expected = "a known unit of length, mass, time or angle, or one made of these, expected"
-            raise wrong(f"{shown(value)} given, {shown(name)} in it; {expected}{meant and f'. {meant}'}")
+            known = "one of length, mass, time or angle, or made of these"
+            raise wrong(f"{shown(value)}: {shown(name)} is not a known unit; write {known}{meant and f'. {meant}'}")
         factor *= one.factor**power
         for base, exponent in one.powers.items():
             powers[base] = powers.get(base, 0) + exponent * power

@@ -36,13 +36,13 @@ def _shape(value: object) -> str:
     if isinstance(value, str) and value in SHAPES:
         return value
     *others, last = (f'"{shape}"' for shape in SHAPES)
-    raise wrong(f"{shown(value)} given, {', '.join(others)} or {last} expected")
+    raise wrong(f"{shown(value)} is not a shape; write {', '.join(others)} or {last}")
 
 
 def _start(value: object) -> Fraction:
     start = exact(value)
     if start < 0:
-        raise wrong(f"{shown(value)} given, a time of at least 0 expected")
+        raise wrong(f"{shown(value)} is before the start; write a time of 0 or later")
     return start
 
 
@@ -69,9 +69,9 @@ class ShapedLoad(Load):
         needed = SHAPES[self.shape]
         other = "duration" if needed == "frequency" else "frequency"
         if getattr(self, needed) is None:
-            raise wrong(f"missing, a positive number expected (of a {self.shape})", needed)
+            raise wrong(f"missing, and a {self.shape} has it; write a positive number", needed)
         if getattr(self, other) is not None:
-            raise wrong(f"given, none expected (a {self.shape} has a {needed})", other)
+            raise wrong(f"not of a {self.shape}; write {needed}", other)
         return self
 
     def within(self, until: Fraction, tolerance: Fraction) -> Self:
@@ -135,8 +135,8 @@ class ShapedLoad(Load):
         if count > MOST_SAMPLES:
             enough = float(self._tolerance) * (count / MOST_SAMPLES) ** 2
             raise CostError(
-                f"load: {count} samples of a {self.shape} for a tolerance of {float(self._tolerance):.1e}, at most "
-                f"{MOST_SAMPLES} expected (output.tolerance = {enough:.1e} or more, or fewer periods, help)"
+                f"load: {count} samples of a {self.shape} for a tolerance of {float(self._tolerance):.1e}, the "
+                f"limit is {MOST_SAMPLES} (output.tolerance = {enough:.1e} or more, or fewer periods, help)"
             )
         size = rational(self.amplitude)
         with ctx.workprec(_BITS):

@@ -72,7 +72,7 @@ def key_path(keys: Sequence[str | int]) -> str:
 def listed(value: object) -> tuple[object, ...]:
     """A list, from TOML or from Python."""
     if isinstance(value, str) or not isinstance(value, Sequence):
-        raise wrong(f"{shown(value)} given, a list expected")
+        raise wrong(f"{shown(value)} is not a list; write [ ] around it")
     return tuple(value)
 
 
@@ -86,15 +86,15 @@ class SceneTable(BaseModel):
     @classmethod
     def _keys(cls, value: object) -> object:
         if not isinstance(value, Mapping):
-            raise wrong(f"{shown(value)} given, a table expected")
+            raise wrong(f"{shown(value)} is not a table; write its keys and values")
         fields = {field.alias or name: field for name, field in cls.model_fields.items()}
         for key in value:
             if key not in fields:
                 *others, last = fields
                 known = f"{', '.join(others)} or {last}" if others else last
                 meant = did_you_mean(str(key)[:_SHOWN], fields)
-                raise wrong(f"unknown key, {known} expected{meant and f'. {meant}'}", str(key))
+                raise wrong(f"unknown key; write {known}{meant and f'. {meant}'}", str(key))
         for key, field in fields.items():
             if field.is_required() and key not in value:
-                raise wrong(f"missing, {field.description} expected", key)
+                raise wrong(f"missing; write {field.description}", key)
         return value

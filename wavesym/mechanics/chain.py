@@ -66,17 +66,15 @@ def _refuse(nodes: Sequence[Node]) -> None:
     sources: set[str] = set()
     for x, node in enumerate(nodes):
         if isinstance(node.radiation, fmpq) and node.radiation <= 0:
-            raise WavesymError(
-                f"system: damping + (alpha + beta)/2 is {node.radiation} at x = {x}, more than 0 expected"
-            )
+            raise WavesymError(f"system: damping + (alpha + beta)/2 is {node.radiation} at x = {x}; write more than 0")
         for load in node.loads:
             if len(load.coefficients) > _POWERS:
-                raise WavesymError(f"system: {load.source} has powers of tau above {_POWERS - 1}, none expected")
+                raise WavesymError(f"system: {load.source} has powers of tau above {_POWERS - 1}; write lower ones")
             if load.source in sources:
-                raise WavesymError(f"system: {load.source} acts on two nodes, one expected")
+                raise WavesymError(f"system: {load.source} acts on two nodes; write one")
             sources.add(load.source)
     if sources and any(rod and rod.velocity != 0 for node in nodes for rod in (node.left, node.right)):
-        raise WavesymError("system: rods that move at tau = 0 and loads are given, one of them expected")
+        raise WavesymError("system: rods that move at tau = 0 and loads exclude each other; write one of them")
 
 
 def _exact_node(node: Node) -> Node:

@@ -101,7 +101,7 @@ class Model:
     def refuse_damping(self) -> None:
         """UnservedError where modes are damped: for what knows nothing but waves."""
         if self.damping is not None:
-            raise UnservedError("system.damping: given, none expected (only modes serve it)")
+            raise UnservedError("system.damping: supported by modes only (write --evaluator modes, or leave it out)")
 
     @property
     def damped(self) -> bool:

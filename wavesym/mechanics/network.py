@@ -147,8 +147,8 @@ class Network:
         """
         for number in self.contacts:
             raise UnservedError(
-                f"system: the contact at {self.links[number].place} opens and closes, none that does expected (pieces "
-                "and `run` serve it, not tables, closed form or march)"
+                f"system: the contact at {self.links[number].place} opens and closes, which tables, closed form "
+                "and march do not support (take pieces or `run`)"
             )
 
     @property

@@ -53,7 +53,9 @@ def unlinked_problem(model: Model) -> Problem:
     """
     problem = gridded_problem(model)
     if np.any(problem.stiffness) or np.any(problem.damping - np.diag(np.diag(problem.damping))):
-        raise UnservedError("system: a spring, or a dashpot between points, given, none expected")
+        raise UnservedError(
+            "system: a spring, or a dashpot between points, is not supported by characteristics; take another method"
+        )
     return problem
 
 

@@ -125,7 +125,7 @@ class DiscreteModel:
             return ratios
         if max(modal.modes) > count:
             raise UnservedError(
-                f"system.damping: mode {max(modal.modes)} given, at most {count} expected of so few masses"
+                f"system.damping: mode {max(modal.modes)} of only {count} masses; write at most {count}"
             )
         # (a/w + b w)/2 that is the same at two frequencies
         two = w[strained][[number - 1 for number in modal.modes]]

@@ -142,7 +142,9 @@ def condense(mass: Array, damping: Array, stiffness: Array, influence: Array) ->
     left = unit[:, light] @ directions[:, ~braked]
     holding = left.T @ stiffness @ left
     if len(holding) and np.linalg.eigvalsh(holding)[0] <= _NOTHING * np.max(stiffness):
-        raise UnservedError("system: parts without mass that nothing holds given, none expected where rods are springs")
+        raise UnservedError(
+            "system: where rods are springs, nothing holds parts without mass; write a mass or a support"
+        )
     back = left @ np.linalg.solve(holding, left.T)
     follows = kept - back @ stiffness @ kept
     return Condensed(

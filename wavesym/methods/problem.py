@@ -327,7 +327,9 @@ def problem_of(model: Model) -> Problem:
         UnservedError: contacts open and close.
     """
     if model.network.contacts:
-        raise UnservedError("system: a contact that opens and closes given, none expected")
+        raise UnservedError(
+            "system: a contact that opens and closes is not supported by other methods; take pieces or `run`"
+        )
     return network_problem(model, Problem)
 
 
@@ -340,7 +342,7 @@ def undamped_problem(model: Model) -> Problem:
     model.refuse_damping()
     problem = problem_of(model)
     if any(reading.order > 0 for reading in problem.readings):
-        raise UnservedError("output.acceleration: a place without mass given, one with mass expected")
+        raise UnservedError("output.acceleration: other methods support no place without mass; write one with mass")
     return problem
 
 
@@ -353,8 +355,8 @@ def gridded_problem(model: Model) -> Problem:
     problem = undamped_problem(model)
     if (steps := max(problem.delays) / problem.measure) > _MOST_STEPS:
         raise UnservedError(
-            f"system: rods given whose delays have a common measure of 1/{float(steps):.3g} of the longest, "
-            f"1/{_MOST_STEPS} at least expected"
+            f"system: delays of rods have a common measure of 1/{float(steps):.3g} of the longest; write lengths "
+            f"with one of 1/{_MOST_STEPS} or more"
         )
     return problem
 

@@ -24,4 +24,4 @@ def precise(attempt: Callable[[int], T | None], bits: int = FIRST_BITS, most: in
         if result is not None:
             return result
         bits *= 2
-    raise ArithmeticError(f"more than {most} bits would be needed, at most {most} expected")
+    raise ArithmeticError(f"more than {most} bits would be needed, the limit is {most}")

@@ -18,7 +18,7 @@ def picture_format(path: Path) -> str:
     """The suffix of a picture's file. SceneError for one that is no picture."""
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
-        raise SceneError(f"no picture: a name that ends in {', '.join(FORMATS)} expected", file=str(path))
+        raise SceneError(f"not a picture; write a name that ends in {', '.join(FORMATS)}", file=str(path))
     return suffix
 
 

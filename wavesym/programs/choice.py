@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import inf, log10
+from math import inf
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from wavesym.errors import CostError, RangeError, SpacingError, ToleranceError, UnservedError, WavesymError
@@ -182,10 +182,9 @@ def _march(model: Model, real: Real, asked: bool, *_: object) -> March | HatMarc
     from wavesym.programs.march.evaluator import march
 
     if not asked and model.tolerance < real.roundoff:
-        digits, most = (-log10(nearest(each)) for each in (model.tolerance, real.roundoff))
         raise CostError(
-            f"output: {digits:.0f} digits would be marched for, at most {most:.0f} expected, as many as "
-            f"{real.name} precision has (a larger tolerance helps)"
+            f"output: a tolerance of {nearest(model.tolerance):.3g} is below {real.name} precision, the limit is "
+            f"{nearest(real.roundoff):.1e} (a larger one helps)"
         )
     try:
         return march(model, real)

@@ -91,8 +91,8 @@ class _TooLarge(CostError):
 
 def _too_large(size: int, most: int) -> _TooLarge:
     return _TooLarge(
-        f"output.until: pieces would take at least {size} bytes, at most {most} expected "
-        "(a shorter horizon, fewer outputs or load times help)"
+        f"output.until: pieces would take at least {size} bytes, the limit is {most} (a shorter horizon, "
+        "fewer outputs or load times help)"
     )
 
 
@@ -144,13 +144,14 @@ class _Fits:
         self._known: dict[int, tuple[int, _Course]] = {}
         if self._bits > self._most_bits:
             raise CostError(
-                f"output.until: {self._bits} bits would be needed for pieces to tau = {self._tau_max:g}, at most "
-                f"{self._most_bits} expected ({self._motion.helps} help)"
+                f"output.until: {self._bits} bits would be needed for pieces to tau = {self._tau_max:g}, the "
+                f"limit is {self._most_bits} ({self._motion.helps} help)"
             )
         if (seconds := self._motion.stretches * self._motion.terms(self._bits) ** 1.5 * _MOVED) > most_seconds:
             raise CostError(
-                f"output.until: {self._motion.stretches} stretches in {self._bits} bits would take about {seconds:.0f} "
-                f"s, at most {most_seconds:g} s expected where another program serves (--evaluator pieces helps)"
+                f"output.until: {self._motion.stretches} stretches in {self._bits} bits would take about "
+                f"{seconds:.0f} s, the limit where another program serves is {most_seconds:g} s (--evaluator "
+                "pieces helps)"
             )
 
     @cached_property
@@ -175,8 +176,8 @@ class _Fits:
             self._bits = bits  # what did for one number of pieces is where the next one starts
             if self._least(per_unit) > (most_pieces := _MOST_WORK // (4 * self._motion.terms(bits))):
                 raise CostError(
-                    f"output.until: {self._least(per_unit):.1e} pieces would be fitted with {bits} bits, at most "
-                    f"{most_pieces:.1e} expected (a shorter horizon, fewer outputs or load times help)"
+                    f"output.until: {self._least(per_unit):.1e} pieces would be fitted with {bits} bits, the "
+                    f"limit is {most_pieces:.1e} (a shorter horizon, fewer outputs or load times help)"
                 )
             return self._fit(per_unit, most, bits)
 

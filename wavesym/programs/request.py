@@ -108,56 +108,64 @@ class Request:
             refuse_unknown(option, word, known)
         refuse_others("--with", self.parts, PARTS)
         streamed = f"with --target {self.target}" if self.target else "with --stream" if self.stream else ""
-        where = streamed if self.runtime else "without --runtime"
+        without = f"does not go {streamed}" if streamed else "" if self.runtime else "goes with --runtime only"
         for option, given in (("--with", ",".join(self.parts)), ("--kappa-max", self.kappa_max)):
-            if given and where:
-                raise WavesymError(f"{option}: {given} given {where}, nothing expected")
+            if given and without:
+                raise WavesymError(f"{option}: {given} {without}; leave {option} out")
 
     def _refuse_contradictions(self) -> None:
         """WavesymError for options that exclude each other."""
         modes = self.evaluator == "modes"
         if self.step is not None and not self.stream:
-            raise WavesymError(f"--step: {self.step} given without --stream, nothing expected")
+            raise WavesymError(f"--step: {self.step} is that of a stream; write --stream too")
         if self.step is not None and modes:
             raise WavesymError(
-                f"--step: {self.step} given with --evaluator modes, nothing expected (loads say what it is)"
+                f"--step: {self.step} does not go with --evaluator modes, whose loads say the step; leave --step out"
             )
         if self.kappa_max is not None and self.kappa_max <= 0:
-            raise WavesymError(f"--kappa-max: {self.kappa_max} given, a positive number expected")
+            raise WavesymError(f"--kappa-max: {self.kappa_max} is not positive; write a number above 0")
         if self.kappa_max is not None and POSITIVE.isdisjoint(self.runtime):
-            chosen = f"--kappa-max: {self.kappa_max} given with --runtime {','.join(self.runtime)}"
-            raise WavesymError(f"{chosen}, nothing expected (bodies stay as heavy as they are)")
+            chosen = f"--kappa-max: {self.kappa_max} with --runtime {','.join(self.runtime)}"
+            raise WavesymError(f"{chosen}: bodies stay as heavy as they are; leave --kappa-max out")
         if self.target:
-            for option, given, usual in (
-                ("language", self.language, "c"),
-                ("precision", self.precision, "double"),
-                ("--package", "True" if self.package else "", ""),
-            ):
-                if given != usual:
-                    raise WavesymError(f"{option}: {given} given with --target, {usual or 'nothing'} expected")
+            refuse_beside(
+                "--target",
+                (
+                    ("language", self.language, "c"),
+                    ("precision", self.precision, "double"),
+                    ("--package", self.package, False),
+                ),
+            )
             return
         if self.package and self.language not in ("c", "all"):
-            given = f"{self.language} given with --package"
-            raise WavesymError(f"language: {given}, c or all expected, since CMake builds C")
+            raise WavesymError(f"language: {self.language}, but --package builds C with CMake; write c or all")
         only_c = "--stream" if self.stream and not modes else "--runtime" if self.runtime and not self.stream else ""
         if only_c and self.language != "c":
-            raise WavesymError(f"language: {self.language} given with {only_c}, c expected")
+            raise WavesymError(f"language: {only_c} makes C, not {self.language}; write c")
 
 
 def refuse_others(option: str, names: Sequence[str], known: Sequence[str]) -> None:
     """WavesymError for a name that is none of those there are, and for one that is given twice."""
     for place, name in enumerate(names):
         if name not in known:
-            expected = f"{_one_of(known)} expected. {did_you_mean(name, known)}".rstrip(". ")
-            raise WavesymError(f"{option}: {name or 'nothing'} given, {expected}")
+            choice = f"{_one_of(known)}. {did_you_mean(name, known)}".rstrip(". ")
+            raise WavesymError(f"{option}: {name or 'an empty name'} is unknown; write {choice}")
         if name in names[:place]:
-            raise WavesymError(f"{option}: {name} given twice, once expected")
+            raise WavesymError(f"{option}: {name} stands twice; write it once")
+
+
+def refuse_beside(other: str, options: Iterable[tuple[str, object, object]]) -> None:
+    """WavesymError for options that do not go with another: each its name, its value, and the usual one."""
+    for option, value, usual in options:
+        if value != usual:
+            remedy = f"write {usual}" if usual else "leave it out"
+            raise WavesymError(f"{option}: {value} does not go with {other}; {remedy}")
 
 
 def refuse_unknown(option: str, word: str, known: Iterable[str]) -> None:
     """WavesymError for a word that is none of those there are."""
     if word not in (names := tuple(known)):
-        raise WavesymError(f"{option}: {word} given, {_one_of(names)} expected")
+        raise WavesymError(f"{option}: {word} is unknown; write {_one_of(names)}")
 
 
 def _one_of(names: Sequence[str]) -> str:

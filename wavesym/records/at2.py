@@ -41,12 +41,12 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
             if value is None:
                 raise damaged(file, number, f"word {place} is no decimal")
             if len(samples) == count:
-                raise damaged(file, number, f"more numbers than the {count} of NPTS on line {_HEADER} given")
+                raise damaged(file, number, f"more numbers than the {count} of NPTS on line {_HEADER}; write as many")
             samples.append(value)
             written.append(word)
             places.append(number)
     if len(samples) < count:
-        what = f"the file ends after {len(samples)} numbers, the {count} of NPTS on line {_HEADER} expected"
+        what = f"the file ends after {len(samples)} numbers of the {count} of NPTS on line {_HEADER}; write all of them"
         raise damaged(file, places[-1] if places else _HEADER, what)
     units = (
         (_KNOWN.get(word.upper(), ""), number)
@@ -61,7 +61,7 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
 
 def _counted(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:
     """How many samples, and how far apart."""
-    expected = "NPTS and DT expected, such as NPTS=  1559, DT=   .0200 SEC"
+    expected = "no NPTS and DT; write them as in NPTS=  1559, DT=   .0200 SEC"
     if len(lines) < _HEADER:
         raise damaged(file, len(lines), f"the file ends, three lines of text and one with {expected}")
     line = lines[_HEADER - 1].strip()
@@ -70,12 +70,12 @@ def _counted(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:
     if found is None or step is None:
         raise damaged(file, _HEADER, expected)
     if step <= 0:
-        raise damaged(file, _HEADER, f"DT = {bare(found[2])} given, more than 0 expected")
+        raise damaged(file, _HEADER, f"DT = {bare(found[2])} is not positive; write more than 0")
     if not found[1].strip("0"):
-        raise damaged(file, _HEADER, "NPTS = 0 given, at least 1 expected")
+        raise damaged(file, _HEADER, "NPTS = 0 is no record; write at least 1")
     clock = _clock(file, found[3])
     if len(found[1]) > 9 or int(found[1]) > MOST_SAMPLES:
-        raise damaged(file, _HEADER, f"NPTS = {bare(found[1])} given, at most {MOST_SAMPLES} expected")
+        raise damaged(file, _HEADER, f"NPTS = {bare(found[1])} is too many; write at most {MOST_SAMPLES}")
     return int(found[1]), step * clock
 
 
@@ -83,5 +83,5 @@ def _clock(file: str, words: str) -> Fraction:
     """How many seconds the unit behind DT is. What stands apart from it by a comma is no unit."""
     word = _NAMES.sub("", words).split(",")[0].strip(" .()[]")
     if (clock := _CLOCKS.get(word.upper())) is None:
-        raise damaged(file, _HEADER, "the unit behind DT is not known, SEC or MSEC expected")
+        raise damaged(file, _HEADER, "the unit behind DT is not known; write SEC or MSEC")
     return clock

@@ -23,7 +23,7 @@ from wavesym.records.recording import Recorded
 
 def _text(value: object) -> str:
     if not isinstance(value, str):
-        raise wrong(f"{shown(value)} given, the name of a column expected")
+        raise wrong(f"{shown(value)} is not a name; write that of a column")
     return value
 
 
@@ -43,22 +43,23 @@ class RecordedLoad(Load):
         if self.record.unit or self.record.clock:
             has = " and ".join(filter(None, (self.record.clock, self.record.unit)))
             raise wrong(
-                f"a file that says {has} given, numbers without units expected (a scene with [units] takes them)",
+                f"the file says {has}, but the scene has no units; write numbers without units, or [units] in the "
+                "scene",
                 "record",
             )
         self._once("spacing", self.spacing, self.record.spacing)
         self._once("start", self.start, self.record.start)
         if self.spacing is None and self.record.spacing is None:
-            raise wrong("missing, the time between samples expected (the file does not say it)", "spacing")
+            raise wrong("missing, and the file does not say it; write the time between samples", "spacing")
         if self._start != 0 and self._start < self.step:
             steps = f"{decimal_text(self._start / self.step)} steps"
             key = "record" if self.start is None else "start"
-            raise wrong(f"a first sample after {steps} given, at 0 or after at least 1 expected (it comes from 0)", key)
+            raise wrong(f"a first sample after {steps}, but the load comes from 0; write 0, or 1 or more", key)
         return self
 
     def _once(self, key: str, here: Fraction | None, there: Fraction | None) -> None:
         if here is not None and there is not None and here != there:
-            raise wrong(f"{decimal_text(here)} given, {decimal_text(there)} expected, as in the file, or none", key)
+            raise wrong(f"{decimal_text(here)}, but the file says {decimal_text(there)}; write that, or nothing", key)
 
     @property
     def step(self) -> Fraction:

@@ -12,7 +12,7 @@ from wavesym.records.at2 import at2, is_at2
 from wavesym.records.columns import columns
 from wavesym.records.record_file import MOST_SAMPLES, RecordFile, damaged
 
-_EXPECTED = "a file of AT2 or CSV"
+_FORM = "a file of AT2 or CSV"
 
 
 def read_record(path: str | PathLike[str], column: str | None = None) -> RecordFile:
@@ -22,21 +22,21 @@ def read_record(path: str | PathLike[str], column: str | None = None) -> RecordF
     """
     file = os.fspath(path)
     _refuse_special(file)
-    file, content = read_bytes(file, _EXPECTED)
+    file, content = read_bytes(file, _FORM)
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise damaged(file, line, f"byte 0x{content[error.start]:02x} is not UTF-8, {_EXPECTED} expected") from None
+        raise damaged(file, line, f"byte 0x{content[error.start]:02x} is not UTF-8; write {_FORM}") from None
     if content.count(b"\n") + content.count(b"\r") > 2 * MOST_SAMPLES:
         raise SceneError(f"more lines than {MOST_SAMPLES} samples take; thin the record, or cut it", file=file)
     if not text.strip():
-        raise SceneError(f"empty, {_EXPECTED} expected", file=file)
+        raise SceneError(f"empty; write {_FORM}", file=file)
     lines = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
     if not file.lower().endswith(".at2") and not is_at2(lines):
         return columns(file, lines, column)
     if column is not None:
-        raise SceneError("column given, none expected (an AT2 file has one)", file=file)
+        raise SceneError("an AT2 file has one column; leave column out", file=file)
     return at2(file, lines)
 
 
@@ -47,4 +47,4 @@ def _refuse_special(file: str) -> None:
     except (OSError, ValueError):
         return  # said by who reads it
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
-        raise SceneError(f"no file on a disk, {_EXPECTED} expected", file=file)
+        raise SceneError(f"no file on a disk; write {_FORM}", file=file)

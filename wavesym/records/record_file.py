@@ -60,13 +60,16 @@ class RecordFile:
             return step
         for k, (before, time) in enumerate(pairwise(times), 1):
             if (since := time - before) <= 0:
-                what = f"the time {decimal_text(time)} given, more than the {decimal_text(before)} before it expected"
+                what = (
+                    f"the time {decimal_text(time)} is not later than the {decimal_text(before)} before it; "
+                    "write times in rising order"
+                )
                 raise damaged(self.file, self.lines[k], what)
             if since == step and told is None:  # as up to here
                 continue
             expected = times[0] + k * step
             if told is None or abs(time - expected) > _NEAR * step:
-                what = f"the time {decimal_text(time)} given, {decimal_text(expected)} expected ({_even(step, told)})"
+                what = f"the time {decimal_text(time)} should be {decimal_text(expected)}; write {_even(step, told)}"
                 raise damaged(self.file, self.lines[k], what)
         return step
 

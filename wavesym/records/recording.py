@@ -54,7 +54,7 @@ def _recording(value: object, info: ValidationInfo) -> Recording:
     except ValidationError as error:
         what, path = first_error(error)
         raise wrong(what, *path) from None
-    raise wrong(f"{shown(value)} given, the path of a file expected")
+    raise wrong(f"{shown(value)} is not a path; write that of a file")
 
 
 def _dumped(recording: Recording) -> dict[str, Any]:

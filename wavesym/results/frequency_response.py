@@ -215,7 +215,7 @@ def equally_spaced(model: Model, low: float | None, high: float | None, points: 
 
 def _refuse_many(points: int) -> None:
     if points > _MOST_POINTS:
-        raise CostError(f"--points: {points} given, at most {_MOST_POINTS} expected (fewer points help)")
+        raise CostError(f"--points: {points} of them, the limit is {_MOST_POINTS} (fewer points help)")
 
 
 @dataclass
@@ -248,7 +248,7 @@ class _Points:
         if enough:
             return [_nearest(each) for each in found], [above(r) if r.is_finite() else nan for r in radii]
         raise CostError(
-            f"frequency: more than {_MOST_BITS} bits at {frequency:g}, at most {_MOST_BITS} expected (fewer parts help)"
+            f"frequency: more than {_MOST_BITS} bits at {frequency:g}, the limit is {_MOST_BITS} (fewer parts help)"
         )
 
 

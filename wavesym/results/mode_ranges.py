@@ -159,5 +159,5 @@ def read_range(text: str) -> tuple[str, tuple[str, str]]:
     path, equals, ends = text.partition("=")
     low, dots, high = ends.partition("..")
     if not (path and equals and dots and low.strip() and high.strip()):
-        raise WavesymError(f"--range {text}: PATH=A..B expected, as in system.kappa[0]=1/10..1/5")
+        raise WavesymError(f"--range {text}: not a range; write PATH=A..B, as system.kappa[0]=1/10..1/5")
     return path.strip(), (low.strip(), high.strip())

@@ -184,7 +184,7 @@ def modes(model: Model, count: int = COUNT, below: float | None = None) -> Modes
     if count < 1 or (below is not None and not below > 0):
         raise WavesymError(f"modes: {count if below is None else below} is not positive")
     if count > _MOST:
-        raise CostError(f"--count: {count} modes, at most {_MOST} expected (fewer modes help)")
+        raise CostError(f"--count: {count} modes, the limit is {_MOST} (fewer modes help)")
     damped = is_damped(model.network)
     spectrum = DyingSpectrum(model.network) if damped else Spectrum(model.network)
     found = list(spectrum.first(count if below is None else _FIRST_GUESS))
@@ -193,9 +193,7 @@ def modes(model: Model, count: int = COUNT, below: float | None = None) -> Modes
         limit = below * (2 * pi * per_tau if model.clock else 1.0)
         while abs(complex(found[-1].frequency)) <= limit:
             if len(found) >= _MOST:
-                raise CostError(
-                    f"--below: {below:g} has more modes below it, at most {_MOST} expected (a lower one helps)"
-                )
+                raise CostError(f"--below: {below:g} has more modes below it, the limit is {_MOST} (a lower one helps)")
             found = list(spectrum.first(2 * len(found)))
         found = [mode for mode in found if abs(complex(mode.frequency)) <= limit]
     rows = tuple(_row(model, k, mode, per_tau) for k, mode in enumerate(found, 1))

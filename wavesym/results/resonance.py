@@ -112,7 +112,7 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Peaks:
         CostError: where too many intervals would be needed.
     """
     if not 0 <= low < high:
-        raise WavesymError(f"--peaks: {low:g} to {high:g} is no band of frequencies; two that differ expected")
+        raise WavesymError(f"--peaks: {low:g} to {high:g} is no band of frequencies; write two that differ")
     with ctx.workprec(_BITS):
         first, last = angular(model, low), angular(model, high)
         for transfer, rests in _transfers(model, load, last):
@@ -199,9 +199,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
     while level:
         count += len(level)
         if count > allowed:
-            raise CostError(
-                f"--peaks: {count} intervals, at most {allowed} expected (a narrower band or fewer parts help)"
-            )
+            raise CostError(f"--peaks: {count} intervals, the limit is {allowed} (a narrower band or fewer parts help)")
         middles = [_squares(transfer, each.middle) for each in level]
         for each, squares in zip(level, middles, strict=True):
             for k in each.outputs:
@@ -273,4 +271,4 @@ def _transfers(model: Model, load: HarmonicLoad, last: arb) -> Iterator[tuple[Tr
         yield transfer, transfer.left_out(last)
         count *= 4
     if not transfer.left_out(last)[0].is_finite():
-        raise CostError(f"--to: {count} modes lie below it, at most {_MOST_MODES} expected (a lower frequency helps)")
+        raise CostError(f"--to: {count} modes lie below it, the limit is {_MOST_MODES} (a lower frequency helps)")

@@ -78,7 +78,7 @@ def spectra(model: Model, damping: float) -> Spectra:
     """
     probes = tuple(probe for probe in model.probes if probe.quantity == "acceleration")
     if not probes:
-        raise WavesymError("output.acceleration: none given, at least one expected for a response spectrum")
+        raise WavesymError("output.acceleration: none, and a response spectrum needs one; write acceleration = [PLACE]")
     watched = model.watching(probes).tolerating(max(model.tolerance, _TOLERANCE))
     per_tau = 1.0 if model.clock is None else nearest(model.clock.per_tau)
     periods = _periods(model, per_tau)
@@ -88,8 +88,8 @@ def spectra(model: Model, damping: float) -> Spectra:
     step = min(steps if model.spacing is None else [*steps, nearest(model.spacing) / _PER_STEP])
     if (count := until / step) > _MOST:
         raise CostError(
-            f"output.until: a response spectrum would take {count:.1e} steps of tau = {step:g}, at most {_MOST:.1e} "
-            "expected (a shorter horizon helps)"
+            f"output.until: a response spectrum would take {count:.1e} steps of tau = {step:g}, the limit is "
+            f"{_MOST:.1e} (a shorter horizon helps)"
         )
     program = make(watched)
     stretches, accelerations = zip(*_stretches(watched, program, step), strict=True)
@@ -116,10 +116,10 @@ def _periods(model: Model, per_tau: float) -> Numbers:
     longest = nearest(model.until) * per_tau / 2
     first, last = ceil(PER_DECADE * log10(shortest)), floor(PER_DECADE * log10(longest))
     if first > last:
-        told, unit = nearest(model.until) * per_tau, model.clock.unit if model.clock else "tau"
+        horizon, unit = nearest(model.until) * per_tau, model.clock.unit if model.clock else "tau"
         raise WavesymError(
-            f"output.until: {told:.6g} {unit} given, at least {2 * 10 ** (first / PER_DECADE):.5g} {unit} expected for "
-            "a response spectrum"
+            f"output.until: {horizon:.6g} {unit} is too short for a response spectrum; write "
+            f"{2 * 10 ** (first / PER_DECADE):.5g} {unit} or more"
         )
     return np.asarray(10.0 ** (np.arange(first, last + 1) / PER_DECADE))
 

@@ -266,8 +266,9 @@ def _searched(model: Model) -> _Found:
     step = spacing(model)
     if (count := nearest(model.until) / step) * len(model.probes) > _MOST_SAMPLES:
         raise CostError(
-            f"output.until: extremes of {len(model.probes)} outputs would be looked for at {count:.1e} samples each, "
-            f"at most {_MOST_SAMPLES // len(model.probes):.1e} expected (a shorter horizon or fewer outputs help)"
+            f"output.until: extremes of {len(model.probes)} outputs would be looked for at {count:.1e} samples "
+            f"each, the limit is {_MOST_SAMPLES // len(model.probes):.1e} (a shorter horizon or fewer outputs "
+            "help)"
         )
     taus, values = sampled(model, program, step)
     ranges = _ranges(*sampled_extremes(taus, values, program.each, program.error_bound))

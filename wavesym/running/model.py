@@ -161,11 +161,11 @@ class RuntimeModel:
         instants, values = _numbers("tau", tau), _numbers("data", data)
         wanted = (len(self.outputs), *instants.shape)
         if values.shape != wanted:
-            raise WavesymError(f"data: an array of shape {values.shape} given, {wanted} expected")
+            raise WavesymError(f"data: an array of shape {values.shape}; write one of shape {wanted}")
         if not np.all((instants >= 0) & (instants <= self.tau_max)):
-            raise WavesymError(f"tau: 0 to {self.tau_max:g} expected where there are data")
+            raise WavesymError(f"tau: beyond the data; where there are data write 0 to {self.tau_max:g}")
         if np.any(np.isinf(values)):
-            raise WavesymError("data: an infinite number given, finite ones expected, and NaN where there is none")
+            raise WavesymError("data: an infinite number; write finite ones, and NaN where there is none")
         misfits = self._engine.misfit(instants.ravel(), values.reshape(len(self.outputs), -1))
 
         def of(**parameters: ArrayLike) -> Array:
@@ -193,16 +193,16 @@ class RuntimeModel:
         columns = dict(self.parameters)
         for name, values in parameters.items():
             if name not in columns:
-                raise WavesymError(f"{name} given, {' or '.join(columns)} expected")
+                raise WavesymError(f"{name}: not a parameter of this model; write {' or '.join(columns)}")
             wanted = columns[name].shape
             columns[name] = _numbers(name, values)
             if columns[name].ndim not in (1, 2) or columns[name].shape[-1:] != wanted:
                 raise WavesymError(
-                    f"{name}: an array of shape {columns[name].shape} given, (sets, {wanted[0]}) expected"
+                    f"{name}: an array of shape {columns[name].shape}; write one of shape (sets, {wanted[0]})"
                 )
         counts = {len(values) for values in columns.values() if values.ndim == 2}
         if len(counts) > 1:
-            raise WavesymError(f"{' and '.join(map(str, sorted(counts)))} sets given, as many of each expected")
+            raise WavesymError(f"{' and '.join(map(str, sorted(counts)))} sets; write as many of each parameter")
         sets = counts.pop() if counts else 1
         rows = [np.broadcast_to(values, (sets, values.shape[-1])) for values in columns.values()]
         return np.ascontiguousarray(np.concatenate(rows, axis=1))
@@ -214,4 +214,4 @@ def _numbers(name: str, values: ArrayLike) -> Array:
             raise TypeError
         return np.asarray(values, np.float64)
     except (TypeError, ValueError):
-        raise WavesymError(f"{name}: an array of numbers expected") from None
+        raise WavesymError(f"{name}: not numbers; write an array of them") from None

@@ -56,12 +56,15 @@ class StreamModel:
         """
         state = np.zeros(self.state_bytes, np.uint8)
         for name in given.keys() - {field.name for field in self.fields}:
-            raise WavesymError(f"{name}: given, {', '.join(field.name for field in self.fields) or 'nothing'} expected")
+            raise WavesymError(
+                f"{name}: not a parameter of this stream; write "
+                f"{', '.join(field.name for field in self.fields) or 'nothing'}"
+            )
         rows = []
         for field in self.fields:
             row = np.array(given.get(field.name, list(map(nearest, field.values))), self.dtype).ravel()
             if len(row) != len(field.values):
-                raise WavesymError(f"{field.name}: {len(row)} given, {len(field.values)} expected")
+                raise WavesymError(f"{field.name}: {len(row)} values; write {len(field.values)}")
             rows.append(row)
         status = self._begin(address(state), *([address(np.concatenate(rows))] if rows else []))
         return Stream(self, state, int(status or 0))
@@ -85,7 +88,10 @@ class Stream:
         model = self._model
         given = np.array(loads, model.dtype).ravel()
         if len(given) != len(model.loads):
-            raise WavesymError(f"loads: {len(given)} given, {len(model.loads)} expected ({', '.join(model.loads)})")
+            raise WavesymError(
+                f"loads: {len(given)} values for {len(model.loads)} loads; write one for each of "
+                f"{', '.join(model.loads)}"
+            )
         out = np.empty(len(model.outputs), model.dtype)
         status = int(model._step(address(self.state), dtau, address(given), address(out)))
         return status, out.astype(np.float64)

@@ -24,7 +24,9 @@ def explicit_text(scene: Scene) -> str:
 def _lines(scene: Scene) -> Iterator[str]:
     said = scene.physical.said["system"] if scene.physical else {}
     if said.get("type", scene.system.type) == "chain":
-        raise UnservedError("system.type: chain given, collision, drive or building expected (a chain is written out)")
+        raise UnservedError(
+            "system.type: a chain has all of its parts written already; write collision, drive or building"
+        )
     model = lower(scene)
     told = InUnits(scene.physical.scale, model.network) if scene.physical else Dimensionless()
     yield f"# {scene.name}, a {said.get('type', scene.system.type)}, written out part by part."
@@ -59,8 +61,7 @@ def _lines(scene: Scene) -> Iterator[str]:
         if positions := getattr(scene.output, quantity):
             if quantity == "relative" and not any(point.motion for point in model.network.points):
                 raise UnservedError(
-                    'output.relative: given with base = "force", "ground" expected (of a chain that is written out, '
-                    "displacements are relative to an end that moves as it is told)"
+                    'output.relative: base = "force" has no foundation that moves; write base = "ground"'
                 )
             places = [told.position(position) if quantity != "drift" else position.written for position in positions]
             yield f"{quantity} = {json.dumps(places)}"

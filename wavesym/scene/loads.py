@@ -15,7 +15,7 @@ from wavesym.systems import SystemTable
 def loads(tables: object, system: SystemTable) -> tuple[Load, ...]:
     """The loads on a system. Which keys a table has depends on the system, so pydantic is told here."""
     if isinstance(tables, Sequence) and tables and not system.load_kinds:
-        raise wrong(f"loads given, none expected ({system.no_loads})")
+        raise wrong(f"{system.no_loads}; leave [[load]] out")
     found = tuple(_load(table, k, system) for k, table in enumerate(listed(tables)))
     damping = getattr(system, "damping", None)
     if damping is None or not damping.acts:

@@ -46,7 +46,7 @@ def lower(scene: Scene, *, loads: bool = True) -> Model:
         CostError: for loads that would take too many samples.
     """
     if not isinstance(scene, Scene):
-        raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
+        raise SceneError(f"{type(scene).__name__} is not a Scene; write Scene.from_toml(...)")
     parts = (scene.name, scene.system, scene.load, scene.output)
     kept = vars(scene).get(_KEPT)  # a copy of a scene with other parts has the model of the first
     if kept is None or any(one is not other for one, other in zip(kept.parts, parts, strict=True)):

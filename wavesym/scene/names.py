@@ -27,11 +27,13 @@ _IMPORTED = "numpy"  # by NAME.py, which must not import itself
 
 def _name(value: object) -> str:
     if not isinstance(value, str) or not _NAME.fullmatch(value):
-        raise wrong(f"{shown(value)} given, at most 63 ASCII letters, digits and _ expected, a letter first")
+        raise wrong(
+            f"{shown(value)} is not an identifier; write at most 63 ASCII letters, digits and _, a letter first"
+        )
     if value in _KEYWORDS:
-        raise wrong(f"{shown(value)} given, a name that is no keyword of C, C++ or Python expected")
+        raise wrong(f"{shown(value)} is a keyword of C, C++ or Python; write another name")
     if value == _IMPORTED:
-        raise wrong(f"{shown(value)} given, a name other than that of a module that NAME.py imports expected")
+        raise wrong(f"{shown(value)} is a module that NAME.py imports; write another name")
     return value
 
 

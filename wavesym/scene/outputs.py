@@ -59,7 +59,7 @@ EVERY = "all"
 
 def _drifts(value: object) -> tuple[object, ...]:
     if isinstance(value, str) and value != EVERY:
-        raise wrong(f'{shown(value)} given, a list or "{EVERY}" expected')
+        raise wrong(f'{shown(value)} is not a list; write [1, 2, 3], or "{EVERY}"')
     return (EVERY,) if value == EVERY else listed(value)
 
 
@@ -69,7 +69,7 @@ Drifts = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(_drifts)]
 class Output(SceneTable):
     """The outputs, the horizon (in tau), and the largest error allowed relative to an output's largest value."""
 
-    until: Positive = Field(description="the horizon, a positive number,")
+    until: Positive = Field(description="the horizon, a positive number")
     tolerance: Exact = Fraction(1, 10**10)
     strain: Positions = ()
     velocity: Positions = ()
@@ -85,21 +85,21 @@ class Output(SceneTable):
         if until > LONGEST_HORIZON:
             # the longest intervals of a system are 2 long
             cost = f"{shown(until)} would cost at least {shown(until // 2)} intervals of every function"
-            raise wrong(f"{cost}, a horizon of at most {LONGEST_HORIZON} expected")
+            raise wrong(f"{cost}; write a horizon of {LONGEST_HORIZON} or less")
         return until
 
     @field_validator("tolerance")
     @classmethod
     def _useful(cls, tolerance: Fraction) -> Fraction:
         if not 0 < tolerance < 1:
-            raise wrong(f"{shown(tolerance)} given, a number between 0 and 1 expected")
+            raise wrong(f"{shown(tolerance)} is not between 0 and 1; write a tolerance such as 1e-10")
         return tolerance
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not isinstance(self, NoOutput) and not any(getattr(self, quantity) for quantity in QUANTITIES):
             *others, last = QUANTITIES
-            raise wrong(f"no positions given, at least one of {', '.join(others)} or {last} expected")
+            raise wrong(f"no positions; write at least one of {', '.join(others)} or {last}")
         return self
 
     @model_serializer(mode="wrap")
@@ -136,7 +136,7 @@ def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> I
                 raise wrong(str(error), *at) from None
             if (quantity, place) in seen:
                 taken = seen[quantity, place]
-                raise wrong(f"{text} given, another place than {taken} expected (both are the same)", *at)
+                raise wrong(f"{text} is the same place as {taken}; write another", *at)
             seen[quantity, place] = text
             name = f"{quantity}@{position.written}"
             yield Observable(quantity, place.x, place.side, name, place, position.title)

@@ -21,7 +21,7 @@ def steps(path: str) -> list[str | int]:
     """The keys and indices that a path is made of. SceneError for what is no path."""
     found = list(_STEP.finditer(path))
     if not found or "".join(step[0] for step in found) != path:
-        raise SceneError('no path, one such as "output.until" or "load[0].times[2]" expected', path)
+        raise SceneError('not a path; write one such as "output.until" or "load[0].times[2]"', path)
     return [step[1] or int(step[2]) for step in found]
 
 

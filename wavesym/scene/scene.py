@@ -96,7 +96,7 @@ class Scene(SceneTable):
     @classmethod
     def _read(cls, file: str, text: str, fields: dict[str, Any]) -> Self:
         if "scene" in fields and "system" not in fields:
-            raise SceneError("a sweep given, a scene expected (`wavesym sweep` takes sweeps)", file=file)
+            raise SceneError("this is a sweep, not a scene; `wavesym sweep` takes it", file=file)
         try:
             scene = cls(**fields)
         except SceneError as error:
@@ -158,13 +158,13 @@ class Scene(SceneTable):
         if isinstance(table, SystemTable):
             return table
         *others, last = (f'"{name}"' for name in SYSTEMS)
-        expected = f"{', '.join(others)} or {last} expected"
+        choice = f"{', '.join(others)} or {last}"
         if not isinstance(table, Mapping):
-            raise wrong(f"{shown(table)} given, a table expected")
+            raise wrong(f"{shown(table)} is not a table; write [system]")
         if "type" not in table:
-            raise wrong(f"missing, {expected}", "type")
+            raise wrong(f"missing; write {choice}", "type")
         if not isinstance(name := table["type"], str) or name not in SYSTEMS:
-            raise wrong(f"{shown(table['type'])} given, {expected}", "type")
+            raise wrong(f"{shown(table['type'])} is not a system; write {choice}", "type")
         try:
             return SYSTEMS[name].model_validate(table)
         except ValidationError as error:

@@ -67,8 +67,8 @@ def builtin_text(name: str) -> str:
     """A built-in scene as TOML. SceneError for a name that is none."""
     if name not in builtin_names():
         meant = did_you_mean(name, builtin_names())
-        expected = f"a built-in scene expected ({', '.join(builtin_names())})"
-        raise SceneError(f"unknown, {expected}{meant and f'. {meant}'}", file=name)
+        known = ", ".join(builtin_names())
+        raise SceneError(f"unknown; write a built-in scene ({known}){meant and f'. {meant}'}", file=name)
     return _builtin(name).decode()
 
 
@@ -108,6 +108,6 @@ def parsed(file: str, text: str) -> dict[str, Any]:
         raise SceneError(f"no TOML, {error}", file=file) from None
     except ValueError:  # the limit is Python's
         digits = sys.get_int_max_str_digits()
-        raise SceneError(f"an integer of more than {digits} digits, fewer expected", file=file) from None
+        raise SceneError(f"an integer has more than {digits} digits; write fewer", file=file) from None
     except RecursionError:
-        raise SceneError("tables or lists too deep in one another, a scene expected", file=file) from None
+        raise SceneError("tables or lists too deep in one another; write a scene", file=file) from None

@@ -60,8 +60,9 @@ def connected(workers: int | None, address: str | None) -> Iterator[Any]:
         try:
             client = Client(address, timeout=_WAIT, set_as_default=False)
         except (OSError, ValueError) as error:
-            expected = "the address of a Dask scheduler that answers expected"
-            raise ClusterError(f"--scheduler: {address} given, {expected} ({error})") from None
+            raise ClusterError(
+                f"--scheduler: no Dask scheduler answers at {address} ({error}); write the address of one that does"
+            ) from None
         yield stack.enter_context(client)
 
 
@@ -195,7 +196,7 @@ def _threads(client: Any) -> int:
     try:
         client.wait_for_workers(1, timeout=_WAIT)
     except TimeoutError:
-        raise ClusterError(f"no worker at the Dask scheduler for {_WAIT} s, at least 1 expected") from None
+        raise ClusterError(f"no worker at the Dask scheduler for {_WAIT} s; start at least 1") from None
     return sum(client.nthreads().values())
 
 

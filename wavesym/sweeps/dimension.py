@@ -69,8 +69,8 @@ class SweepAxis:
         seen: dict[object, int] = {}
         for k, key in enumerate(zip(*(column.keys for column in self.columns), strict=True)):
             if key in seen:
-                told = ", ".join(column.told[k] for column in self.columns)
-                raise SceneError(f"{shown(told)} given as [{seen[key]}] and again as [{k}], once expected", path)
+                seen_value = ", ".join(column.told[k] for column in self.columns)
+                raise SceneError(f"{shown(seen_value)} stands at [{seen[key]}] and again at [{k}]; write it once", path)
             seen[key] = k
 
 
@@ -85,13 +85,17 @@ def spread(values: Span | tuple[object, ...]) -> Sequence[object]:
         return values
     (first, unit), (last, other) = _end(values.first, "from"), _end(values.last, "to")
     if unit != other:
-        raise wrong(f"{shown(values.last)} given, a number in {unit or 'no unit'} expected, as `from` has it", "to")
+        raise wrong(f"{shown(values.last)} has another unit than `from`; write a number in {unit or 'no unit'}", "to")
     steps = values.count - 1
     if not steps and first != last:
-        raise wrong("1 given, at least 2 expected (`from` and `to` differ)", "count")
+        raise wrong("1 value, but `from` and `to` differ; write 2 or more", "count")
     if values.log:
         if first * last <= 0:
-            raise wrong(f"{shown(values.last)} given, two numbers of one sign expected for equal ratios", "to")
+            raise wrong(
+                f"{shown(values.last)} has another sign than `from`, so there are no equal ratios; write "
+                "two numbers of one sign",
+                "to",
+            )
         inner = [_between(first, last, Fraction(k, steps)) for k in range(1, steps)]
     else:
         inner = [first + (last - first) * Fraction(k, steps) for k in range(1, steps)]
@@ -115,7 +119,7 @@ def _written(number: Fraction, unit: str) -> object:
 def _end(value: object, key: str) -> tuple[Fraction, str]:
     found = number_of(plain(value))
     if found is None:
-        raise wrong(f"{shown(value)} given, a number expected, with a unit or without", key)
+        raise wrong(f"{shown(value)} is not a number; write one, with a unit or without", key)
     return found
 
 

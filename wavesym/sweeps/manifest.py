@@ -93,7 +93,7 @@ class Manifest(SealedFile):
             what = f"damaged, or not of schema_version {SCHEMA} (wavesym sweep SWEEP -o {folder} mends what is damaged)"
             raise DamagedError(f"{folder / FILE}: {what}") from None
         if found is None:
-            raise WavesymError(f"{folder}: no {FILE} in it, the folder of a sweep expected")
+            raise WavesymError(f"{folder}: no {FILE} in it; write the folder of a sweep")
         return found
 
 
@@ -108,9 +108,9 @@ def settle(folder: Path, plan: SweepPlan, batches: Batches) -> Store:
         there = None
     if there and there.sha256 != plan.sha256:
         was = f'"{there.name}", {there.cases} cases, wavesym {there.wavesym}'
-        raise WavesymError(f"{folder}: the folder of another sweep given ({was}), its own or a new one expected")
+        raise WavesymError(f"{folder}: the folder of another sweep ({was}); write its own or a new one")
     if not there and (folder / NAME).exists() and _sweep(folder / NAME) != plan.sha256:
-        raise WavesymError(f"{folder}: a {NAME} that is not of this sweep given, a new folder expected")
+        raise WavesymError(f"{folder}: has a {NAME} that is not of this sweep; write a new folder")
     manifest = _manifest(plan, batches, lay_out(folder, plan, batches))
     (folder / FOLDER).mkdir(exist_ok=True)
     inside(folder / FOLDER)

@@ -32,7 +32,7 @@ def found(patterns: Sequence[str], folder: str) -> list[str]:
     for k, pattern in enumerate(patterns):
         some = sorted(glob(os.path.join(folder, pattern)))
         if not some:
-            raise SceneError(f"no file found at {shown(pattern)}, one of AT2 or CSV at least expected", f"records[{k}]")
+            raise SceneError(f"no file at {shown(pattern)}; write that of an AT2 or CSV file", f"records[{k}]")
         every += [file for file in some if file not in every]
     return every
 

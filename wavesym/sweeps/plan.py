@@ -171,15 +171,15 @@ def _planned(request: SweepRequest) -> SweepPlan:
 def _refuse_many(request: SweepRequest, records: int) -> None:
     counts = {path: count_of(values) for path, values in request.vary.items()}
     if request.zip and len(set(counts.values())) > 1:
-        told = ", ".join(f"{count} of {path}" for path, count in counts.items())
-        raise SceneError(f"{told} given, as many of each expected (they are run through side by side)", "vary")
+        counts_text = ", ".join(f"{count} of {path}" for path, count in counts.items())
+        raise SceneError(f"{counts_text} are run through side by side; write as many values of each", "vary")
     cases = records * (next(iter(counts.values()), 1) if request.zip else prod(counts.values()))
     dimensions = 1 if request.zip else len(counts) + (records > 1)
     if dimensions > _DIMENSIONS:
-        expected = f"at most {_DIMENSIONS} expected (zip = true runs fields side by side, in one dimension)"
-        raise SceneError(f"{dimensions} dimensions given, {expected}", "vary")
+        most = f"the limit is {_DIMENSIONS}; write zip = true to run fields side by side, in one dimension"
+        raise SceneError(f"{dimensions} dimensions, {most}", "vary")
     if cases > MOST:
-        raise SceneError(f"{cases} cases given, at most {MOST} expected (fewer values help)", "vary")
+        raise SceneError(f"{cases} cases, the limit is {MOST}; write fewer values", "vary")
 
 
 def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: str) -> Column:
@@ -190,7 +190,7 @@ def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: st
         changed(fields, path, None)
         way = steps(path)
         if len(way) == 1:
-            raise SceneError('a whole table given, a field in it such as "output.until" expected')
+            raise SceneError('a whole table; write a field in it, such as "output.until"')
         if way[:1] == ["load"] and way[2:] == ["record"] and all(isinstance(value, str) for value in values):
             files = [each for value in values for each in found([str(value)], request.folder)]
             return record_column(
@@ -215,7 +215,7 @@ def _records(request: SweepRequest, base: Scene, fields: dict[str, Any], files: 
     """The record of the one load that has one."""
     loads = [k for k, load in enumerate(fields["load"]) if isinstance(load, dict) and "record" in load]
     if len(loads) != 1:
-        raise SceneError(f"{len(loads)} loads with a record in the scene, 1 expected", "records")
+        raise SceneError(f"{len(loads)} loads of the scene have a record; write one that has", "records")
     path = f"load[{loads[0]}].record"
     return record_column(path, files, request.folder, fields["load"][loads[0]], acts(fields) if base.scale else None)
 
@@ -225,7 +225,10 @@ def _refuse_overlap(paths: list[str]) -> None:
         for other in paths:
             inner, outer = steps(path), steps(other)
             if path != other and inner[: len(outer)] == outer:
-                raise SceneError(f"given beside {shown(other)}, fields that lie apart expected", f"vary.{shown(path)}")
+                raise SceneError(
+                    f"{shown(other)} is varied too, and one is part of the other; write fields that lie apart",
+                    f"vary.{shown(path)}",
+                )
 
 
 def _watched(base: Scene, fields: dict[str, Any], dimensions: list[SweepAxis]) -> dict[str, str]:

@@ -19,7 +19,7 @@ from wavesym.scene.scene_file import builtin_names, parsed
 STATISTICS = ("min", "max", "tau_min", "tau_max", "arrival")
 _USUAL = STATISTICS[:4]
 MOST_SAMPLES = 1_000_000
-_EXPECTED = "a file of TOML that describes a sweep"
+_FORM = "a file of TOML that describes a sweep"
 
 
 class Span(SceneTable):
@@ -34,7 +34,7 @@ class Span(SceneTable):
     @classmethod
     def _some(cls, count: int) -> int:
         if count < 1:
-            raise wrong(f"{count} given, at least 1 expected")
+            raise wrong(f"{count} values; write at least 1")
         return count
 
 
@@ -49,10 +49,10 @@ def _values(value: object) -> Span | tuple[object, ...]:
             what, path = first_error(error)
             raise wrong(what, *path) from None
     if isinstance(value, str) or not hasattr(value, "__len__"):
-        raise wrong(f"{shown(value)} given, a list of values expected, or a table with from, to and count")
+        raise wrong(f"{shown(value)} is not a list of values; write one, or a table with from, to and count")
     values = listed(value if isinstance(value, list | tuple) else list(value))  # type: ignore[call-overload]
     if not values:
-        raise wrong("no values given, at least 1 expected")
+        raise wrong("no values; write at least 1")
     return values
 
 
@@ -71,22 +71,24 @@ class Kept(SceneTable):
         names = listed(value)
         for k, name in enumerate(names):
             if name not in STATISTICS:
-                raise wrong(f"{shown(name)} given, {', '.join(STATISTICS[:-1])} or {STATISTICS[-1]} expected", k)
+                raise wrong(
+                    f"{shown(name)} is not a statistic; write {', '.join(STATISTICS[:-1])} or {STATISTICS[-1]}", k
+                )
             if name in names[:k]:
-                raise wrong(f"{shown(name)} given twice, once expected", k)
+                raise wrong(f"{shown(name)} stands twice; write it once", k)
         return names
 
     @field_validator("histories")
     @classmethod
     def _samples(cls, count: int | None) -> int | None:
         if count is not None and not 2 <= count <= MOST_SAMPLES:
-            raise wrong(f"{count} samples given, 2 to {MOST_SAMPLES} expected")
+            raise wrong(f"{count} samples; write 2 to {MOST_SAMPLES}")
         return count
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not self.summary and self.histories is None:
-            raise wrong("nothing given, a summary or histories expected")
+            raise wrong("keeps nothing; write a summary or histories")
         return self
 
 
@@ -95,10 +97,10 @@ def _texts(value: object) -> tuple[str, ...]:
     texts = []
     for k, each in enumerate((value,) if isinstance(value, str | PathLike) else listed(value)):
         if not isinstance(each, str | PathLike):
-            raise wrong(f"{shown(each)} given, the path of a file expected (* stands for any characters)", k)
+            raise wrong(f"{shown(each)} is not a path; write that of a file (* stands for any characters)", k)
         texts.append(str(os.fspath(each)))
     if not texts:
-        raise wrong("no path given, at least 1 expected")
+        raise wrong("no path; write at least 1")
     return tuple(texts)
 
 
@@ -130,13 +132,13 @@ class SweepRequest(SceneTable):
     @classmethod
     def _true_or_false(cls, value: object) -> object:
         if not isinstance(value, bool):
-            raise wrong(f"{shown(value)} given, true or false expected")
+            raise wrong(f"{shown(value)} is not a truth value; write true or false")
         return value
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not self.vary and not self.records:
-            raise wrong("nothing that is varied given, a table [vary] or records expected")
+            raise wrong("nothing is varied; write a table [vary], or records")
         return self
 
     @property
@@ -150,10 +152,10 @@ class SweepRequest(SceneTable):
         if isinstance(source, Mapping):
             file, folder, fields = "sweep", "", dict(source)
         else:
-            file, text = read_text(source, _EXPECTED)
+            file, text = read_text(source, _FORM)
             folder, fields = os.path.dirname(os.fspath(source)), parsed(file, text)
         if "system" in fields and "scene" not in fields:
-            raise SceneError('a scene given, a sweep expected (`scene = "PATH"`, and what to `[vary]`)', file=file)
+            raise SceneError('this is a scene, not a sweep; write `scene = "PATH"`, and what to `[vary]`', file=file)
         try:
             request = cls.model_validate(fields)
         except ValidationError as error:
@@ -169,6 +171,6 @@ class SweepRequest(SceneTable):
         if isinstance(self.scene, Mapping):
             return Scene(**self.scene)
         if not isinstance(self.scene, str | PathLike):
-            raise wrong(f"{shown(self.scene)} given, the path of a scene or the name of a built-in one expected")
+            raise wrong(f"{shown(self.scene)} is not a scene; write the path of one, or the name of a built-in one")
         path = os.fspath(self.scene)
         return Scene.from_toml(path if path in builtin_names() else os.path.join(self.folder, path))

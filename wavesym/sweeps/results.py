@@ -160,7 +160,7 @@ def results(folder: Path) -> SweepResults:
     manifest = Manifest.of(folder)
     store, marks = manifest.store(folder), marks_of(folder, manifest)
     if not store.path.exists():
-        raise WavesymError(f"{folder}: no {NAME} in it, the folder of a sweep expected")
+        raise WavesymError(f"{folder}: no {NAME} in it; write the folder of a sweep")
     there = inside(store.path)
     damaged = [
         each for each, known in manifest.files.items() if each not in there or file_hash(store.path / each) != known

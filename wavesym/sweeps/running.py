@@ -164,7 +164,7 @@ def _alone(folder: Path) -> Iterator[None]:
     try:
         lock.acquire()
     except Timeout:
-        raise WavesymError(f"{folder}: another process computes into it, one at a time expected") from None
+        raise WavesymError(f"{folder}: another process computes into it; wait, or write another folder") from None
     try:
         yield
     finally:

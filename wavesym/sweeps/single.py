@@ -42,7 +42,7 @@ def of_model(plan: SweepPlan, model: Model) -> dict[str, float]:
     if plan.time_unit is None:
         return {"until": nearest(model.until)}
     if model.clock is None or model.clock.unit != plan.time_unit:
-        raise SceneError(f"times in another unit given, {plan.time_unit} expected, as in the other cases", "units.time")
+        raise SceneError(f"times in another unit than in the other cases; write {plan.time_unit}", "units.time")
     return {"until": nearest(model.until), "time_per_tau": nearest(model.clock.per_tau)}
 
 
@@ -56,8 +56,8 @@ def output_rows(plan: SweepPlan, model: Model) -> list[int]:
     place = {pair: k for k, pair in enumerate(zip(plan.outputs, plan.units, strict=True))}
     for probe in model.probes:
         if (probe.name, probe.unit) not in place:
-            told = f"{probe.name} [{probe.unit}]" if probe.unit else probe.name
-            raise SceneError(f"{told} given, an output of the other cases expected", "output")
+            label = f"{probe.name} [{probe.unit}]" if probe.unit else probe.name
+            raise SceneError(f"{label} is not an output of the other cases; write the same outputs", "output")
     return [place[probe.name, probe.unit] for probe in model.probes]
 
 

@@ -41,8 +41,7 @@ def needed(*libraries: str) -> None:
     from importlib.util import find_spec
 
     if missing := [name for name in libraries if not find_spec(name)]:
-        told = " and ".join(missing)
-        raise WavesymError(f"sweep: {told} not installed, the extra `sweep` expected (pip install 'wavesym[sweep]')")
+        raise WavesymError(f"sweep: {' and '.join(missing)} not installed; write pip install -e '.[sweep]'")
 
 
 @dataclass(frozen=True)
@@ -121,7 +120,7 @@ def inside(path: Path) -> set[str]:
     found = [path, *(Path(parent, each) for parent, folders, files in os.walk(path) for each in (*folders, *files))]
     for each in found:
         if not S_ISREG(mode := each.lstat().st_mode) and not S_ISDIR(mode):
-            raise DamagedError(f"{each}: neither a file nor a folder, nothing else expected in a sweep's folder")
+            raise DamagedError(f"{each}: neither a file nor a folder; a sweep's folder holds nothing else")
     return {each.relative_to(path).as_posix() for each in found[1:]}
 
 
@@ -143,7 +142,7 @@ def lay_out(folder: Path, plan: SweepPlan, batches: Batches) -> dict[str, str]:
     for each in sorted(inside(path)):
         parent, _, name = each.rpartition("/")
         if each not in files and each not in names and not (parent in names and parent and _CHUNK.fullmatch(name)):
-            raise WavesymError(f"{path / each}: not of this sweep, nothing else expected there (move it to elsewhere)")
+            raise WavesymError(f"{path / each}: not of this sweep; move it elsewhere")
     for each, known in files.items():
         if file_hash(path / each) != known:
             (path / each).parent.mkdir(exist_ok=True)

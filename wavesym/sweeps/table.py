@@ -31,7 +31,7 @@ def write_table(folder: Path, path: Path) -> None:
     as far as they were kept. What there is no value of is empty.
     """
     if path.suffix not in (".csv", ".parquet"):
-        raise WavesymError(f"--table: {path} given, a file .csv or .parquet expected")
+        raise WavesymError(f"--table: {path} is not a table; write a file .csv or .parquet")
     if path.suffix == ".parquet":
         needed("pyarrow")
     blocks = _columns(results(folder))

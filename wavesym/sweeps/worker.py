@@ -29,6 +29,6 @@ class SentPlan(WorkerPlugin):  # type: ignore[misc]
 def computed(version: str, sha256: str, batch: int, places: list[Place] | None) -> BatchValues:
     """A batch of a plan that was sent, or some cases of it."""
     if version != __version__:
-        raise WavesymError(f"wavesym {__version__} found at a worker, {version} expected")
+        raise WavesymError(f"wavesym {__version__} at a worker, {version} here; install the same")
     plan, batches = _PLANS[sha256]
     return compute(plan, batches, batch, places)

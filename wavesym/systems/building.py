@@ -89,7 +89,7 @@ def known_base(base: object) -> str:
     """Which of the two bases. Raises the error of `table.wrong`."""
     if base in ("force", "ground"):
         return str(base)
-    raise wrong(f'{shown(base)} given, "force" or "ground" expected')
+    raise wrong(f'{shown(base)} is not a base; write "force" or "ground"')
 
 
 class Building(Preset):

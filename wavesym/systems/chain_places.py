@@ -22,9 +22,9 @@ def node(drawing: Drawing, at: str) -> int:
         return drawing.names[position.name]
     _, station, _ = _found(drawing, position, text)
     if station is None:
-        raise MisplacedError(f"{text} given, the name or place of a node expected")
+        raise MisplacedError(f"{text} is not a node; write the name or place of one")
     if len(station.points) > 1 and not position.side:
-        raise MisplacedError(f'{text} given, a side there expected: "{position.written}-" or "{position.written}+"')
+        raise MisplacedError(f'{text} has two sides; write "{position.written}-" or "{position.written}+"')
     return station.points[-1 if position.side > 0 else 0]
 
 
@@ -47,10 +47,10 @@ def _found(drawing: Drawing, position: Position, text: str) -> tuple[str, Statio
     """The line of a position, its station if it is at one, and the number of the last station up to it."""
     line, x = position.name, position.x
     if line not in drawing.lines or x is None:
-        raise MisplacedError(f"{text} given, a place or the name of a node or branch expected")
+        raise MisplacedError(f"{text} is not a place; write one, or the name of a node or branch")
     stations = drawing.lines[line]
     if not 0 <= x <= stations[-1].x:
-        raise MisplacedError(f"{text} given, a place from 0 to {shown(stations[-1].x)} expected")
+        raise MisplacedError(f"{text} is not on the chain; write a place from 0 to {shown(stations[-1].x)}")
     before = next(k for k in reversed(range(len(stations))) if stations[k].x <= x)
     return line, stations[before] if stations[before].x == x else None, before
 
@@ -84,7 +84,7 @@ def _at_station(
             return _moving(drawing, line, station, station.points[-1 if side > 0 else 0])
     rods = [(rod, way, end) for rod, way, end in ((station.left, -1, 1), (station.right, 1, 0)) if rod is not None]
     if not rods:
-        raise MisplacedError(f"{text} given, a place at a rod expected")
+        raise MisplacedError(f"{text} is not at a rod; write a place that is")
     divided = len(rods) > 1 and (_divided if quantity == "strain" else _held)(drawing, station, loaded)
     if divided and not side:
         raise _one_sided(text)
@@ -93,7 +93,7 @@ def _at_station(
 
 
 def _one_sided(text: str) -> MisplacedError:
-    return MisplacedError(f'{text} given, a side there expected: "{text}-" or "{text}+"')
+    return MisplacedError(f'{text} has two sides; write "{text}-" or "{text}+"')
 
 
 def _divided(drawing: Drawing, station: Station, loaded: Collection[int]) -> bool:

@@ -62,7 +62,7 @@ def known_contacts(contacts: object) -> str:
     """Whether contacts open. Raises the error of `table.wrong`."""
     if contacts in ("closed", "open"):
         return str(contacts)
-    raise wrong(f'{shown(contacts)} given, "closed" or "open" expected')
+    raise wrong(f'{shown(contacts)} is unknown; write "closed" or "open"')
 
 
 class Collision(Preset):
@@ -95,7 +95,9 @@ class Collision(Preset):
             if velocity[k] > velocity[k - 1]:
                 left = shown(velocity[k - 1])
                 raise wrong(
-                    f"{shown(velocity[k])} given, at most {left} expected, as on its left (or the bodies part)", k
+                    f"{shown(velocity[k])} is more than the {left} on its left, and the bodies would part; write "
+                    "that or less",
+                    k,
                 )
         return velocity
 
@@ -112,7 +114,7 @@ class Collision(Preset):
             return place
         if not position.side:
             at = position.written
-            raise MisplacedError(f'{at} given, a side of the contact there expected: "{at}-" or "{at}+"')
+            raise MisplacedError(f'{at} has two sides, where bodies touch; write "{at}-" or "{at}+"')
         beyond = position.side > 0
         return replace(place, side=position.side, rod=place.rod + beyond, part=Fraction(1 - beyond))
 

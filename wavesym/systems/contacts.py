@@ -28,8 +28,8 @@ def refuse_impacts(points: Sequence[Point], contacts: Iterable[tuple[Link, Keys]
         one, other = of(link.left), of(link.right)
         if rigid[one] and rigid[other]:
             raise wrong(
-                'a contact between two rigid parts given ("fixed" and a motion are rigid too), a rod on one side of it '
-                "expected (rigid parts that strike each other need a law of impact)",
+                'a contact between two rigid parts ("fixed" and a motion are rigid too), which would need a law '
+                "of impact; write a rod on one side of it",
                 *at,
             )
         leader[other] = one

@@ -26,11 +26,11 @@ def drawn(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawi
     for number, branch in enumerate(branches):
         at = ("branch", number)
         if branch.from_ not in pen.names:
-            raise wrong(f"{shown(branch.from_)} given, the name of a node before it expected", *at, "from")
+            raise wrong(f"{shown(branch.from_)} is not a node before it; write the name of one", *at, "from")
         if branch.name in pen.lines or branch.name in pen.names:
-            raise wrong(f"{shown(branch.name)} given, a name that is not taken expected", *at, "name")
+            raise wrong(f"{shown(branch.name)} is taken; write another name", *at, "name")
         if branch.ratio == 0:
-            raise wrong("0 given, a ratio other than 0 expected", *at, "ratio")
+            raise wrong("0 is no ratio; write another number", *at, "ratio")
         pen.agree(pen.names[branch.from_], branch)
         pen.line(branch.name, branch.parts, (*at, "parts"), pen.names[branch.from_], branch.ratio)
     return pen.drawing()
@@ -89,7 +89,7 @@ class Drawing:
                 yield number, 1
 
 
-_UNSAID = "missing, the velocity of a mass between rods of two velocities expected"
+_UNSAID = "missing, and the rods beside this mass have two velocities; write that of the mass"
 
 
 @dataclass
@@ -125,14 +125,14 @@ class _Pen:
         self.lines[name] = ()  # so that no node of it has its name
         nodes, between = alternating(parts, at, branch=begin is not None)
         if begin is not None and nodes[0] is not None:
-            raise wrong("a node given first, what holds the branch to its node expected", *at, nodes[0][0])
+            raise wrong("a node first; write what holds the branch to its node before it", *at, nodes[0][0])
         numbers = [self._drawn(nodes, between, k, at) if k or begin is None else begin for k in range(len(nodes))]
         stations = [Station(Fraction(0), (numbers[0],), None, None)]
         for k, ((number, part), left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
             last, turns = stations[-1], ratio if begin is not None and k == 0 else Fraction(1)
             if isinstance(part, RodPart):
                 if part.name and any(part.name == bar.name for bar in self.bars):
-                    raise wrong(f"{shown(part.name)} given, a name that is not taken expected", *at, number, "name")
+                    raise wrong(f"{shown(part.name)} is taken; write another name", *at, number, "name")
                 bar = self._bar(part, left, right, turns)
                 stations[-1] = replace(last, right=bar)
                 stations.append(Station(last.x + part.rod, (right,), bar, None))
@@ -208,12 +208,12 @@ class _Pen:
             self.points[point] = Point(fmpq(0), motion="fixed")
         elif part == "absorbing":
             if not rods:
-                raise wrong('"absorbing" given, a rod beside it expected', *at)
+                raise wrong('"absorbing" without a rod; write a rod beside it', *at)
             self.points[point] = Point(fmpq(0), damping=rational(rods[0].impedance), absorbing=True)
         name = part.name if isinstance(part, PointPart | MotionPart) else None
         if name:
             if name in self.names or name in self.lines:
-                raise wrong(f"{shown(name)} given, a name that is not taken expected", *at, "name")
+                raise wrong(f"{shown(name)} is taken; write another name", *at, "name")
             self.names[name] = point
 
     def _damped(self, number: int) -> bool:
@@ -237,8 +237,8 @@ class _Pen:
         at = self.written[number]
         if any(number in (link.left, link.right) for link, _ in self.contacts):
             raise wrong(
-                "a side of a contact given that no mass, rod or dashpot holds, a dashpot beside its spring, or a mass, "
-                "expected (what has lifted off needs a motion of its own)",
+                "no mass, rod or dashpot holds a side of a contact, and what has lifted off needs a motion of "
+                "its own; write a dashpot beside its spring, or a mass",
                 *at,
             )
-        raise wrong("a joint without mass, rod or dashpot given, one of these at it expected", *at)
+        raise wrong("a joint without mass, rod or dashpot; write one of these at it", *at)

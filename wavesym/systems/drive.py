@@ -66,7 +66,7 @@ class OnBody(Load):
         """A body that there is not."""
         if 1 <= self.body <= m + 1:
             return None
-        return f"{shown(self.body)} given, a body from 1 to {m + 1} expected", "body"
+        return f"{shown(self.body)} is not the number of a body; write 1 to {m + 1}", "body"
 
     @property
     def sources(self) -> tuple[str, str]:

@@ -39,7 +39,7 @@ class ExplicitChain(SceneTable):
         # which is refused where it cannot be drawn; a scene with units says what its places are told in
         network = self.drawing.network({}, info.context if isinstance(info.context, LengthUnit) else None)
         if self.damping and (other := _damper(network)):
-            raise wrong(f"given with {other}, one of them expected", "damping")
+            raise wrong(f"stands beside {other}; write one of them", "damping")
         return self
 
     @model_serializer(mode="wrap")
@@ -77,7 +77,7 @@ class ExplicitChain(SceneTable):
             return str(error), "at"
         if self.drawing.points[point].motion == "fixed":
             return (
-                f'{shown(position_of(_at(load)).written)} given, a node that can move expected (a "fixed" end cannot)',
+                (f'{shown(position_of(_at(load)).written)} is a "fixed" end, which cannot move; write a node that can'),
                 "at",
             )
         return None

@@ -35,9 +35,9 @@ def alternating(
             nodes.append(None)
             continue
         if nodes[-1] is not None:
-            raise wrong("a node given beside another, a rod, a spring or a dashpot between them expected", *at, k)
+            raise wrong("a node beside another; write a rod, a spring or a dashpot between them", *at, k)
         if 0 < k < len(parts) - 1 and (part in ("free", "fixed", "absorbing") or isinstance(part, MotionPart)):
-            raise wrong("an end given between other parts, a mass or a joint expected", *at, k)
+            raise wrong("an end between other parts; write a mass or a joint", *at, k)
         nodes[-1] = k, part
     _refuse_empty(between, at, branch)
     _refuse_ends(nodes, between, at, branch)
@@ -47,15 +47,15 @@ def alternating(
 def _refuse_loose(one: BETWEEN, other: BETWEEN, at: Keys) -> None:
     """Between two contacts nothing makes a joint of what is not written."""
     if isinstance(one, ContactPart) and isinstance(other, ContactPart):
-        raise wrong("a contact beside a contact given, a rod or a mass between them expected", *at)
+        raise wrong("a contact beside a contact; write a rod or a mass between them", *at)
 
 
 def _refuse_empty(between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:
     """A chain has a rod; a branch may have a spring alone, with a mass on it."""
     if branch and not between:
-        raise wrong("no rod, spring or dashpot given, at least 1 expected", *at)
+        raise wrong("no rod, spring or dashpot; write at least one", *at)
     if not branch and not any(isinstance(part, RodPart) for _, part in between):
-        raise wrong("no rod given, at least 1 expected", *at)
+        raise wrong("no rod; write at least one", *at)
 
 
 def _refuse_ends(nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:
@@ -63,10 +63,10 @@ def _refuse_ends(nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBet
     ends = [(nodes[-1], between[-1])] if branch else [(nodes[0], between[0]), (nodes[-1], between[-1])]
     for node, (k, part) in ends:
         if node is None and isinstance(part, LinkPart):
-            raise wrong("a spring or dashpot given at an end, something for it to hold expected", *at)
+            raise wrong("a spring or dashpot at an end; write something for it to hold", *at)
         if isinstance(part, ContactPart):
             if node is None:
-                raise wrong("a contact given at an end, something for it to touch expected", *at, k)
+                raise wrong("a contact at an end; write something for it to touch", *at, k)
             if node[1] in ("free", "absorbing"):
-                expected = 'a rod, a mass, "fixed" or a motion expected'
-                raise wrong(f"{shown(node[1])} given beside a contact, {expected}", *at, node[0])
+                what = f'{shown(node[1])} beside a contact; write a rod, a mass, "fixed" or a motion'
+                raise wrong(what, *at, node[0])

@@ -19,7 +19,7 @@ def _at(value: object) -> str:
     if text is None:
         text = str(exact(value))
     if len(text) > LONGEST:
-        raise wrong(f"{shown(value)} given, at most {LONGEST} characters expected")
+        raise wrong(f"{shown(value)} is too long; write at most {LONGEST} characters")
     position_of(text)
     return value if isinstance(value, PlaceInUnits) else str(text)
 

@@ -20,20 +20,20 @@ MARKS = ("free", "fixed", "absorbing", "joint", "contact")
 
 def _name(value: object) -> str:
     if not isinstance(value, str) or not _NAMES.fullmatch(value):
-        raise wrong(f"{shown(value)} given, a name expected (letters, digits and _, no digit first)")
+        raise wrong(f"{shown(value)} is not a name; write letters, digits and _, no digit first")
     return value
 
 
 def _not_negative(value: object) -> Fraction:
     number = exact(value)
     if number < 0:
-        raise wrong(f"{shown(value)} given, a number of at least 0 expected")
+        raise wrong(f"{shown(value)} is negative; write a number of 0 or more")
     return number
 
 
 def _true(value: object) -> bool:
     if value is not True:
-        raise wrong(f"{shown(value)} given, true expected")
+        raise wrong(f"{shown(value)} is not true; write true, or leave it out")
     return True
 
 
@@ -42,7 +42,7 @@ def _moved(value: object) -> Literal["velocity", "acceleration"]:
         return "velocity"
     if value == "acceleration":
         return "acceleration"
-    raise wrong(f'{shown(value)} given, "velocity" or "acceleration" expected')
+    raise wrong(f'{shown(value)} is not a motion; write "velocity" or "acceleration"')
 
 
 PartName = Annotated[str, PlainValidator(_name)]
@@ -128,7 +128,7 @@ class LinkPart(ChainPart):
     @model_validator(mode="after")
     def _something(self) -> LinkPart:
         if self.spring == self.dashpot == 0:
-            raise wrong("0 given, a spring or a dashpot above 0 expected")
+            raise wrong("0 holds nothing; write a spring or a dashpot above 0")
         return self
 
 
@@ -150,13 +150,13 @@ def _part(value: object) -> ChainPart | str:
         return value
     if isinstance(value, str):
         if value not in MARKS:
-            raise wrong(f"{shown(value)} given, {', '.join(MARKS)} or a table expected")
+            raise wrong(f"{shown(value)} is not a part; write {', '.join(MARKS)} or a table")
         return value
     if not isinstance(value, Mapping):
-        raise wrong(f"{shown(value)} given, a table, or one of {', '.join(MARKS)}, expected")
+        raise wrong(f"{shown(value)} is not a part; write a table, or one of {', '.join(MARKS)}")
     kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
     if kind is LinkPart and not value.keys() & {"spring", "dashpot"}:
-        raise wrong("no kind given, rod, mass, joint, motion, contact, spring or dashpot expected")
+        raise wrong("not a part; write one of rod, mass, joint, motion, contact, spring and dashpot")
     try:
         return kind.model_validate(value)
     except ValidationError as error:

@@ -50,15 +50,15 @@ def titled(value: Mapping[str, object]) -> tuple[object, str]:
     """The place and the name for people of an output that is a table. Raises the error of `table.wrong`."""
     for key in value:
         if key not in ("at", "name"):
-            raise wrong("unknown key, at or name expected", str(key))
+            raise wrong("unknown key; write at or name", str(key))
     for key in ("at", "name"):
         if key not in value:
-            raise wrong("missing, a place expected" if key == "at" else "missing, a name for people expected", key)
+            raise wrong(f"missing; write {'a place' if key == 'at' else 'a name for people'}", key)
     title = value["name"]
     if not isinstance(title, str) or not title.strip() or len(title) > LONGEST or not title.isprintable():
-        raise wrong(f"{shown(title)} given, a line of at most {LONGEST} characters expected", "name")
+        raise wrong(f"{shown(title)} is not a name for people; write a line of at most {LONGEST} characters", "name")
     if bad := next((each for each in _UNNAMED if each in title), ""):
-        raise wrong(f"{shown(title)} given, a line without {bad} expected", "name")
+        raise wrong(f"{shown(title)} is not a name for people; write a line without {bad}", "name")
     return value["at"], title
 
 

@@ -50,7 +50,7 @@ class Preset(SceneTable):
         fewest = cls.fewest or system.smallest
         if m < fewest or m % system.step:
             kind = "an even integer" if system.step == 2 else "an integer"
-            raise wrong(f"{shown(m)} given, {kind} of at least {fewest} expected")
+            raise wrong(f"{shown(m)} is not {kind} of {fewest} or more; write one")
         return m
 
     @field_validator("*")
@@ -62,7 +62,7 @@ class Preset(SceneTable):
             indices = cls.variants[0].indices(m)[name]
             count = max(0, -((indices.start - indices.stop) // indices.step))  # len() has a limit
             if len(value) != count:
-                raise wrong(f"{len(value)} numbers given, {shown(count)} expected ({cls.counts[name]})")
+                raise wrong(f"{len(value)} numbers; write {shown(count)} ({cls.counts[name]})")
         return value
 
     @property
@@ -88,10 +88,10 @@ class Preset(SceneTable):
         """The place of an output. MisplacedError."""
         x, text = position.x, shown(Written(position.written))
         if x is None or not 0 <= x <= self.m:
-            raise MisplacedError(f"{text} given, a position from 0 to {self.m} expected")
+            raise MisplacedError(f"{text} is not on the chain; write a position from 0 to {self.m}")
         divided = quantity in ("strain", "force") and self._divided_at(x, quantity)
         if divided and not position.side:
-            raise MisplacedError(f'{text} given, a side of the body there expected: "{text}-" or "{text}+"')
+            raise MisplacedError(f'{text} has two sides, of the body there; write "{text}-" or "{text}+"')
         side = position.side if divided else 0
         # at a node the rod is the one on its left, where no side is asked for
         after = -(-x.numerator // x.denominator)

@@ -64,18 +64,22 @@ class Watching:
         """The k-th rod of a line."""
         rods, k = self._rods.get(position.name), position.x
         if rods is None or k is None:
-            raise MisplacedError(f"{text} given, the number of a rod expected, on a branch after its name and a colon")
+            raise MisplacedError(
+                f"{text} is not a rod; write the number of one, on a branch after its name and a colon"
+            )
         if position.side or k.denominator != 1 or not 1 <= k <= len(rods):
-            raise MisplacedError(f"{text} given, the number of a rod from 1 to {len(rods)} expected")
+            raise MisplacedError(f"{text} is not the number of a rod; write 1 to {len(rods)}")
         return Place(k, 0, position.name, rods[int(k) - 1] + 1, Fraction(1))
 
     def _refuse_groundless(self, text: str) -> None:
         if self.system.type == "building":
             return
         if self.system.type != "chain":
-            raise MisplacedError(f"{text} given, a building or a chain expected (no other system has a foundation)")
-        told = sum(point.motion in ("velocity", "acceleration") for point in self._network.points)
-        if told != 1:
             raise MisplacedError(
-                f"{text} given, a chain with 1 motion end expected, which it is relative to ({told} there)"
+                f"{text}, but a {self.system.type} has no foundation; write it for a building or a chain"
+            )
+        count = sum(point.motion in ("velocity", "acceleration") for point in self._network.points)
+        if count != 1:
+            raise MisplacedError(
+                f"{text} is relative to the one end that moves, and there are {count}; write a chain with 1 motion end"
             )

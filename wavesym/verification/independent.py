@@ -176,7 +176,7 @@ def _sketch(system: Any) -> Sketch:
         return _chain(system)
     if system.type not in READERS:
         known = ", ".join([*READERS, "chain"])
-        raise UnservedError(f"system.type: {system.type} given, {known} expected, which integrators can read")
+        raise UnservedError(f"system.type: {system.type} is not supported by integrators; write {known}")
     return READERS[system.type](system)
 
 

@@ -96,7 +96,7 @@ def systems(name: str, m: int | None) -> tuple[System, ...]:
     for system in variants:
         if m is not None and m not in range(system.smallest, LARGEST_WRITTEN_OUT + 1, system.step):
             even = "even, " if system.step == 2 else ""
-            raise WavesymError(f"--m: {m} given, {even}{system.smallest} ... {LARGEST_WRITTEN_OUT} expected")
+            raise WavesymError(f"--m: {m} is not supported; write {even}{system.smallest} ... {LARGEST_WRITTEN_OUT}")
     return variants
 
 
@@ -113,7 +113,7 @@ def scene_statement(name: str, symbols: SymbolicChain, notation: Text) -> Statem
     """
     m = symbols.chain.m
     if m > LARGEST_WRITTEN_OUT:
-        raise WavesymError(f"system.m: {m} given, at most {LARGEST_WRITTEN_OUT} expected where all is written out")
+        raise WavesymError(f"system.m: {m} is more than can be written out; write {LARGEST_WRITTEN_OUT} or less")
     author = _Author(notation, None)
     return author.statement(symbols.chain.system, [author.scene(name, symbols)])
 

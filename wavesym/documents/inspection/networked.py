@@ -35,8 +35,8 @@ def not_served(model: Model) -> Facts:
     try:
         model.network.refuse_contacts()
         refusal = (
-            f"system.type: {model.labels.type} given, collision, drive or building expected (a chain has pieces, a "
-            "march and `run`)"
+            f"system.type: {model.labels.type} has no closed form, as collision, drive and building have; take "
+            "pieces, march or `run`"
         )
     except UnservedError as error:
         refusal = str(error)

@@ -39,8 +39,8 @@ def tabled(model: Model, chain: Chain | None) -> Iterator[Section]:
 def _refuse_long(model: Model) -> None:
     if model.until > LONGEST:
         raise CostError(
-            f"output.until: a table to tau = {model.horizon():g} is not counted here, at most {LONGEST} expected "
-            "(a shorter horizon helps)"
+            f"output.until: a table to tau = {model.horizon():g} is not counted here, the limit is {LONGEST} (a "
+            "shorter horizon helps)"
         )
 
 

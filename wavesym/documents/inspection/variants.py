@@ -65,11 +65,11 @@ def _dear(form: Made) -> str:
     """Why its variants are not tried; empty where they are."""
     if isinstance(form, Pieces) and form.bytes > MOST_BYTES:
         return (
-            f"not tried, nor the smallest tables: to fit {form.bytes} bytes once more takes long, "
-            f"at most {MOST_BYTES} expected"
+            f"not tried, nor the smallest tables: to fit {form.bytes} bytes once more takes long; the limit is "
+            f"{MOST_BYTES}"
         )
     if isinstance(form, (March, HatMarch)) and (marched := form.total_work) > MOST_MARCHED:
-        return f"not tried: a march would take {marched:.1e} operations, at most {MOST_MARCHED:.1e} expected"
+        return f"not tried: a march would take {marched:.1e} operations; the limit is {MOST_MARCHED:.1e}"
     return ""
 
 

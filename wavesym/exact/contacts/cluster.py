@@ -53,7 +53,7 @@ class Cluster:
                 members |= {k: (len(leaders), ratio) for k, ratio in _moving(leader, ways)}
                 leaders.append(leader)
             elif leader in rigid and leader not in leaders:
-                raise WavesymError("contacts: two rigid bodies would touch each other, a rod between them expected")
+                raise WavesymError("contacts: two rigid bodies would touch each other; write a rod between them")
         pushes = {}
         for n in inside:
             touch = touches[n]

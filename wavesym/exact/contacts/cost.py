@@ -48,7 +48,7 @@ class Cost:
         if moves > MOST_MOVES:
             raise CostError(
                 f"output.until: waves cross the shortest rod in {nearest(min(shortest.values())):g}, contacts are "
-                f"looked for {nearest(moves):.1e} times, at most {MOST_MOVES:g} expected (a shorter horizon or longer "
+                f"looked for {nearest(moves):.1e} times, the limit is {MOST_MOVES:g} (a shorter horizon or longer "
                 "rods help)"
             )
 
@@ -65,7 +65,7 @@ class Cost:
             if len(starts) > most:
                 raise CostError(
                     f"output.until: {self._causes(events)} make more than {most} stretches by tau = "
-                    f"{nearest(start):g}, at most {most} expected ({self._helps} help)"
+                    f"{nearest(start):g}, the limit is {most} ({self._helps} help)"
                 )
         if moved.swing > 0:
             self._refuse_series(self._lasting, _RECKONED, events)
@@ -103,8 +103,9 @@ class Cost:
 
     def _refusal(self, count: int, start: fmpq, reckoned: fmpq, most: int, events: int) -> CostError:
         return CostError(
-            f"output.until: {self._causes(events)} make {count} stretches by tau = {nearest(start):g}, which would be "
-            f"{nearest(reckoned):.1e} by tau = {nearest(self._until):g}, at most {most} expected ({self._helps} help)"
+            f"output.until: {self._causes(events)} make {count} stretches by tau = {nearest(start):g}, which "
+            f"would be {nearest(reckoned):.1e} by tau = {nearest(self._until):g}, the limit is {most} "
+            f"({self._helps} help)"
         )
 
     def _causes(self, events: int) -> str:

@@ -32,16 +32,16 @@ def refuse_jumps(model: Model, until: fmpq) -> None:
     first = readings[0][0].name
     if model.network.contacts:
         raise WavesymError(
-            f"output.acceleration: {first}: a place without mass given, one with mass expected where contacts close "
-            "(they make velocities jump)"
+            f"output.acceleration: {first} has no mass, and contacts that close make velocities jump (write a "
+            "place with mass)"
         )
     fronts = _fronts(model)
     for probe, reading in readings:
         if (found := fronts.first(reading)) is not None and found[0] <= until:
             cause = "the chain starts with a jump of velocity" if found[1] is None else model.told(found[1])
             raise WavesymError(
-                f"output.acceleration: {probe.name}: a front with a jump of velocity can pass there ({cause}), a place "
-                "with mass or loads that do not jump expected"
+                f"output.acceleration: {probe.name}: a front with a jump of velocity can pass there ({cause}) "
+                "(write a place with mass, or loads that do not jump)"
             )
 
 

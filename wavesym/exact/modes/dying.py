@@ -82,8 +82,8 @@ class DyingSpectrum:
                 return self.first(count)
             if np.count_nonzero(np.abs(guesses - guesses[k]) < _MEETING * abs(guesses[k])) > 1:
                 raise UnservedError(
-                    f"system: two frequencies meet near {abs(guesses[k]):.6g}, frequencies that differ expected in "
-                    "modes with dashpots (pieces and march serve it)"
+                    f"system: two frequencies meet near {abs(guesses[k]):.6g}, which modes with dashpots cannot "
+                    "tell apart (take pieces or march)"
                 )
         return _apart([mode for mode in found if mode])
 

@@ -33,14 +33,14 @@ def refuse_damped(network: Network) -> None:
     for point in network.points:
         if point.damping != 0 and point.motion is None:
             raise UnservedError(
-                f"system: a dashpot or an absorbing end at {point.name or point.place} given, none expected in modes "
-                "(pieces and march serve it)"
+                f"system: the dashpot or absorbing end at {point.name or point.place} is not supported by modes "
+                "(take pieces or march)"
             )
     for link in network.links:
         if link.contact or link.damping != 0:
             what, serve = ("contact", "pieces serve") if link.contact else ("dashpot", "pieces and march serve")
             at = link.place or network.points[link.left].name or network.points[link.left].place
-            raise UnservedError(f"system: a {what} at {at} given, none expected in modes ({serve} it)")
+            raise UnservedError(f"system: the {what} at {at} is not supported by modes ({serve} it)")
 
 
 def frequencies(network: Network, count: int) -> tuple[arb, ...]:
@@ -80,9 +80,7 @@ class Spectrum:
             self._found += _modes(Stiffness(self.cut.network), count, len(self._found))
         except CoincidenceError as error:
             if not self._cuts[1:]:
-                raise UnservedError(
-                    f"system: {error}, frequencies that differ expected in modes (pieces and march serve it)"
-                ) from None
+                raise UnservedError(f"system: {error}, which modes cannot tell apart (take pieces or march)") from None
             del self._cuts[0]
             self._found = []
             return self.first(count)

@@ -102,7 +102,9 @@ class HarmonicNetwork:
                 if branch.far == before:
                     continue
                 if branch.far in met and self.network.points[branch.far].motion is None:
-                    raise UnservedError("system.parts: a ring of parts given, a chain with branches expected in modes")
+                    raise UnservedError(
+                        "system.parts: a ring of parts is not supported by modes (write a chain with branches)"
+                    )
                 met.add(branch.far)
                 found.append(branch)
                 coming.append((branch.far, point))
@@ -115,7 +117,9 @@ class HarmonicNetwork:
         for number, bar in enumerate(network.bars):
             pair = bar.left, bar.right
             if pair in found or pair[::-1] in found:
-                raise UnservedError("system.parts: two rods between the same nodes given, one expected in modes")
+                raise UnservedError(
+                    "system.parts: two rods between the same nodes are not supported by modes (write one)"
+                )
             found[pair] = Branch(*pair, number, 0, bar.ratios, fmpq(0), fmpq(0))
         for link in network.links:
             if link.stiffness == 0 and link.damping == 0:
@@ -126,7 +130,9 @@ class HarmonicNetwork:
             branch = found.get(pair, Branch(*pair, None, 0, ratios, fmpq(0), fmpq(0)))
             scale = ratios[1] / branch.ratios[1]  # a spring counted at the ends of the bar
             if ratios[0] != scale * branch.ratios[0]:
-                raise UnservedError("system.parts: a gear beside a rod given, a spring or dashpot expected in modes")
+                raise UnservedError(
+                    "system.parts: a gear beside a rod is not supported by modes (write a spring or dashpot there)"
+                )
             found[pair] = branch._replace(
                 stiffness=branch.stiffness + scale**2 * link.stiffness, damping=branch.damping + scale**2 * link.damping
             )

@@ -125,7 +125,7 @@ class Stiffness:
                         coming.append(other)
                     elif found[point] != other and found[other] != point:
                         raise UnservedError(
-                            "system.parts: a ring of parts given, a chain with branches expected in modes"
+                            "system.parts: a ring of parts is not supported by modes (write a chain with branches)"
                         )
         return list(found.items())
 

@@ -43,7 +43,7 @@ class Foreseen:
             if coefficients > most:
                 raise CostError(
                     f"{asked}: the tables would hold more than {most:.1e} coefficients by tau = {float(time):g}, "
-                    f"at most {most:.1e} expected ({_fewer(asked)} or fewer parts helps)"
+                    f"the limit is {most:.1e} ({_fewer(asked)} or fewer parts helps)"
                 )
         return response_size(counts, mean_bits(found))
 
@@ -88,7 +88,7 @@ class Foreseen:
             if count > MOST_FRONTS:
                 raise CostError(
                     f"{asked}: fronts leave the ends of rods more than {MOST_FRONTS} times by tau = "
-                    f"{float(front[0]):g}, at most {MOST_FRONTS} expected ({_fewer(asked)} or fewer parts helps)"
+                    f"{float(front[0]):g}, the limit is {MOST_FRONTS} ({_fewer(asked)} or fewer parts helps)"
                 )
             yield front
 

@@ -50,13 +50,14 @@ class NetworkJoints:
         law = self.law(number)
         if (count := len(law.mass)) > MOST_POINTS:
             raise UnservedError(
-                f"system: springs and dashpots hold {count} nodes together ({self.describe(number)}), "
-                f"at most {MOST_POINTS} expected for exact tables"
+                f"system: springs and dashpots hold {count} nodes together ({self.describe(number)}), and exact "
+                f"tables support at most {MOST_POINTS} (take pieces, march or `run`)"
             )
         if rates(law) is None:
             raise UnservedError(
-                f"system: the joint at {self.describe(number)} has the polynomial {written(joint_polynomial(law))}, "
-                "one with factors s + g, g rational, expected for exact tables"
+                f"system: the joint at {self.describe(number)} has the polynomial "
+                f"{written(joint_polynomial(law))}, and exact tables support only those with factors s + g, g "
+                "rational (take pieces, march or `run`)"
             )
         return joint_response(law)
 

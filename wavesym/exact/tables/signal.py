@@ -62,7 +62,7 @@ def refuse_many(model: Model, most: float) -> None:
     """
     if (arrivals := RuledNetwork(model.network).arrivals(model.probes, model.loads, model.until)) > most:
         raise CostError(
-            f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected (fewer load "
+            f"load: {arrivals:.1e} increments would arrive at the outputs, the limit is {most:.1e} (fewer load "
             "times or outputs, or a shorter horizon, help)"
         )
 

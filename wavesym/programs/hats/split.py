@@ -84,7 +84,7 @@ def _record(step: str, ramp: str, loads: Sequence[Applied], until: fmpq) -> tupl
     if (count := int(((until - begin) / spacing).floor()) + 2) > _MOST:
         raise SpacingError(
             f"load: {step.removesuffix(':step')} has {count} samples on the horizon at a spacing of "
-            f"{readable(spacing)}, at most {_MOST} expected in a march of one hat (modes, instants with a larger "
+            f"{readable(spacing)}, the limit in a march of one hat is {_MOST} (modes, instants with a larger "
             "common measure, or a shorter horizon, help)"
         )
     jumps, bends = ({load.time: load.weight for load in loads if load.source == source} for source in (step, ramp))

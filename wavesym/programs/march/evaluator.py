@@ -209,14 +209,15 @@ def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float
     if degree > HIGHEST_DEGREE:
         raise CostError(
             f"output.until: rates to {_fastest(plan):g} need polynomials of degree {degree:g} to tau = "
-            f"{plan.tau_max:g}, at most {HIGHEST_DEGREE} expected in a march (a shorter horizon, or heavier bodies, "
+            f"{plan.tau_max:g}, the limit in a march is {HIGHEST_DEGREE} (a shorter horizon, or heavier bodies, "
             "helps)"
         )
     if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:
         raise CostError(
-            f"system.parts: joints as fast as {_fastest(plan):.3g} on a step of {plan.step} need polynomials of degree "
-            f"{degree:g} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, at most {_MOST_BYTES:.1e} "
-            "expected in a march (softer springs, heavier bodies, or lengths with a smaller common measure, help)"
+            f"system.parts: joints as fast as {_fastest(plan):.3g} on a step of {plan.step} need polynomials of "
+            f"degree {degree:g} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, the limit in a "
+            f"march is {_MOST_BYTES:.1e} (softer springs, heavier bodies, or lengths with a smaller common "
+            "measure, help)"
         )
     _refuse_rings(plan, degree, real)
     # two matrices are multiplied with: the responses, and their sizes; and those of what bodies round
@@ -227,8 +228,8 @@ def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float
     spent += work
     if spent > _MOST_WORK:
         raise CostError(
-            f"output.until: a march of degree {degree} on steps of {plan.step} to tau = {plan.tau_max:g} would cost "
-            f"{spent:.1e} operations, at most {_MOST_WORK:.1e} expected (a shorter horizon helps)"
+            f"output.until: a march of degree {degree} on steps of {plan.step} to tau = {plan.tau_max:g} would "
+            f"cost {spent:.1e} operations, the limit is {_MOST_WORK:.1e} (a shorter horizon helps)"
         )
     return spent
 
@@ -236,6 +237,6 @@ def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float
 def _refuse_rings(plan: MarchPlan, degree: int, real: Real) -> None:
     if (size := state_bytes(plan, degree, real)) > _MOST_BYTES:
         raise CostError(
-            f"system.parts: the rings of a march on a step of {plan.step} would have {size:.1e} bytes, at most "
-            f"{_MOST_BYTES:.1e} expected (fewer rods, or lengths with a larger common measure, help)"
+            f"system.parts: the rings of a march on a step of {plan.step} would have {size:.1e} bytes, the limit "
+            f"is {_MOST_BYTES:.1e} (fewer rods, or lengths with a larger common measure, help)"
         )

@@ -204,8 +204,7 @@ def march_plan(
     for probe, terms in model.sums.items():
         if any(reading.order > 0 for _, reading in terms):
             raise UnservedError(
-                f"output.acceleration: {probe.name}: a place without mass given, one with mass expected in a march "
-                "(pieces and `run` serve it)"
+                f"output.acceleration: {probe.name}: a march supports no place without mass (pieces and `run` do)"
             )
     tau_max = model.horizon(real)
     until = rational(tau_max)
@@ -263,8 +262,8 @@ def _step(delays: list[fmpq]) -> fmpq:
     if step * FINEST < (shortest := min(delays)):
         few = ", ".join(map(str, sorted(set(delays))[:3])) + (", ..." if len(set(delays)) > 3 else "")
         raise CostError(
-            f"system.parts: delays {few} have the common measure {step}, {float(shortest / step):.3g} to the shortest, "
-            f"at most {FINEST} expected in a march (lengths with a larger common measure, or pieces, help)"
+            f"system.parts: delays {few} have the common measure {step}, {float(shortest / step):.3g} to the "
+            f"shortest, the limit in a march is {FINEST} (lengths with a larger common measure, or pieces, help)"
         )
     return step
 
@@ -273,8 +272,9 @@ def _panels(times: list[fmpq], step: fmpq, helps: str) -> tuple[Panel, ...]:
     cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
-            f"load: times at a spacing of {readable(common(times))} leave {len(cuts) - 1} different remainders of the "
-            f"step {readable(step)}, at most {MOST_PANELS} expected in a march ({suiting(times, step)}, {helps}, helps)"
+            f"load: times at a spacing of {readable(common(times))} leave {len(cuts) - 1} different remainders of "
+            f"the step {readable(step)}, the limit in a march is {MOST_PANELS} ({suiting(times, step)}, {helps}, "
+            "helps)"
         )
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
 

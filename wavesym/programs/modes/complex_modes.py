@@ -87,8 +87,8 @@ class ComplexModes(ModalModel[ComplexProjection]):
         found = self.spectrum.first(count)  # only then it is known how bars are cut
         for probe in self.accelerated():
             raise UnservedError(
-                f"output.acceleration: {probe.name}: a place without mass given, one with mass expected in modes with "
-                "dashpots (pieces and `run` serve it)"
+                f"output.acceleration: {probe.name}: modes with dashpots support no place without mass (pieces "
+                "and `run` do)"
             )
         with ctx.workprec(_BITS), series():
             return project_complex(found, self.cut, self.outputs, self.drivers)
@@ -160,8 +160,8 @@ def refuse_absorbing(network: Network) -> None:
         if light and fmpq_mat(rows).det() == 0:
             at = network.points[light[0]].name or network.points[light[0]].place
             raise UnservedError(
-                f"system: dashpots as large as the impedance at {at} given, larger or smaller ones expected in modes, "
-                "as nothing returns from these (pieces and march serve it)"
+                f"system: dashpots as large as the impedance at {at} return nothing, which modes do not support "
+                "(write larger or smaller ones, or take pieces or march)"
             )
 
 

@@ -81,8 +81,8 @@ def linear_loads(
             break
         if load.source in steps:
             raise UnservedError(
-                f"load: {describe(load)}, no jump expected in modes (a steep ramp in place of a step helps, or "
-                "`start`, one spacing, of a record)"
+                f"load: {describe(load)}, and modes support no jump (write a steep ramp, or `start`, one spacing, "
+                "of a record)"
             )
         if load.time != times[-1]:
             after = load.time - times[-1]

@@ -78,8 +78,8 @@ class LowFrequency:
         for pivot in stiffness.pivots(*self._matrix):
             if not pivot[0] > 0:
                 raise UnservedError(
-                    "system: a chain that dashpots alone, or nothing, hold given, one that an end or a spring holds "
-                    "expected in modes with dashpots (pieces and march serve it)"
+                    "system: dashpots alone, or nothing, hold the chain, which modes with dashpots do not "
+                    "support (write an end or a spring that holds it, or take pieces or march)"
                 )
 
     @property

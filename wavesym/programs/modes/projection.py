@@ -93,8 +93,8 @@ def _load_powers(point: Point, coefficients: Sequence[fmpq]) -> list[fmpq]:
         return [fmpq(c) for c in coefficients]
     if coefficients[0] != 0:
         raise UnservedError(
-            f"system.parts: a motion of told velocity given at {point.name or point.place}, one of told acceleration "
-            "expected in modes (pieces and march serve it)"
+            f"system.parts: the motion at {point.name or point.place} prescribes a velocity, which modes do not "
+            "support (write one of acceleration, or take pieces or march)"
         )
     return [k * fmpq(c) for k, c in enumerate(coefficients)][1:]
 
@@ -104,8 +104,8 @@ def places(model: Model) -> tuple[tuple[int, fmpq], ...]:
     for probe in model.probes:
         if 0 < probe.place < 1 and probe.rod - 1 in model.network.bridged:
             raise UnservedError(
-                f"output: {probe.name} inside a rod with a spring or dashpot beside it given, a place at its ends "
-                "expected in modes (pieces and march serve it)"
+                f"output: {probe.name} is inside a rod with a spring or dashpot beside it, which modes do not "
+                "support (write a place at its ends, or take pieces or march)"
             )
     return tuple((probe.rod - 1, probe.place) for probe in model.probes if probe.rod)
 

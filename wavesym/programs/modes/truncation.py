@@ -122,10 +122,10 @@ class ModalModel(ABC, Generic[K]):
         moving = any(bar.velocity != 0 or bar.strain != 0 for bar in network.bars)
         if moving or any(point.velocity != 0 for point in network.points):
             raise UnservedError(
-                "system: a motion or strain at tau = 0 given, rest expected in modes (pieces and march serve it)"
+                "system: a motion or strain at tau = 0 is not supported by modes (take pieces or march)"
             )
         if not self.drivers:
-            raise UnservedError("load: none that acts by output.until given, one expected in modes (all is at rest)")
+            raise UnservedError("load: none acts by output.until, and modes need one (write a load (all is at rest))")
         _ = self.loads  # refused before the work
         self._refuse_many(len(network.bars))
 
@@ -133,7 +133,7 @@ class ModalModel(ABC, Generic[K]):
         most = isqrt(self.WORK // self.FIRST)
         if rods <= most:
             return
-        raise CostError(f"system: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
+        raise CostError(f"system: {rods} rods in modes, the limit is {most} (fewer rods or march helps)")
 
     def reached(self, known: K, count: int) -> Numbers:
         """What each output reaches, but for what is left out."""

@@ -84,8 +84,8 @@ def damping_ratios(damping: Damping | None, w: Sequence[float]) -> DampingRatios
         for number, (one, other) in enumerate(pairwise(ratios[: len(w)]), 1):
             if one != other and w[number - 1] == w[number]:
                 raise UnservedError(
-                    f"system.damping: {one:g} and {other:g} given for modes {number} and {number + 1}, which have one "
-                    f"frequency, {w[number]:g}; the same ratio expected for both"
+                    f"system.damping: {one:g} and {other:g} for modes {number} and {number + 1}, which have one "
+                    f"frequency, {w[number]:g} (write the same ratio for both)"
                 )
         return DampingRatios(ratios)
     first, second = (w[number - 1] for number in damping.modes)
@@ -163,8 +163,8 @@ class UndampedModes(ModalModel[Projection]):
         for probe in self.accelerated():
             if pushed:
                 raise UnservedError(
-                    f"output.acceleration: {probe.name}: a place without mass under a force given, one with mass, or a "
-                    "motion of the ground in place of the force, expected in modes (pieces and `run` serve it)"
+                    f"output.acceleration: {probe.name}: modes support no place without mass under a force (write "
+                    "one with mass, or a motion of the ground in place of the force, or take pieces or `run`)"
                 )
         return project(found, self.cut, self.outputs, self.drivers)
 

@@ -135,8 +135,8 @@ def _enough(plan: MarchPlan, degree: int, share: float, light: str = "") -> int:
         if degree > _HIGHEST or work > _MOST_WORK:
             raise CostError(
                 f"output.until: rates to {nearest(fastest(plan)):g}{light} need polynomials of degree {degree} to "
-                f"tau = {plan.tau_max:g}, at most {_HIGHEST} and {_MOST_WORK:.1e} operations expected "
-                f"(a shorter horizon{', or a smaller --kappa-max,' if light else ''} helps)"
+                f"tau = {plan.tau_max:g}, the limit is {_HIGHEST} and {_MOST_WORK:.1e} operations (a shorter "
+                f"horizon{', or a smaller --kappa-max,' if light else ''} helps)"
             )
     return degree
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from flint import fmpq
 
-from wavesym.errors import CostError, WavesymError
+from wavesym.errors import CostError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
@@ -17,7 +17,7 @@ from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.march.space import JointRows
 from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.reference_values import reference_values
-from wavesym.programs.request import Request
+from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places, most_roundings
 from wavesym.programs.runtime.network import free_network
@@ -40,9 +40,7 @@ def runtime_program(
     `amplitudes` are those of its loads, each with what it is called. WavesymError, UnservedError as `free_network`
     says, CostError as `runtime_plan`, and WavesymError where other options are given that say otherwise.
     """
-    for option, value, usual in (("--evaluator", request.evaluator, "auto"), ("--optimize", request.optimize, None)):
-        if value != usual:
-            raise WavesymError(f"{option}: {value} given with --runtime, {usual or 'nothing'} expected")
+    refuse_beside("--runtime", (("--evaluator", request.evaluator, "auto"), ("--optimize", request.optimize, None)))
     real = REALS[request.precision]
     tolerance = max(model.tolerance, FINEST[real.name])
     program = _program(model, request, amplitudes, tolerance, real)
@@ -106,13 +104,13 @@ def _refuse_large(made: RuntimePlan) -> None:
     states = max(len(joint.space.weights) for joint in made.plan.joints)
     if states > _MOST_STATES:
         raise CostError(
-            f"system.parts: {states} masses and springs linked to one another, at most {_MOST_STATES} expected with "
-            "--runtime (fewer springs between the same rods help)"
+            f"system.parts: {states} masses and springs linked to one another, the limit with --runtime is "
+            f"{_MOST_STATES} (fewer springs between the same rods help)"
         )
     if made.plan.windows > _MOST_WINDOWS:
         raise CostError(
-            f"output.until: {made.plan.windows} steps of {made.plan.step} to tau = {made.plan.tau_max:g}, at most "
-            f"{_MOST_WINDOWS} expected (a shorter horizon, or lengths with a larger common measure, help)"
+            f"output.until: {made.plan.windows} steps of {made.plan.step} to tau = {made.plan.tau_max:g}, the "
+            f"limit is {_MOST_WINDOWS} (a shorter horizon, or lengths with a larger common measure, help)"
         )
 
 
@@ -121,8 +119,8 @@ def _refuse_huge(windows: int, tau_max: float, strands: int, degree: int, real: 
     size = real.bytes * windows * strands * (degree + 2)
     if size > LARGEST_MODEL:
         raise CostError(
-            f"output.until: a model of {size:.1e} bytes would be kept to tau = {tau_max:g}, at most "
-            f"{LARGEST_MODEL:.1e} expected (a shorter horizon, fewer outputs, or a smaller --kappa-max helps)"
+            f"output.until: a model of {size:.1e} bytes would be kept to tau = {tau_max:g}, the limit is "
+            f"{LARGEST_MODEL:.1e} (a shorter horizon, fewer outputs, or a smaller --kappa-max helps)"
         )
 
 

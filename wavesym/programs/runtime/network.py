@@ -81,7 +81,9 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     model.refuse_damping()
     for point in network.points:
         if point.motion is not None and point.velocity != 0:
-            raise UnservedError(f"--runtime: the end at {point.place} moves at tau = 0, one at rest expected")
+            raise UnservedError(
+                f"--runtime: the end at {point.place} moves at tau = 0, which is not supported; write one at rest"
+            )
     loaded = amplitudes or any(load.source != "impact" for load in model.loads)
     refuse_others("--runtime", names, [*parameters.numbers, *(["load"] if loaded else [])])
     fields: list[RuntimeField] = []

@@ -210,8 +210,8 @@ def ordered_events(events: Iterable[LoadEvent]) -> tuple[LoadEvent, ...]:
     for force in {event.force for event in found if event.replaces}:
         if len({event.load for event in found if event.force == force}) > 1:
             raise UnservedError(
-                "--runtime: load given where samples act beside another load on the same body, one load expected "
-                "there (samples that are added up, or loads as in the scene, help)"
+                "--runtime: load where samples act beside another load on the same body is not supported; add up "
+                "the samples, or leave load out"
             )
     return found
 

@@ -13,7 +13,7 @@ from math import inf, isfinite, log
 
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
+from wavesym.errors import CostError, RangeError, ToleranceError
 from wavesym.mechanics.loads import Applied, merged
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
@@ -28,7 +28,7 @@ from wavesym.programs.program import (
     SteppedValues,
 )
 from wavesym.programs.reference_values import leap, reference_values
-from wavesym.programs.request import Request
+from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.stream.parameters import free_stream, quick_enough, refuse_stiff, with_parameters
 from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
 from wavesym.programs.stream.tables import StreamTables
@@ -52,12 +52,7 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
 
 
 def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bool) -> Program:
-    for option, value, usual in (
-        ("--evaluator", request.evaluator, "auto"),
-        ("--optimize", request.optimize, None),
-    ):
-        if value != usual:
-            raise WavesymError(f"{option}: {value} given with --stream, {usual or 'nothing'} expected")
+    refuse_beside("--stream", (("--evaluator", request.evaluator, "auto"), ("--optimize", request.optimize, None)))
     real = REALS[request.precision]
     names = request.runtime or (model.parameters.usual if request.target else ())
     free = free_stream(model, names, inputs, real) if names else None

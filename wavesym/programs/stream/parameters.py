@@ -129,11 +129,11 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
     `free_network` and `march_plan` say.
     """
     if "load" in names:
-        raise WavesymError("--runtime: load given with a stream, other parameters expected (its inputs are the loads)")
+        raise WavesymError("--runtime: load, but the inputs of a stream are its loads; leave load out")
     free = free_network(model, names, ())
     network = free.network
     if any(point.motion is not None and isinstance(point.velocity, Ratio) for point in network.points):
-        raise UnservedError("--runtime: velocity given where an end moves as it is told, other parameters expected")
+        raise UnservedError("--runtime: velocity, but a motion prescribes that of an end; leave velocity out")
     steady = replace(model, network=_loaded(network, model.network), loads=steps_of(inputs))
     march = march_plan(steady, real, joint_rows)
     kepts: list[Any] = [free.factors.force if probe.quantity == "force" else _ONE for probe in model.probes]
@@ -159,8 +159,8 @@ def refuse_stiff(plan: StreamPlan) -> None:
     angle = nearest(plan.panel) * max(joint.space.swing for joint in plan.march.joints)
     if angle > _CALM:
         raise CostError(
-            f"system.parts: springs turn by {angle:.3g} on a panel of {plan.panel}, at most {_CALM} expected with "
-            "--runtime (softer springs, or a stream without it, helps)"
+            f"system.parts: springs turn by {angle:.3g} on a panel of {plan.panel}, the limit with --runtime is "
+            f"{_CALM} (softer springs, or a stream without it, helps)"
         )
 
 

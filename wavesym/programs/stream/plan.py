@@ -136,7 +136,7 @@ def inputs_of(model: Model, sources: Sequence[str]) -> tuple[Input, ...]:
         unit.source for point in model.network.points for unit in point.loads if unit.kind not in RAMPS
     ]
     if model.clock is not None and not sources and chosen:
-        raise UnservedError("load: none given with [units], at least one expected (its unit is that of the input)")
+        raise UnservedError("load: none, and its unit is that of the input; with [units] write at least one [[load]]")
     return tuple(Input(source, *model.inputs.get(source, (_ONE, ""))) for source in chosen)
 
 

@@ -96,13 +96,13 @@ class Storey(SceneTable):
     def _mass(self, given: str, made: Columns | Shear | None) -> Fraction:
         area, rho = (made.area, made.rho) if made else (None, None)
         if made and (made.A is None) != (rho is None) and given == "columns":
-            raise wrong("given without the other, both A and rho of columns expected", given, "A" if made.A else "rho")
+            raise wrong("only one of A and rho; write both of the columns", given, "A" if made.A else "rho")
         if area is None or rho is None:
             if self.column_mass is None:
-                raise wrong('missing, a mass such as "10.9 t" expected', "column_mass")
+                raise wrong('missing; write a mass such as "10.9 t"', "column_mass")
             return self.column_mass
         if self.column_mass is not None:
-            raise wrong(f"given beside rho of {given}, one of them expected", "column_mass")
+            raise wrong(f"columns have rho of {given} already; write one of them", "column_mass")
         return rho * area * self.height
 
 
@@ -159,15 +159,13 @@ class PhysicalBuilding(SceneTable):
     def _storeys(self) -> tuple[list[ElasticRod], list[Fraction]]:
         """The rod of each storey, and the floor on it. Raises the error of `table.wrong`."""
         if not self.storey:
-            raise wrong("no storey given, at least 1 expected", "storey")
+            raise wrong("no storey; write at least one [[system.storey]]", "storey")
         rods: list[ElasticRod] = []
         floors: list[Fraction] = []
         for k, storey in enumerate(self.storey):
             if not 0 < storey.count <= MOST_STOREYS - len(rods):
                 most = f"{MOST_STOREYS} storeys in all"
-                raise wrong(
-                    f"{shown(storey.count)} given, at least 1 and at most {most} expected", "storey", k, "count"
-                )
+                raise wrong(f"{shown(storey.count)} is out of range; write 1 to {most}", "storey", k, "count")
             with placed("storey", k):
                 rods += [storey.rod()] * storey.count
             floors += [storey.floor_mass] * storey.count
@@ -176,7 +174,7 @@ class PhysicalBuilding(SceneTable):
     def _foundation(self) -> Fraction | None:
         """The mass of a foundation that is not moved with the ground. Raises the error of `table.wrong`."""
         if self.base == "ground" and self.foundation_mass is not None:
-            raise wrong('given with base = "ground", none expected (the ground moves it)', "foundation_mass")
+            raise wrong('base = "ground" moves the foundation, whatever its mass; leave it out', "foundation_mass")
         if self.base == "force" and self.foundation_mass is None:
-            raise wrong('missing, a mass such as "350 t" expected (base = "force" has its inertia)', "foundation_mass")
+            raise wrong('missing, and base = "force" needs it; write a mass such as "350 t"', "foundation_mass")
         return self.foundation_mass

@@ -80,7 +80,7 @@ class PhysicalChain(SceneTable):
                 with placed(*keys):
                     elastic.append(part.elastic(names["dashpot"]))
         if not elastic:
-            raise wrong("no rod given, at least 1 expected", "parts")
+            raise wrong("no rod; write at least one", "parts")
         rods = Rods.of(elastic)
         pen = _Pen(kind, names, rods)
         table: dict[str, object] = {"type": "chain", "parts": pen.line("", main)}
@@ -206,7 +206,7 @@ class _Pen:
         unit = self.displacement / self.rods.seconds
         added = {"at": PlaceInUnits(found.dimensionless(self.rods.first.length), load["at"])}
         if len(added["at"]) > LONGEST:
-            raise wrong(f"{shown(load['at'])} given, a place of fewer digits expected", "at")
+            raise wrong(f"{shown(load['at'])} has too many digits; write a place of fewer", "at")
         match self.moved.get(at):
             case "velocity":
                 return LoadUnit(self.names["velocity"], self.names["acceleration"], unit, {}, added)

@@ -45,7 +45,7 @@ class RodKeys(SceneTable):
         for key in self.made_of():
             if getattr(self, key) is not None:
                 given = "impedance" if self.impedance is not None else "speed"
-                raise wrong(f"given beside {given}, one of them expected", key)
+                raise wrong(f"stands beside {given}; write one of them", key)
         impedance, speed = self._said("impedance", dashpot), self._said("speed", "velocity")
         return ElasticRod(length, impedance / speed * length, impedance * speed / length)
 
@@ -106,7 +106,7 @@ class ShearRod(RodKeys):
         with placed("k"):
             factor = exact(self.k)
             if factor <= 0:
-                raise wrong(f"{shown(self.k)} given, a positive number expected")
+                raise wrong(f"{shown(self.k)} is not positive; write a number above 0")
         return factor * found["G"] * found["A"]
 
 
@@ -127,12 +127,12 @@ class TorsionalRod(RodKeys):
     def _polar(self) -> Fraction:
         if one_of(self, "J", "diameter") == "J":
             if self.bore is not None:
-                raise wrong("given beside J, one of them expected", "bore")
+                raise wrong("stands beside J; write one of them", "bore")
             return self._said("J", "second moment of area")
         diameter = self._said("diameter", "length")
         bore = self._said("bore", "length", 0) if self.bore is not None else Fraction(0)
         if bore >= diameter:
-            raise wrong(f"{shown(self.bore)} given, less than the diameter expected", "bore")
+            raise wrong(f"{shown(self.bore)} is as wide as the shaft or wider; write less than the diameter", "bore")
         return polar_moment(diameter, bore)
 
     def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:

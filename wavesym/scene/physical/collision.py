@@ -54,11 +54,16 @@ class PhysicalCollision(SceneTable):
         """As a collision without units, where rods differ part by part."""
         bodies = self.body
         if len(bodies) < 2:
-            raise wrong(f"{len(bodies)} given, at least 2 expected", "body")
+            raise wrong(f"{len(bodies)} bodies; write at least 2", "body")
         for k, (body, after) in enumerate(pairwise(bodies), 1):
             if after.velocity > body.velocity:
-                expected = "at most that of the body on its left expected (or the bodies part)"
-                raise wrong(f"more than {tidy(body.velocity)} m/s given, {expected}", "body", k, "velocity")
+                raise wrong(
+                    f"more than the {tidy(body.velocity)} m/s of the body on its left, and they would part; write that "
+                    "or less",
+                    "body",
+                    k,
+                    "velocity",
+                )
         rods = Rods.of([side.rod() for body in bodies for side in (body.left, body.right)])
         first = rods.first
         velocities = [body.velocity * rods.seconds / first.length for body in bodies]
@@ -90,4 +95,4 @@ class PhysicalCollision(SceneTable):
 
 
 def _unloaded(load: Mapping[str, Any]) -> LoadUnit:
-    raise wrong(f"given, none expected ({Collision.no_loads})")
+    raise wrong(f"{Collision.no_loads}; leave [[load]] out")

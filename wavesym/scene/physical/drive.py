@@ -33,7 +33,7 @@ class Round(SceneTable):
     def rod(self) -> ElasticRod:
         """As a rod. Raises the error of `table.wrong`."""
         if one_of(self, "J", "diameter") == "J" and self.bore is not None:
-            raise wrong("given beside J, one of them expected", "bore")
+            raise wrong("stands beside J; write one of them", "bore")
         moment = self.J if self.diameter is None else self._polar(self.diameter)
         assert moment is not None  # one of the two is given
         return ElasticRod(
@@ -46,7 +46,7 @@ class Round(SceneTable):
     def _polar(self, diameter: Fraction) -> Fraction:
         bore = self.bore or Fraction(0)
         if bore >= diameter:
-            raise wrong("as wide as the shaft or wider, a bore narrower than the diameter expected", "bore")
+            raise wrong("as wide as the shaft or wider; write a bore below the diameter", "bore")
         return polar_moment(diameter, bore)
 
 
@@ -101,17 +101,16 @@ class PhysicalDrive(SceneTable):
         bodies = len(self.disc)
         body = load.get("body")
         if not isinstance(body, int) or not 1 <= body <= bodies:
-            raise wrong(f"{shown(body)} given, a body from 1 to {bodies} expected", "body")
+            raise wrong(f"{shown(body)} is not the number of a body; write 1 to {bodies}", "body")
         signed = -unit if body == bodies else unit
         return LoadUnit("moment", "moment rate", signed, {"body": "at"}, {"at": body - 1})
 
     def _rods(self) -> Rods:
         """The shafts. Raises the error of `table.wrong`."""
         if not self.shaft:
-            raise wrong("no shaft given, at least 1 expected", "shaft")
+            raise wrong("no shaft; write at least one [[system.shaft]]", "shaft")
         if len(self.disc) != len(self.shaft) + 1:
-            expected = f"{len(self.shaft) + 1} expected (one more than shafts)"
-            raise wrong(f"{len(self.disc)} given, {expected}", "disc")
+            raise wrong(f"{len(self.disc)} discs; write {len(self.shaft) + 1} (one more than shafts)", "disc")
         rods = []
         for k, shaft in enumerate(self.shaft):
             with placed("shaft", k):

@@ -54,7 +54,7 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
     elif "samples" in load:
         table["samples"] = _samples(load, acting)
     elif "unit" in load:
-        raise wrong("given without samples or a record, none expected", "unit")
+        raise wrong("is that of samples or a record; write these, or leave it out", "unit")
     return {**table, **acting.added}
 
 
@@ -67,7 +67,11 @@ def _times(value: object, seconds: Fraction) -> list[Fraction]:
             times.append(measured(each, "time", 0))
     for k, (before, time) in enumerate(pairwise(times), 1):
         if time <= before:
-            raise wrong(f"{shown(values[k])} given, more than the {shown(values[k - 1])} before it expected", k)
+            raise wrong(
+                f"{shown(values[k])} is not later than the {shown(values[k - 1])} before it; write times "
+                "in rising order",
+                k,
+            )
     return [time / seconds for time in times]
 
 
@@ -93,7 +97,7 @@ def _unit(load: Mapping[str, Any], acting: LoadUnit) -> Fraction:
     """How much a sample of 1 is without units."""
     if load.get("unit") is None:
         example = DIMENSIONS[acting.dimension].example.partition(" ")[2]
-        raise wrong(f'missing, the unit of the samples such as "{example}" expected', "unit")
+        raise wrong(f'missing; write the unit of the samples, such as "{example}"', "unit")
     with placed("unit"):
         return unit(load["unit"], acting.dimension) / acting.size
 
@@ -129,14 +133,14 @@ def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> d
     """A record without units. What its file says may be said again, but not otherwise."""
     with placed("record"):
         if not isinstance(load["record"], Recording | Mapping):
-            raise wrong(f"{shown(load['record'])} given, the path of a file expected")
+            raise wrong(f"{shown(load['record'])} is not a path; write that of a file")
         recording = Recording.model_validate(load["record"])  # as it is, or as it was dumped
         clock = _clock(recording.clock)
         said = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
     factor = _unit(load, acting) if said is None or "unit" in load else said
     if said is not None and said != factor:
-        expected = f"{shown(Written(recording.unit))} expected, as in the file, or none"
-        raise wrong(f"{shown(load['unit'])} given, {expected}", "unit")
+        written = shown(Written(recording.unit))
+        raise wrong(f"{shown(load['unit'])}, but the file says {written}; write that, or nothing", "unit")
     made: dict[str, Any] = {"samples": [sample * factor for sample in recording.samples]}
     table: dict[str, Any] = {"record": made}
     for key, least, told in (("spacing", 1, recording.spacing), ("start", 0, recording.start)):
@@ -146,8 +150,8 @@ def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> d
             with placed(key):
                 time = measured(load[key], "time", least)
                 if told is not None and time != told * clock:
-                    expected = f"{decimal_text(told)} {recording.clock or 's'} expected, as in the file, or none"
-                    raise wrong(f"{shown(load[key])} given, {expected}")
+                    written = f"{decimal_text(told)} {recording.clock or 's'}"
+                    raise wrong(f"{shown(load[key])}, but the file says {written}; write that, or nothing")
             table[key] = time / seconds
     return table
 

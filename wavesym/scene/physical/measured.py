@@ -33,14 +33,14 @@ def measured(value: object, dimension: str, least: int | None = None) -> Fractio
     """A quantity in SI base units, above 0 where `least` is 1, not below it where that is 0."""
     number = quantity(value, dimension)
     if least is not None and (number < 0 or (number == 0 and least)):
-        expected = "a positive" if least else "no negative"
-        raise wrong(f"{shown(value)} given, {expected} {dimension} expected")
+        sign, size = ("not positive", "above 0") if least else ("negative", "of 0 or more")
+        raise wrong(f"{shown(value)} is {sign}; write {with_article(dimension)} {size}")
     return number
 
 
 def missing(dimension: str, *at: str | int) -> Exception:
     """The error for a quantity that is not given."""
-    return wrong(f'missing, {with_article(dimension)} such as "{DIMENSIONS[dimension].example}" expected', *at)
+    return wrong(f'missing; write {with_article(dimension)} such as "{DIMENSIONS[dimension].example}"', *at)
 
 
 def _positive(dimension: str) -> Callable[[object], Fraction]:
@@ -64,9 +64,9 @@ def one_of(table: SceneTable, *keys: str) -> str:
     given = [key for key in keys if getattr(table, key) is not None]
     *others, last = keys
     if not given:
-        raise wrong(f"missing, {', '.join(others)} or {last} expected", keys[0])
+        raise wrong(f"missing; write {', '.join(others)} or {last}", keys[0])
     if len(given) > 1:
-        raise wrong(f"given beside {given[0]}, one of them expected", given[1])
+        raise wrong(f"stands beside {given[0]}; write one of them", given[1])
     return given[0]
 
 

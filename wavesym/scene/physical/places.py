@@ -44,7 +44,7 @@ class PlaceInMetres:
 def place(value: object, lines: Mapping[str, Fraction]) -> PlaceInMetres:
     """A place on one of some lines, with how long each is in m. Raises the error of `table.wrong`."""
     if not isinstance(value, str):
-        raise wrong(f'{shown(value)} given, a place such as "1.2 m" or the name of a node expected')
+        raise wrong(f'{shown(value)} is not a place; write one such as "1.2 m", or the name of a node')
     side = {"-": -1, "+": 1}.get(value[-1:], 0)
     bare = value[:-1] if side else value
     if not (found := _NAMED.fullmatch(bare)):
@@ -56,5 +56,5 @@ def place(value: object, lines: Mapping[str, Fraction]) -> PlaceInMetres:
 
 def _along(line: str, x: Fraction, value: str, lines: Mapping[str, Fraction]) -> Fraction:
     if line in lines and not 0 <= x <= lines[line]:
-        raise wrong(f"{shown(value)} given, a place from 0 to {tidy(lines[line])} m expected")
+        raise wrong(f"{shown(value)} is not on the chain; write a place from 0 to {tidy(lines[line])} m")
     return x

@@ -50,7 +50,7 @@ class UnitsTable(SceneTable):
         for kind in KINDS:
             if self.kind == kind:
                 return kind
-        raise wrong(f'{shown(self.kind)} given, "longitudinal", "torsional" or "shear" expected', "kind")
+        raise wrong(f'{shown(self.kind)} is not a kind of waves; write "longitudinal", "torsional" or "shear"', "kind")
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ def _table(system: Mapping[str, object]) -> type[SystemTable]:
 
 def _system(table: object, units: UnitsTable) -> Rewritten:
     if not isinstance(table, Mapping):
-        raise wrong(f"{shown(table)} given, a table expected", "system")
+        raise wrong(f"{shown(table)} is not a table; write [system]", "system")
     kind = table.get("type")
     if kind == "chain":
         with placed("units"):
@@ -127,10 +127,10 @@ def _system(table: object, units: UnitsTable) -> Rewritten:
             return PhysicalChain.model_validate(table).rewritten(moved)
     if not isinstance(kind, str) or kind not in _SYSTEMS:
         *others, last = (f'"{name}"' for name in (*_SYSTEMS, "chain"))
-        given = "missing" if kind is None else f"{shown(kind)} given"
-        raise wrong(f"{given}, {', '.join(others)} or {last} expected", "system", "type")
+        what = "missing" if kind is None else f"{shown(kind)} is not a system"
+        raise wrong(f"{what}; write {', '.join(others)} or {last}", "system", "type")
     if units.kind is not None:
-        raise wrong(f"given for a {kind}, none expected (only chains have a choice)", "units", "kind")
+        raise wrong(f"only chains have a choice, a {kind} has none; leave it out", "units", "kind")
     with placed("system"):
         return _SYSTEMS[kind].model_validate(table).rewritten()
 
@@ -166,8 +166,8 @@ def _until(value: object, seconds: Fraction) -> object:
     except PydanticCustomError:
         tau = measured(value, "time", 1) / seconds
     if tau > LONGEST_HORIZON:
-        most = f"at most {LONGEST_HORIZON} of tau, {tidy(LONGEST_HORIZON * seconds)} s, expected"
-        raise wrong(f"{shown(value)} given, {tidy(tau)} of tau, {most}")
+        most = f"{tidy(LONGEST_HORIZON * seconds)} s ({LONGEST_HORIZON} of tau) or less"
+        raise wrong(f"{shown(value)} is {tidy(tau)} of tau, too long a horizon; write {most}")
     return tau
 
 
