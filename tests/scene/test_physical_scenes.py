@@ -580,7 +580,7 @@ REFUSED = [
         '"-1 N/m" is negative; write a stiffness of 0 or more',
     ),
     ("chain", "system.parts.2.inertia", "-1 N/m", "system.parts[2].inertia", "unknown key"),
-    ("chain", "system.parts", [{"mass": "1 kg"}], "system.parts", "no rod; write at least one"),
+    ("chain", "system.parts", [{"mass": "1 kg"}], "system.parts", "no rod, spring or dashpot; write at least one"),
     ("chain", "system.parts", ["loose"], "system.parts[0]", "free, fixed, absorbing"),
     (
         "chain",

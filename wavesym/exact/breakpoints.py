@@ -169,7 +169,8 @@ class Breakpoints:
     @cached_property
     def _apart(self) -> fmpq:
         """How far cuts are apart, of a network with springs."""
-        measure, shortest = reduce(fmpq.gcd, self._delays), min(self._bearable.values())
+        shortest = min(self._bearable.values())
+        measure = reduce(fmpq.gcd, self._delays, fmpq(0)) or shortest
         return measure / (measure / shortest).ceil() if measure > shortest else (shortest / measure).floor() * measure
 
     def _too_stiff(self, count: str) -> CostError:
@@ -231,7 +232,7 @@ class Breakpoints:
 
     @cached_property
     def _natural(self) -> Mapping[int, Sequence[fmpq]]:
-        later = min(self._delays)
+        later = self._network.shortest
         found: dict[int, list[fmpq]] = {number: [fmpq(0)] for number in self._last}
         sources = front_sources(self._network, self._acting, self._last)
         for count, (time, number) in enumerate(front_times(self._network, sources, self._last), 1):

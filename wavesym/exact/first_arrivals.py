@@ -30,7 +30,7 @@ def first_arrivals(model: Model) -> list[fmpq | None]:
         motion = Motion(model, until)
         return [_begins(motion.segments(probe, motion.first_bits), until) for probe in model.probes]
     found: list[fmpq | None] = [None] * len(model.probes)
-    shortest = min(bar.delay for bar in model.network.bars)
+    shortest = model.network.shortest
     early, left = shortest, list(range(len(found)))
     while left:
         early = min(2 * early, until)

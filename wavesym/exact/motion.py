@@ -118,9 +118,9 @@ class Motion:
     @cached_property
     def _crossed(self) -> fmpq:
         """The bits that crossings of bars take; none where contacts open and close and all is exact (`ExactJoint`)."""
-        if self._network.contacts and not self._series:
+        if not self._network.bars or (self._network.contacts and not self._series):
             return fmpq(0)
-        return _CROSSING * self.until / min(bar.delay for bar in self._network.bars)
+        return _CROSSING * self.until / self._network.shortest
 
     @cached_property
     def _hardest(self) -> tuple[JointLaw, fmpq]:

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from heapq import heapify, heappop, heappush
+from math import isqrt
 from typing import Any, Literal, NamedTuple
 
 from flint import fmpq
@@ -150,6 +151,33 @@ class Network:
                 f"system: the contact at {self.links[number].place} opens and closes, which tables, closed form "
                 "and march do not support (take pieces or `run`)"
             )
+
+    def refuse_rodless(self, what: str, instead: str) -> None:
+        """UnservedError where there is no bar, for `what` is of rods; and what to do `instead`."""
+        if not self.bars:
+            raise UnservedError(f"system.parts: no rod, and {what} is of rods; {instead}")
+
+    @cached_property
+    def shortest(self) -> fmpq:
+        """How long a wave takes through the shortest bar; without bars a time in which hardly anything moves.
+
+        That is 1 over a rate that no motion exceeds: of the sums of springs and dashpots that hold each point.
+        """
+        if self.bars:
+            return min(bar.delay for bar in self.bars)
+        stiffness, damping = ([getattr(point, name) for point in self.points] for name in ("stiffness", "damping"))
+        for link in self.links:
+            for end, ratio in ((link.left, link.ratio), (link.right, _ONE)):
+                stiffness[end] += ratio**2 * link.stiffness
+                damping[end] += ratio**2 * link.damping
+        square, rate = _ZERO, _ZERO
+        for point, k, c in zip(self.points, stiffness, damping, strict=True):
+            if point.motion is None and point.mass != 0:
+                square, rate = square + k / point.mass, rate + c / point.mass
+            elif point.motion is None and c != 0:
+                rate += k / c
+        whole = isqrt(int(square.floor())) + (square != 0) + rate.ceil()
+        return 1 / fmpq(whole) if whole else _ONE
 
     @property
     def loses(self) -> bool:

@@ -36,7 +36,9 @@ def advise(model: Model, tolerance: float) -> Advice:
 
     Raises:
         ToleranceError, CostError: there is no program of the waves either.
+        UnservedError: there are no rods.
     """
+    model.network.refuse_rodless("what springs could stand for", "write one")
     histories: dict[str, Array] = {}
     refused: dict[str, str] = {}
     for name, weight in WEIGHTS.items():

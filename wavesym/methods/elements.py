@@ -69,8 +69,8 @@ class Elements:
         rows, shape = np.arange(np.sum(self.cells)), (int(np.sum(self.cells)), self.size)
         sides = []
         for part in (slice(None, -1), slice(1, None)):
-            unknowns = np.concatenate([unknowns[part] for unknowns, _ in bars])
-            factors = np.concatenate([factors[part] for _, factors in bars])
+            unknowns = np.concatenate([np.zeros(0, int), *(unknowns[part] for unknowns, _ in bars)])
+            factors = np.concatenate([np.zeros(0), *(factors[part] for _, factors in bars)])
             sides.append(csr_array((factors, (rows, unknowns)), shape=shape))
         return sides[0], sides[1]
 

@@ -337,9 +337,10 @@ def undamped_problem(model: Model) -> Problem:
     """State the problem of a model for methods that know no modes, and have no accelerations.
 
     Raises:
-        UnservedError: contacts open and close, modes are damped, or what has no mass is accelerated.
+        UnservedError: there are no rods, contacts open and close, modes are damped, or what has no mass is accelerated.
     """
     model.refuse_damping()
+    model.network.refuse_rodless("this method", "write one")
     problem = problem_of(model)
     if any(reading.order > 0 for reading in problem.readings):
         raise UnservedError("output.acceleration: other methods support no place without mass; write one with mass")

@@ -28,7 +28,11 @@ def draw(found: Modes, model: Model, lines: Lines) -> Figure:
         found: the modes of the model.
         model: the chain.
         lines: its main line and its branches.
+
+    Raises:
+        UnservedError: there are no rods.
     """
+    model.network.refuse_rodless("a picture of shapes", "take --shapes, which prints them")
     some = list(zip(found.modes, found.exact, strict=True))[:MOST]
     figure = Figure(figsize=(_WIDTH, 1.4 + _PANEL * len(lines)), dpi=120, layout="constrained")
     FigureCanvasAgg(figure)

@@ -29,6 +29,8 @@ def draw(scene: Scene, model: Model, kind: str) -> tuple[Figure, list[str]]:
     Raises:
         ToleranceError, CostError: where nothing could be generated either.
     """
+    if kind != "history":
+        model.network.refuse_rodless(f"a picture of kind {kind}", "take --kind history")
     if kind == "xt":
         return xt.draw(model, scene.system.lines, scene.physical), []
     if kind == "envelope":

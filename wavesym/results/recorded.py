@@ -181,7 +181,7 @@ def _extremes(response: RecordResponse, model: Model, begin: float, records: Num
         parts.append((number, output, side, np.full(len(number), whole)))
     record, output, side, step = (np.concatenate(each) for each in zip(*parts, strict=True))
     length = response.spacing * np.where(step < whole, 1.0, end - whole)
-    crossing = nearest(min(bar.delay for bar in model.network.bars))
+    crossing = nearest(model.network.shortest)
     points = max(_PER_STEP, ceil(response.spacing / (crossing / _PER_CROSSING))) + 1
     places, row = np.unique(record * records.shape[1] + step, return_inverse=True)
     inside = response.inside(samples, known, *np.divmod(places, records.shape[1]))

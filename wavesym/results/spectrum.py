@@ -112,7 +112,7 @@ def spectra(model: Model, damping: float) -> Spectra:
 
 def _periods(model: Model, per_tau: float) -> Numbers:
     """Periods in the time of results: between the shortest that a rod's own modes have and half the horizon."""
-    shortest = _SHORTEST * nearest(min(bar.delay for bar in model.network.bars)) * per_tau
+    shortest = _SHORTEST * nearest(model.network.shortest) * per_tau
     longest = nearest(model.until) * per_tau / 2
     first, last = ceil(PER_DECADE * log10(shortest)), floor(PER_DECADE * log10(longest))
     if first > last:

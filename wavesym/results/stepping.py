@@ -23,7 +23,7 @@ _MOST_JUMPS = 20_000  # stretches of all joints: where there are more, jumps lie
 
 def spacing(model: Model) -> float:
     """How far samples are to be apart: 16 in a step of samples and 4 in the crossing of a rod; else 16 in that."""
-    crossing = nearest(min(bar.delay for bar in model.network.bars))
+    crossing = nearest(model.network.shortest)
     if model.spacing is None:
         return crossing / _PER_STEP
     return min(nearest(model.spacing) / _PER_STEP, crossing / _PER_CROSSING)

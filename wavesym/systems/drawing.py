@@ -125,7 +125,7 @@ class _Pen:
         self.lines[name] = ()  # so that no node of it has its name
         nodes, between = alternating(parts, at, branch=begin is not None)
         if begin is not None and nodes[0] is not None:
-            raise wrong("a node first; write what holds the branch to its node before it", *at, nodes[0][0])
+            self._wheel(begin, nodes[0][1], ratio, (*at, nodes[0][0]))
         numbers = [self._drawn(nodes, between, k, at) if k or begin is None else begin for k in range(len(nodes))]
         stations = [Station(Fraction(0), (numbers[0],), None, None)]
         for k, ((number, part), left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
@@ -155,6 +155,21 @@ class _Pen:
             beside = [between[n][1] for n in (k - 1, k) if 0 <= n < len(between)]
             self._become(number, placed[1], [part for part in beside if isinstance(part, RodPart)], (*at, placed[0]))
         return number
+
+    def _wheel(self, point: int, part: ChainPart | str, ratio: Fraction, at: Keys) -> None:
+        """What stands first in a branch turns with its node, `ratio` times as fast: the node has all of it."""
+        if not isinstance(part, PointPart):
+            raise wrong(f"{shown(part)} first; write a mass, or what holds the branch to its node", *at)
+        if part.name or part.velocity is not None:
+            key = "name" if part.name else "velocity"
+            raise wrong("what turns with the node of the branch has that of the node; leave it out", *at, key)
+        square, here = rational(ratio) ** 2, self.points[point]
+        if here.motion is not None:
+            raise wrong("a mass on an end that moves as it is told; write what holds the branch to it", *at)
+        mass, damping, spring = (square * rational(each) for each in (part.inertia, part.dashpot, part.spring))
+        self.points[point] = replace(
+            here, mass=here.mass + mass, damping=here.damping + damping, stiffness=here.stiffness + spring
+        )
 
     def _bar(self, part: RodPart, left: int, right: int, ratio: Fraction) -> int:
         self.bars.append(

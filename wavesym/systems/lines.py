@@ -39,7 +39,7 @@ def alternating(
         if 0 < k < len(parts) - 1 and (part in ("free", "fixed", "absorbing") or isinstance(part, MotionPart)):
             raise wrong("an end between other parts; write a mass or a joint", *at, k)
         nodes[-1] = k, part
-    _refuse_empty(between, at, branch)
+    _refuse_empty(between, at, branch, nodes[0] is not None)
     _refuse_ends(nodes, between, at, branch)
     return nodes, between
 
@@ -50,16 +50,18 @@ def _refuse_loose(one: BETWEEN, other: BETWEEN, at: Keys) -> None:
         raise wrong("a contact beside a contact; write a rod or a mass between them", *at)
 
 
-def _refuse_empty(between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:
-    """A chain has a rod; a branch may have a spring alone, with a mass on it."""
-    if branch and not between:
+def _refuse_empty(between: Sequence[PlacedBetween], at: Keys, branch: bool, wheel: bool) -> None:
+    """A chain has something between its nodes; a branch may be a `wheel` alone."""
+    if not between and not (branch and wheel):
         raise wrong("no rod, spring or dashpot; write at least one", *at)
-    if not branch and not any(isinstance(part, RodPart) for _, part in between):
-        raise wrong("no rod; write at least one", *at)
+    if between and not branch and not any(isinstance(part, RodPart | LinkPart) for _, part in between):
+        raise wrong("contacts alone; write a rod, a spring or a dashpot, too", *at)
 
 
 def _refuse_ends(nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:
     """At an end something stands that can be held or touched."""
+    if not between:
+        return
     ends = [(nodes[-1], between[-1])] if branch else [(nodes[0], between[0]), (nodes[-1], between[-1])]
     for node, (k, part) in ends:
         if node is None and isinstance(part, LinkPart):

@@ -213,7 +213,7 @@ class _Integration:
         heapify(fronts)
         vague: set[tuple[Fraction, int]] = set()
         fastest = self._fastest()
-        longest = min([*map(float, problem.delays), *([_REACH / fastest] if fastest else [])])
+        longest = min([found.until + 1, *map(float, problem.delays), *([_REACH / fastest] if fastest else [])])
         now = Fraction(0)
         while now <= found.until:
             here, is_vague = set[int](), False
@@ -227,6 +227,8 @@ class _Integration:
                 if not any(group == other and abs(time - when) <= self._same for when, other in fronts):
                     heappush(fronts, (time, group))
                     vague |= {(time, group)} if is_vague else set()
+            if not fronts:  # without bars none comes back
+                fronts.append((Fraction(found.until) + 1, 0))
             parts = ceil((fronts[0][0] - now) / Fraction(longest))
             width = (fronts[0][0] - now) / parts
             for _ in range(parts):
@@ -255,7 +257,8 @@ class _Integration:
         """Move all points through a panel; which part of it that holds for, by group with contacts."""
         problem = self._problem
         times = float(now) + float(width) * self._rule.nodes
-        self._arriving = np.stack([self._wave(end, now, width, times) for end in range(len(problem.end_points))])
+        arriving = [self._wave(end, now, width, times) for end in range(len(problem.end_points))]
+        self._arriving = np.array(arriving).reshape(-1, len(times))
         acting = problem.loads(times)
         acting[problem.is_free] += (self._arriving_force @ self._arriving)[problem.is_free]
         self._velocities, self._states = np.zeros((len(self._q), self._found.points)), self._open.copy()

@@ -228,7 +228,14 @@ def _chain(system: ExplicitChain) -> Sketch:
     sketch.push = lambda load: (sketch.point(position_of(load.at)), Fraction(1))
     sketch.line("", _row(system.parts))
     for branch in system.branch:
-        sketch.line(branch.name, _row(branch.parts, branch=True), sketch.names[branch.from_], branch.ratio)
+        first, start = branch.parts[0], sketch.names[branch.from_]
+        parts = branch.parts[isinstance(first, PointPart) :]
+        if isinstance(first, PointPart):  # a wheel of the node
+            wheel, node, square = _pointed(first, ()), sketch.points[start], rational(branch.ratio) ** 2
+            names = ("mass", "damping", "stiffness")
+            gathered = {name: getattr(node, name) + square * getattr(wheel, name) for name in names}
+            sketch.points[start] = replace(node, **gathered)
+        sketch.line(branch.name, _row(parts, branch=True) if parts else [], start, branch.ratio)
     return sketch
 
 

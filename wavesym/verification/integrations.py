@@ -167,6 +167,8 @@ def differences(known: Known) -> list[Outcome]:
     With contacts N is so large that the same happens at them with 2N and 4N, and that is one more front.
     """
     model = known.integrated
+    if not model.network.bars:
+        return refused_outcomes(known, "to", "there is no rod for a grid")
     first, struck = _grid(model), list[tuple[Change, float]]()
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     if len(first.problem.gaps):
@@ -221,7 +223,9 @@ def elements(known: Known) -> list[Outcome]:
     if model.damping is None:
         return []
     problem = damped_problem(model)
-    shortest = np.maximum(np.rint(_COARSEST_ELEMENTS * problem.delay / np.min(problem.delay)), 1).astype(int)
+    shortest = np.maximum(
+        np.rint(_COARSEST_ELEMENTS * problem.delay / np.min(problem.delay, initial=np.inf)), 1
+    ).astype(int)
     step = problem.until / _ELEMENT_INSTANTS
 
     @lru_cache

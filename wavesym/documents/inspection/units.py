@@ -29,7 +29,7 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
     rods, seconds = scale.rods, float(scale.seconds)
     first = rods.first
     periods, why = _periods(model, seconds)
-    limit = 1 / (2 * seconds * float(max(rods.ratios)))
+    limit = 1 / (2 * seconds * float(max(rods.ratios))) if rods.all else None
     framed = physical.said["system"]["type"] == "building"
     above = "above it a rod is not the columns that it stands for" if framed else "from it on rods swing by themselves"
     yield Facts(
@@ -39,9 +39,13 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
             "kind": scale.kind,
             "seconds_per_tau": Told(
                 str(scale.seconds),
-                f"{_si(seconds, 's')}, l/c rounded to {DIGITS} digits: {decimal_text(scale.seconds)} s",
+                f"{_si(seconds, 's')}, l/c rounded to {DIGITS} digits: {decimal_text(scale.seconds)} s"
+                if rods.all
+                else "1 s, as there are no rods",
             ),
-            "c": Told(float(first.length) / seconds, f"{float(first.length) / seconds:.6g} m/s, of the first rod"),
+            "c": Told(float(first.length) / seconds, f"{float(first.length) / seconds:.6g} m/s, of the first rod")
+            if rods.all
+            else None,
             "kappa": Told([float(k) for k in physical.kappa], _several(sorted({float(k) for k in physical.kappa}))),
             "periods": Told(
                 periods, why or ", ".join(f"T{k} = {_si(period, 's')}" for k, period in enumerate(periods, 1))
@@ -50,7 +54,7 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
                 {"tau": model.horizon(), "time": clock.time(model.until), "unit": clock.unit},
                 f"{model.horizon():.6g} tau, {clock.told(model.until)}",
             ),
-            "physics_up_to": Told(limit, f"{limit:.4g} Hz = c/(2 l): {above}"),
+            "physics_up_to": None if limit is None else Told(limit, f"{limit:.4g} Hz = c/(2 l): {above}"),
         },
     )
     if not rods.alike:

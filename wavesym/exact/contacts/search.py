@@ -65,7 +65,7 @@ class Search:
     """
 
     def __init__(self, network: Network, loads: Sequence[Applied], last: Mapping[int, fmpq], relaxing: bool) -> None:
-        shortest = min(bar.delay for bar in network.bars)
+        shortest = network.shortest
         self.waves = TouchingWaves(network, last, loads)
         self.changes: list[Change] = []
         self.width = shortest * _WIDTH

@@ -97,6 +97,8 @@ def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
 
 def sought(stiffness: Stiffness, count: int) -> Complex:
     """The first frequencies in doubles, those with a real part of at least 0."""
+    if not stiffness.network.bars:
+        return _of_matrix(stiffness)[:count]
     many = int(_MORE * count) + len(stiffness.network.bars) + 4
     start = searched(Stiffness(undamped(stiffness.network)), many)
     draw = np.random.default_rng(0)  # nothing is to stay symmetric by chance
@@ -122,6 +124,29 @@ def sought(stiffness: Stiffness, count: int) -> Complex:
     found = found[(found.real > -1e-9 * np.abs(found)) & (np.abs(found) > _RESTING * np.pi / float(stiffness.delay))]
     found = found[np.argsort(np.abs(found), kind="stable")]
     return np.asarray(found[:count])
+
+
+def _of_matrix(stiffness: Stiffness) -> Complex:
+    """All of them without bars: eigenvalues of x' = A x, x the places of all points and the velocities of masses."""
+    law, size = stiffness.doubles, len(stiffness.points)
+    k, c = np.diag(law.held), np.diag(law.slowed)
+    for row, parent in enumerate(stiffness.parents):
+        if parent is not None:
+            k[row, parent] = k[parent, row] = law.across[row]
+            c[row, parent] = c[parent, row] = law.slowing[row]
+    mass = np.array(law.mass)
+    heavy, light = np.flatnonzero(mass > 0), np.flatnonzero(mass == 0)
+    # how fast points are: masses as they are, the others as dashpots let them
+    speed = np.zeros((size, size + len(heavy)))
+    speed[heavy, size + np.arange(len(heavy))] = 1.0
+    if len(light):
+        pulls = np.hstack([-k[light], -c[np.ix_(light, heavy)]])
+        speed[light] = np.linalg.solve(c[np.ix_(light, light)], pulls)
+    force = -np.hstack([k, np.zeros((size, len(heavy)))]) - c @ speed
+    matrix = np.vstack([speed, force[heavy] / mass[heavy, None]])
+    w = -1j * np.linalg.eigvals(matrix).astype(complex)
+    w = w[(w.real > -_STRAIGHT * np.abs(w)) & (np.abs(w) > _RESTING * np.abs(w).max(initial=0.0))]
+    return np.asarray(w[np.argsort(np.abs(w), kind="stable")])
 
 
 def _pull(stiffness: Stiffness, w: Complex) -> Complex:

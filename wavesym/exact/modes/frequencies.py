@@ -75,9 +75,12 @@ class Spectrum:
         return self._cuts[0]
 
     def first(self, count: int) -> list[Mode]:
-        """The first `count` modes, by their frequencies."""
+        """The first `count` modes, by their frequencies; all where there are fewer."""
+        stiffness = Stiffness(self.cut.network)
+        if stiffness.modes is not None:
+            count = min(count, stiffness.modes)
         try:
-            self._found += _modes(Stiffness(self.cut.network), count, len(self._found))
+            self._found += _modes(stiffness, count, len(self._found))
         except CoincidenceError as error:
             if not self._cuts[1:]:
                 raise UnservedError(f"system: {error}, which modes cannot tell apart (take pieces or march)") from None
@@ -119,8 +122,10 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
 def searched(stiffness: Stiffness, count: int) -> Vector:
     """The first frequencies in doubles, by bisection of all at once."""
     n = np.arange(1, count + 1)
-    delay = float(stiffness.delay)
-    high = (n + len(stiffness.network.bars)) * np.pi / delay
+    if stiffness.modes is None:
+        high = (n + len(stiffness.network.bars)) * np.pi / float(stiffness.delay)
+    else:
+        high = np.full(count, stiffness.highest)
     low = np.zeros(count)
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2

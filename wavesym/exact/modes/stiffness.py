@@ -260,6 +260,20 @@ class Stiffness:
         """That of all bars together: there are delay/pi frequencies to a unit of frequency."""
         return sum((bar.delay for bar in self.network.bars), fmpq(0))
 
+    @property
+    def modes(self) -> int | None:
+        """How many modes there are without dashpots: as many as masses, where no bar has infinitely many."""
+        if self.network.bars:
+            return None
+        return sum(self.network.points[point].mass != 0 for point in self.points)
+
+    @cached_property
+    def highest(self) -> float:
+        """Above all frequencies, where there are no bars: their squares have the sum K_ii/m_i at most."""
+        law = self.doubles
+        pairs = zip(law.held, law.mass, strict=True)
+        return 2 * float(np.sqrt(sum(held / mass for held, mass in pairs if mass != 0)) or 1)
+
     def counted(self, w: Vector) -> NDArray[np.int64]:
         """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
         angles = [w * delay for delay in self.doubles.delays]

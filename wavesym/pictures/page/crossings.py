@@ -36,7 +36,7 @@ _QUANTITIES = {"velocity": 0, "force": 1}
 
 def crossings(model: Model, lines: Lines, units: Scale | None) -> list[Shown]:
     """Velocity and force of the main line; nothing where waves cross too often, or it would cost too much."""
-    shortest = min(bar.delay for bar in model.network.bars)
+    shortest = model.network.shortest
     if model.until > _MOST * shortest:
         return []
     try:

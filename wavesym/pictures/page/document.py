@@ -65,6 +65,7 @@ class _Context:
 def page(scene: Scene) -> str:
     """The page of a scene, with the text it was read from. CostError, ToleranceError as for its histories."""
     model = lower(scene)
+    model.network.refuse_rodless("a report", "take `plot` and `summary`")
     drawn = model.watching(_fair(model))
     columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
     return fitting(

@@ -201,6 +201,7 @@ def march_plan(
     network = model.network
     network.refuse_contacts()
     model.refuse_damping()
+    network.refuse_rodless("a march", "take pieces or modes")
     for probe, terms in model.sums.items():
         if any(reading.order > 0 for _, reading in terms):
             raise UnservedError(

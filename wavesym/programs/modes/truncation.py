@@ -14,6 +14,7 @@ from flint import fmpq
 
 from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.modes.cuts import Cut
+from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest
@@ -78,14 +79,21 @@ class ModalModel(ABC, Generic[K]):
     def least(self) -> int:
         """As many modes as are taken at least."""
 
+    @cached_property
+    def all_modes(self) -> int | None:
+        """How many modes there are; None where bars have infinitely many."""
+        return Stiffness(self.model.network).modes
+
     @property
     def fewest(self) -> int:
         """The modes to begin with."""
-        return max(self.FIRST * len(self.model.network.bars), self.least)
+        return self.all_modes or max(self.FIRST * len(self.model.network.bars), self.least)
 
     @property
     def most(self) -> int:
         """More are not taken."""
+        if self.all_modes:
+            return self.all_modes
         return max(min(self.MOST, self.WORK // len(self.model.network.bars)), self.fewest)
 
     @property
@@ -211,7 +219,7 @@ def truncated(chain: ModalModel[K]) -> ModalModes:
             raise _unmet(chain, errors, largest, (chain.most / count) ** power)
         count = min(ceil(count * min(max(1.05 * more, 1.2), 8.0)), chain.most)
     # of these as few as will do
-    low, high = chain.least - 1, count
+    low, high = min(chain.least, count) - 1, count
     while high - low > 1:
         middle = (low + high) // 2
         enough = _relative(chain.errors(known, middle), largest).max(initial=0.0) <= tolerance

@@ -79,8 +79,6 @@ class PhysicalChain(SceneTable):
             if isinstance(part, RodKeys):
                 with placed(*keys):
                     elastic.append(part.elastic(names["dashpot"]))
-        if not elastic:
-            raise wrong("no rod; write at least one", "parts")
         rods = Rods.of(elastic)
         pen = _Pen(kind, names, rods)
         table: dict[str, object] = {"type": "chain", "parts": pen.line("", main)}

@@ -35,7 +35,7 @@ class ElasticRod:
 
 @dataclass(frozen=True)
 class Rods:
-    """The rods of a scene, in order; all that is made relative is so to the first.
+    """The rods of a scene, in order; all that is made relative is so to the first, or without any to 1 m, 1 s and 1 kg.
 
     Irrational are its delay, l/c, which is rounded, and where rods differ the ratios of their delays, each of which is
     rounded unless it is rational. Masses are kept, so that impedances follow: mass/delay.
@@ -48,6 +48,8 @@ class Rods:
     @classmethod
     def of(cls, rods: Sequence[ElasticRod]) -> Rods:
         """Rods with their delays."""
+        if not rods:
+            return cls((), Fraction(1), ())
         first = rods[0]
         ratios: dict[Fraction, Fraction] = {}
         for rod in rods:
@@ -63,7 +65,7 @@ class Rods:
     @property
     def first(self) -> ElasticRod:
         """The one whose length and delay are the units."""
-        return self.all[0]
+        return self.all[0] if self.all else ElasticRod(Fraction(1), Fraction(1), Fraction(1))
 
     @property
     def in_step(self) -> bool:
