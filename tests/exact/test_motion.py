@@ -248,9 +248,9 @@ def test_values_that_would_take_minutes_are_refused_before_the_first(monkeypatch
     motion = made(drive(2000, strain=["1/2"]))
     motion.refuse_long(1)
     with pytest.raises(
-        CostError, match=r"^output: 100000 values of 1 outputs to tau = 2000 would take about \d+ s, the limit is 60"
+        CostError, match=r"^output: 1000000 values of 1 outputs to tau = 2000 would take about \d+ s, at m"
     ):
-        motion.refuse_long(100_000)
+        motion.refuse_long(1_000_000)
 
 
 @pytest.mark.parametrize("quantity", ["strain", "displacement"])
@@ -261,7 +261,7 @@ def test_the_seconds_told_are_those_of_segments_and_values(quantity, taus, monke
     terms = motion.waves(ctx.prec).sent[End(0, 1)].stretches[1].polynomial.length()
     made_for = sum(len(motion.segments(place, ctx.prec)) for place in motion.probes)
     expected = made_for if quantity == "displacement" else min(made_for, 2 * taus)
-    assert terms == motion.first_bits // 4 == 32
+    assert terms == motion.terms(motion.first_bits) > 16
     monkeypatch.setattr(room, "MOST_SECONDS", -1)
     for composed, evaluated, seconds in ((1, 0, expected * terms**1.5), (0, 1, 2 * taus * terms)):
         monkeypatch.setattr(room, "_COMPOSED", composed)

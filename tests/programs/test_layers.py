@@ -101,6 +101,6 @@ def test_pieces_refuse_by_bits_that_series_need_and_name_what_helps() -> None:
     model = lower(Scene(name="s", system={"type": "chain", "parts": parts}, output={"until": 8, "velocity": ["1/2"]}))
     tried = attempt(model, "pieces")
     assert tried.refusal == (
-        "output.until: 2048 bits would be needed for pieces to tau = 8, the limit is 1024 (a shorter horizon or "
+        "output.until: 1280 bits would be needed for pieces to tau = 8, the limit is 1024 (a shorter horizon or "
         "longer rods help)"
     )

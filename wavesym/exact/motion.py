@@ -23,6 +23,7 @@ from wavesym.mechanics.gauge import Weighted
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.balls import FIRST_BITS
 from wavesym.numbers.doubles import not_below, rational
 
 MOST_STRETCHES = 20_000
@@ -32,11 +33,13 @@ MOST_SECONDS = 60
 # measured: seconds for a segment, times its terms to the power of 3/2, and for each term of a value
 _COMPOSED, _EVALUATED = 2.5e-7, 6e-7
 # bits that a crossing of a bar takes from what is known of its wave
-_CROSSING = 2
+_CROSSING = fmpq(3, 2)
 # bits for each unit that a series swings: what cancels, and about what its terms need
 _CANCELLED, _BORNE = 3, 16
-# bits that are left at the end of its terms, and the power of 2 of more bits than are had
-_LEFT, _MOST_FIRST = 60, 20
+# bits that are wanted of values
+_WANTED = 72
+# bits come in words of so many, and are never so many
+_WORD, _MOST_FIRST = 64, 1 << 20
 # of the largest wave: what is smaller may be 0, where contacts open and close
 NEGLIGIBLE_WAVE = arb(2) ** -200
 _LARGEST = 5 << 27  # bytes
@@ -70,20 +73,10 @@ class Motion:
 
     @cached_property
     def first_bits(self) -> int:
-        """With fewer bits nothing would be left at the end of the horizon; a power of 2, up to more than is had."""
+        """With fewer bits nothing would be left at the end of the horizon; whole words, up to more than is had."""
         _, swing = self._hardest
-        bits = 1 << min(max((64 + int(self._crossed + _CANCELLED * swing)).bit_length(), 7), _MOST_FIRST)
-        while bits < 1 << _MOST_FIRST and not self._borne(bits):
-            bits *= 2
-        return bits
-
-    def _borne(self, bits: int) -> bool:
-        """Whether a series of so many bits bears the swing: what x^n / n! leaves out is less than crossings leave.
-
-        Of what is left out crossings mostly take less than of what is rounded: half of it is reckoned with.
-        """
-        swing, n = float(self._hardest[1]), self.terms(bits)
-        return swing == 0 or n * log2(n / (e * swing)) >= _LEFT + float(self._crossed) / 2
+        words = (64 + self._crossed + _CANCELLED * swing) / _WORD
+        return int(min(max(int(words.ceil()) * _WORD, FIRST_BITS), _MOST_FIRST))
 
     @property
     def helps(self) -> str:
@@ -95,8 +88,18 @@ class Motion:
         return " or ".join(ways)
 
     def terms(self, bits: int) -> int:
-        """How many powers waves have that are known in so many bits; those of loads where they are no series."""
-        return bits // 4 if self._series else self._powers
+        """How many powers waves have that are known in so many bits; those of loads where they are no series.
+
+        What a series that swings by x leaves out after n terms is about x^n / n!, and of what has crossed bars about as
+        much as if it swung by one more: no more than is wanted before crossings take their part.
+        """
+        if not self._series:
+            return self._powers
+        wanted = bits - self.first_bits + _WANTED + float(self._crossed)
+        terms, swing = bits // 8, e * (1 + float(self._hardest[1]))
+        while terms * log2(terms / swing) < wanted:
+            terms += 1 + terms // 32
+        return terms
 
     @cached_property
     def _series(self) -> bool:

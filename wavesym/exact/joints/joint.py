@@ -188,6 +188,22 @@ class JointLaw:
         return fmpq_mat(size, size, [self.damping[a][b] for a in self.light for b in self.light]).inv()
 
 
+    @cached_property
+    def absorbed(self) -> dict[int, fmpq]:
+        """What takes energy from each point with mass, at least: c_k of q'S q >= sum of c_k q_k^2, where positive.
+
+        S is C on those points, less what points without mass take of it as they follow: its Schur complement.
+        """
+        schur = {a: {b: self.damping[a][b] for b in self.heavy} for a in self.heavy}
+        for a, row in schur.items():
+            for b in row:
+                for n, x in enumerate(self.light):
+                    for m, y in enumerate(self.light):
+                        row[b] -= self.damping[a][x] * self.inverse[n, m] * self.damping[y][b]
+        least = {a: 2 * row[a] - sum(map(abs, row.values()), fmpq(0)) for a, row in schur.items()}
+        return {a: c for a, c in least.items() if c > 0}
+
+
 class JointEnd(NamedTuple):
     """The end of a bar at a joint, and the place of its point there.
 
@@ -387,10 +403,15 @@ class JointMotion:
         inverse = [[abs(arb(law.inverse[a, b])) for b in range(len(law.light))] for a in range(len(law.light))]
         light = [defect[k] for k in law.light]
         through = [_dot(row, light) for row in inverse]
-        delta = arb(0)
+        delta, absorbed, kept = arb(0), arb(0), arb(0)  # kept and absorbed: the same, where points are slowed down
         for k in law.heavy:
             more = sum((abs(arb(law.damping[k][b])) * t for b, t in zip(law.light, through, strict=True)), arb(0))
-            delta += (defect[k] + more) ** 2 / arb(law.mass[k])
+            square = (defect[k] + more) ** 2
+            delta += square / arb(law.mass[k])
+            if k in law.absorbed:
+                absorbed += square / (4 * arb(law.absorbed[k]))
+            else:
+                kept += square / arb(law.mass[k])
         rho = _dot(light, through) / 4 if light else arb(0)
         before = (2 * self.unknown / arb(law.mass[law.heavy[0]])).sqrt() if law.heavy else arb(0)
         kappa = sum(
@@ -403,7 +424,9 @@ class JointMotion:
             arb(0),
         ).sqrt()
         added = (rho * h).sqrt().min(kappa * h / arb(2).sqrt())
-        root = (self.unknown.sqrt() + delta.sqrt() * h / arb(2).sqrt() + added).upper()
+        # the energy E grows as E' <= sum of d_k |q_k| - c_k q_k^2 <= sum of d_k^2/(4 c_k) + sqrt(2 E sum of d_k^2/M_k)
+        slowed = (self.unknown + absorbed * h).sqrt() + kept.sqrt() * h / arb(2).sqrt()
+        root = ((self.unknown.sqrt() + delta.sqrt() * h / arb(2).sqrt()).min(slowed) + added).upper()
         self.unknown = (root * root).upper()
         self.strained = speed = (root * arb(2).sqrt()).upper()
         errors = {k: (speed / arb(law.mass[k]).sqrt()).upper() for k in law.heavy}
