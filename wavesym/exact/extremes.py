@@ -47,7 +47,7 @@ _ROUNDING = 2.0**-52
 _SPARE = 96  # bits of what is far below what counts as constant
 _NEWTON = 200  # steps at most; a dozen do
 # measured: seconds for a piece of an output or wave, times its terms to the power of 3/2
-_COMPOSED, _MOST_SECONDS = 4e-7, 5
+_COMPOSED, _MOST_SECONDS = 4e-7, 8
 # times the bits that there are to begin with: what needs more is not told from 0
 _MORE_BITS = 8
 _ZERO, _ONE = fmpq(0), fmpq(1)
