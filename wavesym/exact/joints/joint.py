@@ -187,7 +187,6 @@ class JointLaw:
         size = len(self.light)
         return fmpq_mat(size, size, [self.damping[a][b] for a in self.light for b in self.light]).inv()
 
-
     @cached_property
     def absorbed(self) -> dict[int, fmpq]:
         """What takes energy from each point with mass, at least: c_k of q'S q >= sum of c_k q_k^2, where positive.
