@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import ClassVar
+
+MOST_FAULTS = 20
+"""So many are shown of a scene: who mends these sees the rest."""
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -34,11 +37,17 @@ class WavesymError(ValueError):
 
     status: ClassVar[int] = 2
 
+    @property
+    def lines(self) -> list[str]:
+        """What to show of it, line by line."""
+        return [" ".join(str(self).split())]
+
 
 class SceneError(WavesymError):
-    """A scene, or another file of the user's, that is not as it should be: `FILE: key.path: what is wrong`.
+    """A scene, or another file of the user's, that is not as it should be: `FILE: key.path: what is wrong (line N)`.
 
-    The three parts are `file`, `path` and `what`.
+    The parts are `file`, `path`, `what` and `line` (0 where there is none) of the first fault; `others` are the rest,
+    and `lines` says all of them.
 
     >>> import wavesym
     >>> try:
@@ -50,13 +59,30 @@ class SceneError(WavesymError):
     -1 is not positive; write a number above 0
     """
 
-    def __init__(self, what: str, path: str = "", file: str = "scene") -> None:
-        super().__init__(what, path, file)  # all three, so that the error can be pickled
-        self.what, self.path, self.file = what, path, file
+    def __init__(
+        self, what: str, path: str = "", file: str = "scene", line: int = 0, others: Sequence[SceneError] = ()
+    ) -> None:
+        super().__init__(what, path, file, line, others)  # all of them, so that the error can be pickled
+        self.what, self.path, self.file, self.line, self.others = what, path, file, line, others
 
     def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+    @property
+    def lines(self) -> list[str]:
+        """A line for each fault, the first of many."""
+        line = f"(line {self.line})" if self.line else ""
         # a file's name may hold line breaks, and bytes that are no text
-        return ": ".join(part for part in (printable(self.file), self.path, self.what) if part)
+        what = ": ".join(part for part in (printable(self.file), self.path, f"{self.what} {line}".rstrip()) if part)
+        shown = [text for other in self.others[: MOST_FAULTS - 1] for text in other.lines]
+        more = len(self.others) - len(shown)
+        return [what, *shown, *([f"{printable(self.file)}: and {more} more faults"] if more else [])]
+
+    def in_file(self, file: str, line_of: Callable[[str], int] = lambda _: 0) -> SceneError:
+        """The same of a file; `line_of` says on which of its lines a path stands. Faults come in the file's order."""
+        every = [SceneError(each.what, each.path, file, line_of(each.path)) for each in (self, *self.others)]
+        first, *others = sorted(every, key=lambda each: each.line)
+        return SceneError(first.what, first.path, file, first.line, tuple(others))
 
 
 class CostError(WavesymError):

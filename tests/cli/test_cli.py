@@ -173,7 +173,7 @@ def test_wrong_usage(arguments: list[str], expected: str, door: Door, capsys: py
 def test_a_wrong_scene_is_refused_by_every_command(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     Path("bad.toml").write_text(SCENE.replace("[1, 2]", "[1]"))
     more = ["-o", "mine.svg"] if command == "plot" else []
-    expected = "bad.toml: system.inertia: 1 numbers; write 2 (m + 1)"
+    expected = "bad.toml: system.inertia: 1 numbers; write 2 (m + 1) (line 6)"
     assert refused(capsys, command, "bad.toml", *more) == expected
     assert refused(capsys, command, "nowhere.toml", *more).startswith("nowhere.toml: No such file or directory")
     assert refused(capsys, command, ".", *more).startswith(".: Is a directory")
@@ -292,7 +292,9 @@ def process(*arguments: str, stdin: bytes = b"") -> subprocess.CompletedProcess[
 def test_as_a_process() -> None:
     done = process("run", "-", stdin=SCENE.replace("until = 2", "until = -2").encode())
     assert done.returncode == 2
-    assert done.stderr.decode().splitlines() == ["<stdin>: output.until: -2 is not positive; write a number above 0"]
+    assert done.stderr.decode().splitlines() == [
+        "<stdin>: output.until: -2 is not positive; write a number above 0 (line 8)"
+    ]
     assert done.stdout == b""
     assert process("run", "-", stdin=b"\xff\xfe").stderr.count(b"\n") == 1
 

@@ -123,7 +123,7 @@ def test_what_was_meant_is_asked(capsys: pytest.CaptureFixture[str]) -> None:
     assert "Did you mean" not in refused(capsys, "zzz")
     assert refused(capsys, "run", "building_m3").endswith('. Did you mean "building_m2"?')
     Path("mine.toml").write_text(SCENE.replace("until", "untill"))
-    assert refused(capsys, "run", "mine.toml").endswith('. Did you mean "until"?')
+    assert refused(capsys, "run", "mine.toml").endswith('. Did you mean "until"? (line 8)')
 
 
 @pytest.mark.parametrize("name", builtin_names())

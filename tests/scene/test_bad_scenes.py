@@ -228,13 +228,11 @@ def test_a_mistake_is_one_line(tmp_path: Path, good: str, old: str, new: str, ex
     path.write_text(good.replace(old, new, 1), encoding="utf-8")
     with pytest.raises(SceneError) as refused:
         Scene.from_toml(path)
-    line = str(refused.value)
-    assert line.startswith(f"{path}: ")
-    message = line.removeprefix(f"{path}: ")
-    assert message.startswith(expected) or expected.startswith('"')
-    assert expected in message
-    assert line.isprintable()
-    assert len(message) < 300
+    lines = refused.value.lines
+    assert all(line.isprintable() and line.startswith(f"{path}: ") for line in lines)
+    messages = [line.removeprefix(f"{path}: ") for line in lines]
+    assert any(message.startswith(expected) or (expected[0] == '"' and expected in message) for message in messages)
+    assert all(len(message) < 300 for message in messages)
 
 
 @pytest.mark.parametrize("good", [COLLISION, DRIVE, BUILDING])
@@ -292,12 +290,12 @@ def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_from_python_the_file_is_the_scene() -> None:
-    with pytest.raises(SceneError, match=r"^scene: name: missing; write an identifier of C$"):
+    with pytest.raises(SceneError, match=r"^scene: name: missing; write an identifier of C\n"):
         Scene()
     with pytest.raises(SceneError, match=r"^scene: self: unknown key"):
         Scene(self=1)
     with pytest.raises(ValueError, match=r"^scene: system: a list is not a table; write \[system\]$"):
-        Scene(name="s", system=[], output={})
+        Scene(name="s", system=[], output={"until": 1, "strain": [0]})
 
 
 def test_the_error_keeps_its_parts_when_pickled() -> None:

@@ -97,7 +97,7 @@ def test_the_page_speaks_of_lengths(bar: Path) -> None:
 def test_a_refused_place_of_a_load_is_the_one_that_was_written(place: str, right: str, tmp_path: Path) -> None:
     with pytest.raises(WavesymError) as refused:
         scene(BAR.replace("load = []", f"load = [{LOAD.replace('1.2 m', place)}]"), tmp_path / "bar.toml")
-    assert str(refused.value).endswith(f"load[0].at: {right}")
+    assert str(refused.value).endswith(f"load[0].at: {right} (line 3)")
 
 
 def test_refusals_of_programs(tmp_path: Path) -> None:

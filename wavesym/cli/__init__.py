@@ -114,7 +114,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except click.ClickException as error:
         return _refused(f"wavesym: {error.format_message()}", WRONG_REQUEST)
     except WavesymError as error:
-        return _refused(str(error), error.status)
+        for line in error.lines:
+            _refused(line, error.status)
+        return error.status
     except BrokenPipeError:
         return _unread()
     except OSError as error:

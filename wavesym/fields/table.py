@@ -1,21 +1,31 @@
-"""What every table of a scene has in common: known keys, and one clear line for the first thing that is wrong."""
+"""What every table of a scene has in common: known keys, and one clear line for each thing that is wrong."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Number
+from typing import NamedTuple, Self
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, ModelWrapValidatorHandler, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from wavesym.errors import did_you_mean
+from wavesym.errors import SceneError, did_you_mean
 
 # Enough to recognise a value by, short enough for a line.
 _SHOWN = 40
+_MISSING = "Field required"  # as pydantic says it
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+class Fault(NamedTuple):
+    """What is wrong, and the keys and list indices that lead to it."""
+
+    what: str
+    keys: tuple[str | int, ...]
 
 
 class Written(str):
@@ -46,16 +56,53 @@ def shown(value: object) -> str:
     return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
 
 
-def wrong(what: str, *at: str | int) -> PydanticCustomError:
-    """The error to raise in a validator; `at` leads from the field that is validated to what is wrong in it."""
-    return PydanticCustomError("scene", "{what}", {"what": what, "at": at})
+def wrong(what: str, *keys: str | int) -> PydanticCustomError:
+    """The error to raise in a validator; `keys` lead from the field that is validated to what is wrong in it."""
+    return _refusal([Fault(what, keys)])
 
 
-def first_error(error: ValidationError) -> tuple[str, tuple[str | int, ...]]:
-    """What is wrong, and where: the keys and list indices that lead to it from the table that was validated."""
-    first = error.errors(include_url=False, include_input=False)[0]
-    context = first.get("ctx", {})
-    return context.get("what", first["msg"]), (*first["loc"], *context.get("at", ()))
+def _refusal(faults: Sequence[Fault]) -> PydanticCustomError:
+    return PydanticCustomError("scene", "{what}", {"what": faults[0].what, "faults": faults})
+
+
+def faults_of(error: PydanticCustomError | ValidationError, *keys: str | int) -> list[Fault]:
+    """All that an error of a validator, or of a validated table, has found; `keys` lead to that table."""
+    if isinstance(error, PydanticCustomError):
+        return [Fault(what, (*keys, *at)) for what, at in (error.context or {})["faults"]]
+    return [
+        Fault(what, (*keys, *each["loc"], *at))
+        for each in error.errors(include_url=False, include_input=False)
+        for what, at in each.get("ctx", {}).get("faults", [(each["msg"], ())])
+    ]
+
+
+class Faults:
+    """What is wrong with parts that are read one after another, gathered so that a user reads all of it at once."""
+
+    def __init__(self, found: Sequence[Fault] = ()) -> None:
+        self.found = list(found)
+
+    @contextmanager
+    def gathered(self, *keys: str | int) -> Iterator[None]:
+        """Keep what the body finds wrong; `keys` lead to what it reads."""
+        try:
+            yield
+        except (PydanticCustomError, ValidationError) as error:
+            self.found += faults_of(error, *keys)
+
+    def refuse(self) -> None:
+        """Raise the error of a validator where anything is wrong."""
+        if self.found:
+            raise _refusal(self.found) from None
+
+
+@contextmanager
+def placed(*keys: str | int) -> Iterator[None]:
+    """Say of what the body finds wrong where in the scene it is: `keys` lead to what it reads."""
+    faults = Faults()
+    with faults.gathered(*keys):
+        yield
+    faults.refuse()
 
 
 def key_path(keys: Sequence[str | int]) -> str:
@@ -76,25 +123,44 @@ def listed(value: object) -> tuple[object, ...]:
     return tuple(value)
 
 
+def scene_error(error: PydanticCustomError | ValidationError, file: str = "scene") -> SceneError:
+    """All that validation has found, as an error for users."""
+    every = dict.fromkeys((what, key_path(keys)) for what, keys in faults_of(error))
+    first, *others = (SceneError(what, path, file) for what, path in every)
+    return SceneError(first.what, first.path, file, others=tuple(others))
+
+
 class SceneTable(BaseModel):
     """A table of a scene: every key is known, none that is needed is missing; a field's description says what it is."""
 
     # built when it is first used: most scenes have few kinds of tables
     model_config = ConfigDict(extra="forbid", frozen=True, serialize_by_alias=True, defer_build=True)
 
-    @model_validator(mode="before")
+    @model_validator(mode="wrap")
     @classmethod
-    def _keys(cls, value: object) -> object:
+    def _keys(cls, value: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        if isinstance(value, cls):
+            return handler(value)
         if not isinstance(value, Mapping):
             raise wrong(f"{shown(value)} is not a table; write its keys and values")
         fields = {field.alias or name: field for name, field in cls.model_fields.items()}
-        for key in value:
-            if key not in fields:
-                *others, last = fields
-                known = f"{', '.join(others)} or {last}" if others else last
-                meant = did_you_mean(str(key)[:_SHOWN], fields)
-                raise wrong(f"unknown key; write {known}{meant and f'. {meant}'}", str(key))
-        for key, field in fields.items():
-            if field.is_required() and key not in value:
-                raise wrong(f"missing; write {field.description}", key)
-        return value
+        unknown = [Fault(_unknown(str(key), list(fields)), (str(key),)) for key in value if key not in fields]
+        missing = [
+            Fault(f"missing; write {field.description}", (key,))
+            for key, field in fields.items()
+            if field.is_required() and key not in value and not any(f'mean "{key}"?' in what for what, _ in unknown)
+        ]
+        faults = Faults([*unknown, *missing])
+        if faults.found:
+            with faults.gathered():  # also what is wrong with the other keys
+                handler({key: each for key, each in value.items() if key in fields})
+            faults.found = [fault for fault in faults.found if fault.what != _MISSING]
+            faults.refuse()
+        return handler(value)
+
+
+def _unknown(key: str, known: Sequence[str]) -> str:
+    *others, last = known
+    choice = f"{', '.join(others)} or {last}" if others else last
+    meant = did_you_mean(key[:_SHOWN], known)
+    return f"unknown key; write {choice}{meant and f'. {meant}'}"

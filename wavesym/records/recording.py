@@ -7,11 +7,11 @@ from fractions import Fraction
 from os import PathLike
 from typing import Annotated, Any
 
-from pydantic import Field, PlainSerializer, PlainValidator, ValidationError, ValidationInfo
+from pydantic import Field, PlainSerializer, PlainValidator, ValidationInfo
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import Exact, Numbers, Positive
-from wavesym.fields.table import SceneTable, first_error, shown, wrong
+from wavesym.fields.table import SceneTable, placed, shown, wrong
 from wavesym.records.read import read_record
 from wavesym.records.record_file import RecordFile
 
@@ -46,14 +46,12 @@ def _recording(value: object, info: ValidationInfo) -> Recording:
         return value
     try:
         if isinstance(value, Mapping):
-            return Recording.model_validate(value)
+            with placed():
+                return Recording.model_validate(value)
         if isinstance(value, str | PathLike):
             return recorded(value, info.data.get("column"), lambda _: info.data.get("spacing"))
     except SceneError as error:
         raise wrong(str(error)) from None
-    except ValidationError as error:
-        what, path = first_error(error)
-        raise wrong(what, *path) from None
     raise wrong(f"{shown(value)} is not a path; write that of a file")
 
 

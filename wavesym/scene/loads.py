@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from pydantic import ValidationError
-
 from wavesym.fields.loads import Load
-from wavesym.fields.table import first_error, listed, wrong
+from wavesym.fields.table import Faults, listed, wrong
 from wavesym.records.load import RecordedLoad
 from wavesym.systems import SystemTable
 
@@ -16,22 +14,22 @@ def loads(tables: object, system: SystemTable) -> tuple[Load, ...]:
     """The loads on a system. Which keys a table has depends on the system, so pydantic is told here."""
     if isinstance(tables, Sequence) and tables and not system.load_kinds:
         raise wrong(f"{system.no_loads}; leave [[load]] out")
-    found = tuple(_load(table, k, system) for k, table in enumerate(listed(tables)))
+    faults = Faults()
+    found = []
+    for k, table in enumerate(listed(tables)):
+        with faults.gathered(k):
+            found.append(_load(table, system))
+    faults.refuse()
     damping = getattr(system, "damping", None)
     if damping is None or not damping.acts:
-        return found
+        return tuple(found)
     return tuple(load.without_jump() if isinstance(load, RecordedLoad) else load for load in found)
 
 
-def _load(table: object, k: int, system: SystemTable) -> Load:
-    try:
-        load = _kind(table, system.load_kinds).model_validate(table)
-    except ValidationError as error:
-        what, path = first_error(error)
-        raise wrong(what, k, *path) from None
+def _load(table: object, system: SystemTable) -> Load:
+    load = _kind(table, system.load_kinds).model_validate(table)
     if refused := system.refused(load):
-        what, key = refused
-        raise wrong(what, k, key)
+        raise wrong(*refused)
     return load
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Annotated, Any, Self
@@ -21,7 +21,7 @@ from pydantic import (
 
 from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Exact, Positive
-from wavesym.fields.table import SceneTable, Written, listed, shown, wrong
+from wavesym.fields.table import Faults, SceneTable, Written, listed, shown, wrong
 from wavesym.systems import SystemTable
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
 from wavesym.systems.watched import Watching
@@ -121,22 +121,24 @@ class NoOutput(Output):
     until: Positive = Fraction(1)
 
 
-def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> Iterator[Observable]:
+def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> tuple[Observable, ...]:
     """The outputs in order, checked against the chain; raises the error of `table.wrong`."""
     seen: dict[tuple[str, Place], str] = {}
     watching = Watching(system, loads)
+    found, faults = [], Faults()
     for quantity in QUANTITIES:
         positions: tuple[Position, ...] = getattr(output, quantity)
         for k, position in enumerate(positions):
-            at = "output", quantity, k
             text = shown(Written(position.written))
-            try:
-                place = watching.place(position, quantity)
-            except MisplacedError as error:
-                raise wrong(str(error), *at) from None
-            if (quantity, place) in seen:
-                taken = seen[quantity, place]
-                raise wrong(f"{text} is the same place as {taken}; write another", *at)
-            seen[quantity, place] = text
-            name = f"{quantity}@{position.written}"
-            yield Observable(quantity, place.x, place.side, name, place, position.title)
+            with faults.gathered("output", quantity, k):
+                try:
+                    place = watching.place(position, quantity)
+                except MisplacedError as error:
+                    raise wrong(str(error)) from None
+                if (quantity, place) in seen:
+                    raise wrong(f"{text} is the same place as {seen[quantity, place]}; write another")
+                seen[quantity, place] = text
+                name = f"{quantity}@{position.written}"
+                found.append(Observable(quantity, place.x, place.side, name, place, position.title))
+    faults.refuse()
+    return tuple(found)

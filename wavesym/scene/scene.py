@@ -24,14 +24,14 @@ from pydantic_core import PydanticCustomError
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.fields.table import SceneTable, first_error, key_path, shown, wrong
+from wavesym.fields.table import SceneTable, placed, scene_error, shown, wrong
 from wavesym.numbers.doubles import rational
 from wavesym.scene.describe import describe
+from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.loads import loads
 from wavesym.scene.names import Name
 from wavesym.scene.outputs import NoOutput, Observable, Output, observables
 from wavesym.scene.paths import changed
-from wavesym.scene.physical.measured import placed
 from wavesym.scene.physical.scale import Scale, UnitsTable
 from wavesym.scene.physical.scene import PhysicalScene, physical
 from wavesym.scene.scene_file import read_toml
@@ -44,7 +44,7 @@ class Scene(SceneTable):
     The fields are those of a scene file. Without `units` all is dimensionless: x in rod lengths, tau = c t / l; with
     them (`units={}`) quantities are text such as "3.5 m", and `system`, `load`, `output` are the scene without.
     Numbers may be int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3". The
-    path of a record counts from the current folder. Raises SceneError for the first thing that is wrong.
+    path of a record counts from the current folder. Raises SceneError, which says all that is wrong.
 
     >>> import wavesym
     >>> scene = wavesym.Scene(
@@ -67,12 +67,10 @@ class Scene(SceneTable):
 
     def __init__(self, /, **fields: Any) -> None:
         try:
-            with placed():
-                found = physical(fields) if "units" in fields else None
-                super().__init__(**(fields if found is None else found.fields))
-        except PydanticCustomError as error:
-            context = error.context or {}
-            raise SceneError(context["what"], key_path(context["at"])) from None
+            found = physical(fields) if "units" in fields else None
+            super().__init__(**(fields if found is None else found.fields))
+        except (PydanticCustomError, ValidationError) as error:
+            raise scene_error(error) from None
         self._physical = found
 
     @classmethod
@@ -100,7 +98,8 @@ class Scene(SceneTable):
         try:
             scene = cls(**fields)
         except SceneError as error:
-            raise SceneError(error.what, error.path, file) from None
+            lines = key_lines(text)
+            raise error.in_file(file, lambda path: line_of(path, lines)) from None
         vars(scene)["text"] = text  # in place of what the property would say; scenes that differ in it are equal
         return scene
 
@@ -165,11 +164,8 @@ class Scene(SceneTable):
             raise wrong(f"missing; write {choice}", "type")
         if not isinstance(name := table["type"], str) or name not in SYSTEMS:
             raise wrong(f"{shown(table['type'])} is not a system; write {choice}", "type")
-        try:
+        with placed():
             return SYSTEMS[name].model_validate(table)
-        except ValidationError as error:
-            what, path = first_error(error)
-            raise wrong(what, *path) from None
 
     @field_validator("load", mode="wrap")
     @classmethod
@@ -191,4 +187,4 @@ class Scene(SceneTable):
     @cached_property
     def outputs(self) -> tuple[Observable, ...]:
         """The outputs: strains, velocities, displacements, each in the order of the scene."""
-        return tuple(observables(self.output, self.system, self.load))
+        return observables(self.output, self.system, self.load)

@@ -56,4 +56,4 @@ def _content(file: str, load: Mapping[str, Any], acts: Acts | None) -> dict[str,
     except SceneError as error:
         return Unreadable(str(error))
     except PydanticCustomError as error:
-        return Unreadable(str((error.context or {})["what"]))
+        return Unreadable(str(error))

@@ -16,7 +16,7 @@ from pydantic_core import PydanticCustomError
 
 from wavesym import __version__
 from wavesym.errors import SceneError
-from wavesym.fields.table import shown
+from wavesym.fields.table import faults_of, shown
 from wavesym.scene.paths import changed, steps
 from wavesym.scene.physical.scene import acts
 from wavesym.scene.scene import Scene
@@ -134,7 +134,7 @@ def plan(request: SweepRequest, file: str) -> SweepPlan:
     except SceneError as error:
         raise error if error.file != "scene" else SceneError(error.what, error.path, file) from None
     except PydanticCustomError as error:
-        raise SceneError((error.context or {})["what"], "scene", file) from None
+        raise SceneError(str(error), "scene", file) from None
 
 
 def _planned(request: SweepRequest) -> SweepPlan:
@@ -200,9 +200,8 @@ def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: st
     except SceneError as error:
         raise SceneError(error.what, at) from None
     except PydanticCustomError as error:
-        context = error.context or {}
-        inside = "".join(f".{key}" for key in context["at"])
-        raise SceneError(context["what"], at + inside) from None
+        what, keys = faults_of(error)[0]
+        raise SceneError(what, at + "".join(f".{key}" for key in keys)) from None
     try:
         Scene(**changed(fields, path, column.values[0]))
     except SceneError as error:

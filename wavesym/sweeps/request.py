@@ -11,8 +11,9 @@ from pydantic import Field, PlainValidator, PrivateAttr, ValidationError, field_
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import Integer
-from wavesym.fields.table import SceneTable, first_error, key_path, listed, shown, wrong
+from wavesym.fields.table import SceneTable, listed, placed, scene_error, shown, wrong
 from wavesym.reading import read_text
+from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.scene import Scene
 from wavesym.scene.scene_file import builtin_names, parsed
 
@@ -43,11 +44,8 @@ def _values(value: object) -> Span | tuple[object, ...]:
     if isinstance(value, Span):
         return value
     if isinstance(value, Mapping):
-        try:
+        with placed():
             return Span.model_validate(value)
-        except ValidationError as error:
-            what, path = first_error(error)
-            raise wrong(what, *path) from None
     if isinstance(value, str) or not hasattr(value, "__len__"):
         raise wrong(f"{shown(value)} is not a list of values; write one, or a table with from, to and count")
     values = listed(value if isinstance(value, list | tuple) else list(value))  # type: ignore[call-overload]
@@ -150,7 +148,7 @@ class SweepRequest(SceneTable):
     def read(cls, source: str | PathLike[str] | Mapping[str, Any]) -> tuple[str, Self]:
         """What messages call it, and the request: from a file, or from the same fields. Raises SceneError."""
         if isinstance(source, Mapping):
-            file, folder, fields = "sweep", "", dict(source)
+            file, text, folder, fields = "sweep", "", "", dict(source)
         else:
             file, text = read_text(source, _FORM)
             folder, fields = os.path.dirname(os.fspath(source)), parsed(file, text)
@@ -159,8 +157,8 @@ class SweepRequest(SceneTable):
         try:
             request = cls.model_validate(fields)
         except ValidationError as error:
-            what, path = first_error(error)
-            raise SceneError(what, key_path(path), file) from None
+            lines = key_lines(text)
+            raise scene_error(error).in_file(file, lambda path: line_of(path, lines)) from None
         request._folder = folder
         return file, request
 

@@ -7,11 +7,10 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, PlainSerializer, PlainValidator, ValidationError, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
 from wavesym.fields.numbers import Exact, Positive, exact
-from wavesym.fields.table import SceneTable, first_error, listed, shown, wrong
+from wavesym.fields.table import Faults, SceneTable, listed, shown, wrong
 
 _NAMES = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _MOST_TOLD = 40
@@ -157,21 +156,16 @@ def _part(value: object) -> ChainPart | str:
     kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
     if kind is LinkPart and not value.keys() & {"spring", "dashpot"}:
         raise wrong("not a part; write one of rod, mass, joint, motion, contact, spring and dashpot")
-    try:
-        return kind.model_validate(value)
-    except ValidationError as error:
-        what, path = first_error(error)
-        raise wrong(what, *path) from None
+    return kind.model_validate(value)
 
 
 def _parts(value: object) -> tuple[Any, ...]:
+    faults = Faults()
     found = []
     for k, part in enumerate(listed(value)):
-        try:
+        with faults.gathered(k):
             found.append(_part(part))
-        except PydanticCustomError as error:  # with where it is
-            context = error.context or {}
-            raise wrong(context["what"], k, *context["at"]) from None
+    faults.refuse()
     return tuple(found)
 
 

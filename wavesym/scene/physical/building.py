@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, FailFast, Field, PlainValidator
 
 from wavesym.fields.numbers import Integer, Positive
-from wavesym.fields.table import SceneTable, listed, shown, wrong
+from wavesym.fields.table import SceneTable, listed, placed, shown, wrong
 from wavesym.scene.physical.elastic import ElasticRod, Rods
 from wavesym.scene.physical.measured import (
     Area,
@@ -23,7 +23,6 @@ from wavesym.scene.physical.measured import (
     SecondMoment,
     Stiffness,
     one_of,
-    placed,
 )
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.systems.building import known_base

@@ -6,7 +6,7 @@ angles in radians.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -14,10 +14,10 @@ from typing import Any
 from pydantic import Field
 
 from wavesym.fields.numbers import LONGEST, exact
-from wavesym.fields.table import SceneTable, listed, shown, wrong
+from wavesym.fields.table import Faults, SceneTable, listed, placed, shown, wrong
 from wavesym.scene.physical.chain_parts import OTHERS, RODS, LinkKeys, MotionKeys, RodKeys
 from wavesym.scene.physical.elastic import ElasticRod, Rods
-from wavesym.scene.physical.measured import measured, placed
+from wavesym.scene.physical.measured import measured
 from wavesym.scene.physical.places import PlaceInMetres, place
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.scene.physical.scale import Kind
@@ -71,14 +71,16 @@ class PhysicalChain(SceneTable):
 
     def rewritten(self, kind: Kind) -> Rewritten:
         """As a chain without units. Raises the error of `table.wrong`."""
-        main = _read(self.parts, kind, "parts")
-        branches = [_read(branch.parts, kind, "branch", k, "parts") for k, branch in enumerate(self.branch)]
+        faults = Faults()
+        main = _read(faults, self.parts, kind, "parts")
+        branches = [_read(faults, branch.parts, kind, "branch", k, "parts") for k, branch in enumerate(self.branch)]
         names = _TRANSLATION if kind != "torsional" else _ROTATION
         elastic: list[ElasticRod] = []
         for keys, part in (read for line in (main, *branches) for read in line):
             if isinstance(part, RodKeys):
-                with placed(*keys):
+                with faults.gathered(*keys):
                     elastic.append(part.elastic(names["dashpot"]))
+        faults.refuse()
         rods = Rods.of(elastic)
         pen = _Pen(kind, names, rods)
         table: dict[str, object] = {"type": "chain", "parts": pen.line("", main)}
@@ -101,13 +103,14 @@ class PhysicalChain(SceneTable):
         )
 
 
-def _read(parts: object, kind: Kind, *at: str | int) -> list[_Read]:
-    """Parts by their keys."""
-    with placed(*at):
+def _read(faults: Faults, parts: object, kind: Kind, *at: str | int) -> list[_Read]:
+    """Parts by their keys; what is wrong with them is kept in `faults`."""
+    values: Sequence[object] = ()
+    with faults.gathered(*at):
         values = listed(parts)
     found: list[_Read] = []
     for k, value in enumerate(values):
-        with placed(*at, k):
+        with faults.gathered(*at, k):
             found.append(((*at, k), _part(value, kind)))
     return found
 

@@ -12,9 +12,9 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from wavesym.fields.numbers import exact
-from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.fields.table import SceneTable, placed, shown, wrong
 from wavesym.scene.physical.elastic import ElasticRod
-from wavesym.scene.physical.measured import measured, missing, one_of, placed
+from wavesym.scene.physical.measured import measured, missing, one_of
 from wavesym.scene.physical.rounding import polar_moment
 from wavesym.scene.physical.scale import Kind
 from wavesym.systems.parts import PartName

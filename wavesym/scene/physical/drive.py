@@ -13,9 +13,9 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, FailFast, Field
 
-from wavesym.fields.table import SceneTable, listed, shown, wrong
+from wavesym.fields.table import SceneTable, listed, placed, shown, wrong
 from wavesym.scene.physical.elastic import ElasticRod, Rods
-from wavesym.scene.physical.measured import Bore, Density, Inertia, Length, Modulus, SecondMoment, one_of, placed
+from wavesym.scene.physical.measured import Bore, Density, Inertia, Length, Modulus, SecondMoment, one_of
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.scene.physical.rounding import polar_moment
 

@@ -14,10 +14,10 @@ from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
 from wavesym.fields.numbers import decimal_text, exact
 from wavesym.fields.quantity import unit
-from wavesym.fields.table import Written, listed, shown, wrong
+from wavesym.fields.table import Written, listed, placed, shown, wrong
 from wavesym.records.record_file import RecordFile, damaged
 from wavesym.records.recording import Recording, recorded
-from wavesym.scene.physical.measured import measured, placed
+from wavesym.scene.physical.measured import measured
 from wavesym.scene.physical.rewritten import LoadUnit
 
 _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
@@ -125,7 +125,7 @@ def _told(said: RecordFile, dimension: str, spacing: Fraction | None) -> Fractio
             unit(said.unit, dimension)
         clock = _clock(said.clock)
     except PydanticCustomError as error:
-        raise damaged(said.file, said.head, (error.context or {})["what"]) from None
+        raise damaged(said.file, said.head, str(error)) from None
     return spacing and spacing / clock
 
 

@@ -2,31 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import PlainValidator, ValidationError
-from pydantic_core import PydanticCustomError
+from pydantic import PlainValidator
 
 from wavesym.fields.dimensions import DIMENSIONS, with_article
 from wavesym.fields.numbers import written
 from wavesym.fields.quantity import quantity
-from wavesym.fields.table import SceneTable, first_error, shown, wrong
-
-
-@contextmanager
-def placed(*keys: str | int) -> Iterator[None]:
-    """Where in the scene it is that the error of `table.wrong`, or of a table's validation, is about."""
-    try:
-        yield
-    except PydanticCustomError as error:
-        context = error.context or {}
-        raise wrong(context["what"], *keys, *context["at"]) from None
-    except ValidationError as error:
-        what, path = first_error(error)
-        raise wrong(what, *keys, *path) from None
+from wavesym.fields.table import SceneTable, shown, wrong
 
 
 def measured(value: object, dimension: str, least: int | None = None) -> Fraction:

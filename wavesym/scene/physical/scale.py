@@ -9,12 +9,11 @@ from functools import cached_property
 from typing import Any, Literal
 
 from wavesym.fields.quantity import unit
-from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.fields.table import SceneTable, placed, shown, wrong
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.length import LengthUnit
 from wavesym.numbers.doubles import rational
 from wavesym.scene.physical.elastic import Rods
-from wavesym.scene.physical.measured import placed
 
 Kind = Literal["longitudinal", "torsional", "shear"]
 KINDS: tuple[Kind, ...] = ("longitudinal", "torsional", "shear")

@@ -11,7 +11,7 @@ from typing import Any
 from pydantic_core import PydanticCustomError
 
 from wavesym.fields.numbers import exact
-from wavesym.fields.table import key_path, shown, wrong
+from wavesym.fields.table import Fault, Faults, key_path, placed, shown, wrong
 from wavesym.mechanics.length import LengthUnit
 from wavesym.scene.outputs import LONGEST_HORIZON
 from wavesym.scene.physical.building import PhysicalBuilding
@@ -19,7 +19,7 @@ from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
 from wavesym.scene.physical.loads import Acts, dimensionless, read
-from wavesym.scene.physical.measured import measured, placed, plain, tidy
+from wavesym.scene.physical.measured import measured, plain, tidy
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
 from wavesym.scene.physical.said import words
@@ -79,15 +79,20 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     seconds = found.rods.seconds
     said = dict(fields)
     inputs = []
+    faults = Faults()
     if isinstance(loads := fields.get("load"), list | tuple):
-        said["load"] = [_read(load, k, found) for k, load in enumerate(loads)]
-        made["load"] = [_load(load, k, found, seconds) for k, load in enumerate(said["load"])]
-        for acting in (found.acting(load) for load in said["load"] if isinstance(load, Mapping)):
-            size, text = results.told(acting.dimension)
-            inputs.append((acting.size / size, text))
+        said["load"], made["load"] = [], []
+        for k, load in enumerate(loads):
+            with faults.gathered("load", k):
+                said["load"].append(read(load, found.acting))
+                made["load"].append(_load(said["load"][-1], found, seconds))
     if isinstance(output := fields.get("output"), Mapping):
-        with placed("output"):
+        with faults.gathered("output"):
             made["output"] = _output(output, found, seconds)
+    faults.refuse()
+    for acting in (found.acting(load) for load in said.get("load", ()) if isinstance(load, Mapping)):
+        size, text = results.told(acting.dimension)
+        inputs.append((acting.size / size, text))
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
     return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
 
@@ -100,14 +105,13 @@ def acts(fields: Mapping[str, Any]) -> Acts:
 @contextmanager
 def _of_quantities(said: Mapping[str, Any]) -> Iterator[None]:
     """What is wrong with a number that nobody wrote, such as a kappa, is said of the quantities that make it."""
-    try:
-        with placed():
-            yield
-    except PydanticCustomError as error:
-        what, at = (error.context or {})["what"], (error.context or {})["at"]
-        if not at or at[0] in said:
-            raise
-        raise wrong(f"its quantities make {key_path(at)}: {what}") from None
+    faults = Faults()
+    with faults.gathered():
+        yield
+    for number, (what, keys) in enumerate(faults.found):
+        if keys and keys[0] not in said:
+            faults.found[number] = Fault(f"its quantities make {key_path(keys)}: {what}", ())
+    faults.refuse()
 
 
 def _table(system: Mapping[str, object]) -> type[SystemTable]:
@@ -135,27 +139,24 @@ def _system(table: object, units: UnitsTable) -> Rewritten:
         return _SYSTEMS[kind].model_validate(table).rewritten()
 
 
-def _read(load: object, k: int, found: Rewritten) -> object:
-    with placed("load", k):
-        return read(load, found.acting)
-
-
-def _load(load: object, k: int, found: Rewritten, seconds: Fraction) -> object:
-    if not isinstance(load, Mapping):
-        return load
-    with placed("load", k):
-        return dimensionless(load, found.acting(load), seconds)
+def _load(load: object, found: Rewritten, seconds: Fraction) -> object:
+    return dimensionless(load, found.acting(load), seconds) if isinstance(load, Mapping) else load
 
 
 def _output(output: Mapping[str, Any], found: Rewritten, seconds: Fraction) -> dict[str, Any]:
     made = dict(output)
+    faults = Faults()
     if "until" in output:
-        with placed("until"):
+        with faults.gathered("until"):
             made["until"] = _until(output["until"], seconds)
     if found.lines is not None:
         for quantity in _LENGTHS & output.keys():
             if isinstance(places := output[quantity], list | tuple):
-                made[quantity] = [_position(at, found, quantity, k) for k, at in enumerate(places)]
+                made[quantity] = list(places)
+                for k, at in enumerate(places):
+                    with faults.gathered():
+                        made[quantity][k] = _position(at, found, quantity, k)
+    faults.refuse()
     return made
 
 
