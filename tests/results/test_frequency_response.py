@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flint import acb, acb_series, arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -19,6 +20,8 @@ from wavesym.cli import main
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.harmonic import Amplitudes
 from wavesym.mechanics.network import Network
+from wavesym.results import resonance
+from wavesym.results.transfer import Transfer, harmonic_load
 from wavesym.scene import lower
 
 ULP = 2.0**-52
@@ -437,3 +440,45 @@ def test_a_picture_has_a_panel_for_each_quantity(tmp_path: Path, capsys: pytest.
     text = out.read_text()
     assert all(each in text for each in ("strain", "velocity", "displacement", "phase"))
     capsys.readouterr()
+
+
+def drill_string(parts: int) -> Scene:
+    """Rods of alternating impedance between two discs, the lower one in mud."""
+    rods = [{"rod": "1/16", "impedance": 1 if k % 2 else "9/8"} for k in range(parts)]
+    system = {"type": "chain", "parts": [{"mass": "1/4", "name": "top"}, *rods, {"mass": "1/50", "name": "bit"}]}
+    system["parts"][-1]["dashpot"] = "1/20"
+    load = [{"at": "bit", "times": [0], "steps": [1]}]
+    return Scene(name="drill", system=system, load=load, output={"until": 1, "velocity": ["top", "bit"]})
+
+
+def test_peaks_of_fifty_parts_against_transfer_matrices() -> None:
+    """(u, force) from the free top to the bit, in doubles, at 40 000 frequencies."""
+    w = np.linspace(0.5, 15, 40_001)
+    u, force = np.ones(len(w), complex), -(w**2) / 4 * np.ones(len(w), complex)
+    for k in range(50):
+        z = 1 if k % 2 else 9 / 8
+        c, s = np.cos(w / 16), np.sin(w / 16)
+        u, force = u * c + force * s / (z * w), force * c - z * w * u * s
+    held = force - w**2 / 50 * u + 1j * w / 20 * u
+    right = {"velocity@top": np.abs(w / held), "velocity@bit": np.abs(w * u / held)}
+    for peak in wavesym.frf(drill_string(50), [0.5, 15.0]).peaks():
+        seen = right[peak.name].max()
+        assert peak.low <= peak.amplitude <= peak.high < peak.low * (1 + 1e-9)
+        assert seen <= peak.high * (1 + 1e-12)
+        assert peak.amplitude == pytest.approx(seen, rel=1e-4)
+
+
+def test_taylor_polynomials_enclose_a_response_and_its_slopes() -> None:
+    lowered = lower(drill_string(6), loads=False)
+    transfer = Transfer(lowered, harmonic_load(lowered, ["bit:step"], None))
+    with ctx.workprec(128):
+        for middle, radius in ((2.0, 0.03), (7.5, 0.01), (11.0, 0.002)):
+            ball = arb(middle, radius)
+            around = [resonance._coefficients(each, 3) for each in resonance._about(transfer, ball)]
+            for part in (-1, -0.5, 0.3, 1):
+                w = acb(arb(middle + part * radius))
+                here = [resonance._coefficients(each, 3) for each in transfer(acb_series([w, 1], prec=3))]
+                for known, exact in zip(around, here, strict=True):
+                    assert all(known[k].contains(exact[k].mid()) for k in range(3))
+                    assert known[0].is_finite()
+                    assert abs(known[0]).rad() < 0.1 * abs(exact[0])

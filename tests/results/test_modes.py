@@ -153,6 +153,17 @@ def test_the_command_needs_neither_loads_nor_outputs(
     assert "rod.toml: output: missing; write a table" in capsys.readouterr().err
 
 
+def test_a_spring_beside_a_free_rod_is_no_ring() -> None:
+    """It is at rest in every second mode of the rod, at which K has a pole: a small mass lets it be told."""
+    held = {"rod": 1, "spring": 2}
+    with pytest.raises(wavesym.UnservedError, match=r"two frequencies meet near 6\.28319, .*a mass, however small"):
+        wavesym.modes(chain("free", held, "free"), 3)
+    found = wavesym.modes(chain({"mass": "1e-12"}, held, "free"), 3)
+    # ends move against each other, the middle is at rest: half the rod, and twice the spring at its end
+    assert found[1].omega / np.tan(found[1].omega / 2) == pytest.approx(-4, rel=1e-9)
+    assert found[2].omega == pytest.approx(2 * np.pi, rel=1e-11)
+
+
 def test_arms_of_one_length_have_modes_that_move_no_support() -> None:
     """Three held rods from one mass: at pi two modes leave the mass at rest, and what their supports bear is 0."""
     parts = ["fixed", {"rod": 1}, {"mass": 1, "name": "hub"}, {"rod": 1}, "fixed"]

@@ -11,7 +11,7 @@ import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import inf
+from math import comb, inf
 
 from flint import acb, acb_series, arb, ctx
 
@@ -29,6 +29,7 @@ _LEAST = arb(2) ** -40  # of the band: an interval in which amplitudes are still
 _GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole at 0, where it is 4 or 16
 _MOST = 600_000  # intervals times parts
 _NEWTON = 3
+_TERMS = 10  # of Taylor polynomials
 _PARTS = 64  # of the band at first
 _FIRST_MODES, _MOST_MODES = 32, 2048
 
@@ -245,10 +246,8 @@ def _squares(transfer: Transfers, w: arb) -> list[tuple[arb, arb, arb]]:
         sizes = (abs(acb(value)) for value in transfer(w))
         return [(size * size, arb(0), arb(0)) for size in sizes]
     made = []
-    for value in transfer(acb_series([acb(w), 1], prec=3)):
-        c = [acb(0)] * 3
-        for k, each in enumerate(value.coeffs() if isinstance(value, acb_series) else [value]):
-            c[k] = acb(each)
+    for value in _about(transfer, w):
+        c = _coefficients(value, 3)
         re, im = [each.real for each in c], [each.imag for each in c]
         made.append(
             (
@@ -258,6 +257,47 @@ def _squares(transfer: Transfers, w: arb) -> list[tuple[arb, arb, arb]]:
             )
         )
     return made
+
+
+def _about(transfer: Transfers, w: arb) -> list[Quantity]:
+    """The transfer functions, their slopes and half their second derivatives on all of a ball, as power series.
+
+    What has poles is a numerator over a divisor, which have none: each is a Taylor polynomial about the middle, and a
+    rest that the next coefficient on the whole ball bounds. So balls are not blown up by what cancels part by part.
+    """
+    series = acb_series([acb(w), 1], prec=3)
+    if w.rad() < w * _SHARE or not isinstance(transfer, Transfer):
+        return transfer(series)
+    middle = acb_series([acb(w.mid()), 1], prec=_TERMS)
+    near, around = transfer.parts(middle), transfer.parts(acb_series([acb(w), 1], prec=_TERMS + 1))
+    if near is None or around is None:
+        return transfer(series)
+    reach = arb(0, w.rad())
+    *numerators, divisor = (
+        _on_ball(_coefficients(one, _TERMS), _coefficients(all_, _TERMS + 1)[-1], reach)
+        for one, all_ in zip([*near[0], near[1]], [*around[0], around[1]], strict=True)
+    )
+    if divisor[0].contains(0):
+        return [acb_series([acb("nan"), 0, 0], prec=3)] * len(numerators)
+    return [acb_series(each, prec=3) / acb_series(divisor, prec=3) for each in numerators]
+
+
+def _on_ball(powers: Sequence[acb], following: acb, reach: arb) -> list[acb]:
+    """A function, its slope and half its second derivative at all distances within reach of where powers are of."""
+    n, size, made = len(powers), abs(following).upper(), []
+    for order in range(3):
+        value = acb(0)
+        for k in reversed(range(order, n)):
+            value = value * reach + powers[k] * comb(k, order)
+        rest = arb(0, (size * comb(n, order) * abs(reach).upper() ** (n - order)).upper())
+        made.append(value + acb(rest, rest))
+    return made
+
+
+def _coefficients(value: Quantity, count: int) -> list[acb]:
+    """The first coefficients of a power series, or of what does not change."""
+    found = [acb(each) for each in (value.coeffs() if isinstance(value, acb_series) else [value])]
+    return [*found, *[acb(0)] * (count - len(found))][:count]
 
 
 def _transfers(model: Model, load: HarmonicLoad, last: arb) -> Iterator[tuple[Transfers, list[arb]]]:

@@ -123,6 +123,22 @@ class Transfer:
                 total[k] = total[k] + drive(coefficients, rate, order) * moved
         return total
 
+    def parts(self, w: Quantity) -> tuple[list[Quantity], Quantity] | None:
+        """The same as a numerator for each output and one divisor, none of which has a pole but at 0.
+
+        None where several points are driven, or modes are damped.
+        """
+        if len(self.load.drives) != 1 or self._rayleigh is not None:
+            return None
+        ((point, coefficients),) = self.load.drives
+        amplitudes = self._harmonic.driven(point, w, undivided=True)
+        motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
+        made = []
+        for probe in self.model.probes:
+            driven = drive(coefficients, w * _I, ORDERS.get(probe.quantity, 0) - motion)
+            made.append(driven * output_amplitude(self.model.network, probe, amplitudes))
+        return made, amplitudes.divisor
+
     def _displaced(self, point: int, w: Quantity) -> list[Quantity]:
         """The outputs, not yet differentiated in time, under a unit force on a point, or its unit displacement."""
         if self._rayleigh is None:

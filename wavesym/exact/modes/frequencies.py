@@ -66,7 +66,9 @@ class Spectrum:
 
     def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
         refuse_damped(network)
-        self._cuts = [cut(network, places), cut(network, places, aside=True)]
+        self._cuts = [cut(network, places)]
+        if not network.bridged:  # where cuts would make rings
+            self._cuts.append(cut(network, places, aside=True))
         self._found: list[Mode] = []
 
     @property
@@ -83,7 +85,9 @@ class Spectrum:
             self._found += _modes(stiffness, count, len(self._found))
         except CoincidenceError as error:
             if not self._cuts[1:]:
-                raise UnservedError(f"system: {error}, which modes cannot tell apart (take pieces or march)") from None
+                beside = " (a mass, however small, at an end of the rod with a spring beside it helps)"
+                helps = beside if self.cut.network.bridged else " (take pieces or march)"
+                raise UnservedError(f"system: {error}, which modes cannot tell apart{helps}") from None
             del self._cuts[0]
             self._found = []
             return self.first(count)

@@ -67,17 +67,18 @@ class HarmonicNetwork:
         first: dict[tuple[int, int], int] = {}
         return [first.setdefault((int(bar.delay.p), int(bar.delay.q)), number) for number, bar in enumerate(bars)]
 
-    def driven(self, root: int, w: Quantity) -> Amplitudes:
+    def driven(self, root: int, w: Quantity, *, undivided: bool = False) -> Amplitudes:
         """The amplitudes under a unit force on a point, or, where its motion is prescribed, a unit displacement.
 
         Args:
             root: the point.
             w: the frequency, per tau; a power series must not begin with 0.
+            undivided: whether amplitudes are those times the `divisor`: of both w is no pole anywhere.
 
         Returns:
             Amplitudes; they are not finite where w may be a natural frequency.
         """
-        return Amplitudes(self, root, w)
+        return Amplitudes(self, root, w, undivided)
 
     def branches(self, root: int) -> list[Branch]:
         """The branches that are reached from a point, each after those nearer to it."""
@@ -140,9 +141,12 @@ class HarmonicNetwork:
 
 
 class Amplitudes:
-    """The complex amplitudes of a network one point of which is driven; whatever no branch leads to is at rest."""
+    """The complex amplitudes of a network one point of which is driven; whatever no branch leads to is at rest.
 
-    def __init__(self, harmonic: HarmonicNetwork, root: int, w: Quantity) -> None:
+    `divisor` is what they are to be divided by where they are `undivided`, else 1.
+    """
+
+    def __init__(self, harmonic: HarmonicNetwork, root: int, w: Quantity, undivided: bool) -> None:
         self._network, self._w, self._equals = harmonic.network, w, harmonic.equals
         self._square, self._branches = w * w, harmonic.branches(root)
         self._turns: dict[int, Turn] = {}
@@ -157,7 +161,8 @@ class Amplitudes:
             self._resistance[branch.far] = self._through(branch)
         self._moved: dict[int, Quantity] = {}
         self._scales: dict[int, tuple[Branch, Quantity]] = {}
-        self._drive(root)
+        self.divisor: Quantity = arb(1)
+        self._drive(root, undivided)
 
     def point(self, number: int) -> Quantity:
         """How far a point moves."""
@@ -187,18 +192,25 @@ class Amplitudes:
             slope = slope + b * beside * (far.cosine - near.cosine)
         return scale * slope * (1 if branch.side else -1)
 
-    def _drive(self, root: int) -> None:
+    def _drive(self, root: int, undivided: bool) -> None:
         """Find how far each point moves, and what the amplitudes on each branch are scaled by."""
-        force: Quantity = None
-        if self._network.points[root].motion is None:
-            a, b = self._summed(root)
-            force = _inverse(a)
-            self._moved[root] = force * b
+        force: Quantity = arb(1)
+        moved = self._network.points[root].motion is not None
+        if moved and undivided:
+            self.divisor = prod((self._resistance[b.far][1] for b in self._children.get(root, ())), start=arb(1))
+            self._moved[root] = self.divisor
+        elif moved:
+            self._moved[root] = force
         else:
-            self._moved[root] = arb(1)
+            a, b = self._summed(root)
+            if undivided:
+                self.divisor = a
+            else:
+                force = _inverse(a)
+            self._moved[root] = force * b
         share = {root: force}
         for branch in self._branches:
-            if branch.near == root and force is None:
+            if branch.near == root and moved and not undivided:
                 scale = _inverse(self._resistance[branch.far][1])
             else:
                 others = (self._resistance[b.far][1] for b in self._children[branch.near] if b is not branch)
