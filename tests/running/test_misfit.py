@@ -32,13 +32,13 @@ def test_sums_of_squares_are_those_of_values(model, where):
     data = RANDOM.normal(size=(len(model.outputs), len(tau)))
     data[:, RANDOM.random(len(tau)) < 0.2] = np.nan
     found = model.misfit(tau, data)(kappa=KAPPA)
-    expected = np.nansum((model.run(kappa=KAPPA, tau=tau) - data) ** 2, axis=(1, 2))
+    expected = np.nansum((model.values(kappa=KAPPA, tau=tau) - data) ** 2, axis=(1, 2))
     assert found == pytest.approx(expected, rel=1e-11, abs=0)
 
 
 def test_data_that_fit_are_missed_by_nothing(model):
     tau = TAUS["even"]
-    (data,) = model.run(kappa=KAPPA[1], tau=tau)
+    (data,) = model.values(kappa=KAPPA[1], tau=tau)
     found = model.misfit(tau, data)(kappa=KAPPA)
     assert found[1] < 1e-24 * np.sum(data**2)
     assert np.all(np.delete(found, 1) > 1e-3 * np.sum(data**2))
@@ -64,7 +64,7 @@ def test_extreme_neighbours_refuse_nobody(model):
     tau = np.linspace(0, 4, 11)
     found = model.misfit(tau, np.zeros((len(model.outputs), 11)))(kappa=kappa)
     assert list(model.check(kappa=kappa).status) == [0, 2, 2, 0, 0, 0, 0, 0]
-    assert found == pytest.approx(np.sum(model.run(kappa=kappa, tau=tau) ** 2, axis=(1, 2)), rel=1e-10, nan_ok=True)
+    assert found == pytest.approx(np.sum(model.values(kappa=kappa, tau=tau) ** 2, axis=(1, 2)), rel=1e-10, nan_ok=True)
 
 
 def test_other_data_are_refused(model):

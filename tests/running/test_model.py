@@ -47,7 +47,7 @@ def exact():
 def test_each_set_is_its_scene(model, tau):
     true = np.array([response(tau) for response, _ in exact()])
     largest = np.max(np.abs(true), axis=2, keepdims=True)
-    error = np.max(np.abs(model.run(kappa=KAPPA, tau=tau) - true) / largest, axis=(1, 2))
+    error = np.max(np.abs(model.values(kappa=KAPPA, tau=tau) - true) / largest, axis=(1, 2))
     estimate = model.check(kappa=KAPPA).estimate
     # the largest value of an output may lie between these instants, so the estimate is of something larger
     assert np.all(error <= np.maximum(2 * estimate, 1e-11))
@@ -58,7 +58,7 @@ def test_errors_are_within_bounds(model):
     tau = np.linspace(0, 3, 25)
     bounds = model.bounds(kappa=[KAPPA[0], -KAPPA[0]])
     true = np.array(wavesym.evaluator(scene(KAPPA[0]))(tau))
-    error = np.max(np.abs(model.run(kappa=KAPPA[:1], tau=tau)[0] - true), axis=1)
+    error = np.max(np.abs(model.values(kappa=KAPPA[:1], tau=tau)[0] - true), axis=1)
     # outputs may be larger between these instants
     assert np.all(error <= 2 * bounds[0] * np.max(np.abs(true), axis=1))
     assert np.all(bounds[0] < 1e-8)
@@ -79,7 +79,7 @@ def test_extremes_are_those_of_the_exact_outputs(model):
 def test_derivatives_are_those_of_the_exact_outputs(model):
     tau, kappa, h = np.linspace(0, 3, 13), np.array([0.5, 2, 0.25]), 1e-5
     found = model.gradients(kappa=kappa, tau=tau)
-    assert np.allclose(found.values, model.run(kappa=kappa, tau=tau), rtol=0, atol=1e-15)
+    assert np.allclose(found.values, model.values(kappa=kappa, tau=tau), rtol=0, atol=1e-15)
     for place in range(3):
         step = h * np.eye(3)[place]
         both = [wavesym.evaluator(scene(kappa + side * step))(tau) for side in (1, -1)]
@@ -94,7 +94,7 @@ def test_derivatives_are_those_of_the_exact_outputs(model):
 
 def test_extremes_are_not_those_of_samples_alone(model):
     full = model.peaks(kappa=KAPPA)
-    samples = model.run(kappa=KAPPA, tau=np.linspace(0, 3, 1001))
+    samples = model.values(kappa=KAPPA, tau=np.linspace(0, 3, 1001))
     # those at jumps aside, no sample is beyond the extremes, and one is near
     assert np.all(samples.max(axis=2) <= full.max + 1e-12)
     assert np.all(samples.min(axis=2) >= full.min - 1e-12)
@@ -103,8 +103,8 @@ def test_extremes_are_not_those_of_samples_alone(model):
 
 def test_what_is_not_given_is_the_scenes(model):
     tau = np.linspace(0, 3, 7)
-    (own,) = model.run(tau)
-    values = model.run(tau, load=[[1, 0.5], [2, 1]])
+    (own,) = model.values(tau)
+    values = model.values(tau, load=[[1, 0.5], [2, 1]])
     assert np.allclose(values[0], own, rtol=0, atol=1e-15)
     assert np.allclose(values[1], 2 * own, rtol=1e-14)
     assert model.labels["kappa"] == ("kappa_1", "kappa_2", "kappa_3")
@@ -118,7 +118,7 @@ def test_a_refused_set_is_nan_and_no_other(model):
     assert "not finite" in found.why[1]
     assert "too light" in found.why[2]
     assert np.isnan(found.estimate).tolist() == [False, True, True]
-    values = model.run(kappa=kappa, tau=[[0.0, 1.0, 7.0]])
+    values = model.values(kappa=kappa, tau=[[0.0, 1.0, 7.0]])
     assert values.shape == (3, 3, 1, 3)
     assert np.isnan(values[1:]).all()
     assert np.isnan(values[0]).any(axis=(0, 1)).tolist() == [False, False, True]
@@ -133,9 +133,9 @@ def test_a_refused_set_is_nan_and_no_other(model):
 
 
 def test_no_set_and_no_instant_are_empty(model):
-    assert model.run(kappa=np.empty((0, 3)), tau=[1.0]).shape == (0, 3, 1)
-    assert model.run(tau=[]).shape == (1, 3, 0)
-    assert model.run(tau=2.0).shape == (1, 3)
+    assert model.values(kappa=np.empty((0, 3)), tau=[1.0]).shape == (0, 3, 1)
+    assert model.values(tau=[]).shape == (1, 3, 0)
+    assert model.values(tau=2.0).shape == (1, 3)
     assert model.peaks(kappa=np.empty((0, 3))).min.shape == (0, 3)
     assert model.gradients([1.0], kappa=np.empty((0, 3))).by["kappa"].shape == (0, 3, 3, 1)
 
@@ -153,7 +153,7 @@ def test_no_set_and_no_instant_are_empty(model):
 )
 def test_other_arrays_are_refused(model, parameters, message):
     with pytest.raises(WavesymError, match=message) as error:
-        model.run([0.0], **parameters)
+        model.values([0.0], **parameters)
     assert "\n" not in str(error.value)
 
 

@@ -113,14 +113,14 @@ def test_a_record_within_bounds(scene, chosen):
         scaled, given = times(scene, [1] * len(scene.load))
         true = wavesym.evaluator(scaled)(TAU)
         del given["load"]
-        found = model.run(TAU, **given)[0]
+        found = model.values(TAU, **given)[0]
         wrong = np.max(np.abs(found - true), axis=1) / np.max(np.abs(true), axis=1)
     else:
         given, wrong = check(model, scene, [Fraction(5, 2)] * len(scene.load))
     assert np.all(wrong <= model.bounds(**given)[0])
     assert np.max(model.bounds(**given)) < 1e-7
     # and beside other sets
-    data = model.run(TAU, **given)[0]
+    data = model.values(TAU, **given)[0]
     both = {name: np.array([numbers, 2 * np.array(numbers)]) for name, numbers in given.items()}
     same, other = model.misfit(TAU, data)(**both)
     assert same < 1e-20 * np.sum(data**2) < other
@@ -172,4 +172,4 @@ def test_the_factor_of_a_record_has_no_unit():
     assert model.units["load"] == ("",)
     true = wavesym.evaluator(scene.with_({"load[0].samples": [0, 0.6, -0.6, 0]}))
     times = np.linspace(0, 0.5, 21)
-    assert model.run(times, load=[2])[0] == pytest.approx(true(times), rel=1e-9, abs=1e-12)
+    assert model.values(times, load=[2])[0] == pytest.approx(true(times), rel=1e-9, abs=1e-12)

@@ -212,7 +212,7 @@ def many_rows(folder: Path) -> Iterator[Sequence[str]]:
     program = sets_program(lower(building), ["kappa"])
     model = RuntimeModel(program)
     tau = _instants(model.tau_max)
-    data = model.run(tau, kappa=model.parameters["kappa"])[0] + 0.01
+    data = model.values(tau, kappa=model.parameters["kappa"])[0] + 0.01
     kappa = model.parameters["kappa"] * np.random.default_rng(1).uniform(0.8, 1.2, (_MANY, 3))
     (seconds,) = medians([partial(model.misfit(tau, data), kappa=kappa)])
     told = f"{_MANY / seconds / 1e6:.2f} million sets/s"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.results.horizon import check_horizon
 from wavesym.results.near_zero import is_near_zero, zero_within
+from wavesym.running.labels import SetLabels
 
 Array = NDArray[np.float64]
 
@@ -72,10 +73,10 @@ class RuntimeModel:
     """A scene whose parameters are given when it runs.
 
     `outputs` are the names of its outputs, `tau_max` its horizon, `parameters` the scene's own numbers of each field,
-    by name. They are given by these names, as arrays of shape (sets, numbers), or (numbers,) for all sets; those that
-    are not given are the scene's. A set that is refused is NaN throughout, and `check` says why; so is tau out of
-    range. WavesymError for a field that there is not, and for arrays of other shapes; CompilerError where there is no C
-    compiler.
+    by name. They are given by these names, as arrays of shape (sets, numbers), or (numbers,) for all sets, or (sets,)
+    for a field of one number; those that are not given are the scene's. A set that is refused is NaN throughout, and
+    `check` says why; so is tau out of range. WavesymError for a field that there is not, and for arrays of other
+    shapes; CompilerError where there is no C compiler.
     """
 
     def __init__(self, program: Program) -> None:
@@ -95,24 +96,64 @@ class RuntimeModel:
         """Their units; empty where they have none."""
         self.outputs = tuple(output.name for output in program.outputs)
         self.tau_max = program.tau_max
-        clock = program.provenance.model.clock
+        self._model = program.provenance.model
+        clock = self._model.clock
+        self.time_unit = clock.unit if clock else None
+        """That of `times`; None of a scene without units, whose times are tau."""
         self.seconds_per_tau = nearest(clock.seconds) if clock else None
         """What one tau is; None of a scene without units."""
 
-    def run(self, tau: ArrayLike, *, strict: bool = False, **parameters: ArrayLike) -> Array:
-        """Values of all sets.
+    def run(
+        self,
+        tau: ArrayLike | None = None,
+        *,
+        times: ArrayLike | None = None,
+        strict: bool = False,
+        **parameters: ArrayLike,
+    ) -> Any:
+        """Values of all sets, labelled.
 
         Args:
             tau: instants, dimensionless, of any shape.
+            times: instants in the time unit of the scene's results (s), or tau where it has no units; in place of
+                `tau`.
             strict: whether an instant outside the horizon is an error.
-            parameters: arrays of shape (sets, numbers) or (numbers,), by the name of their field.
+            parameters: arrays of shape (sets, numbers) or (numbers,), by the name of their field; (sets,) where it has
+                one number.
 
         Returns:
-            Shape (sets, outputs, *tau.shape); NaN for sets that are refused and, with one warning, outside the horizon.
+            An xarray.DataArray of shape (sets, outputs, *tau.shape) with outputs, times and the numbers that vary as
+            coordinates: where one number varies, it is the first dimension; where xarray is not installed the same
+            as a NumPy array, as of `values`. NaN for sets that are refused and, with one warning, outside the horizon.
 
         Raises:
-            WavesymError: where `strict`, for tau outside [0, tau_max]; for unknown fields and arrays of other shapes.
+            WavesymError: where `strict`, for tau outside [0, tau_max]; for unknown fields, arrays of other shapes, and
+                unless there is one of `tau` and `times`.
         """
+        if (tau is None) is (times is None):
+            raise WavesymError("times: write either times or tau, the instants")
+        instants, shown = self._instants(tau, times)
+        fields = self._fields(parameters)
+        varied = {name: fields[name] for name in parameters}
+        labels = SetLabels(
+            varied, self.labels, self.units, self.outputs, tuple(p.unit for p in self._model.probes), self.time_unit
+        )
+        return labels.labelled(self.values(instants, strict=strict, **parameters), instants, shown)
+
+    def _instants(self, tau: ArrayLike | None, times: ArrayLike | None) -> tuple[Array, Array]:
+        """Instants as tau, and in the unit of results."""
+        clock = self._model.clock
+        if times is None:
+            assert tau is not None
+            found = _numbers("tau", tau)
+            return found, found * nearest(clock.per_tau) if clock else found
+        shown = _numbers("times", times)
+        if clock is None:
+            return shown, shown
+        return np.vectorize(lambda time: clock.tau(time, self._model.until), otypes=[float])(shown), shown
+
+    def values(self, tau: ArrayLike, *, strict: bool = False, **parameters: ArrayLike) -> Array:
+        """Values of all sets as a NumPy array, (sets, outputs, *tau.shape); arguments and errors are those of `run`."""
         instants = _numbers("tau", tau)
         check_horizon(instants, self.tau_max, strict=strict)
         found = self._engine.values(self._given(parameters), instants.ravel())
@@ -188,18 +229,25 @@ class RuntimeModel:
     def __reduce__(self) -> NoReturn:
         raise TypeError("a model is compiled where it is: in another process, wavesym.model(scene, runtime) makes one")
 
-    def _given(self, parameters: Mapping[str, ArrayLike]) -> Array:
-        """All fields side by side, a row for each set."""
+    def _fields(self, parameters: Mapping[str, ArrayLike]) -> dict[str, Array]:
+        """The numbers of all fields, (sets, numbers), or (numbers,) for all sets."""
         columns = dict(self.parameters)
         for name, values in parameters.items():
             if name not in columns:
                 raise WavesymError(f"{name}: not a parameter of this model; write {' or '.join(columns)}")
             wanted = columns[name].shape
             columns[name] = _numbers(name, values)
+            if wanted == (1,) and columns[name].ndim == 1:
+                columns[name] = columns[name][:, None]
             if columns[name].ndim not in (1, 2) or columns[name].shape[-1:] != wanted:
                 raise WavesymError(
                     f"{name}: an array of shape {columns[name].shape}; write one of shape (sets, {wanted[0]})"
                 )
+        return columns
+
+    def _given(self, parameters: Mapping[str, ArrayLike]) -> Array:
+        """All fields side by side, a row for each set."""
+        columns = self._fields(parameters)
         counts = {len(values) for values in columns.values() if values.ndim == 2}
         if len(counts) > 1:
             raise WavesymError(f"{' and '.join(map(str, sorted(counts)))} sets; write as many of each parameter")

@@ -57,7 +57,7 @@ def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool])
     peaks = model.peaks(**given)
     values = {"min": peaks.min, "max": peaks.max, "tau_min": peaks.tau_min, "tau_max": peaks.tau_max}
     if plan.histories:
-        values["history"] = model.run(instants(own.model, plan.histories), strict=True, **given)
+        values["history"] = model.values(instants(own.model, plan.histories), strict=True, **given)
     spread = {}
     for name, found in values.items():
         spread[name] = np.full((len(served), len(plan.outputs), *found.shape[2:]), np.nan)

@@ -1,0 +1,81 @@
+"""Values of many sets of parameters as an array that says what is what."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.results.optional import needed
+
+Array = NDArray[np.float64]
+
+SETS = "set"
+
+
+@dataclass(frozen=True)
+class SetLabels:
+    """What the rows of an array of values are.
+
+    Attributes:
+        parameters: the numbers of each field that were given, (sets, numbers) or (numbers,), by name.
+        names, units: of each field what its numbers are called, and their units.
+        outputs, output_units: the names of the outputs and their units.
+        time_unit: that of times, None for a scene without units.
+    """
+
+    parameters: Mapping[str, Array]
+    names: Mapping[str, tuple[str, ...]]
+    units: Mapping[str, tuple[str, ...]]
+    outputs: tuple[str, ...]
+    output_units: tuple[str, ...]
+    time_unit: str | None
+
+    def labelled(self, values: Array, tau: Array, times: Array) -> Any:
+        """Values as an xarray.DataArray.
+
+        Args:
+            values: (sets, outputs, *tau.shape).
+            tau: the instants, dimensionless, of any shape.
+            times: the same in the unit of results, or tau where there is none.
+
+        Returns:
+            An array of dimensions (set, output, time), or where exactly one number varies that number in place of
+            `set`; every number that varies is a coordinate, `kappa[0]` or, alone in its field, `inertia`. Values as
+            they are where xarray is not installed.
+        """
+        if not find_spec("xarray"):
+            return values
+        xarray = needed("xarray", "arrays")
+
+        varied = {name: column for name, column in self._columns() if len(np.unique(column)) > 1}
+        along = next(iter(varied)) if len(varied) == 1 else SETS
+        axes = ("time",) if tau.ndim == 1 else tuple(f"time_{k}" for k in range(tau.ndim))
+        unit = {} if self.time_unit is None else {"units": self.time_unit}
+        coordinates: dict[str, Any] = {
+            "output": list(self.outputs),
+            "unit": ("output", list(self.output_units)),
+            "time": (axes, times, unit),
+            "tau": (axes, tau),
+        }
+        for name, column in varied.items():
+            coordinates[name] = (along, column, self._about(name))
+        return xarray.DataArray(values, coordinates, (along, "output", *axes))
+
+    def _columns(self) -> list[tuple[str, Array]]:
+        return [
+            (name if field.shape[1] == 1 else f"{name}[{k}]", field[:, k])
+            for name, field in self.parameters.items()
+            if field.ndim == 2
+            for k in range(field.shape[1])
+        ]
+
+    def _about(self, column: str) -> dict[str, str]:
+        name, _, number = column.partition("[")
+        k = int(number[:-1]) if number else 0
+        about = {"long_name": self.names[name][k], "units": self.units[name][k]}
+        return {key: text for key, text in about.items() if text}
