@@ -286,7 +286,9 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
 
 
 @overload
-def modes(scene: Scene | str | PathLike[str], count: int = 10, below: float | None = None) -> Modes: ...
+def modes(
+    scene: Scene | str | PathLike[str], count: int = 10, below: float | None = None, *, points: int | None = None
+) -> Modes: ...
 @overload
 def modes(
     scene: Scene | str | PathLike[str],
@@ -303,6 +305,7 @@ def modes(
     below: float | None = None,
     *,
     ranges: Mapping[str, tuple[str, str]] | None = None,
+    points: int | None = None,
 ) -> Modes | ModeRanges:
     """The modes of vibration of a scene: frequencies, none missed, damping, effective masses and shapes.
 
@@ -312,10 +315,11 @@ def modes(
         below: all up to this frequency: in Hz, or in rad per tau for a scene without units.
         ranges: of paths, as of `scene.with_`, the least and the greatest value: for the range of each frequency over
             the box, in place of modes; `below` does not matter then.
+        points: at how many points of each rod shapes are wanted, from 2 on: `along` has them, line by line.
 
     Returns:
-        A sequence of modes with `number`, `omega`, `hz`, `period`, `damping`, `radius` (proved), `effective_mass` and
-        `shape`; `complete` says whether none is missed, `why` in words.
+        A sequence of modes with `number`, `omega`, `hz`, `period`, `damping`, `radius` (proved), `effective_mass`,
+        `shape` and `loads` (of each load its participation); `complete` says whether none is missed, `why` in words.
 
     Raises:
         UnservedError: for contacts, and frequencies whose modes cannot be told apart.
@@ -331,7 +335,7 @@ def modes(
     chain = scene if isinstance(scene, Scene) else Scene.chain_from_toml(scene)
     if ranges is not None:
         return mode_ranges(chain, count, ranges)
-    return modes_of(lower(chain, loads=False), count, below)
+    return modes_of(lower(chain, loads=False), count, below, chain.system.lines, points)
 
 
 def frf(
@@ -398,10 +402,7 @@ def plot_modes(scene: Scene, found: Modes, path: Path) -> None:
     from wavesym.pictures.saving import picture_format, save
 
     picture_format(path)
-    save(
-        draw(found, lower(scene, loads=False), {name: line for name, line in scene.system.lines.items() if line[-1].x}),
-        path,
-    )
+    save(draw(found, lower(scene, loads=False), scene.system.lines), path)
 
 
 def unexpected_lines(scene: Scene) -> list[str]:

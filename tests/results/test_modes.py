@@ -174,3 +174,63 @@ def test_arms_of_one_length_have_modes_that_move_no_support() -> None:
     found = wavesym.modes(scene, 3)
     assert [mode.omega for mode in found][1:] == pytest.approx([np.pi, np.pi], rel=1e-15)
     assert [mode.effective_mass for mode in found][1:] == pytest.approx([0, 0], abs=1e-20)
+
+
+def test_participation_under_each_motion_and_force() -> None:
+    """A column on moving ground: 4/((2 n - 1) pi), alternating; masses between two grounds and a force: dense."""
+    column = wavesym.modes(chain({"motion": "acceleration", "name": "g"}, {"rod": 1}, "free"), 30)
+    odd = np.arange(1, 61, 2)
+    assert [mode.loads["g"].factor for mode in column] == pytest.approx(4 / (odd * pi) * (-1) ** (odd // 2), rel=1e-12)
+    assert [mode.loads["g"].effective_mass for mode in column] == pytest.approx(8 / (odd * pi) ** 2, rel=1e-12)
+    parts = [
+        {"motion": "acceleration", "name": "a"},
+        {"spring": 2},
+        {"mass": 1, "name": "m"},
+        {"spring": 1},
+        {"mass": 3},
+        {"spring": 4},
+        {"motion": "velocity", "name": "b"},
+    ]
+    load = [{"at": "m", "times": [0], "steps": [1]}]
+    system, output = {"type": "chain", "parts": parts}, {"until": 1, "velocity": ["m"]}
+    found = wavesym.modes(Scene(name="two", system=system, load=load, output=output))
+    mass, stiffness = np.diag([1.0, 3.0]), np.array([[3.0, -1.0], [-1.0, 5.0]])
+    w2, shapes = np.linalg.eig(np.linalg.solve(mass, stiffness))
+    for mode, k in zip(found, np.argsort(w2), strict=True):
+        q = shapes[:, k] / shapes[np.argmax(np.abs(shapes[:, k])), k]
+        moving = q @ mass @ q
+        for name, pull in (("a", [2.0, 0.0]), ("b", [0.0, 4.0])):
+            r = np.linalg.solve(stiffness, pull)
+            assert mode.loads[name].factor == pytest.approx(q @ mass @ r / moving, rel=1e-12)
+            part = (q @ mass @ r) ** 2 / moving / (r @ mass @ r)
+            assert mode.loads[name].effective_mass == pytest.approx(part, rel=1e-12)
+        assert (mode.loads["m"].factor, mode.loads["m"].effective_mass) == (pytest.approx(q[0], rel=1e-12), None)
+
+
+def test_shapes_along_rods_are_sines_where_rods_are_cut_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Between fixed ends no node moves; and a branch."""
+    held = wavesym.modes(chain("fixed", {"rod": 1}, {"rod": 1}, "fixed"), 3, points=9)
+    (line,) = held.along
+    for n, moved in enumerate(line.moved, 1):
+        right = np.sin(n * pi * line.x / 2)
+        assert moved.real / np.sign(moved.real @ right) == pytest.approx(right / np.abs(right).max(), abs=1e-12)
+    monkeypatch.chdir(tmp_path)
+    branch = "[[system.branch]]\nfrom = 'n'\nname = 'b'\nparts = [{ rod = 1 }, 'free']\n"
+    parts = "['fixed', { rod = 1 }, { mass = 1, name = 'n' }, { rod = 2 }, 'free']"
+    Path("t.toml").write_text(f"name = 't'\n[system]\ntype = 'chain'\nparts = {parts}\n{branch}")
+    assert main(["modes", "t.toml", "--count", "2", "--points", "5", "--format", "csv"]) == 0
+    rows = [row.split(",") for row in capsys.readouterr().out.splitlines()]
+    assert [row[0] for row in rows] == ["line", *[""] * 10, *["b"] * 5]
+    assert main(["modes", "t.toml", "--count", "2", "--points", "5", "--format", "json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    w = said["modes"][0]["omega"]
+    main_line, side = (each["shapes"][0] for each in said["along"])
+    assert max(map(abs, main_line)) == 1
+    node = main_line[4]
+    far = np.array(main_line[5:])
+    assert far == pytest.approx(node * np.cos(w * (2 - np.linspace(0, 2, 5))) / np.cos(2 * w), rel=1e-9)
+    assert np.array(side) == pytest.approx(node * np.cos(w * (1 - np.linspace(0, 1, 5))) / np.cos(w), rel=1e-9)
+    assert main(["modes", "t.toml", "--points", "5"]) == 2
+    assert "--format json or csv" in capsys.readouterr().err

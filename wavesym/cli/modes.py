@@ -28,6 +28,7 @@ COUNT = 10
     help="The range of each frequency where a mass, spring, modulus or density goes from A to B; any number.",
 )
 @click.option("--shapes", is_flag=True, help="How far each node moves, too.")
+@click.option("--points", type=click.IntRange(min=2), help="Shapes at so many points of each rod; as json or csv.")
 @click.option(
     "--format", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True, help="How it is written."
 )
@@ -38,6 +39,7 @@ def modes(
     below: float | None,
     ranges: tuple[str, ...],
     shapes: bool,
+    points: int | None,
     format: str,
     out: Path | None,
 ) -> None:
@@ -60,6 +62,8 @@ def modes(
     drawn = is_drawn(out, (".txt", ".json", ".csv"))
     if ranges and (below is not None or shapes or drawn):
         raise click.UsageError("--range excludes --below, --shapes and a picture; write one of them", context)
+    if points is not None and (format == "text" or ranges):
+        raise click.UsageError("--points: shapes along rods are tables; write --format json or csv", context)
     if out is not None:
         refuse_unwritable(out)
         refuse_scene(out)
@@ -68,7 +72,7 @@ def modes(
             box = api.modes(scene, count or COUNT, ranges=dict(map(read_range, ranges)))
             text = {"text": box.text, "json": box.json, "csv": box.csv}[format]()
         else:
-            found = api.modes(scene, count or COUNT, below)
+            found = api.modes(scene, count or COUNT, below, points=points)
             text = {"text": found.text, "json": found.json, "csv": found.csv}[format](shapes=shapes)
         if drawn and out is not None:
             api.plot_modes(scene, found, out)

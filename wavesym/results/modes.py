@@ -18,14 +18,18 @@ from flint import acb, arb
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
+from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.dying import DyingSpectrum
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import End, Network
+from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import above, midpoint, nearest
 from wavesym.programs.modes.undamped import damping_ratios
 from wavesym.results.optional import needed
+from wavesym.results.participation import Participation, effective_mass, participations
+from wavesym.results.shapes import LineShapes, line_shapes
+from wavesym.systems.station import Lines
 
 COUNT = 10
 _MOST = 2000
@@ -48,6 +52,7 @@ class ModeRow:
         effective_mass: what of the mass moves with all supports, in parts of the whole; None where nothing holds the
             chain, or gears make it mean nothing.
         shape: how far each node moves, the largest 1; complex where there are dashpots.
+        loads: of each load and each end whose motion is prescribed, by name, its participation; none of complex ones.
     """
 
     number: int
@@ -58,6 +63,7 @@ class ModeRow:
     radius: float
     effective_mass: float | None
     shape: dict[str, complex]
+    loads: dict[str, Participation]
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,6 +71,7 @@ class Modes:
     """The modes of a scene, by their frequencies; `wavesym.modes` makes it.
 
     `complete` says whether none is missed up to the last one, `why` in words; `time_unit` is "s", or None for tau.
+    `along` are the shapes along lines, where they were asked for.
     """
 
     name: str
@@ -73,6 +80,8 @@ class Modes:
     why: str
     time_unit: str | None
     exact: tuple[Mode, ...]
+    cut: Cut
+    along: tuple[LineShapes, ...] = ()
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -100,11 +109,21 @@ class Modes:
 
     def json(self, *, shapes: bool = False) -> str:
         """As JSON: `modes`, `complete`, `why`, `time_unit`; complex numbers of shapes as [real, imaginary]."""
-        about = {"complete": self.complete, "why": self.why, "time_unit": self.time_unit}
+        about: dict[str, Any] = {"complete": self.complete, "why": self.why, "time_unit": self.time_unit}
+        if self.along:
+            about["along"] = [
+                {"line": each.line, "x": each.x.tolist(), "shapes": [self._plain(row) for row in each.moved]}
+                for each in self.along
+            ]
         return json.dumps({"name": self.name, "modes": self._rows(shapes=shapes), **about}, indent=2) + "\n"
 
     def csv(self, *, shapes: bool = False) -> str:
-        """As CSV: a line for each mode; shapes as a column for each node, in doubles, of complex ones two."""
+        """As CSV: a line for each mode; shapes as a column for each node, in doubles, of complex ones two.
+
+        Of shapes along lines a line for each place, in place of these.
+        """
+        if self.along:
+            return self._along_csv()
         lines = []
         for mode, row in zip(self.modes, self._rows(shapes=False), strict=True):
             if shapes:
@@ -116,17 +135,36 @@ class Modes:
             "\n".join([head, *(",".join("" if v is None else repr(v) for v in row.values()) for row in lines)]) + "\n"
         )
 
+    def _along_csv(self) -> str:
+        real = self._is_real
+        parts = [""] if real else [".real", ".imag"]
+        head = ",".join(["line", "x", *(f"mode {mode.number}{part}" for mode in self.modes for part in parts)])
+        lines = [head]
+        for each in self.along:
+            for x, moved in zip(each.x.tolist(), each.moved.T.tolist(), strict=True):
+                numbers = [n for q in moved for n in ([q.real] if real else [q.real, q.imag])]
+                lines.append(",".join([each.line, *map(repr, [x, *numbers])]))
+        return "\n".join(lines) + "\n"
+
+    def _plain(self, row: NDArray[np.complex128]) -> list[Any]:
+        """A row of a shape as JSON has it."""
+        return [q.real if self._is_real else [q.real, q.imag] for q in row.tolist()]
+
     def text(self, *, shapes: bool = False) -> str:
         """As a table for people."""
         per, hz = ("rad/s", "Hz") if self.time_unit else ("rad/tau", "1/tau")
         head = ["mode", f"omega [{per}]", f"frequency [{hz}]", f"period [{self.time_unit or 'tau'}]", "damping"]
         massive = any(mode.effective_mass is not None for mode in self.modes)
-        rows = [[*head, *["effective mass"] * massive]]
+        loads = list(dict.fromkeys(name for mode in self.modes for name in mode.loads))
+        rows = [[*head, *["effective mass"] * massive, *(f"participation@{name}" for name in loads)]]
         for mode in self.modes:
             period = "-" if mode.period is None else f"{mode.period:.7g}"
             mass = "-" if mode.effective_mass is None else f"{mode.effective_mass:.2%}"
             damping = f"{mode.damping:.4g}"
-            rows.append([str(mode.number), f"{mode.omega:.9g}", f"{mode.hz:.9g}", period, damping, *[mass] * massive])
+            known = [mode.loads.get(name) for name in loads]
+            shares = ["-" if each is None else f"{each.factor:.5g}" for each in known]
+            numbers = [str(mode.number), f"{mode.omega:.9g}", f"{mode.hz:.9g}", period, damping]
+            rows.append([*numbers, *[mass] * massive, *shares])
         lines = _aligned(rows)
         if shapes:
             nodes = list(self.modes[0].shape)
@@ -158,6 +196,7 @@ class Modes:
                 "damping": mode.damping,
                 "radius": mode.radius,
                 "effective_mass": mode.effective_mass,
+                **{f"{key}@{name}": value for name, load in mode.loads.items() for key, value in _numbers(load)},
                 **(
                     {"shape": {node: q.real if real else [q.real, q.imag] for node, q in mode.shape.items()}}
                     if shapes
@@ -168,13 +207,21 @@ class Modes:
         ]
 
 
-def modes(model: Model, count: int = COUNT, below: float | None = None) -> Modes:
+def modes(
+    model: Model,
+    count: int = COUNT,
+    below: float | None = None,
+    lines: Lines | None = None,
+    points: int | None = None,
+) -> Modes:
     """The first modes of a model.
 
     Args:
         model: a chain without contacts; loads and outputs do not matter.
         count: how many, where `below` is None.
         below: a frequency: in Hz, or in rad per tau for a scene without units.
+        lines: those of the chain, for shapes along them.
+        points: at how many points of each rod; None for none.
 
     Raises:
         UnservedError: for contacts, and frequencies whose modes cannot be told apart.
@@ -199,9 +246,10 @@ def modes(model: Model, count: int = COUNT, below: float | None = None) -> Modes
     rows = tuple(_row(model, k, mode, per_tau) for k, mode in enumerate(found, 1))
     if not damped:
         rows = _with_ratios(model, rows, per_tau)
-    return Modes(
-        model.name, rows, not damped, _INCOMPLETE if damped else _COMPLETE, "s" if model.clock else None, tuple(found)
-    )
+    why = _INCOMPLETE if damped else _COMPLETE
+    unit = "s" if model.clock else None
+    along = line_shapes(found, spectrum.cut, model, lines, points) if lines and points else ()
+    return Modes(model.name, rows, not damped, why, unit, tuple(found), spectrum.cut, along)
 
 
 def is_damped(network: Network) -> bool:
@@ -223,8 +271,9 @@ def _row(model: Model, number: int, mode: Mode, per_tau: float) -> ModeRow:
         period=2 * pi / omega if omega else None,
         damping=ratio,
         radius=above(size.rad()) / per_tau,
-        effective_mass=None if isinstance(w, acb) else _effective_mass(model.network, mode),
+        effective_mass=None if isinstance(w, acb) else effective_mass(model.network, mode),
         shape=_shape(model.network, mode),
+        loads={} if isinstance(w, acb) else participations(model.network, mode, _largest(model.network, mode)),
     )
 
 
@@ -237,6 +286,18 @@ def _with_ratios(model: Model, rows: Sequence[ModeRow], per_tau: float) -> tuple
     return tuple(replace(row, damping=next(ratios)) if row.omega else row for row in rows)
 
 
+def _largest(network: Network, mode: Mode) -> arb:
+    """How far that point of the network moves that moves most; 1 where none does."""
+    moved = max(mode.points[: len(network.points)], key=lambda q: abs(float(q)))
+    return arb(1) if moved.contains(0) else moved
+
+
+def _numbers(load: Participation) -> Iterator[tuple[str, float | None]]:
+    yield "participation", load.factor
+    if load.effective_mass is not None:
+        yield "effective_mass", load.effective_mass
+
+
 def _shape(network: Network, mode: Mode) -> dict[str, complex]:
     """How far the points of the network move, those of its cuts left out, in parts of the largest."""
     moved = [complex(mode.points[number]) for number in range(len(network.points))]
@@ -246,37 +307,6 @@ def _shape(network: Network, mode: Mode) -> dict[str, complex]:
         name = point.name or str(point.place)
         names.setdefault(name if name not in names else f"{name}+", each / largest if largest else 0j)
     return names
-
-
-def _effective_mass(network: Network, mode: Mode) -> float | None:
-    """What of the mass moves with the supports: the square of the integral of mass times shape, over all of the mass.
-
-    By Newton's law that integral is the force of all supports over -w^2.
-    """
-    geared = any(ratio != 1 for bar in network.bars for ratio in bar.ratios) or any(
-        link.ratio != 1 for link in network.links
-    )
-    held = any(point.motion or point.stiffness != 0 for point in network.points)
-    if geared or not held or mode.frequency.contains(0):
-        return None
-    cut = mode.stiffness.network
-    force = arb(0)
-    for number, bar in enumerate(cut.bars):
-        for side, at in enumerate((bar.left, bar.right)):
-            if cut.points[at].motion:
-                strain = bar.impedance * mode.slope(End(number, side))
-                force += strain if side else -strain
-    for link in cut.links:
-        for one, other in ((link.left, link.right), (link.right, link.left)):
-            if cut.points[one].motion and not cut.points[other].motion:
-                force -= link.stiffness * mode.points[other]
-    for point, moved in zip(cut.points, mode.points, strict=True):
-        if not point.motion:
-            force -= point.stiffness * moved
-    whole = sum((point.mass for point in cut.points if not point.motion), arb(0))
-    whole += sum((bar.impedance * bar.delay for bar in cut.bars), arb(0))
-    moved = force / mode.frequency**2
-    return midpoint(moved * moved / whole)  # flint's power of a ball about 0 is no number
 
 
 def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
