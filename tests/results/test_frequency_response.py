@@ -482,3 +482,60 @@ def test_taylor_polynomials_enclose_a_response_and_its_slopes() -> None:
                     assert all(known[k].contains(exact[k].mid()) for k in range(3))
                     assert known[0].is_finite()
                     assert abs(known[0]).rad() < 0.1 * abs(exact[0])
+
+
+def lossy(loss: object, *parts: object, **outputs: list[object]) -> Scene:
+    rods = [{"rod": 1, "loss": loss}, {"rod": 1, "impedance": 2, "loss": "1/10"}]
+    load = [{"at": "g", "times": [0], "steps": [1]}]
+    system = {"type": "chain", "parts": [*parts[:1], *rods, *parts[1:]]}
+    return Scene(name="lossy", system=system, load=load, output={"until": 1, **outputs})
+
+
+def test_rods_with_a_loss_have_a_complex_modulus() -> None:
+    """Two layers on a shaken base, and on a pushed joint, by transfer matrices in complex doubles."""
+    taken = {"displacement": [2, "1/2"], "strain": ["1/4", "3/2"], "force": ["1/4", "3/2"]}
+    w = np.array([0.4, 1.3, 2.2])
+    shaken = lossy("1/50", {"motion": "acceleration", "name": "g"}, "free", **taken)
+    pushed = lossy("1/50", {"joint": True, "dashpot": "1/3", "name": "g"}, "free", **taken)
+    layers = [(1.0, 1 + 0.02j), (2.0, 1 + 0.1j)]
+
+    def at(place: float) -> tuple[np.ndarray, np.ndarray]:
+        """(u, du/dx) at a place where the free surface moves by 1; the modulus is Z (1 + i loss)."""
+        u, force, x = np.ones(3, complex), np.zeros(3, complex), 2.0
+        for z, modulus in reversed(layers):
+            k, e = w / np.sqrt(modulus), z * modulus
+            way = min(1.0, x - place)
+            u, force = (
+                u * np.cos(k * way) - force * np.sin(k * way) / (e * k),
+                force * np.cos(k * way) + (e * k * u * np.sin(k * way)),
+            )
+            x -= way
+            if x <= place:
+                return u, force / e
+        raise AssertionError
+
+    base, slope = at(0.0)
+    right = {f"displacement@{p}": at(float(Fraction(p)))[0] for p in ("2", "1/2")}
+    for p, (z, modulus) in zip(("1/4", "3/2"), layers, strict=True):
+        right[f"strain@{p}"] = at(float(Fraction(p)))[1]
+        right[f"force@{p}"] = z * modulus * right[f"strain@{p}"]
+    by_motion, by_force = wavesym.frf(shaken, w), wavesym.frf(pushed, w)
+    held = -layers[0][0] * layers[0][1] * slope + 1j * w / 3 * base
+    for name, value in right.items():
+        assert by_motion[name] == pytest.approx(value / base / -(w**2), rel=1e-12)
+        assert by_force[name] == pytest.approx(value / held, rel=1e-12)
+
+
+def test_a_loss_is_for_frequency_responses_alone() -> None:
+    scene = lossy("2 %", {"joint": True, "name": "g"}, "free", velocity=[1])
+    assert scene == lossy("1/50", {"joint": True, "name": "g"}, "free", velocity=[1])
+    for refused in (wavesym.run, wavesym.summary, wavesym.modes, wavesym.evaluator):
+        with pytest.raises(UnservedError, match="a loss of a rod is for frequency responses"):
+            refused(scene)
+    damped = scene.with_({"system.damping": "1/20"})
+    with pytest.raises(UnservedError, match="rods have a loss already; write one of both"):
+        wavesym.frf(damped, [0.5])
+    peak = wavesym.frf(scene, [0.5, 2.5]).peaks()["velocity@1"]
+    sampled = np.abs(wavesym.frf(scene, np.linspace(0.5, 2.5, 801).round(6))["velocity@1"]).max()
+    assert peak.low <= peak.amplitude <= peak.high
+    assert peak.amplitude == pytest.approx(sampled, rel=1e-4)

@@ -51,7 +51,10 @@ class Point:
 
 @dataclass(frozen=True)
 class Bar:
-    """An elastic rod from one point to another, with its state at tau = 0. Its delay is length / speed."""
+    """An elastic rod from one point to another, with its state at tau = 0. Its delay is length / speed.
+
+    With a `loss` its modulus is 1 + i loss times as large under harmonic motions, and it has no others.
+    """
 
     left: int
     right: int
@@ -62,6 +65,7 @@ class Bar:
     velocity: fmpq = _ZERO
     strain: fmpq = _ZERO
     name: str = ""
+    loss: fmpq = _ZERO
 
     @cached_property
     def delay(self) -> fmpq:
@@ -150,6 +154,14 @@ class Network:
             raise UnservedError(
                 f"system: the contact at {self.links[number].place} opens and closes, which tables, closed form "
                 "and march do not support (take pieces or `run`)"
+            )
+
+    def refuse_loss(self) -> None:
+        """UnservedError where a rod has a loss: for all but frequency responses."""
+        if any(bar.loss != 0 for bar in self.bars):
+            raise UnservedError(
+                "system.parts: a loss of a rod is for frequency responses (`frf`) alone, as its motions in time would "
+                "begin before their cause; leave it out, or write damping"
             )
 
     def refuse_rodless(self, what: str, instead: str) -> None:

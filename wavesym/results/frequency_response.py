@@ -12,7 +12,7 @@ import numpy as np
 from flint import acb, arb, ctx
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError, ToleranceError, WavesymError, did_you_mean
+from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError, did_you_mean
 from wavesym.exact.modes.dying import undamped
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.mechanics.model import Model
@@ -163,6 +163,8 @@ def frequency_response(model: Model, load: HarmonicLoad, frequencies: ArrayLike)
         if not (np.isfinite(f) and f >= 0):
             raise WavesymError(f"frequency: {f:g} is not a number of at least 0")
     _refuse_many(len(given))
+    if model.damping is not None and any(bar.loss != 0 for bar in model.network.bars):
+        raise UnservedError("system.damping: rods have a loss already; write one of both")
     values = np.full((len(model.probes), len(given)), np.nan + 0j)
     errors = np.zeros(len(model.probes))
     if model.damping is not None and model.damping.modes is None and model.damping.acts:

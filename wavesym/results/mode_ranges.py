@@ -148,6 +148,7 @@ def _below(value: arb) -> float:
 
 def _angular(scene: Scene, count: int) -> list[arb]:
     model = lower(scene, loads=False)
+    model.network.refuse_loss()
     if is_damped(model.network):
         raise UnservedError("--range: dashpots make frequencies complex, and these follow no parameter one way")
     per_tau = arb(model.clock.seconds) if model.clock else arb(1)

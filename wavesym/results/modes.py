@@ -232,6 +232,7 @@ def modes(
         raise WavesymError(f"modes: {count if below is None else below} is not positive")
     if count > _MOST:
         raise CostError(f"--count: {count} modes, the limit is {_MOST} (fewer modes help)")
+    model.network.refuse_loss()
     damped = is_damped(model.network)
     spectrum = DyingSpectrum(model.network) if damped else Spectrum(model.network)
     found = list(spectrum.first(count if below is None else _FIRST_GUESS))

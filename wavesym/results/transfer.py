@@ -211,6 +211,8 @@ def output_amplitude(network: Network, probe: Probe, amplitudes: Amplitudes) -> 
             moved = amplitudes.slope(bar, probe.place) / network.bars[bar].speed
         case "force":
             moved = amplitudes.slope(bar, probe.place) * network.bars[bar].impedance
+            if network.bars[bar].loss != 0:
+                moved = moved * acb(1, arb(network.bars[bar].loss))
         case "drift":
             moved = amplitudes.displacement(bar, fmpq(1)) - amplitudes.displacement(bar, fmpq(0))
         case _:

@@ -44,6 +44,7 @@ def lower(scene: Scene, *, loads: bool = True) -> Model:
     Raises:
         SceneError: for what is no Scene: a path, say.
         CostError: for loads that would take too many samples.
+        UnservedError: where loads act on rods with a loss.
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} is not a Scene; write Scene.from_toml(...)")
@@ -53,7 +54,10 @@ def lower(scene: Scene, *, loads: bool = True) -> Model:
         kept = vars(scene)[_KEPT] = _Lowered(parts, {})
     if True not in kept.models and loads not in kept.models:
         kept.models[loads] = _lowered(scene if loads else _unloaded(scene))
-    return kept.models.get(True) or kept.models[loads]
+    model = kept.models.get(True) or kept.models[loads]
+    if loads:
+        model.network.refuse_loss()
+    return model
 
 
 class _Lowered(NamedTuple):

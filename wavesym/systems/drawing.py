@@ -183,6 +183,7 @@ class _Pen:
                 rational(part.velocity),
                 rational(part.strain),
                 part.name or "",
+                rational(part.loss),
             )
         )
         if part.spring or part.dashpot:

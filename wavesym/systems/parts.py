@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
+from wavesym.fields.damping import damping_ratio
 from wavesym.fields.numbers import Exact, Positive, exact
 from wavesym.fields.table import Faults, SceneTable, listed, shown, wrong
 
@@ -66,6 +67,7 @@ class RodPart(ChainPart):
     strain: Exact = Fraction(0)
     spring: NotNegative = Fraction(0)
     dashpot: NotNegative = Fraction(0)
+    loss: Annotated[Fraction, PlainValidator(damping_ratio), PlainSerializer(str, return_type=str)] = Fraction(0)
     name: PartName | None = None
 
 

@@ -50,6 +50,14 @@ class Turn(NamedTuple):
     cosine: Quantity
 
 
+class _Medium(NamedTuple):
+    """What waves feel of a bar: `root` is that of 1 + i loss."""
+
+    impedance: Quantity
+    delay: Quantity
+    root: Quantity
+
+
 @dataclass(frozen=True)
 class HarmonicNetwork:
     """A network in which nothing but one point is driven, with frequency w.
@@ -64,8 +72,9 @@ class HarmonicNetwork:
     def equals(self) -> list[int]:
         """Of each bar the first one with its delay."""
         bars = self.network.bars
-        first: dict[tuple[int, int], int] = {}
-        return [first.setdefault((int(bar.delay.p), int(bar.delay.q)), number) for number, bar in enumerate(bars)]
+        first: dict[tuple[int, ...], int] = {}
+        keys = ([int(n) for each in (bar.delay, bar.loss) for n in (each.p, each.q)] for bar in bars)
+        return [first.setdefault(tuple(key), number) for number, key in enumerate(keys)]
 
     def driven(self, root: int, w: Quantity, *, undivided: bool = False) -> Amplitudes:
         """The amplitudes under a unit force on a point, or, where its motion is prescribed, a unit displacement.
@@ -175,7 +184,7 @@ class Amplitudes:
         branch, scale = self._scales[bar]
         a, b = self._at_far_end(branch)
         near, far = self._turned_to(branch, place)
-        moved = a * far.sine + b * self._network.bars[bar].impedance * far.cosine
+        moved = a * far.sine + b * self._medium(bar).impedance * far.cosine
         beside = self._parallel_resistance(branch)
         return scale * (moved if beside is None else moved + b * beside * (near.sine + far.sine))
 
@@ -186,11 +195,12 @@ class Amplitudes:
         branch, scale = self._scales[bar]
         a, b = self._at_far_end(branch)
         near, far = self._turned_to(branch, place)
-        slope = a * far.cosine - b * self._network.bars[bar].impedance * self._square * far.sine
+        medium = self._medium(bar)
+        slope = a * far.cosine - b * medium.impedance * self._square * far.sine
         beside = self._parallel_resistance(branch)
         if beside is not None:
             slope = slope + b * beside * (far.cosine - near.cosine)
-        return scale * slope * (1 if branch.side else -1)
+        return scale * slope * (1 if branch.side else -1) / medium.root
 
     def _drive(self, root: int, undivided: bool) -> None:
         """Find how far each point moves, and what the amplitudes on each branch are scaled by."""
@@ -253,8 +263,7 @@ class Amplitudes:
         (a, b), beside = self._at_far_end(branch), self._parallel_resistance(branch)
         if branch.bar is None:
             return self._geared(branch, a * beside), a + b * beside
-        bar = self._network.bars[branch.bar]
-        z, (sine, cosine) = bar.impedance, self._whole_turn(branch.bar)
+        z, (sine, cosine) = self._medium(branch.bar).impedance, self._whole_turn(branch.bar)
         across = z * cosine if beside is None else z * cosine + beside * sine
         held = sine * (-z * z) * self._square
         if beside is not None:
@@ -269,8 +278,8 @@ class Amplitudes:
         beside = self._parallel_resistance(branch)
         if branch.bar is None:
             return beside
-        bar = self._network.bars[branch.bar]
-        return arb(bar.impedance) if beside is None else bar.impedance + beside * self._whole_turn(branch.bar).sine
+        z = self._medium(branch.bar).impedance
+        return z * arb(1) if beside is None else z + beside * self._whole_turn(branch.bar).sine
 
     def _at_far_end(self, branch: Branch) -> tuple[Quantity, Quantity]:
         """A and B of what lies beyond it, seen by its far end."""
@@ -286,17 +295,25 @@ class Amplitudes:
     def _turned_to(self, branch: Branch, place: fmpq) -> tuple[Turn, Turn]:
         """From a place of its bar to the near and to the far end."""
         assert branch.bar is not None  # which the place lies on
-        delay = self._network.bars[branch.bar].delay
+        delay = self._medium(branch.bar).delay
         part = 1 - place if branch.side else place
         return self._turn(delay * part), self._turn(delay * (1 - part))
 
     def _whole_turn(self, bar: int) -> Turn:
         first = self._equals[bar]
         if first not in self._turns:
-            self._turns[first] = self._turn(self._network.bars[first].delay)
+            self._turns[first] = self._turn(self._medium(first).delay)
         return self._turns[first]
 
-    def _turn(self, delay: fmpq) -> Turn:
+    def _medium(self, bar: int) -> _Medium:
+        """A bar's impedance and delay, complex where it has a loss."""
+        z, delay, loss = (getattr(self._network.bars[bar], key) for key in ("impedance", "delay", "loss"))
+        if loss == 0:
+            return _Medium(z, delay, arb(1))
+        root = acb(1, arb(loss)).sqrt()
+        return _Medium(root * z, delay / root, root)
+
+    def _turn(self, delay: Quantity) -> Turn:
         angle = self._w * delay
         sine = angle.sin() * _inverse(self._w) if isinstance(angle, acb_series) else angle.sinc() * delay
         return Turn(sine, angle.cos())

@@ -33,6 +33,7 @@ class RodKeys(SceneTable):
     strain: Any = None
     spring: Any = None
     dashpot: Any = None
+    loss: Any = None
     name: PartName | None = None
 
     def elastic(self, dashpot: str) -> ElasticRod:
