@@ -45,7 +45,7 @@ FAULTS = {
         "out[output] -= gain[k] * read_wave",
     ),
     "modes.c": (DRIVE, "--evaluator modes", "v0[n] * before + v1[n] * now", "v0[n] * before - v1[n] * now"),
-    "runtime.c": (DRIVE, "--runtime kappa,load", "+ other[side] * v[side][k]", "- other[side] * v[side][k]"),
+    "runtime.c": (DRIVE, "--runtime kappa,load", "+ other[side] * second", "- other[side] * second"),
     "runtime/march.c": (
         CHAIN,
         "--runtime mass,load",
