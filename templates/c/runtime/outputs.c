@@ -81,7 +81,7 @@ static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t,
         one[side] = law[side].gain[term_gain[t]];
         other[side] = law[side].gain[term_gain[t + 1]];
     }
-    for (int k = 0; k <= degree + 1; k += OF(packed)) {
+    for (int k = 0; k <= degree; k += OF(packed)) {
         UNROLLED
         for (int side = 0; side < OF(parts); ++side) {
             const OF(pack) first = *(const OF(pack) *)(w[side] + k), second = *(const OF(pack) *)(v[side] + k);
@@ -89,6 +89,9 @@ static void OF(accumulate_two)(OF(march_state) *all, const OF(laws) *law, int t,
             *(OF(pack) *)(c + k * OF(parts) + side) = now;
             sum[side] += SIZES_OF(now);
         }
+    }
+    for (int side = 0; side < OF(parts); ++side) {
+        c[(degree + 1) * OF(parts) + side] = ZERO;
     }
 }
 
