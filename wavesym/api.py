@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from wavesym.results.frequency_response import FrequencyResponse
     from wavesym.results.mode_ranges import ModeRanges
     from wavesym.results.modes import Modes
+    from wavesym.results.peaks import Peaks
     from wavesym.results.response import Response
     from wavesym.results.result import Result
     from wavesym.results.spectrum import Spectra
@@ -179,31 +180,33 @@ def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
     return summarised(model, own_samples(model, sample_comb(scene)) if at_samples else None, drifts(scene))
 
 
-def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
-    """Extremes of one scene, or of several, as arrays: `min`, `max`, `tau_min`, `tau_max`, `arrival` (a tau).
+def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Peaks:
+    """Statistics of one scene, or of several, as arrays: `min`, `tau_min`, `max`, `tau_max`, `arrival` (a tau), `mean`,
+    `rms` and `residual`, the value at the end.
 
     Args:
         scenes: what to compute.
         at_samples: as of `summary`.
 
     Returns:
-        An xarray.Dataset with the dimensions `case` (of several scenes) and `output`, or, where xarray is not
-        installed, a dict of NumPy arrays with these shapes, and `case` and `output`, the names. What a scene does not
-        have is NaN.
+        A mapping of these names to NumPy arrays, (cases, outputs), or (outputs,) of one scene, with the names of
+        `cases` (by what varies) and `outputs`; `to_xarray()` and `to_pandas()` make labelled tables. What a scene does
+        not have is NaN.
 
     Raises:
         ToleranceError, CostError: as of `summary`.
 
     >>> import wavesym
-    >>> table = wavesym.peaks(wavesym.Scene.from_toml(name) for name in ("drive_m1", "building_m2"))
-    >>> table["max"].shape
-    (2, 10)
+    >>> scene = wavesym.Scene.from_toml("drive_m1")
+    >>> table = wavesym.peaks(scene.with_({"system.kappa[0]": kappa}) for kappa in ("1/2", 2))
+    >>> table.cases, table["max"].shape
+    (('system.kappa[0] = 1/2', 'system.kappa[0] = 2'), (2, 5))
     """
-    from wavesym.results.peaks import table_of_peaks
+    from wavesym.results.peaks import peaks_of
 
-    several = not isinstance(scenes, Scene)
-    found = [summary(scene, at_samples=at_samples) for scene in ([scenes] if isinstance(scenes, Scene) else scenes)]
-    return table_of_peaks(found, several)
+    every = [scenes] if isinstance(scenes, Scene) else list(scenes)
+    summaries = [summary(scene, at_samples=at_samples) for scene in every]
+    return peaks_of(every, summaries, several=not isinstance(scenes, Scene))
 
 
 def spectrum(scene: Scene, damping: float = 0.05) -> Spectra:

@@ -68,7 +68,7 @@ def test_an_opening_contact(at_samples, monkeypatch):
         values[0, taus >= event.double] = 1e-11 * np.cos(1e3 * taus[taus >= event.double])
         return taus, values
 
-    monkeypatch.setattr(summary, "extremes", refused)
+    monkeypatch.setattr(summary, "extremes_and_averages", refused)
     monkeypatch.setattr(summary, "sampled", noisy)
     found = wavesym.summary(scene, at_samples=at_samples).outputs[0]
     assert found.max.value == 0.0

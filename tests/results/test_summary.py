@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from math import nextafter, pi
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -25,7 +23,8 @@ from wavesym.mechanics.damping import Damping
 from wavesym.programs.making import make
 from wavesym.programs.modes.records import Panels
 from wavesym.programs.request import Request
-from wavesym.results import sampled, summary
+from wavesym.results import sampled, statistics, summary
+from wavesym.results.peaks import case_names
 from wavesym.results.rows import SAMPLES, own_samples
 from wavesym.results.sampled import sampled_extremes
 from wavesym.results.summary import summarised
@@ -52,12 +51,13 @@ def test_json_is_what_text_is(capsys):
     assert [output["name"] for output in found["outputs"]] == list(wavesym.evaluator(scene).outputs)
     text = told(capsys, "building_m2").splitlines()
     for output, row in zip(found["outputs"], text[1:], strict=False):
-        assert set(output) == {"name", "unit", "min", "max", "arrival"}
+        assert set(output) == {"name", "unit", "min", "max", "arrival", "mean", "rms", "residual"}
         assert set(output["min"]) == set(output["max"]) == {"value", "tau", "time"}
         assert output["unit"] == ""
         assert output["min"]["time"] is None
         numbers = [output["min"]["value"], output["min"]["tau"], output["max"]["value"], output["max"]["tau"]]
-        assert row.split() == [output["name"], *(f"{number:.7g}" for number in [*numbers, output["arrival"]])]
+        numbers += [output[name] for name in ("arrival", "mean", "rms", "residual")]
+        assert row.split() == [output["name"], *(f"{number:.7g}" for number in numbers)]
     assert 0 < found["bound"] < 2e-16
 
 
@@ -151,7 +151,7 @@ def unproved(monkeypatch):
     def refused(_):
         raise CostError("refused")
 
-    monkeypatch.setattr(summary, "extremes", refused)
+    monkeypatch.setattr(summary, "extremes_and_averages", refused)
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
@@ -271,34 +271,45 @@ def test_arrivals_in_the_light_cone_are_those_of_transforms():
 # as arrays
 
 
-def test_peaks_of_one_scene_and_of_several(monkeypatch):
-    monkeypatch.setitem(sys.modules, "xarray", None)
-    monkeypatch.setattr("wavesym.results.peaks.find_spec", lambda _: None)
+def test_peaks_of_one_scene_and_of_several():
     scene = Scene.from_toml("drive_m1")
     one = wavesym.peaks(scene)
     true = wavesym.summary(scene)
-    assert one["output"].tolist() == [output.name for output in true.outputs]
+    assert one.outputs == tuple(output.name for output in true.outputs)
     assert one["max"].tolist() == [output.max.value for output in true.outputs]
     assert one["tau_min"].tolist() == [output.min.at.tau for output in true.outputs]
-    assert "case" not in one
+    assert one["rms"].tolist() == [output.rms for output in true.outputs]
+    assert list(one) == list(statistics.ARRAYS)
     several = wavesym.peaks([scene, Scene.from_toml("building_m2"), scene.with_({"system.kappa[0]": "1/2"})])
-    assert several["case"].tolist() == ["drive_m1", "building_m2", "drive_m1"]
-    assert several["max"].shape == (3, len(several["output"]))
+    assert several.cases == ("drive_m1", "building_m2", "drive_m1")
+    assert several["max"].shape == (3, len(several.outputs))
     assert several["max"][0, : len(true.outputs)].tolist() == one["max"].tolist()
-    absent = [k for k, name in enumerate(several["output"]) if name not in set(one["output"])]
+    absent = [k for k, name in enumerate(several.outputs) if name not in one.outputs]
     assert np.isnan(several["min"][0, absent]).all()
 
 
-def test_peaks_are_a_dataset_where_xarray_is(monkeypatch):
-    made = ModuleType("xarray")
-    made.Dataset = lambda columns, labels: (columns, labels)
-    monkeypatch.setitem(sys.modules, "xarray", made)
-    monkeypatch.setattr("wavesym.results.peaks.find_spec", lambda _: True)
-    columns, labels = wavesym.peaks([Scene.from_toml("drive_m1")])
-    assert list(labels) == ["case", "output"]
-    dimensions, values = columns["arrival"]
-    assert dimensions == ("case", "output")
-    assert values.shape == (1, len(labels["output"]))
+def test_cases_are_named_by_what_varies():
+    scene = Scene.from_toml("drive_m1")
+    changes = [{"system.kappa[0]": kappa, "output.until": until} for kappa in ("1/2", 2) for until in (3, 4)]
+    names = case_names([scene.with_(each) for each in changes])
+    assert names[1] == "system.kappa[0] = 1/2, output.until = 4"
+    assert len(set(names)) == 4
+    assert case_names([scene, scene]) == ("drive_m1", "drive_m1")
+    longer = scene.with_({"load[0].times": [0, 1, 2, 3, 4], "load[0].steps": [1, 2, 3, 4, 5]})
+    assert case_names([scene, longer]) == ("drive_m1", "drive_m1")  # too many fields for a name
+
+
+def test_peaks_as_labelled_tables():
+    xarray, pandas = pytest.importorskip("xarray"), pytest.importorskip("pandas")
+    scene = Scene.from_toml("drive_m1")
+    found = wavesym.peaks([scene, scene.with_({"system.kappa[0]": 2})])
+    table = found.to_xarray()
+    assert isinstance(table, xarray.Dataset)
+    assert table["max"].sel(case="system.kappa[0] = 2", output="strain@0").item() == found["max"][1, 0]
+    rows = found.to_pandas()
+    assert isinstance(rows, pandas.DataFrame)
+    assert rows.loc[("system.kappa[0] = 2", "strain@0"), "rms"] == found["rms"][1, 0]
+    assert list(wavesym.peaks(scene).to_pandas().index) == list(found.outputs)
 
 
 @pytest.mark.parametrize("arguments", [["--format", "xml"], ["--at-sample"], ["nothing.toml"]])

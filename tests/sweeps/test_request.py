@@ -115,8 +115,8 @@ DRIVE = 'scene = "drive_m1"\n'
             'vary."system.kappa[0]": "system.kappa" is varied too, and one is part of the other',
         ),
         (
-            DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nsummary = ["mean"]',
-            'keep.summary[0]: "mean" is not a statistic; write min, max, tau_min, tau_max or arrival',
+            DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nsummary = ["median"]',
+            'keep.summary[0]: "median" is not a statistic; write min, max, tau_min, tau_max, arrival, mean, rms',
         ),
         (
             DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nhistories = 1',

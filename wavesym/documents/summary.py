@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from wavesym.results.summary import OutputSummary, Peak, Summary
+from wavesym.results.statistics import STATISTICS, Statistic, cells, headings, number_text
+from wavesym.results.summary import OutputSummary, Summary
 
 FORMATS = ("text", "json")
 
@@ -20,9 +21,7 @@ def _json(summary: Summary) -> str:
         {
             "name": output.name,
             "unit": output.unit,
-            "min": _peak(output.min),
-            "max": _peak(output.max),
-            "arrival": None if output.arrival is None else output.arrival.shown,
+            **{each.name: _statistic(each, output) for each in STATISTICS},
             **({"title": output.title} if output.title else {}),
         }
         for output in summary.outputs
@@ -30,38 +29,31 @@ def _json(summary: Summary) -> str:
     return json.dumps({"outputs": outputs, "bound": summary.bound}, indent=2) + "\n"
 
 
-def _peak(peak: Peak) -> dict[str, float | None]:
-    return {"value": peak.value, "tau": peak.at.tau, "time": peak.at.time}
+def _statistic(statistic: Statistic, output: OutputSummary) -> float | dict[str, float | None] | None:
+    """A value, an instant (null where there is none), or a value with its instant."""
+    at = statistic.when(output) if statistic.when is not None else None
+    if statistic.value is None:
+        return None if at is None else at.shown
+    value = statistic.value(output)
+    return value if at is None else {"value": value, "tau": at.tau, "time": at.time}
 
 
 def _lines(summary: Summary) -> Iterable[str]:
     clock = "tau" if summary.time_unit is None else f"time [{summary.time_unit}]"
-    yield from _columns(
-        [("output", "least", clock, "greatest", clock, "arrives"), *(_row(output) for output in summary.outputs)]
-    )
+    yield from _columns([("output", *headings(clock)), *(_row(output) for output in summary.outputs)])
     peaks = [peak for output in summary.outputs for peak in (output.min, output.max)]
     yield ""
     if not all(peak.reached for peak in peaks):
         yield "-  it comes up to this value, and jumps then"
     if (drift := summary.largest_drift) is not None:
         peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
-        yield f"largest drift: {drift.label}, {number(peak.value)}{unit} at {number(peak.at.shown)}"
+        yield f"largest drift: {drift.label}, {number_text(peak.value)}{unit} at {number_text(peak.at.shown)}"
     yield f"{summary.how}: {summary.certain}"
 
 
 def _row(output: OutputSummary) -> tuple[str, ...]:
     name = f"{output.label} [{output.unit}]" if output.unit else output.label
-    arrival = "never" if output.arrival is None else number(output.arrival.shown)
-    return (name, *_told(output.min), *_told(output.max), arrival)
-
-
-def _told(peak: Peak) -> tuple[str, str]:
-    return number(peak.value), number(peak.at.shown) + "-" * (not peak.reached)
-
-
-def number(value: float) -> str:
-    """As it is shown to people."""
-    return f"{value:.7g}"
+    return (name, *cells(output, "-"))
 
 
 def _columns(rows: Sequence[Sequence[str]]) -> Iterable[str]:

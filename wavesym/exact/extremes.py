@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.arrivals import identically_zero
+from wavesym.exact.averages import NO_AVERAGES, AveragedPiece, Averages, averages
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.ball import Segment, is_zero
 from wavesym.mechanics.model import Model
@@ -50,6 +51,7 @@ _NEWTON = 200  # steps at most; a dozen do
 _COMPOSED, _MOST_SECONDS = 4e-7, 8
 # times the bits that there are to begin with: what needs more is not told from 0
 _MORE_BITS = 8
+_AVERAGED = arb(2) ** -56  # of the largest value: how well averages must be known
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
@@ -70,10 +72,16 @@ NOTHING: Range = (TrueExtreme(0.0, 0.0), TrueExtreme(0.0, 0.0))
 
 
 def extremes(model: Model) -> list[Range]:
-    """The least and the greatest value of each output on the horizon of doubles.
+    """The least and the greatest value of each output; errors as of `extremes_and_averages`."""
+    return [extreme for extreme, _ in extremes_and_averages(model)]
 
-    CostError where that would take minutes, or where contacts open and close and more is needed than is known of them;
-    UnservedError where modes are damped.
+
+def extremes_and_averages(model: Model) -> list[tuple[Range, Averages]]:
+    """The least and the greatest value of each output on the horizon of doubles, and its averages there.
+
+    Averages are known to `BOUND` of the output's largest value, as extremes are. CostError where that would take
+    minutes, or where contacts open and close and more is needed than is known of them; UnservedError where modes are
+    damped.
     """
     if model.damping is not None:
         raise UnservedError("system.damping: supported by modes only (leave it out, or take modes)")
@@ -86,14 +94,17 @@ def extremes(model: Model) -> list[Range]:
             "shorter horizon or fewer outputs help)"
         )
     zero = identically_zero(model, motion.until)
-    return [NOTHING if nothing else _range(motion, probe) for probe, nothing in zip(motion.probes, zero, strict=True)]
+    return [
+        (NOTHING, NO_AVERAGES) if nothing else _of_output(motion, probe)
+        for probe, nothing in zip(motion.probes, zero, strict=True)
+    ]
 
 
-def _range(motion: Motion, probe: Probe) -> Range:
-    def attempt(bits: int) -> Range | None:
+def _of_output(motion: Motion, probe: Probe) -> tuple[Range, Averages]:
+    def attempt(bits: int) -> tuple[Range, Averages] | None:
         segments = motion.segments(probe, bits)
         if is_zero(segments):
-            return NOTHING
+            return NOTHING, NO_AVERAGES
         ends = [*(segment.start for segment in segments[1:]), motion.until]
         stretches = list(zip(segments, ends, strict=True))
         at_ends = (abs(segment.at(u)).lower() for segment, end in stretches for u in (_ZERO, end - segment.start))
@@ -105,8 +116,12 @@ def _range(motion: Motion, probe: Probe) -> Range:
         ]
         sizes = [piece.largest for piece in pieces]
         if motion.vanishes(sizes):
-            return NOTHING
-        return _extremes_of(pieces, max(sizes))
+            return NOTHING, NO_AVERAGES
+        if (found := _extremes_of(pieces, max(sizes))) is None:
+            return None
+        largest = max(abs(extreme.value) for extreme in found)
+        averaged = _averages_of(pieces, motion.until, max(sizes)) if largest else NO_AVERAGES
+        return (found, averaged) if averaged.radius <= arb(largest) * _AVERAGED else None
 
     try:
         return precise(attempt, motion.first_bits, _MORE_BITS * motion.first_bits)
@@ -155,6 +170,14 @@ class _Piece:
         if t < 1 and first < after:
             return _Candidate(exact, tau, min(max(nearest(tau), first), nextafter(after, 0.0)), True)
         return _Candidate(exact, tau, after, False)
+
+
+def _averages_of(pieces: Sequence[_Piece], until: fmpq, size: arb) -> Averages:
+    """The averages of an output; what is left out between pieces holds no double, and is at most `size`."""
+    covered = sum((piece.end - piece.start for piece in pieces), _ZERO)
+    unknown = arb(until - covered) * size * (1 + size)
+    every = (AveragedPiece(each.end - each.start, each.coefficients, each.radius, each.largest) for each in pieces)
+    return averages(every, until, unknown.upper())
 
 
 def _shorten(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:

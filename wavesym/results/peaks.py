@@ -1,41 +1,89 @@
-"""Extremes of several scenes as arrays, in the form in which xarray has them."""
+"""Statistics of several scenes as arrays that say what is what."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from importlib.util import find_spec
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from wavesym.results.summary import OutputSummary, Summary
+from wavesym.results.optional import needed
+from wavesym.results.statistics import ARRAYS, array_values
+from wavesym.results.summary import Summary
+from wavesym.scene import Scene
+from wavesym.scene.paths import leaves
 
-_COLUMNS: dict[str, Callable[[OutputSummary], float]] = {
-    "min": lambda output: output.min.value,
-    "max": lambda output: output.max.value,
-    "tau_min": lambda output: output.min.at.tau,
-    "tau_max": lambda output: output.max.at.tau,
-    "arrival": lambda output: np.nan if output.arrival is None else output.arrival.tau,
-}
+_MOST_VARIED = 4  # fields in the name of a case
 
 
-def table_of_peaks(summaries: Sequence[Summary], several: bool) -> Any:
-    """Each column over (case, output), or of one scene over (output): an xarray.Dataset, or a dict of arrays."""
-    names = list(dict.fromkeys(output.name for summary in summaries for output in summary.outputs))
-    place = {name: k for k, name in enumerate(names)}
-    columns = {}
-    for column, value in _COLUMNS.items():
-        columns[column] = np.full((len(summaries), len(names)), np.nan)
-        for row, summary in zip(columns[column], summaries, strict=True):
-            for output in summary.outputs:
-                row[place[output.name]] = value(output)
-    labels = {"case": np.array([summary.name for summary in summaries]), "output": np.array(names)}
+@dataclass(frozen=True, repr=False, eq=False)
+class Peaks(Mapping[str, NDArray[np.float64]]):
+    """The statistics of the outputs of some scenes; `wavesym.peaks` makes it.
+
+    Attributes:
+        cases: what each scene is called: by what varies, `system.kappa[0] = 1/2`, or by its name.
+        outputs: the names of the outputs, each once.
+        several: whether arrays have a dimension of cases, (cases, outputs); else they are (outputs,).
+
+    `peaks["max"]` is an array; its names are those that it goes through: `min`, `tau_min`, `max`, `tau_max`, `arrival`,
+    `mean`, `rms`, `residual`. What a scene does not have is NaN.
+    """
+
+    cases: tuple[str, ...]
+    outputs: tuple[str, ...]
+    several: bool
+    _arrays: Mapping[str, NDArray[np.float64]]
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def __repr__(self) -> str:
+        cases = f"{len(self.cases)} cases of " if self.several else ""
+        return f"Peaks({cases}{len(self.outputs)} outputs: {', '.join(self)})"
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset of dimensions (case, output), or (output) of one scene. WavesymError without xarray."""
+        labels = {**({"case": list(self.cases)} if self.several else {}), "output": list(self.outputs)}
+        arrays = {name: (tuple(labels), values, {"long_name": ARRAYS[name]}) for name, values in self.items()}
+        return needed("xarray", "arrays").Dataset(arrays, labels)
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame with a row for each case and output. WavesymError without pandas."""
+        pandas = needed("pandas", "sweep")
+        rows = pandas.Index(list(self.outputs), name="output")
+        if self.several:
+            rows = pandas.MultiIndex.from_product([list(self.cases), rows], names=["case", "output"])
+        return pandas.DataFrame({name: values.ravel() for name, values in self.items()}, index=rows)
+
+
+def peaks_of(scenes: Sequence[Scene], summaries: Sequence[Summary], *, several: bool) -> Peaks:
+    """The statistics of scenes, from the summary of each."""
+    outputs = tuple(dict.fromkeys(output.name for summary in summaries for output in summary.outputs))
+    place = {name: k for k, name in enumerate(outputs)}
+    arrays = {name: np.full((len(summaries), len(outputs)), np.nan) for name in ARRAYS}
+    for row, summary in enumerate(summaries):
+        for output in summary.outputs:
+            for name, number in array_values(output).items():
+                arrays[name][row, place[output.name]] = number
     if not several:
-        del labels["case"]
-        columns = {column: values[0] for column, values in columns.items()}
-    if not find_spec("xarray"):
-        return labels | columns
-    import xarray
+        arrays = {name: values[0] for name, values in arrays.items()}
+    return Peaks(case_names(scenes), outputs, several, arrays)
 
-    dimensions = tuple(labels)
-    return xarray.Dataset({column: (dimensions, values) for column, values in columns.items()}, labels)
+
+def case_names(scenes: Sequence[Scene]) -> tuple[str, ...]:
+    """Scenes by the few fields in which they differ; by their names where these differ, or where many fields do."""
+    names = [scene.name for scene in scenes]
+    fields = [leaves(scene.model_dump()) for scene in scenes]
+    paths = dict.fromkeys(path for each in fields for path in each)
+    varied = [path for path in paths if len({repr(each.get(path)) for each in fields}) > 1]
+    if len(set(names)) > 1 or not 0 < len(varied) <= _MOST_VARIED:
+        return tuple(names)
+    return tuple(", ".join(f"{path} = {each.get(path, 'none')}" for path in varied) for each in fields)

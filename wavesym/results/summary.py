@@ -13,16 +13,17 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError, did_you_mean
-from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes
+from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes_and_averages
 from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import nearest, not_below, rational
+from wavesym.numbers.doubles import midpoint, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.results.optional import needed
 from wavesym.results.response import Response
 from wavesym.results.sampled import sampled_extremes
+from wavesym.results.statistics import STATISTICS
 from wavesym.results.stepping import apart, sampled, spacing
 
 Numbers = NDArray[np.float64]
@@ -57,13 +58,17 @@ class Peak:
 
 @dataclass(frozen=True)
 class OutputSummary:
-    """An output, its least and its greatest value, and when it first differs from 0 (None: not on the horizon)."""
+    """An output, its least and its greatest value, when it first differs from 0 (None: not on the horizon), its mean
+    and root mean square over the horizon, and its value at the end."""
 
     name: str
     unit: str
     min: Peak
     max: Peak
     arrival: When | None
+    mean: float = 0.0
+    rms: float = 0.0
+    residual: float = 0.0
     title: str = ""
 
     @property
@@ -110,18 +115,19 @@ class Summary:
     def _rows(self) -> list[dict[str, Any]]:
         """A row for each output, by the names of columns."""
         time = "tau" if self.time_unit is None else f"time [{self.time_unit}]"
-        return [
-            {
-                "output": output.name,
-                "unit": output.unit,
-                "min": output.min.value,
-                f"min at {time}": output.min.at.shown,
-                "max": output.max.value,
-                f"max at {time}": output.max.at.shown,
-                f"arrival, {time}": None if output.arrival is None else output.arrival.shown,
-            }
-            for output in self.outputs
-        ]
+        rows = []
+        for output in self.outputs:
+            row: dict[str, Any] = {"output": output.name, "unit": output.unit}
+            for each in STATISTICS:
+                if each.value is not None:
+                    row[each.name] = each.value(output)
+                if each.when is not None:
+                    at = each.when(output)
+                    row[f"{each.name} at {time}" if each.value else f"{each.name}, {time}"] = (
+                        None if at is None else at.shown
+                    )
+            rows.append(row)
+        return rows
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame with a row for each output. WavesymError where pandas is not installed."""
@@ -192,6 +198,7 @@ def _apart(
 
 class _Found(NamedTuple):
     ranges: list[Range]
+    averages: list[tuple[float, float, float]]
     bound: float
     proved: bool
     how: str
@@ -214,7 +221,15 @@ def _found(models: Sequence[Model], samples: Sequence[float] | None) -> tuple[Mo
 
 
 def _exact(model: Model) -> _Found:
-    return _Found(extremes(model), BOUND, True, "true extremes")
+    found = extremes_and_averages(model)
+    averaged = []
+    for ends, each in found:
+        least = BOUND * max(abs(end.value) for end in ends)
+        mean, rms, residual = (
+            0.0 if abs(middle) <= least else middle for middle in map(midpoint, (each.mean, each.rms, each.residual))
+        )
+        averaged.append((mean, rms, residual))
+    return _Found([extreme for extreme, _ in found], averaged, BOUND, True, "true extremes")
 
 
 def _outputs(model: Model, found: _Found) -> tuple[OutputSummary, ...]:
@@ -226,9 +241,12 @@ def _outputs(model: Model, found: _Found) -> tuple[OutputSummary, ...]:
             _peak(model, least),
             _peak(model, greatest),
             None if first is None or (least, greatest) == NOTHING else instant(model, not_below(first), first),
+            *averaged,
             probe.title,
         )
-        for probe, (least, greatest), first in zip(model.probes, found.ranges, arrivals, strict=True)
+        for probe, (least, greatest), averaged, first in zip(
+            model.probes, found.ranges, found.averages, arrivals, strict=True
+        )
     )
 
 
@@ -257,7 +275,8 @@ def _at(model: Model, taus: Numbers) -> _Found:
     ranges = _ranges(*sampled_extremes(taus, values, bound=response.error_bound))
     made = response.program
     how = f"the values{f' of {made.evaluator}' if made else ''} at {taus.size} samples"
-    return _Found(ranges, response.error_bound, made is None or made.proved, how, made)
+    averaged = _averaged(values, np.ones(taus.size))
+    return _Found(ranges, averaged, response.error_bound, made is None or made.proved, how, made)
 
 
 def _searched(model: Model) -> _Found:
@@ -273,7 +292,19 @@ def _searched(model: Model) -> _Found:
     taus, values = sampled(model, program, step)
     ranges = _ranges(*sampled_extremes(taus, values, program.each, program.error_bound))
     how = f"{program.evaluator} at {taus.size} samples, {apart(model, step)}, then refined"
-    return _Found(ranges, program.error_bound, False, how, program)
+    return _Found(ranges, _averaged(values, _trapezoids(taus)), program.error_bound, False, how, program)
+
+
+def _trapezoids(taus: Numbers) -> Numbers:
+    """The weights of samples in an integral by trapezoids; of the two sides of a jump both have theirs."""
+    steps = np.diff(taus, prepend=taus[:1], append=taus[-1:])
+    return np.asarray((steps[:-1] + steps[1:]) / 2 if taus.size > 1 else np.ones(1))
+
+
+def _averaged(values: Numbers, weights: Numbers) -> list[tuple[float, float, float]]:
+    """Of each row the mean and the root mean square, with weights, and the last value."""
+    means, squares = (np.average(each, axis=1, weights=weights) for each in (values, values**2))
+    return list(zip(means.tolist(), np.sqrt(squares).tolist(), values[:, -1].tolist(), strict=True))
 
 
 def _ranges(values: Numbers, taus: Numbers) -> list[Range]:

@@ -138,7 +138,8 @@ class RuntimeModel:
         labels = SetLabels(
             varied, self.labels, self.units, self.outputs, tuple(p.unit for p in self._model.probes), self.time_unit
         )
-        return labels.labelled(self.values(instants, strict=strict, **parameters), instants, shown)
+        check_horizon(instants, self.tau_max, strict=strict)
+        return labels.labelled(self._computed(instants, parameters), instants, shown)
 
     def _instants(self, tau: ArrayLike | None, times: ArrayLike | None) -> tuple[Array, Array]:
         """Instants as tau, and in the unit of results."""
@@ -156,6 +157,9 @@ class RuntimeModel:
         """Values of all sets as a NumPy array, (sets, outputs, *tau.shape); arguments and errors are those of `run`."""
         instants = _numbers("tau", tau)
         check_horizon(instants, self.tau_max, strict=strict)
+        return self._computed(instants, parameters)
+
+    def _computed(self, instants: Array, parameters: Mapping[str, ArrayLike]) -> Array:
         found = self._engine.values(self._given(parameters), instants.ravel())
         return found.values.reshape(len(found.values), len(self.outputs), *instants.shape)
 

@@ -25,6 +25,17 @@ def steps(path: str) -> list[str | int]:
     return [step[1] or int(step[2]) for step in found]
 
 
+def leaves(fields: object, path: str = "") -> dict[str, object]:
+    """The values of nested tables and lists that are neither, by path."""
+    if isinstance(fields, Mapping):
+        inner = [(f"{path}.{key}".lstrip("."), each) for key, each in fields.items()]
+    elif isinstance(fields, list | tuple):
+        inner = [(f"{path}[{k}]", each) for k, each in enumerate(fields)]
+    else:
+        return {path: fields}
+    return {name: value for at, each in inner for name, value in leaves(each, at).items()}
+
+
 def _replaced(inner: Any, steps: list[str | int], value: object, path: str) -> Any:
     if not steps:
         return value

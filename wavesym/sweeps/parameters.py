@@ -15,6 +15,7 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.runtime.making import sets_program
+from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes
@@ -31,7 +32,7 @@ _HOW = "parameters at run time, errors estimated"
 
 def together(plan: SweepPlan) -> tuple[bool, ...] | None:
     """Whether cases can differ in each dimension and still share a program; None where that is worth nothing."""
-    if "arrival" in plan.summary:
+    if not set(plan.summary) <= set(RUNTIME_ARRAYS):
         return None
     names = [_varied(plan, axis) for axis in range(len(plan.dimensions))]
     joined = tuple(map(bool, names))
@@ -55,7 +56,7 @@ def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool])
         return
     rows, of_all = output_rows(plan, own.model), of_model(plan, own.model)
     peaks = model.peaks(**given)
-    values = {"min": peaks.min, "max": peaks.max, "tau_min": peaks.tau_min, "tau_max": peaks.tau_max}
+    values = {name: getattr(peaks, name) for name in RUNTIME_ARRAYS}
     if plan.histories:
         values["history"] = model.values(instants(own.model, plan.histories), strict=True, **given)
     spread = {}

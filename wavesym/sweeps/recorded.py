@@ -19,6 +19,7 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.modes.loads import Roughness, sampled_roughness
 from wavesym.records.load import RecordedLoad
 from wavesym.results.recorded import ManyRecords, SharedModes
+from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.scene import Scene, lower
 from wavesym.scene.paths import changed
 from wavesym.sweeps.batches import Place
@@ -36,7 +37,10 @@ def serves(plan: SweepPlan) -> bool:
     """Whether records that share a structure can be computed together: true extremes and histories of one record."""
     loads = plan.fields.get("load", ())
     return (
-        plan.records is not None and len(plan.records.values) > 1 and "arrival" not in plan.summary and len(loads) == 1
+        plan.records is not None
+        and len(plan.records.values) > 1
+        and set(plan.summary) <= set(RUNTIME_ARRAYS)
+        and len(loads) == 1
     )
 
 

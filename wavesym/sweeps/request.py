@@ -13,12 +13,11 @@ from wavesym.errors import SceneError
 from wavesym.fields.numbers import Integer
 from wavesym.fields.table import SceneTable, listed, placed, scene_error, shown, wrong
 from wavesym.reading import read_text
+from wavesym.results.statistics import ARRAYS, RUNTIME_ARRAYS
 from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.scene import Scene
 from wavesym.scene.scene_file import builtin_names, parsed
 
-STATISTICS = ("min", "max", "tau_min", "tau_max", "arrival")
-_USUAL = STATISTICS[:4]
 MOST_SAMPLES = 1_000_000
 _FORM = "a file of TOML that describes a sweep"
 
@@ -60,7 +59,7 @@ Values = Annotated[Span | tuple[object, ...], PlainValidator(_values)]
 class Kept(SceneTable):
     """What is kept of each case: extremes of its outputs, and their values at so many equally spaced times."""
 
-    summary: tuple[str, ...] = _USUAL
+    summary: tuple[str, ...] = RUNTIME_ARRAYS
     histories: Integer | None = None
 
     @field_validator("summary", mode="before")
@@ -68,10 +67,9 @@ class Kept(SceneTable):
     def _known(cls, value: object) -> tuple[object, ...]:
         names = listed(value)
         for k, name in enumerate(names):
-            if name not in STATISTICS:
-                raise wrong(
-                    f"{shown(name)} is not a statistic; write {', '.join(STATISTICS[:-1])} or {STATISTICS[-1]}", k
-                )
+            if name not in ARRAYS:
+                *others, last = ARRAYS
+                raise wrong(f"{shown(name)} is not a statistic; write {', '.join(others)} or {last}", k)
             if name in names[:k]:
                 raise wrong(f"{shown(name)} stands twice; write it once", k)
         return names

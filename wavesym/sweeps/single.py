@@ -10,7 +10,8 @@ from wavesym.errors import SceneError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.results.response import Response
-from wavesym.results.summary import OutputSummary, summarised
+from wavesym.results.statistics import array_values
+from wavesym.results.summary import summarised
 from wavesym.scene import Scene, lower
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.values import CaseValues, Numbers
@@ -24,9 +25,9 @@ def single(plan: SweepPlan, scene: Scene) -> CaseValues:
     bounds, hows = [], []
     if plan.summary:
         found = summarised(model)
-        columns = np.array([_statistics(output) for output in found.outputs])
-        for name, values in zip(("min", "max", "tau_min", "tau_max", "arrival"), columns.T, strict=True):
-            made[name] = spread_out(plan, rows, values)
+        every = [array_values(output) for output in found.outputs]
+        for name in plan.summary:
+            made[name] = spread_out(plan, rows, np.array([values[name] for values in every]))
         bounds.append(found.bound)
         hows.append(found.how.partition(" at ")[0])
     if plan.histories:
@@ -66,8 +67,3 @@ def spread_out(plan: SweepPlan, rows: Sequence[int], values: Numbers) -> Numbers
     made = np.full((len(plan.outputs), *values.shape[1:]), np.nan)
     made[list(rows)] = values
     return made
-
-
-def _statistics(output: OutputSummary) -> tuple[float, ...]:
-    arrival = np.nan if output.arrival is None else output.arrival.tau
-    return output.min.value, output.max.value, output.min.at.tau, output.max.at.tau, arrival

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.results.statistics import ARRAYS
 from wavesym.sweeps.batches import Place
 from wavesym.sweeps.plan import OUTPUT, SAMPLE, SweepPlan
 
@@ -23,18 +24,9 @@ class KeptArray(NamedTuple):
     what: str
 
 
-_STATISTICS = {
-    "min": "least value",
-    "max": "greatest value",
-    "tau_min": "tau at which it first has its least value",
-    "tau_max": "tau at which it first has its greatest value",
-    "arrival": "tau at which it first differs from 0",
-}
-
-
 def kept_arrays(plan: SweepPlan) -> list[KeptArray]:
     """The arrays of a sweep."""
-    made = [KeptArray(name, (OUTPUT,), _STATISTICS[name]) for name in plan.summary]
+    made = [KeptArray(name, (OUTPUT,), ARRAYS[name]) for name in plan.summary]
     made.append(KeptArray("bound", (), "error of values, relative to each output's largest"))
     if plan.histories:
         made.append(KeptArray("history", (OUTPUT, SAMPLE), "values at equally spaced times, both ends included"))

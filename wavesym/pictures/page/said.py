@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from wavesym.documents.advice import WAVES, Advice, Candidate
-from wavesym.documents.summary import number
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.methods.advice import advise
 from wavesym.pictures.timescale import Timescale
-from wavesym.results.summary import OutputSummary, Peak, Summary
+from wavesym.results.statistics import cells, headings, number_text
+from wavesym.results.summary import OutputSummary, Summary
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
 _CALLED = {
@@ -31,18 +31,15 @@ class SaidTable:
 
 
 def extremes_told(model: Model, found: Summary | WavesymError, scale: Timescale) -> SaidTable:
-    """Of each output the least and the greatest value, when, and when it first moves; the largest drift; as `summary`
-    writes them, or why they were not found."""
+    """The statistics of each output, and the largest drift, as `summary` writes them, or why they were not found."""
     if isinstance(found, WavesymError):
         return SaidTable((), (), (f"Not found: {found}",))
     when = f"{scale.symbol} in {scale.unit}" if scale.unit else scale.symbol
-    head = ("Output", "Least", f"at {when}", "Greatest", f"at {when}", f"First moves at {when}")
+    head = ("Output", *(text[:1].upper() + text[1:] for text in headings(f"at {when}", f" at {when}")))
     rows = (
         (
             f"{each.label}, {each.unit}" if each.unit else each.label,
-            *_peak(each.min),
-            *_peak(each.max),
-            "never" if each.arrival is None else number(each.arrival.shown),
+            *cells(each, "\u2212"),
         )
         for each in found.outputs
     )
@@ -60,13 +57,9 @@ def extremes_told(model: Model, found: Summary | WavesymError, scale: Timescale)
 def _drift(found: OutputSummary | None, scale: Timescale) -> str:
     if found is None:
         return ""
-    value = f"{number(found.largest.value)} {found.unit}".rstrip()
-    when = f"{scale.symbol} = {number(found.largest.at.shown)} {scale.unit}".rstrip()
+    value = f"{number_text(found.largest.value)} {found.unit}".rstrip()
+    when = f"{scale.symbol} = {number_text(found.largest.at.shown)} {scale.unit}".rstrip()
     return f"Largest drift of a rod: {found.label}, {value} at {when}"
-
-
-def _peak(peak: Peak) -> tuple[str, str]:
-    return number(peak.value), number(peak.at.shown) + "\u2212" * (not peak.reached)
 
 
 def advice_told(model: Model) -> SaidTable:

@@ -1,0 +1,105 @@
+"""What a summary says of an output: one table, which documents, arrays, sweeps and pages go through.
+
+A statistic is one entry here, and where `wavesym.results.summary` finds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import nan
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from wavesym.results.summary import OutputSummary, When
+
+
+@dataclass(frozen=True)
+class Statistic:
+    """A number of an output, an instant, or both.
+
+    Attributes:
+        name: in JSON, in arrays and in sweeps; the instant of a value is `tau_` and the name there.
+        heading: of its column, for people.
+        about: what it is, in words.
+        value: the number, in the output's unit, None for what has none.
+        when: the instant, None for what has none.
+        reached: whether the output takes the value, else it comes up to it and jumps.
+        runtime: whether programs with parameters at run time, and records of one structure, have it too.
+    """
+
+    name: str
+    heading: str
+    about: str
+    value: Callable[[OutputSummary], float] | None = None
+    when: Callable[[OutputSummary], When | None] | None = None
+    reached: Callable[[OutputSummary], bool] = lambda _: True
+    runtime: bool = False
+
+    @property
+    def arrays(self) -> dict[str, str]:
+        """The arrays that it fills, by name, and what they are."""
+        if self.value is None:
+            return {self.name: f"tau at which {self.about}"}
+        return {self.name: self.about, **({f"tau_{self.name}": f"tau of the {self.about}"} if self.when else {})}
+
+    def numbers(self, output: OutputSummary) -> list[float]:
+        """The numbers of an output in these arrays, NaN for an instant that there is not."""
+        found = [] if self.value is None else [self.value(output)]
+        if self.when is not None:
+            at = self.when(output)
+            found.append(nan if at is None else at.tau)
+        return found
+
+
+STATISTICS = (
+    Statistic("min", "least", "least value", lambda o: o.min.value, lambda o: o.min.at, lambda o: o.min.reached, True),
+    Statistic(
+        "max", "greatest", "greatest value", lambda o: o.max.value, lambda o: o.max.at, lambda o: o.max.reached, True
+    ),
+    Statistic("arrival", "arrives", "it first differs from 0", when=lambda o: o.arrival),
+    Statistic("mean", "mean", "mean over the horizon", lambda o: o.mean),
+    Statistic("rms", "rms", "root mean square over the horizon", lambda o: o.rms),
+    Statistic("residual", "at the end", "value at the end of the horizon", lambda o: o.residual),
+)
+
+_EVERY = {name: about for statistic in STATISTICS for name, about in statistic.arrays.items()}
+_RUNTIME = [each.name for each in STATISTICS if each.runtime]
+RUNTIME_ARRAYS = (*_RUNTIME, *(f"tau_{name}" for name in _RUNTIME))
+"""The arrays that programs with parameters at run time have, too."""
+ARRAYS = {name: _EVERY[name] for name in (*RUNTIME_ARRAYS, *_EVERY)}
+"""The arrays of all statistics, and what they are."""
+
+
+def array_values(output: OutputSummary) -> dict[str, float]:
+    """Of one output the numbers of all arrays."""
+    return {
+        name: number
+        for statistic in STATISTICS
+        for name, number in zip(statistic.arrays, statistic.numbers(output), strict=True)
+    }
+
+
+def headings(clock: str, behind: str = "") -> tuple[str, ...]:
+    """What stands above the columns of `cells`; `clock` above instants of values, and `behind` other instants."""
+    found = []
+    for each in STATISTICS:
+        found += [each.heading, *([clock] if each.when else [])] if each.value else [each.heading + behind]
+    return tuple(found)
+
+
+def cells(output: OutputSummary, jumps: str) -> tuple[str, ...]:
+    """An output's numbers as people read them; `jumps` stands behind the instant of a value that is not reached."""
+    found = []
+    for each in STATISTICS:
+        if each.value is not None:
+            found.append(number_text(each.value(output)))
+        if each.when is not None:
+            at = each.when(output)
+            found.append("never" if at is None else number_text(at.shown) + jumps * (not each.reached(output)))
+    return tuple(found)
+
+
+def number_text(value: float) -> str:
+    """A number as it is shown to people."""
+    return f"{value:.7g}"
