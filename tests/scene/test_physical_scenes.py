@@ -449,7 +449,15 @@ REFUSED = [
         "system.storey[0].columns",
         "stands beside stiffness; write one of them",
     ),
-    ("building", "load.0.times.0", 0, "load[0].times[0]", '0 is not a time; write one such as "20 ms"'),
+    ("building", "load.0.times.0", 1, "load[0].times[0]", '1 is not a time; write one such as "20 ms"'),
+    ("building", "system.storey.0.height", 0, "system.storey[0].height", "0 is not positive; write a length above 0"),
+    (
+        "building",
+        "system.storey.0.column_mass",
+        "0 t",
+        "system.storey[0].column_mass",
+        "columns without mass have no waves",
+    ),
     (
         "building",
         "load.0.times.0",
@@ -655,6 +663,12 @@ RUBBISH = [
     "9" * 200,
 ]
 RUBBISH += [{"rod": "1 m"}, {"mass": "1 kg"}, {"motion": "velocity"}, [[]], "1 m+", "a:1 m", "\ud800", "1 s", [1, 2, 3]]
+
+
+@pytest.mark.parametrize("zero", [0, 0.0, "0", "0/3", "0.0"])
+def test_zero_needs_no_unit(zero: object) -> None:
+    scene = changed(changed(BUILDING, "load.0.times.0", zero), "load.0.b.0", zero)
+    assert Scene(**scene).load == Scene(**BUILDING).load
 
 
 @settings(max_examples=60, deadline=None)

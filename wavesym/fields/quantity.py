@@ -12,6 +12,8 @@ from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pydantic_core import PydanticCustomError
+
 from wavesym.errors import did_you_mean
 from wavesym.fields.dimensions import DIMENSIONS, called, fits, with_article
 from wavesym.fields.numbers import LARGEST_EXPONENT, LONGEST, exact
@@ -45,11 +47,14 @@ class _Meaning(NamedTuple):
 
 def quantity(value: object, dimension: str) -> Fraction:
     """A number with a unit, such as "3.5 m" or "0.3 g", as so many SI base units; exact but for units with pi in them.
+    0 is one in every unit, and needs none.
 
     `dimension` is a name in `DIMENSIONS`. "g" is the acceleration of gravity where an acceleration (or its rate) is
     expected, else the gram. Raises (as does every validator here) the error of `table.wrong`.
     """
     what = f"{shown(value)} is not {_example(dimension)}"
+    if _is_zero(value):
+        return Fraction(0)
     if not isinstance(value, str) or isinstance(value, Written):
         raise wrong(what)
     if len(value) > LONGEST:  # before anything is done with it
@@ -62,6 +67,14 @@ def quantity(value: object, dimension: str) -> Fraction:
         size = f"0 or a size from 1e-{LARGEST_EXPONENT} to 1e{LARGEST_EXPONENT} in SI base units"
         raise wrong(f"{shown(value)} is too large or too small; write {size}")
     return number
+
+
+def _is_zero(value: object) -> bool:
+    """Whether a value is the number 0, in whatever form."""
+    try:
+        return exact(value) == 0
+    except PydanticCustomError:
+        return False
 
 
 def _example(dimension: str) -> str:

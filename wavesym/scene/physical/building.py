@@ -22,6 +22,7 @@ from wavesym.scene.physical.measured import (
     Modulus,
     SecondMoment,
     Stiffness,
+    measured,
     one_of,
 )
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
@@ -72,6 +73,17 @@ class Shear(SceneTable):
         return self.A if self.rho else None
 
 
+def _column_mass(value: object) -> Fraction:
+    mass = measured(value, "mass", 0)
+    if not mass:
+        springs = 'type = "chain", parts { spring = "678 MN/m" } and { mass = "350 t" }'
+        raise wrong(f"columns without mass have no waves, and are springs; write {springs}")
+    return mass
+
+
+ColumnMass = Annotated[Fraction, PlainValidator(_column_mass)]
+
+
 class Storey(SceneTable):
     """One storey, or `count` that are the same."""
 
@@ -80,7 +92,7 @@ class Storey(SceneTable):
     stiffness: Stiffness | None = None
     columns: Columns | None = None
     shear: Shear | None = None
-    column_mass: Mass | None = None
+    column_mass: ColumnMass | None = None
     floor_mass: Mass = Field(description='a mass such as "350 t"')
 
     def rod(self) -> ElasticRod:
