@@ -115,7 +115,7 @@ def test_units_are_on_the_axes_and_in_the_colours():
         there = wavesym.evaluator(scene)([(row + 0.4142) / rows * until for row in near])[quantity]
         assert np.max(np.abs(cells[near, int(0.75 * columns)] - there)) < 0.01 * np.max(np.abs(cells))
         assert np.max(np.abs(there)) > 0.1 * np.max(np.abs(cells))
-    assert [axes.get_xlabel() for axes in figure.axes[1::2]] == ["velocity in rpm", "moment in kN*m"]
+    assert [text.get_text() for text in figure.texts[2:]] == ["Velocity in rpm", "Moment in kN\u00b7m"]
 
 
 def test_names_do_not_lie_over_one_another():
@@ -129,6 +129,25 @@ def test_names_do_not_lie_over_one_another():
     assert not any(one.overlaps(other) for k, one in enumerate(boxes) for other in boxes[:k])
     ticks = [label.get_window_extent() for label in axes.get_yticklabels()]
     assert not any(box.overlaps(tick) for box in boxes for tick in ticks)
+
+
+def test_fronts_are_where_outputs_jump():
+    """A pulse of two jumps runs down a bar and back: lines leave its ends then, and no others."""
+    parts = [{"joint": True, "name": "head"}, {"rod": 2}, "fixed"]
+    load = [{"at": "head", "times": [0, "1/2"], "steps": [1, -1]}]
+    scene = Scene(name="s", system={"type": "chain", "parts": parts}, load=load, output={"until": 3, "force": [1]})
+    field = Field(lower(scene))
+    left, right = field.fronts(0)
+    assert left.tolist() == [0, 0.5]
+    assert right.tolist() == [2, 2.5]
+    assert field.delay(0) == 2
+
+
+def test_a_wave_without_jumps_has_no_fronts():
+    parts = [{"joint": True, "name": "head"}, {"rod": 2}, "fixed"]
+    load = [{"at": "head", "times": [0], "ramps": [1]}]
+    scene = Scene(name="s", system={"type": "chain", "parts": parts}, load=load, output={"until": 3, "force": [1]})
+    assert [times.tolist() for times in Field(lower(scene)).fronts(0)] == [[], []]
 
 
 def _made(parts, until, **output):

@@ -10,6 +10,7 @@ import numpy as np
 from wavesym.pictures.along import Along, Band
 from wavesym.pictures.histories import Points
 from wavesym.pictures.timescale import Timescale
+from wavesym.pictures.units import unit_text
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class BandExtreme:
 
     def told(self, scale: Timescale) -> str:
         """In a line."""
-        value = f"{self.value:.4g} {self.unit}".rstrip()
+        value = f"{self.value:.4g} {unit_text(self.unit)}".rstrip()
         return f"{value} {self.place}, {scale.told(self.tau)}"
 
 

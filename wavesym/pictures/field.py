@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 
 # errors this small, relative to the largest wave, are seen in no picture
 _UNSEEN = arb(2) ** -20
+_FRONT = 0.02  # of the largest wave: smaller jumps are not drawn as fronts
 _MORE = (1, 2, 4)
 
 
@@ -43,6 +44,16 @@ class Field:
         left = self._waves[End(bar, 1)](tau - (1 - part) * delay)
         return right + left, nearest(self._network.bars[bar].impedance) * (left - right)
 
+    def delay(self, bar: int) -> float:
+        """How long a wave takes to cross a bar, in tau."""
+        return nearest(self._network.bars[bar].delay)
+
+    def fronts(self, bar: int) -> tuple[Array, Array]:
+        """When jumps that are large enough to be seen leave the left and the right end of a bar, in tau."""
+        largest = max(float(np.max(np.abs(wave.ends), initial=0.0)) for wave in self._waves.values())
+        left, right = (self._waves[End(bar, side)].jumps(_FRONT * largest) for side in (0, 1))
+        return left, right
+
 
 def _seen(motion: Motion) -> Waves:
     """The waves, with as many bits as a picture needs: the first ones do not always bear what springs swing."""
@@ -65,6 +76,18 @@ class _SampledWave:
         self._powers = [
             np.array([nearest(middle(c)) for c in known.polynomial.coeffs()] or [0.0]) for known in wave.stretches
         ]
+        after = np.array([powers[0] for powers in self._powers])
+        lengths = np.diff(self._starts)
+        before = [
+            np.polynomial.polynomial.polyval(length, own) for length, own in zip(lengths, self._powers, strict=False)
+        ]
+        # values (before, after) at each start; before the first there is none
+        self.ends = np.column_stack([np.array([0.0, *before]), after])
+
+    def jumps(self, least: float) -> Array:
+        """When it jumps by so much at least."""
+        found: Array = self._starts[np.abs(self.ends[:, 1] - self.ends[:, 0]) >= least]
+        return found
 
     def __call__(self, tau: Array) -> Array:
         place = np.clip(np.searchsorted(self._starts, tau, side="right") - 1, 0, None)

@@ -11,13 +11,15 @@ import numpy as np
 from wavesym.mechanics.model import Model
 from wavesym.pictures.histories import Histories, History, Points
 from wavesym.pictures.timescale import Timescale, timescale
+from wavesym.pictures.units import unit_text
 
 CURVES = 8  # that an eye can tell apart in a panel
 MOST_PANELS = 6  # of a quantity
 STRIPS = 4  # that take the room of a panel
-_STRIP = 0.8  # inches
+_STRIP = 0.9  # inches
 _TURNS, _LEVELS = 40, 20
 _MARKED = 3  # curves of a panel whose extremes are all marked; of more only the panel's own
+_CALLED = {"relative": "relative displacement"}
 _SYMBOL = {"collision": "u", "drive": "\u03b8", "building": "y"}
 _DEFINITION = {
     "strain": "(l / {0}\u2080) \u2202{0}/\u2202x",
@@ -49,7 +51,7 @@ class PlotPanel:
     title: str
     histories: tuple[History, ...]
     marks: tuple[Mark, ...] = ()
-    height: float = 2.7
+    height: float = 2.9
     limits: tuple[float, float] | None = None
 
     @property
@@ -98,13 +100,14 @@ def load_panel(loads: Sequence[History], height: float) -> PlotPanel:
     """Loads over time; in their unit, where all have the same."""
     units = {load.output.unit for load in loads}
     unit = units.pop() if len(units) == 1 else ""
-    return PlotPanel(f"load\nin {unit}" if unit else "load", tuple(loads), height=height)
+    return PlotPanel(f"load\nin {unit_text(unit)}" if unit else "load", tuple(loads), height=height)
 
 
 def axis_title(model: Model, quantity: str, unit: str = "") -> str:
     """A quantity in its unit, or as section 4 of the paper makes it dimensionless."""
     if unit or model.clock is not None:
-        return f"{quantity}\nin {unit}" if unit else quantity
+        words = _CALLED.get(quantity, quantity)
+        return f"{words}\nin {unit_text(unit)}" if unit else words
     letter = _SYMBOL.get(model.labels.system["type"], "u")
     return f"{quantity}\n{_DEFINITION[quantity].format(letter)} (dimensionless)"
 
@@ -151,5 +154,5 @@ def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
         for k in sorted({int(np.argmax(points[:, 1])), int(np.argmin(points[:, 1]))}):
             tau, value = points[k]
             if value:
-                told = f"{value:.4g} {shown[0].output.unit}".rstrip()
+                told = f"{value:.4g} {unit_text(shown[0].output.unit)}".rstrip()
                 yield Mark(f"{told} at {scale.of(tau)}", points[k : k + 1], "normal")

@@ -10,12 +10,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from textwrap import wrap
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from wavesym.numbers.doubles import nearest
@@ -23,14 +20,14 @@ from wavesym.pictures.groups import PlotPanel, load_panel, notes, panels, restle
 from wavesym.pictures.histories import Histories, History, Points
 from wavesym.pictures.labels import Curve, label
 from wavesym.pictures.reduction import reduced
+from wavesym.pictures.style import FONT, HALO, WIDTH, draw_grid, new_figure, styled
 from wavesym.pictures.timescale import Timescale, timescale
 
-FONT = 8.5
-CHARACTERS = 180  # in a line of text across the figure
-_WIDTH, _LEFT, _RIGHT, _GAP = 11.0, 0.95, 0.15, 0.2  # inches
-_TITLE = 0.6  # of an axis, to its left
-_LINE = 0.175  # height of a line of text
-_AXIS = 0.5  # below the last panel
+CHARACTERS = 74  # in a line of text across the figure
+_LEFT, _RIGHT, _GAP = 1.05, 0.1, 0.22  # inches
+_TITLE = 0.62  # of an axis, to its left
+_LINE = 0.21  # height of a line of text
+_AXIS = 0.55  # below the last panel
 _BEYOND = 1.01  # what happens at the end of the horizon is not hidden by the frame
 _Dashes = str | tuple[int, tuple[int, ...]]
 _STYLES: tuple[tuple[_Dashes, str], ...] = (
@@ -47,7 +44,6 @@ _ALPHA = {False: 1.0, True: 0.55}  # of what is formal
 _VERTICES, _ANCHORS = 18, 8  # of a curve, as labels see it; of those, places where its name may hang
 _NEAR = 0.03  # curves this near to each other, in heights of a panel, are not told apart by a label
 _COLUMNS = 2000  # of a panel
-_HALO = [withStroke(linewidth=2, foreground="white")]
 _LOAD = 1.2  # inches
 
 
@@ -64,7 +60,7 @@ def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     """The outputs of a scene under its loads; the same bytes from the same scene where `saving.save` writes it."""
     model = histories.model
     until, scale = nearest(model.until), timescale(model)
-    title = [f"{model.name}: {model.labels.system['type']}, {model.labels.size}, {scale.symbol} to {scale.of(until)}"]
+    title = [f"{model.name}: outputs over time, to {scale.told(until)}"]
     title += [line for note in notes(histories) for line in wrap(note, CHARACTERS)]
     opened = [
         Instant(end.double, f"contact at x = {end.x} opens, {scale.told(end.double)}") for end in histories.contacts
@@ -75,6 +71,7 @@ def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     return stacked([*acting, *panels(histories)], until, title, instants=opened, scale=scale)
 
 
+@styled
 def stacked(
     panels: Sequence[PlotPanel],
     until: float,
@@ -90,24 +87,22 @@ def stacked(
     gaps = [_GAP, *gaps]
     above, under = (len(title) + 0.9) * _LINE - _GAP, _AXIS + (len(below) + 0.6) * _LINE * bool(below)
     height = above + sum(gaps) + sum(panel.height for panel in panels) + under
-    with mpl.rc_context({"font.size": FONT, "font.family": "DejaVu Sans"}):
-        figure = Figure(figsize=(_WIDTH, height), dpi=100)
-        FigureCanvasAgg(figure)
-        for k, line in enumerate(title):
-            y = 1 - (k + 0.4) * _LINE / height
-            figure.text(0.1 / _WIDTH, y, line, va="top", weight="bold" if k == 0 else "normal")
-        for k, line in enumerate(reversed(below)):
-            figure.text(0.1 / _WIDTH, (k + 0.6) * _LINE / height, line, va="baseline")
-        top = height - above
-        for k, (panel, gap) in enumerate(zip(panels, gaps, strict=True)):
-            top -= gap + panel.height
-            width = 1 - (_LEFT + _RIGHT) / _WIDTH
-            axes = figure.add_axes((_LEFT / _WIDTH, top / height, width, panel.height / height))
-            axes.set_xlim(0, _BEYOND * until)
-            axes.yaxis.set_label_coords(-_TITLE / _WIDTH / width, 0.5)
-            axes.tick_params(labelbottom=k == len(panels) - 1)
-            _fill(axes, panel, instants)
-        axes.set_xlabel(scale.title)
+    figure = new_figure(height, constrained=False)
+    for k, line in enumerate(title):
+        y = 1 - (k + 0.4) * _LINE / height
+        figure.text(0.1 / WIDTH, y, line, va="top", weight="bold" if k == 0 else "normal")
+    for k, line in enumerate(reversed(below)):
+        figure.text(0.1 / WIDTH, (k + 0.6) * _LINE / height, line, va="baseline")
+    top = height - above
+    for k, (panel, gap) in enumerate(zip(panels, gaps, strict=True)):
+        top -= gap + panel.height
+        width = 1 - (_LEFT + _RIGHT) / WIDTH
+        axes = figure.add_axes((_LEFT / WIDTH, top / height, width, panel.height / height))
+        axes.set_xlim(0, _BEYOND * until)
+        axes.yaxis.set_label_coords(-_TITLE / WIDTH / width, 0.5)
+        axes.tick_params(labelbottom=k == len(panels) - 1)
+        _fill(axes, panel, instants)
+    axes.set_xlabel(scale.title)
     return figure
 
 
@@ -128,10 +123,8 @@ def _clocked(panel: PlotPanel, scale: Timescale) -> PlotPanel:
 
 def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     axes.set_ylabel(panel.title)
-    axes.set_axisbelow(True)
-    axes.grid(True, color="0.92", linewidth=0.5)
+    draw_grid(axes)
     axes.ticklabel_format(axis="y", scilimits=(-2, 5))
-    axes.axhline(0, color="0.7", linewidth=0.6, zorder=1)
     for history, (dashes, color) in zip(panel.histories, _STYLES, strict=False):
         _curve(axes, history, dashes, color)
     axes.margins(x=0, y=0.14)
@@ -148,7 +141,7 @@ def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     if names:
         label(axes, names, FONT)
     for text in axes.texts:  # legible even where curves leave no room
-        text.set(zorder=5, path_effects=_HALO)
+        text.set(zorder=5, path_effects=HALO)
 
 
 def _strip(axes: Axes, panel: PlotPanel) -> None:
@@ -160,7 +153,7 @@ def _strip(axes: Axes, panel: PlotPanel) -> None:
     inside = (low - 0.1 * size, high + 0.1 * size)  # above are the words, and another strip
     axes.set_yticks([tick for tick in MaxNLocator(3).tick_values(low, high) if inside[0] <= tick <= inside[1]])
     axes.yaxis.set_major_formatter("{x:g}")  # no room for a power of ten beside it
-    axes.text(0.004, 0.95, panel.told, transform=axes.transAxes, va="top", path_effects=_HALO)
+    axes.text(0.004, 0.95, panel.told, transform=axes.transAxes, va="top", path_effects=HALO)
 
 
 def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Curve]:

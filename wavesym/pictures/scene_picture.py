@@ -10,6 +10,7 @@ from wavesym.pictures.along import along
 from wavesym.pictures.groups import notes
 from wavesym.pictures.histories import histories
 from wavesym.pictures.loads import load_histories
+from wavesym.pictures.naming import with_titles
 from wavesym.scene import Scene
 
 KINDS = ("history", "xt", "envelope", "map")
@@ -37,5 +38,5 @@ def draw(scene: Scene, model: Model, kind: str) -> tuple[Figure, list[str]]:
         return envelope.draw(model, along(scene, model)), []
     if kind == "map":
         return heatmap.draw(model, along(scene, model), load_histories(model, scene.scale)), []
-    made = histories(model)
+    made = histories(with_titles(model))
     return panels.draw(made, load_histories(model, scene.scale)), notes(made)

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from textwrap import wrap
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -25,27 +25,45 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.field import Field
 from wavesym.pictures.stations import open_times
+from wavesym.pictures.style import WIDTH, colours, new_figure, styled
 from wavesym.pictures.timescale import timescale
-from wavesym.pictures.xt_nodes import draw_nodes, legend
+from wavesym.pictures.units import unit_text
+from wavesym.pictures.xt_nodes import draw_nodes, legend, name_rows
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.physical.scene import PhysicalScene
 from wavesym.systems.station import Lines, Station
 
 Array = NDArray[np.float64]
 
-_WIDTH, _HEIGHT, _FONT = 11.0, 7.5, 9  # inches, points
-_ROWS, _COLUMNS = 900, 700  # cells of all lines together
+_PANEL, _BELOW, _LINE = 3.4, 0.62, 0.21  # inches: a panel, the axis below it, a line of text
+_LEFT, _RIGHT = 0.9, 0.95  # inches beside the panels
+_LETTERS = 74  # of a line of text
+_ROWS, _COLUMNS = 600, 500  # cells of all lines together
 _OFF = 0.4142  # of a cell: where in it the value is taken
-_SHADES = 101  # an odd number, so that 0 is white; few, so that files are small
+_MOST_FRONTS = 400  # lines that can be told apart
 _NARROWEST = 0.12  # of all lines together: where names and numbers still fit
-_SENSE = {"velocity": "", "force": ", pull red, push blue"}
-_NAMED = {"velocity": "velocity", "force": f"force (impedance times strain){_SENSE['force']}"}
+_SENSE = {"velocity": "", "force": ": pull red, push blue"}
 
 
+def description(model: Model) -> str:
+    """What is seen, for those who do not see it."""
+    return (
+        "Colours show the velocity, and below it the force, of every rod; place to the right and time upward to "
+        f"{timescale(model).told(nearest(model.until))}. Waves are bands that slope by one rod in one crossing."
+    )
+
+
+@styled
 def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> Figure:
-    """Velocity and force of all rods over the horizon, in a picture of each line. CostError as for their outputs.
+    """Velocity above force of all rods over the horizon, with a panel for each line.
 
-    A `physical` scene has its units at the axes.
+    Args:
+        model: what moves.
+        lines: its main line and its branches.
+        physical: a scene with units, which are those of the axes.
+
+    Raises:
+        CostError: as for outputs of all rods.
     """
     field, scale = Field(model), timescale(model)
     units = physical.scale if physical else None
@@ -55,54 +73,68 @@ def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> F
         place: [(low * scale.per_tau, high * scale.per_tau) for low, high in times]
         for place, times in open_times(model, field.events).items()
     }
-    figure = Figure(figsize=(_WIDTH, _HEIGHT), dpi=120)
-    FigureCanvasAgg(figure)
     widths = _widths(shown)
-    grid = figure.add_gridspec(
-        2,
-        2 * len(shown) + 1,
-        width_ratios=[*widths, 0.1 * sum(widths), *widths],
-        height_ratios=(1, 0.03),
-        left=0.06,
-        right=0.98,
-        top=0.88,
-        bottom=0.08,
-        wspace=0.2 if len(shown) > 1 else 0.1,
-        hspace=0.16,
+    wide = WIDTH - _LEFT - _RIGHT
+    names = max(
+        name_rows(model.network, each, wide * w / sum(widths)) for each, w in zip(shown.values(), widths, strict=True)
     )
-    upward = scale.title if scale.unit else scale.symbol
-    title = f"{model.name}: {model.labels.system['type']}, {scale.symbol} upward to {scale.of(nearest(model.until))}"
-    figure.suptitle(title, x=0.06, y=0.985, ha="left")
-    figure.text(0.06, 0.935, legend(model.network, shown), fontsize=_FONT - 1, color="0.3")
-    for first, quantity in ((0, "velocity"), (len(shown) + 1, "force")):
+    notes = wrap(legend(model.network, shown), _LETTERS)
+    above, gap = _LINE * (2.8 + len(notes) + names), _BELOW + _LINE * (1.5 + names)
+    height = above + 2 * _PANEL + gap + _BELOW
+    figure = new_figure(height, constrained=False)
+    figure.text(0.01, 1 - 0.4 * _LINE / height, f"{model.name}: waves over place and time", weight="bold", va="top")
+    for k, note in enumerate(notes):
+        figure.text(0.01, 1 - _LINE * (1.5 + k) / height, note, color="0.3", va="top")
+    for row, quantity in enumerate(("velocity", "force")):
         factor = nearest(rational(units.factor(quantity, 1))) if units else 1.0
         images = [_image(field, stations, model, quantity, factor) for stations in shown.values()]
         largest = max(float(np.max(np.abs(image[2]), initial=0.0)) for rods in images for image in rods) or 1.0
-        norm, colours = Normalize(-largest, largest), colormaps["RdBu_r"].resampled(_SHADES)
-        for column, ((name, stations), rods) in enumerate(zip(shown.items(), images, strict=True)):
-            axes = figure.add_subplot(grid[0, first + column])
+        norm, shades = Normalize(-largest, largest), colours(signed=True)
+        top = height - above - row * (_PANEL + gap)
+        left = _LEFT
+        for width, (name, stations), rods in zip(widths, shown.items(), images, strict=True):
+            own = wide * width / sum(widths)
+            room = own - 0.25 * (len(shown) > 1)
+            axes = figure.add_axes((left / WIDTH, (top - _PANEL) / height, room / WIDTH, _PANEL / height))
             for x, tau, values in rods:
-                axes.pcolormesh(x, tau, values, cmap=colours, norm=norm, rasterized=True)
-            _frame(axes, name, stations, until, upward if column == 0 else "")
+                axes.pcolormesh(x, tau, values, cmap=shades, norm=norm, rasterized=True)
+            _draw_fronts(axes, field, stations, until, scale.per_tau)
+            _frame(axes, name, stations, until, scale.title if left == _LEFT else "")
             if model.length is not None:
                 _lengths(axes, axis_text(name, model.length), float(model.length.size))
             draw_nodes(axes, model.network, stations, opened, until)
             if not name:
                 _formal(axes, model, float(stations[-1].x))
-        place = figure.add_subplot(grid[1, first : first + len(shown)])
-        bar = figure.colorbar(ScalarMappable(norm, colours), cax=place, orientation="horizontal")
-        bar.ax.tick_params(labelsize=_FONT - 1)
-        bar.set_label(
-            _NAMED[quantity] if units is None else _named(quantity, units),
-            fontsize=_FONT,
-        )
+            left += own
+        place = figure.add_axes(((left + 0.08) / WIDTH, (top - _PANEL) / height, 0.14 / WIDTH, _PANEL / height))
+        bar = figure.colorbar(ScalarMappable(norm, shades), cax=place)
+        bar.ax.locator_params(nbins=7)
+        words = _named(quantity, units)
+        figure.text(_LEFT / WIDTH, (top + _LINE * (names + 0.35)) / height, words, weight="bold", va="bottom")
     return figure
 
 
-def _named(quantity: str, units: Scale) -> str:
-    """In its unit; only along a rod is one sign a pull."""
-    called = "moment" if (quantity, units.kind) == ("force", "torsional") else quantity
-    return f"{called} in {units.unit(quantity)}{_SENSE[quantity] if units.kind == 'longitudinal' else ''}"
+def _draw_fronts(axes: Axes, field: Field, stations: Sequence[Station], until: float, per_tau: float) -> None:
+    """The fronts of all waves of a line as thin lines; none where they are too many to be told apart."""
+    paths = []
+    for station, following in pairwise(stations):
+        assert station.right is not None  # between two stations there is a bar
+        low, high, delay = float(station.x), float(following.x), field.delay(station.right) * per_tau
+        left, right = (times * per_tau for times in field.fronts(station.right))
+        paths += [[(low, t), (high, t + delay)] for t in left if t < until]
+        paths += [[(high, t), (low, t + delay)] for t in right if t < until]
+    if len(paths) <= _MOST_FRONTS:
+        axes.add_collection(LineCollection(paths, colors="0.15", linewidths=0.5), autolim=False)
+
+
+def _named(quantity: str, units: Scale | None) -> str:
+    """A quantity in its unit; only along a rod is one sign a pull."""
+    if units is None:
+        return quantity.capitalize() if quantity == "velocity" else f"Force (impedance \u00d7 strain){_SENSE[quantity]}"
+    words = "moment" if (quantity, units.kind) == ("force", "torsional") else quantity
+    return (
+        f"{words.capitalize()} in {unit_text(units.unit(quantity))}{_SENSE[quantity] * (units.kind == 'longitudinal')}"
+    )
 
 
 def _lengths(axes: Axes, label: str, length: float) -> None:
@@ -110,9 +142,9 @@ def _lengths(axes: Axes, label: str, length: float) -> None:
     low, high = axes.get_xlim()
     end = high * length * (1 + 1e-9)  # rounding must not take the tick at the end
     places = [x for x in MaxNLocator(len(axes.get_xticks())).tick_values(0, high * length) if x <= end]
-    axes.set_xticks([min(place / length, high) for place in places], [f"{place:g}" for place in places])
+    axes.set_xticks([min(place / length, high) for place in places], [f"{place:.4g}" for place in places])
     axes.set_xlim(low, high)
-    axes.set_xlabel(label, fontsize=_FONT)
+    axes.set_xlabel(label)
 
 
 def _formal(axes: Axes, model: Model, long: float) -> None:
@@ -153,8 +185,8 @@ def _image(
 def _frame(axes: Axes, name: str, stations: Sequence[Station], until: float, upward: str) -> None:
     axes.set_xlim(0, float(stations[-1].x))
     axes.set_ylim(0, until)
-    axes.set_xlabel(axis_text(name), fontsize=_FONT)
-    axes.locator_params(axis="x", nbins=6 if upward else 3)
-    axes.tick_params(labelsize=_FONT - 1, labelleft=bool(upward))
-    if upward:
-        axes.set_ylabel(upward, fontsize=_FONT)
+    axes.set_xlabel(axis_text(name))
+    axes.locator_params(axis="x", nbins=8 if upward else 2)
+    axes.locator_params(axis="y", nbins=8)
+    axes.tick_params(labelleft=bool(upward))
+    axes.set_ylabel(upward)

@@ -14,11 +14,12 @@ from matplotlib.transforms import ScaledTranslation
 
 from wavesym.mechanics.network import Link, Network, Point
 from wavesym.pictures.stations import Opened, standing
+from wavesym.pictures.style import FONT
 from wavesym.systems.station import Lines, Station
 
 _MASS, _LINK, _CONTACT, _THIN = 4.0, 2.5, 5.0, 0.6  # points
 _MOVED, _HELD = "0.55", "gold"
-_FONT, _LETTER, _ROW = 8, 0.62, 10  # points; of the font's size; points
+_LETTER, _ROW = 0.62, 15  # of the font's size; points
 
 
 def legend(network: Network, lines: Lines) -> str:
@@ -28,7 +29,7 @@ def legend(network: Network, lines: Lines) -> str:
     links = [item for item in items if isinstance(item, Link)]
     said = {
         "thick black: a mass": any(point.mass for point in points),
-        "thick grey: fixed, or moved as told": any(point.motion for point in points),
+        "thick grey: fixed, or of given motion": any(point.motion for point in points),
         "yellow: a spring or dashpot": any(not link.contact for link in links),
         "white between two lines: an open contact": any(link.contact for link in links),
     }
@@ -50,7 +51,7 @@ def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], opened
         for item in items:
             _draw_item(_Pen(axes, float(station.x), at + item.width / 2), item, opened, until)
             at += item.width
-        if names := ", ".join(filter(None, (network.points[point].name for point in station.points))):
+        if names := _names(network, station):
             _write(axes, float(station.x), names, rows)
     axes.spines[["left", "right"]].set_visible(False)
 
@@ -119,11 +120,28 @@ def _write(axes: Axes, x: float, name: str, rows: list[float]) -> None:
     """A name above its place, in the lowest row where it does not lie over another; `rows` end so far to the right."""
     left, right = axes.get_xlim()
     points = axes.get_window_extent().width / axes.figure.dpi * 72
-    middle, width = points * (x - left) / (right - left), _LETTER * _FONT * len(name)
-    align = {left: "left", right: "right"}.get(x, "center")
+    row, align = _place_name((x - left) / (right - left), name, points, rows)
+    axes.annotate(name, (x, 1), (0, 3 + _ROW * row), ("data", "axes fraction"), "offset points", ha=align)
+
+
+def _place_name(part: float, name: str, points: float, rows: list[float]) -> tuple[int, str]:
+    """The row of a name at a part of an axis that is so many points wide, and how it is aligned there."""
+    middle, width = points * part, _LETTER * FONT * len(name)
+    align = {0.0: "left", 1.0: "right"}.get(part, "center")
     begin = {"left": middle, "right": middle - width, "center": middle - width / 2}[align]
     row = next((k for k, end in enumerate(rows) if end < begin), len(rows))
     rows[row : row + 1] = [begin + width]
-    axes.annotate(
-        name, (x, 1), (0, 3 + _ROW * row), ("data", "axes fraction"), "offset points", ha=align, fontsize=_FONT
-    )
+    return row, align
+
+
+def name_rows(network: Network, stations: Sequence[Station], inches: float) -> int:
+    """How many rows the names of a line take above an axis of such a width."""
+    rows: list[float] = []
+    for station in stations:
+        if names := _names(network, station):
+            _place_name(float(station.x / stations[-1].x), names, 72 * inches, rows)
+    return len(rows)
+
+
+def _names(network: Network, station: Station) -> str:
+    return ", ".join(filter(None, (network.points[point].name for point in station.points)))

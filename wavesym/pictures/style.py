@@ -1,0 +1,68 @@
+"""One look of all pictures: size, font, colours.
+
+A picture is WIDTH inches across, all its text has FONT points: shown 376 px across (a page on a phone) it has 9 px.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import Colormap
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+
+WIDTH, FONT, DPI = 6.9, 12.0, 120  # inches, points, dots an inch
+MAIN, GREATEST, LEAST, OTHER = "#1f4e9c", "#b2431f", "#1f4e9c", "#d0692b"
+BETWEEN, FORMAL = "#e9ecf0", "0.75"
+_GRID, _ZERO, _SHADES = "0.92", "0.6", 101  # an odd number, so that 0 is white; few, so that files are small
+_LOOK: Any = {"font.size": FONT, "font.family": "DejaVu Sans", "axes.titlesize": FONT, "legend.fontsize": FONT}
+HALO = [withStroke(linewidth=2.5, foreground="white")]
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def styled(draw: Callable[P, R]) -> Callable[P, R]:
+    """A function that draws, with the font of all pictures and without a change of the user's settings."""
+
+    @wraps(draw)
+    def wrapped(*args: P.args, **keys: P.kwargs) -> R:
+        with mpl.rc_context(_LOOK):
+            return draw(*args, **keys)
+
+    return wrapped
+
+
+def new_figure(height: float, *, constrained: bool = True) -> Figure:
+    """An empty figure, `height` inches high.
+
+    Args:
+        height: in inches.
+        constrained: whether matplotlib finds room for texts; else axes have places of their own.
+    """
+    figure = Figure(figsize=(WIDTH, height), dpi=DPI, layout="constrained" if constrained else None)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def set_title(figure: Figure, words: str) -> None:
+    """What is seen in a figure, above it."""
+    figure.suptitle(words, x=0.01, ha="left", weight="bold", fontsize=FONT)
+
+
+def draw_grid(axes: Axes, *, zero: bool = True) -> None:
+    """Pale lines at the ticks, below the curves, and a darker one at zero."""
+    axes.set_axisbelow(True)
+    axes.grid(True, color=_GRID, linewidth=0.6)
+    if zero:
+        axes.axhline(0, color=_ZERO, linewidth=0.7, zorder=1)
+
+
+def colours(*, signed: bool) -> Colormap:
+    """Shades from blue by white to red for values with a sign, from light to dark for sizes."""
+    return mpl.colormaps["RdBu_r" if signed else "YlGnBu"].resampled(_SHADES).with_extremes(bad=FORMAL)
