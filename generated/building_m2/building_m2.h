@@ -3,7 +3,7 @@
  *   building, as far as the light cone of the outputs reaches
  *   base = force
  *   kappa_0 = 1/4, kappa_1 = 3/5, kappa_2 = 1/5
- *   load 0: 1 a at 0, -2/3 b at 0, 3/2 a at 3, 1/3 b at 3, 1/2 a at 6, 1/3 b at 6
+ *   acceleration of the base: 1 a at 0, -2/3 b at 0, 3/2 a at 3, 1/3 b at 3, 1/2 a at 6, 1/3 b at 6
  *   until = 12, tolerance = 1e-08
  *
  * Evaluator: closed, 69 pulses, bound 1e-11, takes longer; pieces, degree 0..6, 15 KiB, bound 9.4e-09

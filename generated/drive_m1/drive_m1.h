@@ -3,8 +3,8 @@
  *   drive, as far as the light cone of the outputs reaches
  *   kappa_1 = 1
  *   inertia_1 = 1, inertia_2 = 2
- *   load 0: 1 M1 at 0, -1 M1 at 4
- *   load 1: 1 M2 at 0, -1 M2 at 4
+ *   torque on disc 1: 1 M1 at 0, -1 M1 at 4
+ *   torque on disc 2: 1 M2 at 0, -1 M2 at 4
  *   until = 10, tolerance = 1e-06
  *
  * Evaluator: closed, 50 pulses, bound 6e-09, takes longer; pieces, degree 0..5, 11 KiB, bound 8.9e-07

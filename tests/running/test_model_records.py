@@ -99,7 +99,7 @@ def check(model, scene, factors):
 def test_a_record_counts_times_its_factor(scene):
     factors = [Fraction(-2), Fraction(1, 2), Fraction(3)][: len(scene.load)]
     model = wavesym.model(scene, runtime=[*CHANGED[scene.name][1], "load"])
-    assert model.labels["load"][0].startswith("factor of load 0, samples at ")
+    assert model.labels["load"][0].startswith("factor of the ")
     assert model.parameters["load"][0] == 1
     check(model, scene, factors)
 

@@ -140,5 +140,5 @@ def test_the_header_has_units_and_the_clock(tmp_path):
     wavesym.generate(wavesym.Scene(**first), tmp_path, runtime=["inertia", "load"])
     header = (tmp_path / "good.h").read_text()
     assert "#define GOOD_SECONDS_PER_TAU" in header
-    assert "[1] steps[1] of load 0, t = 0.0007 s [N*m]" in header
+    assert "[1] steps[1] of the torque on disc 1, t = 0.0007 s [N*m]" in header
     assert "[2] inertia_3 [kg*m^2]" in header

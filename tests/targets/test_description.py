@@ -82,8 +82,11 @@ strain = [0.5]
 def test_long_loads_take_a_line():
     record = [{"spacing": "1/100", "samples": [0, *(k % 7 - 3 for k in range(250))]}]
     header = files(lower(building(record, strain=["0.5"])), evaluator="pieces")["made.h"]
-    assert "load 0: 251 samples at 1/100, to tau = 5/2" in header
+    assert "acceleration of the base: 251 samples at 1/100, to tau = 5/2" in header
     assert len(header.splitlines()) < 70
-    assert "load 0: 1 a at 0\n" in files(lower(building(PUSH, strain=["0.5"])))["made.h"]
+    assert "acceleration of the base: 1 a at 0\n" in files(lower(building(PUSH, strain=["0.5"])))["made.h"]
     many = [{"times": [f"{k}/100" for k in range(1, 200)], "a": [1] * 199, "b": [0] * 199}]
-    assert "load 0: 199 changes from tau = 1/100 to 199/100" in files(lower(building(many, strain=["0.5"])))["made.h"]
+    assert (
+        "acceleration of the base: 199 changes from tau = 1/100 to 199/100"
+        in files(lower(building(many, strain=["0.5"])))["made.h"]
+    )

@@ -28,6 +28,11 @@ class Load(SceneTable):
         """The unit loads that it is made of: a step, and a ramp."""
 
     @property
+    @abstractmethod
+    def label(self) -> str:
+        """What it is, for people: "torque on disc 1"."""
+
+    @property
     def step(self) -> Fraction | None:
         """The time between its samples, where it has any."""
         return None

@@ -23,7 +23,8 @@ from wavesym.numbers.reals import DOUBLE, Real
 
 @dataclass(frozen=True)
 class Labels:
-    """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load.
+    """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load,
+    `load_names` what each is, and `sources` what a unit load is one of.
 
     `sha256` is that of the scene, whatever way it was written. `notes` say how the scene was read where that may
     surprise. `size` is how many rods there are, `dimensions` what lengths and times count.
@@ -35,6 +36,8 @@ class Labels:
     notes: tuple[str, ...] = ()
     size: str = ""
     dimensions: str = ""
+    load_names: tuple[str, ...] = ()
+    sources: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def type(self) -> str:

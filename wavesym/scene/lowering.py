@@ -146,6 +146,8 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         notes=(*_damping_notes(scene), *_record_notes(scene), *_shape_notes(scene)),
         size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
         dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",
+        load_names=load_names(scene),
+        sources={source: load.label for load in scene.load for source in load.sources},
     )
 
 
@@ -186,17 +188,26 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
     Of a load that has samples it is one, the factor of all of them: 1.
     """
     found: list[tuple[str, Applied]] = []
-    for number, load in enumerate(scene.load):
+    for label, load in zip(load_names(scene), scene.load, strict=True):
         if not isinstance(load, TimedLoad):
             samples = AppliedRecord(load.sources[0], fmpq(0), fmpq(1), merged(load.units()))
-            found.append((f"factor of load {number}, samples at {_spacing(scene, load)}", samples))
+            found.append((f"factor of the {label}, samples at {_spacing(scene, load)}", samples))
             continue
         found += [
-            (f"{name}[{k}] of load {number}, {_when(scene, load.times[k])}", unit)
+            (f"{name}[{k}] of the {label}, {_when(scene, load.times[k])}", unit)
             for name, units in load.by_list()
             for k, unit in enumerate(units)
         ]
     return tuple(found)
+
+
+def load_names(scene: Scene) -> tuple[str, ...]:
+    """What each load is, for people; several of one kind on one body are numbered."""
+    labels = [load.label for load in scene.load]
+    return tuple(
+        f"{label} ({labels[: k + 1].count(label)})" if labels.count(label) > 1 else label
+        for k, label in enumerate(labels)
+    )
 
 
 def _spacing(scene: Scene, load: Load) -> str:

@@ -63,6 +63,11 @@ class OfBase(Load):
         """A step and a ramp of it."""
         return "a", "b"
 
+    @property
+    def label(self) -> str:
+        """What it is, for people."""
+        return "acceleration of the base"
+
 
 class Acceleration(OfBase, TimedLoad):
     """(3.2): sum_k (a_k + b_k (tau - times_k)) H(tau - times_k)."""

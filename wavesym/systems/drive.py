@@ -73,6 +73,11 @@ class OnBody(Load):
         """A step and a ramp of it."""
         return f"M{self.body}", f"R{self.body}"
 
+    @property
+    def label(self) -> str:
+        """What it is, for people."""
+        return f"torque on disc {self.body}"
+
 
 class Moment(OnBody, TimedLoad):
     """sum_k (steps_k + ramps_k (tau - times_k)) H(tau - times_k)."""

@@ -37,6 +37,11 @@ class OnNode(Load):
         """A step and a ramp there."""
         return f"{self.at}:step", f"{self.at}:ramp"
 
+    @property
+    def label(self) -> str:
+        """What it is, for people."""
+        return f"load at {self.at}"
+
 
 class NodeLoad(OnNode, TimedLoad):
     """sum_k (steps_k + ramps_k (tau - times_k)) H(tau - times_k)."""

@@ -198,7 +198,8 @@ def _model(model: Model) -> list[str]:
     for name, numbers in model.letters.items():
         if numbers:
             lines.append(", ".join(f"{name}_{index} = {value}" for index, value in numbers.items()))
-    lines += [f"load {number}: {line}" for number, line in enumerate(model.labels.loads) if line]
+    named = zip(model.labels.load_names, model.labels.loads, strict=True)
+    lines += [f"{label}: {line}" for label, line in named if line]
     until = model.clock.told(model.until) if model.clock else model.until
     return [*lines, f"until = {until}, tolerance = {_tolerance(model)}"]
 

@@ -200,7 +200,7 @@ def _facts(
 def _loads(model: Model, loads: Sequence[History]) -> str:
     """As the scene says them; with units, whose exact numbers nobody can read, by their sizes."""
     if model.clock is None:
-        return "; ".join(model.labels.loads)
+        return "; ".join(map(": ".join, zip(model.labels.load_names, model.labels.loads, strict=True)))
     values = ((load, load.points[:, 1]) for load in loads)
     return "; ".join(f"{load.name}, from {min(v):.4g} to {max(v):.4g} {load.output.unit}" for load, v in values)
 

@@ -69,7 +69,8 @@ def _variables(program: Program) -> Iterator[Variable]:
     yield Variable("time", "independent", "continuous", "time" if seconds else "time in tau", unit=seconds)
     for source in program.sources:
         name, _, unit = source.partition(" [")
-        about = f"load {name}, from the start of a step on, or at its end where linear is true"
+        label = model.labels.sources.get(name) or f"load {name}"
+        about = f"{label}, from the start of a step on, or at its end where linear is true"
         yield Variable(f"load@{name}", "input", "continuous", about, "0.0", unit.removesuffix("]"))
     direct = program.direct or ((),) * len(program.outputs)
     for output, probe, of in zip(program.outputs, model.probes, direct, strict=True):
