@@ -17,12 +17,14 @@ from tests.support.streamed import built, missed, run
 from tests.targets.test_stream_c import CASES, GEARS, JUMPS, PANEL, loaded, selftest
 from wavesym import api
 from wavesym.errors import WavesymError
+from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.request import POSITIVE, Request
 from wavesym.programs.runtime.network import NAMES as FIELDS
 from wavesym.programs.stream.parameters import QUICKER, free_stream
 from wavesym.programs.stream.plan import inputs_of
 from wavesym.programs.stream.tables import StreamTables
+from wavesym.running.native import address
 from wavesym.running.stream import StreamModel
 from wavesym.running.toolchain import at_hand
 from wavesym.scene import lower
@@ -49,6 +51,22 @@ def program():
 @pytest.fixture(scope="module")
 def gears(program):
     return StreamModel(program, ("-O1",))
+
+
+@pytest.mark.parametrize("scene", ["building_m2", "geared_drive"])
+def test_a_stream_is_the_same_in_whatever_memory_it_is_built(scene):
+    model = lower(wavesym.Scene.from_toml(scene))
+    names = ("kappa",) if scene == "building_m2" else ("mass", "impedance")
+    one = StreamModel(api.program(wavesym.Scene.from_toml(scene), Request(stream=True, runtime=names)), ("-O1",))
+    found = []
+    for byte in (0, 255):
+        stream = one.start()
+        stream.state[:] = byte
+        numbers = np.array([nearest(value) for field in one.fields for value in field.values])
+        assert one._begin(address(stream.state), address(numbers)) == 0
+        loads = [1.0] * len(one.loads)
+        found.append([stream.step(model.horizon() / 40, loads)[1].tolist() for _ in range(20)] + [stream.lost])
+    assert found[0] == found[1]
 
 
 def test_each_set_is_the_scene_that_has_it(gears):

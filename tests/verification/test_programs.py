@@ -55,6 +55,16 @@ FAULTS = {
     "stream.c": (DRIVE, "--stream", "out[output] += gain[k] * value_now", "out[output] -= gain[k] * value_now"),
     "in single precision": (DRIVE, "--evaluator march --precision single", "sum += gain[k]", "sum -= gain[k]"),
 }
+PARTS_OF_MODELS = {
+    "sample": ("runtime kappa inertia, C, sample", "first + (real)(j * (int)LANES)", "first - (real)(j * (int)LANES)"),
+    "estimate": ("kappa inertia, C, others", "return model->estimate;", "return model->estimate * 0;"),
+    "what is found between instants": ("C, peaks", "explore(&p, greatest, t[j", "explore(&p, least, t[j"),
+    "instants of peaks": ("C, others, peaks", "seen(greatest, found[j], cycle_begin(window) + t[j])", "(void)greatest"),
+    "bound": ("C, error_bound", "bound[output] = is_zero[output] ? 0 : known;", "bound[output] = known / 1000000;"),
+    "batch": ("C, batch", "batch->series[k][set]", "batch->series[k][set - (set > 0)]"),
+    "misfit": ("C, misfit", "none - cells[AIM * ROWS + i]", "none + cells[AIM * ROWS + i]"),
+    "gradients": ("C, gradients", "x, degree, 1, moving", "x, degree, 0, moving"),
+}
 QUICK = ("closed form in NumPy", "closed.c", "outputs of march.c", "runtime.c")
 
 
@@ -91,6 +101,46 @@ def test_a_fault_is_seen_and_its_program_named(
     assert all(f", {language}" in name for name in found)
 
 
+@pytest.mark.parametrize(
+    "parts",
+    [
+        ["sample"],
+        ["what is found between instants", "bound", "batch", "misfit", "gradients"],
+        pytest.param(["estimate"], marks=pytest.mark.slow),
+        pytest.param(["instants of peaks"], marks=pytest.mark.slow),
+    ],
+    ids=lambda parts: parts[-1],
+)
+def test_a_fault_in_what_a_model_gives_is_seen(parts: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """In `sample`, peaks and all else that `eval` knows nothing of: each in its own row."""
+
+    def faulty(program: Program, language: str) -> dict[str, str]:
+        made = files(program, language)
+        for _, right, wrong in map(PARTS_OF_MODELS.__getitem__, parts):
+            assert any(right in text for text in made.values())
+            made = {name: text.replace(right, wrong) for name, text in made.items()}
+        return made
+
+    monkeypatch.setattr(programs, "files", faulty)
+    text, passed = report.verify([(DRIVE, lower(DRIVE))], [Request(runtime=("kappa", "inertia"))])
+    assert not passed
+    for where, _, _ in map(PARTS_OF_MODELS.__getitem__, parts):
+        assert any(name.endswith(where) for name in failing(text))
+    if len(parts) > 1:
+        assert not [name for name in failing(text) if name.endswith((", C", "sample", "sample backwards", "others"))]
+
+
+@pytest.mark.parametrize("runtime", [(), ("kappa", "inertia")], ids=["fixed", "tuned"])
+@pytest.mark.parametrize("wrong", ["0 * most", "most / (most - most)"], ids=["nothing", "no number"])
+def test_a_stream_that_hides_what_it_has_lost_is_seen(
+    wrong: str, runtime: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(programs, "files", changing("most = sum / state->largest[output];", f"most = {wrong};"))
+    text, passed = report.verify([(DRIVE, lower(DRIVE))], [Request(stream=True, runtime=runtime)])
+    assert not passed
+    assert failing(text)
+
+
 def toml(scene: Scene) -> str:
     """A scene as a file; JSON's values are TOML's here."""
     fields = scene.model_dump(mode="json")
@@ -115,6 +165,7 @@ def test_all_programs_of_a_scene_are_there_and_right() -> None:
         block = next(block for block in text.split("\n\n") if block.startswith("scene  program"))
         kinds = ["run", "closed, NumPy", "closed, C", "pieces, NumPy", "pieces, C", "march, NumPy", "march, C"]
         kinds += ["modes, NumPy", "modes, C", "pieces, single, C", "march, single, C", "stream, C", ", C, others"]
+        kinds += [", C, sample", ", C, peaks", ", C, others, peaks", ", C, gradients", ", C, batch", ", C, misfit"]
         for kind in kinds:
             assert f"{kind}  " in block, kind
         numbers = "kappa inertia load" if scene is DRIVE else "velocity load mass impedance"

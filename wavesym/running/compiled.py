@@ -22,6 +22,8 @@ from wavesym.running.toolchain import compiler
 _WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wmissing-prototypes", "-Werror")
 FLAGS = ("-std=c99", "-O2", *_WARNINGS)
 _WHERE, _MANY = ctypes.c_void_p, ctypes.c_size_t
+_ALIGNED = 64  # bytes, of vectors
+_WIDEST_BATCH = 64  # sets
 
 
 class Compiled:
@@ -46,7 +48,7 @@ class Compiled:
 
     def __call__(self, taus: Sequence[float]) -> NDArray[np.float64]:
         """All outputs at taus by NAME_eval: shape (outputs, len(taus)), NaN out of range."""
-        return self._values(self.function("eval", [self.number, _WHERE]), taus)
+        return self.values(self.function("eval", [self.number, _WHERE]), taus)
 
     def sample(self, tau0: float, dtau: float, count: int) -> tuple[int, NDArray[np.float64]]:
         """What NAME_sample returns, and all outputs at tau0 + k dtau: shape (outputs, count), NaN out of range."""
@@ -54,13 +56,51 @@ class Compiled:
         sample = self.function("sample", [self.number, self.number, _MANY, _WHERE])
         return int(sample(tau0, dtau, count, out.ctypes.data)), out.astype(np.float64)
 
-    def model(self, parameters: ArrayLike, taus: Sequence[float]) -> tuple[int, float, NDArray[np.float64]]:
-        """What NAME_build returns for parameters, in the order of the struct, its estimate, and all outputs at taus."""
+    def model(self, parameters: ArrayLike) -> CompiledModel:
+        """What NAME_build makes of parameters, in the order of the struct."""
         given, model = np.array(parameters, self.real), self._memory("model")
-        status = int(self.function("build", [_WHERE, _WHERE])(model.ctypes.data, given.ctypes.data))
-        estimate = self.function("error_estimate", [_WHERE], self.number)
-        values = self.function("model_eval", [_WHERE, self.number, _WHERE])
-        return status, float(estimate(model.ctypes.data)), self._values(partial(values, model.ctypes.data), taus)
+        status = self.function("build", [_WHERE, _WHERE])(model.ctypes.data, given.ctypes.data)
+        return CompiledModel(self, model, int(status))
+
+    def bounded_model(self, parameters: ArrayLike) -> tuple[CompiledModel, NDArray[np.float64]]:
+        """What NAME_error_bound makes of parameters, and the proved bound of each output."""
+        given, model, bound = np.array(parameters, self.real), self._memory("model"), np.empty(self.outputs, self.real)
+        build = self.function("error_bound", [_WHERE, _WHERE, _WHERE])
+        status = build(model.ctypes.data, given.ctypes.data, bound.ctypes.data)
+        return CompiledModel(self, model, int(status)), bound.astype(np.float64)
+
+    def batch(
+        self, sets: ArrayLike, taus: ArrayLike, data: ArrayLike
+    ) -> tuple[list[CompiledModel], NDArray[np.float64]]:
+        """Models of sets of parameters, (sets, numbers), built beside each other, and the misfit of each.
+
+        `data` are of shape (outputs, taus).
+        """
+        given, instants, values = (np.ascontiguousarray(each, self.real) for each in (sets, taus, data))
+        batch, kept = self._memory("batch"), self._memory("data")
+        at, count = (batch.ctypes.data, len(instants))
+        self.function("build_batch", [_WHERE, _WHERE, _MANY])(at, given.ctypes.data, len(given))
+        models = []
+        for k in range(len(given)):
+            model = self._memory("model")
+            status = self.function("batch_model", [_WHERE, ctypes.c_int, _WHERE])(at, k, model.ctypes.data)
+            models.append(CompiledModel(self, model, int(status)))
+        size = self.function("data_size", [_WHERE, _MANY], _MANY)(instants.ctypes.data, count)
+        numbers = np.empty(size, self.real)
+        init = self.function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY])
+        init(kept.ctypes.data, numbers.ctypes.data, instants.ctypes.data, values.ctypes.data, count)
+        misfits = np.empty(_WIDEST_BATCH, self.real)
+        self.function("batch_misfit", [_WHERE, _WHERE, _WHERE], None)(at, kept.ctypes.data, misfits.ctypes.data)
+        return models, misfits[: len(given)].astype(np.float64)
+
+    def tangent(self, parameters: ArrayLike, tau0: float, dtau: float, count: int) -> NDArray[np.float64]:
+        """Values at tau0 + k dtau, and their derivatives by each parameter: (1 + parameters, outputs, count)."""
+        given, tangent = np.array(parameters, self.real), self._memory("tangent")
+        self.function("build_tangent", [_WHERE, _WHERE])(tangent.ctypes.data, given.ctypes.data)
+        out = np.empty((1 + given.size, self.outputs, count), self.real)
+        sample = self.function("tangent_sample", [_WHERE, self.number, self.number, _MANY, _WHERE])
+        sample(tangent.ctypes.data, tau0, dtau, count, out.ctypes.data)
+        return out.astype(np.float64)
 
     def stream(self, parameters: ArrayLike | None = None) -> CompiledStream:
         """A state at tau = 0, built of parameters, in the order of the struct, where there are some."""
@@ -83,27 +123,64 @@ class Compiled:
         return found
 
     def _memory(self, kind: str) -> NDArray[np.uint8]:
-        return np.zeros(_MANY.in_dll(self._loaded, f"size_of_{kind}").value, np.uint8)
+        """Memory of C as it may be before anything is in it: no bytes of it are a number."""
+        size = _MANY.in_dll(self._loaded, f"size_of_{kind}").value
+        memory = np.full(size + _ALIGNED, 255, np.uint8)
+        start = -memory.ctypes.data % _ALIGNED
+        return memory[start : start + size]
 
-    def _values(self, at: Callable[[float, int], object], taus: Sequence[float]) -> NDArray[np.float64]:
+    def values(self, at: Callable[[float, int], object], taus: Sequence[float]) -> NDArray[np.float64]:
         columns = np.empty((len(taus), self.outputs), self.real)
         for tau, column in zip(taus, columns, strict=True):
             at(tau, column.ctypes.data)
         return np.ascontiguousarray(columns.T, np.float64)
 
 
+class CompiledModel:
+    """A model in memory of its own; `status` is what the function returned that made it."""
+
+    def __init__(self, program: Compiled, model: NDArray[np.uint8], status: int) -> None:
+        self._program, self._model, self.status = program, model, status
+
+    @property
+    def estimate(self) -> float:
+        """What it states of its errors, relative to each output's largest value."""
+        return float(self._program.function("error_estimate", [_WHERE], self._program.number)(self._model.ctypes.data))
+
+    def __call__(self, taus: Sequence[float]) -> NDArray[np.float64]:
+        """All outputs at taus by NAME_model_eval: shape (outputs, len(taus)), NaN out of range."""
+        values = self._program.function("model_eval", [_WHERE, self._program.number, _WHERE])
+        return self._program.values(partial(values, self._model.ctypes.data), taus)
+
+    def sample(self, tau0: float, dtau: float, count: int) -> NDArray[np.float64]:
+        """All outputs at tau0 + k dtau by NAME_model_sample: shape (outputs, count), NaN out of range."""
+        out, number = np.empty((self._program.outputs, count), self._program.real), self._program.number
+        sample = self._program.function("model_sample", [_WHERE, number, number, _MANY, _WHERE])
+        sample(self._model.ctypes.data, tau0, dtau, count, out.ctypes.data)
+        return out.astype(np.float64)
+
+    def peaks(self) -> NDArray[np.float64]:
+        """Of each output the least value, its tau, the greatest and its tau, by NAME_model_peaks: (outputs, 2, 2)."""
+        out = np.empty((self._program.outputs, 2, 2), self._program.real)
+        self._program.function("model_peaks", [_WHERE, _WHERE])(self._model.ctypes.data, out.ctypes.data)
+        return out.astype(np.float64)
+
+
 class CompiledStream:
     """A state of a stream, which goes on step by step."""
 
     def __init__(self, program: Compiled, state: NDArray[np.uint8]) -> None:
-        self._program, self._state = program, state
+        self._program, self._state, self.status = program, state, 0
         number = program.number
         self._step = program.function("step", [_WHERE, number, _WHERE, _WHERE])
 
     def step(self, dtau: float, loads: ArrayLike) -> NDArray[np.float64]:
-        """All outputs after dtau, in which loads go straight to `loads`, or jump to them where it is 0."""
+        """All outputs after dtau, in which loads go straight to `loads`, or jump to them where it is 0.
+
+        The largest `status` so far is kept.
+        """
         given, out = np.array(loads, self._program.real), np.empty(self._program.outputs, self._program.real)
-        self._step(self._state.ctypes.data, dtau, given.ctypes.data, out.ctypes.data)
+        self.status = max(self.status, self._step(self._state.ctypes.data, dtau, given.ctypes.data, out.ctypes.data))
         return out.astype(np.float64)
 
     @property
@@ -129,7 +206,9 @@ def compiled(
     (name,) = (file.removesuffix(".h") for file in files if file.endswith(".h"))
     declared = re.search(r"_output_name\[\w+\]\[(\d+)\]", files[f"{name}.h"])
     assert declared  # by every header
-    kept = re.findall(rf"^(?:struct|\}}) {name}_(model|state)(?:;| \{{)", files[f"{name}.h"], re.MULTILINE)
+    kept = re.findall(
+        rf"^(?:struct|\}}) {name}_(model|state|tangent|batch|data)(?:;| \{{)", files[f"{name}.h"], re.MULTILINE
+    )
     sizes = "".join(f"const size_t size_of_{kind} = sizeof({name}_{kind});\n" for kind in kept)
     with TemporaryDirectory() as directory:
         folder = Path(directory)

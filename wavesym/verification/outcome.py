@@ -50,6 +50,31 @@ class IntegratedOutput:
         return len(self.values) > 0 and self.allowed <= LOOSE * (self.size or 1.0)
 
 
+Integrals = Sequence[IntegratedOutput | None]
+"""What integrations have of each output."""
+
+
+@dataclass(frozen=True)
+class ProgramValues:
+    """A program in a language, run: its values, (outputs, n), at `taus`, or as much as `late` beside them.
+
+    `sizes` are the largest values of outputs, and `bounds` what it states of its errors relative to these. One that
+    has other parameters than the scene is compared with `integrals` alone. Instants that are as `close` are the same.
+    A `note` says what is wrong with it already, `refused` why it was not run.
+    """
+
+    name: str
+    taus: Array
+    values: Array
+    sizes: Sequence[float]
+    bounds: Sequence[float]
+    late: float = 0.0
+    note: str = ""
+    integrals: Integrals = ()
+    close: float = 0.0
+    refused: str = ""
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What a check found for a subject, an output or another: cells by column, and whether all is as it may be.

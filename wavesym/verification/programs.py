@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, isnan
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import SINGLE
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
-from wavesym.programs.request import KINDS, Request
+from wavesym.programs.request import KINDS, PARTS, Request
 from wavesym.programs.runtime.making import runtime_program
 from wavesym.programs.stream.making import stream_program
 from wavesym.programs.stream.plan import inputs_of
@@ -34,9 +34,10 @@ from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes, sources
 from wavesym.targets.files import files
 from wavesym.verification.integrations import collocation_method
+from wavesym.verification.models import Given, functions_of_parameters, model_values
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
-from wavesym.verification.outcome import IntegratedOutput, Outcome, format_error
-from wavesym.verification.reference import Known, sample_evenly
+from wavesym.verification.outcome import Integrals, IntegratedOutput, Outcome, ProgramValues, format_error
+from wavesym.verification.reference import Known, even_taus, sample_evenly
 from wavesym.verification.streams import step_modes, step_stream
 
 FLAGS = ("-std=c99", "-O1")
@@ -49,30 +50,6 @@ _MOST_MARCHED = 400  # values of a march in C, each from tau = 0 on
 _SOME = 4  # of the instants one of so many is compared for other parameters
 _CLOSE = 1e-9  # instants of samples that are the same
 
-Integrals = Sequence[IntegratedOutput | None]
-"""What integrations have of each output."""
-
-
-@dataclass(frozen=True)
-class ProgramValues:
-    """A program in a language, run: its values, (outputs, n), at `taus`, or as much as `late` beside them.
-
-    `sizes` are the largest values of outputs, and `bounds` what it states of its errors relative to these. One that
-    has other parameters than the scene is compared with `integrals` alone. Instants that are as `close` are the same.
-    A `note` says what is wrong with it already, `refused` why it was not run.
-    """
-
-    name: str
-    taus: Array
-    values: Array
-    sizes: Sequence[float]
-    bounds: Sequence[float]
-    late: float = 0.0
-    note: str = ""
-    integrals: Integrals = ()
-    close: float = 0.0
-    refused: str = ""
-
 
 def all_requests(scene: Scene, model: Model) -> Iterator[Request]:
     """What may serve a scene: all evaluators, in double and in single precision, parameters and loads at run time."""
@@ -80,6 +57,7 @@ def all_requests(scene: Scene, model: Model) -> Iterator[Request]:
         yield from (Request(kind, precision) for kind in KINDS)
     if names := runtime_names(scene, model):
         yield Request(runtime=names)
+        yield Request(runtime=tuple(name for name in names if name != "load"), stream=True)
     yield Request(stream=True)
 
 
@@ -142,6 +120,7 @@ def _made(scene: Scene, model: Model, request: Request, *, is_required: bool) ->
         endless = replace(model, endless=True)
         return stream_program(endless, request, inputs_of(endless, sources(scene)))
     if request.runtime:
+        request = replace(request, parts=PARTS)
         return runtime_program(model, request, amplitudes(scene) if "load" in request.runtime else ())
     tolerances = [model.tolerance]
     if request.precision == "single":
@@ -179,16 +158,18 @@ def _run_numpy(known: Known, integrals: Integrals, program: Program, name: str) 
 def _run_c(scene: Scene, known: Known, integrals: Integrals, program: Program, name: str) -> Iterator[ProgramValues]:
     model, sizes, bounds = known.whole, _sizes(known, integrals, program), _bounds(program)
     real = np.float32 if program.real.bytes == 4 else np.float64
-    flags = (*FLAGS, f"-D{model.name.upper()}_ONE_SET")
     taus, given, late = _instants(known, integrals, program)
-    with compiled(files(program, "c"), len(model.probes), real, flags) as built:
+    with compiled(files(program, "c"), len(model.probes), real, FLAGS) as built:
         fails = f"{model.name}: {name}: the self-test of the generated C fails"
         note = fails if program.reference and built.selftest() != 0 else ""
         if program.evaluator == "runtime":
             yield from _with_parameters(scene, known, integrals, program, built, name)
         elif program.evaluator == "stream":
-            taus, values, lost = step_stream(scene, known, program, built, taus)
-            yield ProgramValues(f"{name}, C", taus, values, sizes, [bound + lost for bound in bounds], 0.0, note)
+            taus, values, stream = step_stream(scene, known, program, built, taus)
+            if stream.status and not note:
+                note = f"{model.name}: {name}: a step returns {stream.status}, lost is {stream.lost:.1e}"
+            stated = [stream.lost for bound in bounds]
+            yield ProgramValues(f"{name}, C", taus, values, sizes, stated, 0.0, note)
         elif program.evaluator == "modes":
             taus, values = step_modes(scene, known, program, built)
             yield ProgramValues(f"{name}, C", taus, values, sizes, bounds, 0.0, note, close=_CLOSE)
@@ -204,25 +185,21 @@ def _with_parameters(
 ) -> Iterator[ProgramValues]:
     """With the scene's own parameters, and with others, of which only integrations know anything."""
     assert program.laws is not None
-    taus, given, late = _instants(known, integrals, program)
-    own = [nearest(value) for field in program.laws.fields for value in field.values]
-    status, estimate, values = built.model(own, given.tolist())
-    bounds = [estimate] * len(program.outputs)
-    note = f"{known.whole.name}: {name}: build returns {status}" if status else ""
-    yield ProgramValues(f"{name}, C", taus, values, _sizes(known, integrals, program), bounds, late, note)
-    numbers, other = draw_parameters(scene, known.whole, program.laws.fields)
-    instants = [tau for tau in known.taus if np.float32(tau) == tau][::_SOME]
-    method = collocation_method(other.shortened(known.model.until), known.until, instants)
+    _, taus, _ = _instants(known, integrals, program)
+    numbers = [nearest(value) for field in program.laws.fields for value in field.values]
+    own = Given(numbers, _sizes(known, integrals, program), integrals, known if known.outputs else None)
+    others, changed = draw_parameters(scene, known.whole, program.laws.fields)
+    yield from model_values(built, f"{name}, C", own, taus, known.until)
+    yield from functions_of_parameters(built, f"{name}, C", own, others, taus, known.until)
+    instants = np.unique([*[tau for tau in known.taus if np.float32(tau) == tau][::_SOME], *even_taus(known.until)])
+    method = collocation_method(changed.shortened(known.model.until), known.until, instants.tolist())
     if isinstance(method, str):
-        yield ProgramValues(f"{name}, C, others", taus, values, [], [], refused=method)
+        yield ProgramValues(f"{name}, C, others", taus, np.empty(0), [], [], refused=method)
         return
-    _, refined = method.refine([None] * len(bounds))
+    _, refined = method.refine([None] * len(program.outputs))
     sizes = [float(np.max(np.abs(each.values))) for each in refined]
-    judges = [IntegratedOutput(instants, each.values, each.allowed * each.scale) for each in refined]
-    status, estimate, values = built.model(numbers, instants)
-    bounds = [estimate] * len(program.outputs)
-    note = f"{known.whole.name}: {name}: build returns {status} for other parameters" if status else ""
-    yield ProgramValues(f"{name}, C, others", np.array(instants), values, sizes, bounds, 0.0, note, judges)
+    judges = [IntegratedOutput(instants.tolist(), each.values, each.allowed * each.scale) for each in refined]
+    yield from model_values(built, f"{name}, C, others", Given(others, sizes, judges), instants, known.until)
 
 
 def _instants(known: Known, integrals: Integrals, program: Program) -> tuple[Array, Array, float]:
@@ -317,6 +294,6 @@ def _largest(errors: Array) -> float:
 
 def _part(error: float, allowed: float) -> float:
     """What an error is of what is allowed: more than 1 where it is wrong."""
-    if isnan(error) or error > allowed == 0:
+    if isnan(error) or isnan(allowed) or error > allowed == 0:
         return inf
     return error / allowed if allowed else 0.0

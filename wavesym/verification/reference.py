@@ -17,7 +17,8 @@ from wavesym.mechanics.probe import Probe
 
 T = TypeVar("T", np.float64, np.int_)
 
-_SPREAD = 400
+_SPREAD, _EVEN = 300, 101
+_DIGITS = 12  # binary ones; there are 24, and 7 are of the number of the instant
 _GOLDEN = (math.sqrt(5) - 1) / 2
 
 
@@ -104,6 +105,12 @@ def spread_taus(until: float) -> list[float]:
     return [tau for tau in golden.astype(np.float64).tolist() if tau <= until]
 
 
+def even_taus(until: float) -> NDArray[np.float64]:
+    """Multiples k d <= until of a d so short a number that none of them is rounded, in single precision neither."""
+    mantissa, power = math.frexp(until / (_EVEN - 1))
+    return np.arange(_EVEN, dtype=np.float64) * math.ldexp(math.floor(mantissa * 2.0**_DIGITS), power - _DIGITS)
+
+
 def sample_evenly(values: NDArray[T], most: int) -> NDArray[T]:
     """As many of some values as are looked at, evenly spread over their places."""
     count = min(len(values), most)
@@ -113,6 +120,7 @@ def sample_evenly(values: NDArray[T], most: int) -> NDArray[T]:
 def _taus(until: float, starts: Sequence[float]) -> Iterator[float]:
     yield from (0.0, until)
     yield from spread_taus(until)
+    yield from even_taus(until).tolist()
     for first in starts:
         for tau in (math.nextafter(first, -math.inf), first, math.nextafter(first, math.inf)):
             if 0 <= tau <= until:

@@ -12,7 +12,7 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.programs.program import Program
-from wavesym.running.compiled import Compiled
+from wavesym.running.compiled import Compiled, CompiledStream
 from wavesym.scene import Scene
 from wavesym.verification.independent import changes
 from wavesym.verification.reference import Known, sample_evenly
@@ -26,8 +26,8 @@ FedLoads = tuple[Fraction, list[float], bool]
 
 def step_stream(
     scene: Scene, known: Known, program: Program, built: Compiled, taus: Array
-) -> tuple[Array, Array, float]:
-    """A stream of waves: some of the taus, the outputs there, and what it says that it has lost.
+) -> tuple[Array, Array, CompiledStream]:
+    """A stream of waves: some of the taus, the outputs there, and it as it is after them.
 
     It steps to every change of a load; one that jumps does so in a step of its own.
     """
@@ -44,7 +44,7 @@ def step_stream(
         before = float(tau)
         if tau in looked:
             columns.append(column)
-    return chosen, np.array(columns).T, stream.lost
+    return chosen, np.array(columns).T, stream
 
 
 def step_modes(scene: Scene, known: Known, program: Program, built: Compiled) -> tuple[Array, Array]:

@@ -154,8 +154,8 @@ static real step_lost(const stream *state, int joint)
     return sum > 0 ? sum / root(energy) : sum;
 }
 
-/* What an error of each track counts for: those of rods times the root of the impedance. The velocity of a point follows
- * from what a rod there carries; that of one without rods from the state, and from what arrives at other points. */
+/* What an error of each track without a rod counts for. The velocity of a point follows from what a rod there carries;
+ * that of one without rods from the state, and from what arrives at other points. */
 static void weigh_tracks(stream *state, int joint)
 {
     const int points = first_point[joint + 1] - first_point[joint];
@@ -168,9 +168,7 @@ static void weigh_tracks(stream *state, int joint)
         real carried = 0;
         real moved = 0;
         real passing = 0;
-        if (slots[send[port]] > 1) {
-            root_impedance[send[port]] = root(made->track_impedance[send[port]]);
-        } else {
+        if (slots[send[port]] == 1) {
             for (int a = 0; a < states; ++a) {
                 moved += (real)1.4143 * absolute(shown[point * states + a]) / root(made->weight[first_state[joint] + a]);
             }
@@ -197,6 +195,10 @@ static int made_of(stream *state, const name_parameters *parameters)
     laws_of(parameters, &state->made);
     if (!laws_within_reach(&state->made)) {
         return 1;
+    }
+    for (int k = 0; k < TRACKS; ++k) {
+        root_impedance[k] = root(state->made.track_impedance[k]);
+        state_gain[k] = 0;
     }
     for (int joint = 0; joint < JOINTS; ++joint) {
         const real speed = speed_of(&state->made, joint, 0);
