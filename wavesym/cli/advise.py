@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.parameters import OUT, SCENE, deliver, refuse_out
 from wavesym.cli.progress import progress
 from wavesym.errors import WavesymError
 
@@ -28,7 +29,8 @@ if TYPE_CHECKING:
 @click.option(
     "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
 )
-def advise(scene: Scene, tolerance: float, format: str) -> None:
+@OUT
+def advise(scene: Scene, tolerance: float, format: str, out: Path | None) -> None:
     """Say which model is enough: springs or waves.
 
     Say which model is enough: masses on springs, rods with consistent mass, or waves.
@@ -41,9 +43,10 @@ def advise(scene: Scene, tolerance: float, format: str) -> None:
     """
     from wavesym import api
 
+    refuse_out(out)
     with progress(f"advise {scene.name}"):
         found = api.advise(scene, tolerance)
     with suppress(WavesymError):  # when contacts open may be dear to know, or not be known
         for warning in api.unexpected_lines(scene):
             click.echo(f"{scene.name}: {warning}", err=True)
-    put(found.json() if format == "json" else found.text())
+    deliver(found.json() if format == "json" else found.text(), out)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.shell_completion import CompletionItem
 
-from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.parameters import OUT, SCENE, deliver, refuse_out
 from wavesym.cli.progress import progress
 from wavesym.errors import SceneError
 
@@ -60,7 +60,10 @@ def system_names() -> tuple[str, ...]:
 )
 @click.option("--walks", is_flag=True, help="Walk polynomials instead, which say why powers are as high as they are.")
 @click.option("--intervals", type=click.IntRange(1), help="With --walks: how many of every function.  [default: 4]")
-def derive(source: str | Scene, m: int | None, format: str, walks: bool, intervals: int | None) -> None:
+@OUT
+def derive(
+    source: str | Scene, m: int | None, format: str, walks: bool, intervals: int | None, out: Path | None
+) -> None:
     """Derive the equations and their coefficients.
 
     Derive boundary conditions, delay equations and coefficient recurrences.
@@ -80,6 +83,7 @@ def derive(source: str | Scene, m: int | None, format: str, walks: bool, interva
         raise click.UsageError("--walks: walks are those of one chain; with the name of a system write --m M too")
     if intervals is not None and not walks:
         raise click.UsageError("--intervals: of walks only; write --walks too")
+    refuse_out(out)
     try:
         with progress(f"derive {source if isinstance(source, str) else source.name}"):
             text = api.walks(source, m, intervals or WALKED, format) if walks else api.derive(source, m, format)
@@ -88,4 +92,4 @@ def derive(source: str | Scene, m: int | None, format: str, walks: bool, interva
             raise
         # no such m
         raise click.UsageError(str(error), click.get_current_context()) from None
-    put(text)
+    deliver(text, out)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import OUT, SCENE, deliver, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class TimeParameter(click.ParamType[Any]):
     show_default=True,
     help="How it is written; sympy: one expression in tau, c: a function.",
 )
-@click.option("-o", "out", type=PATH, metavar="FILE", help="Where it goes.  [default: standard output]")
+@OUT
 def formula(scene: Scene, output: str, until: Fraction | None, symbolic: bool, format: str, out: Path | None) -> None:
     """Print an output as a formula, exact.
 
@@ -58,14 +58,8 @@ def formula(scene: Scene, output: str, until: Fraction | None, symbolic: bool, f
       wavesym formula drive_m1 --output strain@0 --until 3
     """
     from wavesym import api
-    from wavesym.writing import write_whole
 
-    if out is not None:
-        refuse_unwritable(out)
-        refuse_scene(out)
+    refuse_out(out)
     with progress(f"formula {scene.name}"):
         text = api.formula(scene, output, until, format, symbolic=symbolic)
-        if out is not None:
-            write_whole({out: text})
-    if out is None:
-        put(text)
+    deliver(text, out)

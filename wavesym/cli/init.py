@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from wavesym.cli.parameters import PATH
+from wavesym.cli.parameters import OUT, PATH, deliver, refuse_out
 
 KINDS = ("frame", "wall", "soil", "drive", "impact", "pile", "building", "collision")
 USUAL = "building"
@@ -15,7 +15,8 @@ USUAL = "building"
 @click.command()
 @click.argument("kind", type=click.Choice(KINDS), default=USUAL, metavar=f"[{'|'.join(KINDS)}]")
 @click.option("--record", type=PATH, metavar="FILE", help="An AT2 or CSV file that is its load.")
-def init(kind: str, record: Path | None) -> None:
+@OUT
+def init(kind: str, record: Path | None, out: Path | None) -> None:
     """Print a scene to start from, with comments.
 
     A frame, a wall, a column of soil, a drive, an impact of bars or a pile, in SI units; or the paper's building or
@@ -23,8 +24,9 @@ def init(kind: str, record: Path | None) -> None:
 
     \b
     Example:
-      wavesym init frame > frame.toml
+      wavesym init frame -o frame.toml
     """
     from wavesym.scene.first_scene import first_text
 
-    click.echo(first_text(kind, record), nl=False)
+    refuse_out(out)
+    deliver(first_text(kind, record), out)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.parameters import OUT, SCENE, deliver, put, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -21,7 +22,8 @@ STAGES = ["summary", "scene", "model", "laws", "table", "program"]
 @click.option(
     "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
 )
-def inspect(scene: Scene, stage: str | None, format: str) -> None:
+@OUT
+def inspect(scene: Scene, stage: str | None, format: str, out: Path | None) -> None:
     """Show what each stage makes of a scene.
 
     Show what the compiler makes of a scene, stage by stage; what would be refused too, and why.
@@ -32,6 +34,12 @@ def inspect(scene: Scene, stage: str | None, format: str) -> None:
     """
     from wavesym import api
 
+    refuse_out(out)
+    if out is not None:
+        with progress(f"inspect {scene.name}"):
+            text = api.inspect(scene, stage, format)
+        deliver(text, out)
+        return
     lines = api.inspect_lines(scene, stage, format)
     while True:
         with progress(f"inspect {scene.name}"):

@@ -145,9 +145,31 @@ class RatioParameter(click.ParamType[Any]):
 SCENE = SceneParameter()
 RATIO = RatioParameter()
 PATH = click.Path(path_type=Path)
+
+OUT = click.option("-o", "out", type=PATH, metavar="FILE", help="Where it goes.  [default: standard output]")
+"""The option of commands whose result is one text."""
 PICTURES = (".svg", ".png", ".pdf")
 
 _DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
+
+
+def refuse_out(out: Path | None) -> None:
+    """Refuse a file that cannot be written, or would take the place of the scene: before the work that takes long."""
+    if out is None:
+        return
+    refuse_unwritable(out)
+    if _ARGUMENT in click.get_current_context().meta:
+        refuse_scene(out)
+
+
+def deliver(text: str, out: Path | None) -> None:
+    """A result, whole, to a file where there is one, else to standard output."""
+    from wavesym.writing import write_whole
+
+    if out is None:
+        put(text)
+    else:
+        write_whole({out: text if text.endswith("\n") else text + "\n"})
 
 
 def put(text: str | Iterable[str]) -> None:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
+
+from wavesym.cli.parameters import OUT, deliver, refuse_out
 
 
 @click.command()
 @click.argument("name", required=False)
 @click.option("--explicit", is_flag=True, help="Write it out as a chain, part by part; NAME may be any SCENE.")
-def scenes(name: str | None, explicit: bool) -> None:
+@OUT
+def scenes(name: str | None, explicit: bool, out: Path | None) -> None:
     """List the built-in scenes, or print one of them as TOML.
 
     \b
@@ -20,14 +25,14 @@ def scenes(name: str | None, explicit: bool) -> None:
 
     if explicit and name is None:
         raise click.UsageError("--explicit: of no scene; write the NAME of a built-in one before it")
+    refuse_out(out)
     if name is not None:
         scene = Scene.from_toml(name) if explicit else None
         if scene is None or (name in builtin_names() and scene.system.type == "chain"):
-            click.echo(builtin_text(name), nl=False)
+            deliver(builtin_text(name), out)
         else:
-            click.echo(explicit_text(scene), nl=False)
+            deliver(explicit_text(scene), out)
         return
     described = builtin_names()
     width = max(map(len, described))
-    for each, description in described.items():
-        click.echo(f"{each:{width}}  {description}")
+    deliver("".join(f"{each:{width}}  {description}\n" for each, description in described.items()), out)

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
-from wavesym.cli.parameters import PATH, put, refuse_unwritable
+from wavesym.cli.parameters import OUT, deliver, refuse_out
 
 
 @click.command()
-@click.option("-o", "out", type=PATH, metavar="FILE", help="Where it goes.  [default: standard output]")
+@OUT
 def schema(out: Path | None) -> None:
     """Print the JSON schema of scenes, for editors.
 
@@ -22,10 +22,6 @@ def schema(out: Path | None) -> None:
       wavesym schema -o scene.schema.json
     """
     from wavesym.scene.schema import scene_schema
-    from wavesym.writing import write_whole
 
-    if out is None:
-        put(scene_schema())
-        return
-    refuse_unwritable(out)
-    write_whole({out: scene_schema()})
+    refuse_out(out)
+    deliver(scene_schema(), out)

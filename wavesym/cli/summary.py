@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.parameters import OUT, SCENE, deliver, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -23,10 +24,12 @@ if TYPE_CHECKING:
 @click.option(
     "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
 )
-def summary(scene: Scene, at_samples: bool, format: str) -> None:
+@OUT
+def summary(scene: Scene, at_samples: bool, format: str, out: Path | None) -> None:
     """Print the extremes of each output, and when.
 
-    Tell of each output the least and the greatest value and when it has them, and when it first moves.
+    Tell of each output the least and the greatest value and when it has them, when it first moves, its mean and root
+    mean square, and its value at the end.
 
     \b
     Example:
@@ -34,6 +37,7 @@ def summary(scene: Scene, at_samples: bool, format: str) -> None:
     """
     from wavesym import api
 
+    refuse_out(out)
     with progress(f"summary {scene.name}"):
         from wavesym.documents.summary import summary_text
 
@@ -43,4 +47,4 @@ def summary(scene: Scene, at_samples: bool, format: str) -> None:
         lines.append(f"{found.how}: {found.certain}")
     for line in lines:
         click.echo(f"{scene.name}: {line}", err=True)
-    put(summary_text(found, format))
+    deliver(summary_text(found, format), out)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from operator import attrgetter
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import SceneParameter, each_blamed, put
+from wavesym.cli.parameters import OUT, SceneParameter, deliver, each_blamed, refuse_unwritable
 from wavesym.cli.progress import progress
 from wavesym.programs.request import EVALUATORS, PRECISIONS
 
@@ -40,6 +41,7 @@ class _SceneOrId(SceneParameter):
 @click.option("--precision", type=click.Choice(PRECISIONS), help="Programs of this precision alone.")
 @click.option("--runtime", metavar="LIST", help="The program that takes these parameters when it runs, alone.")
 @click.option("--stream", is_flag=True, help="The program that takes loads sample by sample, alone.")
+@OUT
 def verify(
     asked: tuple[Scene, ...] | tuple[str, ...],
     published: bool,
@@ -51,6 +53,7 @@ def verify(
     precision: str | None,
     runtime: str | None,
     stream: bool,
+    out: Path | None,
 ) -> int:
     """Check programs, or the paper's formulas.
 
@@ -73,6 +76,8 @@ def verify(
         raise click.UsageError(
             f"--{option}: of scenes only; leave it out, or --{'published' if published else 'derived'}"
         )
+    if out is not None:
+        refuse_unwritable(out)
     with progress("verify") as line:
         from wavesym import api
         from wavesym.scene import Scene, builtin_names
@@ -91,5 +96,5 @@ def verify(
             with ExitStack() as blame:
                 seen = each_blamed(told, blame) if scenes else told
                 text, passed = api.verify(seen, evaluator, precision, wanted, stream=stream)
-    put(text)
+    deliver(text, out)
     return 0 if passed else 1
