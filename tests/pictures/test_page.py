@@ -18,7 +18,9 @@ import wavesym
 from tests.pictures.browser import axe, reported
 from wavesym.cli import main
 from wavesym.documents.summary import summary_text
+from wavesym.errors import SceneError
 from wavesym.numbers.doubles import rational
+from wavesym.pictures.naming import with_titles
 from wavesym.pictures.page import small
 from wavesym.pictures.page.curves import HEIGHT, Grid
 from wavesym.pictures.page.document import _bound, page
@@ -200,9 +202,69 @@ def test_what_was_made_in_python_is_shown_as_its_fields() -> None:
 
 
 def test_every_output_has_a_curve_extremes_and_a_verdict(building: str) -> None:
-    for name in wavesym.evaluator(Scene.from_toml("building_m2")).outputs:
-        assert building.count(f'data-name="{name}"') == 1
-        assert building.count(f'<th scope="row">{name}</th>') == 2
+    for probe in with_titles(lower(Scene.from_toml("building_m2"))).probes:
+        assert building.count(f'data-name="{probe.name}"') == 1
+        assert building.count(f'<th scope="row">{probe.label}</th>') == 2
+
+
+FRAME = {
+    "name": "frame",
+    "units": {"length": "mm", "force": "kN"},
+    "load": [{"spacing": "0.5 s", "samples": [0, 0.3, -0.3, 0.1, 0], "unit": "g"}],
+    "output": {"until": "4 s", "tolerance": 1e-6, "drift": [1]},
+    "system": {
+        "type": "building",
+        "base": "ground",
+        "damping": 0.05,
+        "storey": [
+            {"height": "4 m", "stiffness": "277 MN/m", "column_mass": "11 t", "floor_mass": "350 t"},
+            {"height": "3 m", "stiffness": "200 MN/m", "column_mass": "9 t", "floor_mass": "300 t"},
+        ],
+    },
+}
+
+
+def test_the_headline_is_what_an_engineer_computes_from_histories() -> None:
+    """Against histories of `run`, the weight and the heights of the scene; the ground moves as written."""
+    block = {"project": "Town hall <1>", "author": "A. B.", "date": "2026-01-02"}
+    scene = Scene(**FRAME, report=block)
+    fields = {"output.force": [0], "output.acceleration": [2], "output.drift": [1, 2], "output.until": "4 s"}
+    result = wavesym.run(scene.with_(fields), samples=20001)
+    largest = {name: float(np.max(np.abs(row))) for name, row in zip(result.outputs, result.values, strict=True)}
+    text = page(scene)
+    shown = dict(re.findall(r'<span class="what">(.*?)</span><strong>(.*?)</strong>', text))
+    parts = dict(re.findall(r'<span class="what">(.*?)</span>.*?<span class="soft">(.*?)</span>', text))
+    weight = (11 + 350 + 9 + 300) * 9.80665  # kN
+    assert float(shown["Base shear"].split()[0]) == pytest.approx(largest["force@0"], rel=1e-3)
+    assert float(parts["Base shear"].split()[0]) == pytest.approx(100 * largest["force@0"] / weight, rel=5e-3)
+    assert float(shown["Roof acceleration"].split()[0]) == pytest.approx(largest["acceleration@2"], rel=1e-3)
+    assert shown["Peak ground acceleration"] == "2.942 m/s\u00b2"
+    assert parts["Peak ground acceleration"] == "0.3 g"
+    storeys = {1: (largest["drift@1"], 4000), 2: (largest["drift@2"], 3000)}  # mm
+    worst = max(storeys, key=lambda storey: storeys[storey][0])
+    drift, height = storeys[worst]
+    assert float(shown["Largest drift"].split()[0]) == pytest.approx(drift, rel=1e-3)
+    assert parts["Largest drift"].endswith(f"storey {worst}")
+    assert float(parts["Largest drift"].split()[0]) == pytest.approx(100 * drift / height, rel=5e-3)
+    for storey, (drift, height) in storeys.items():
+        (row,) = re.findall(rf'<tr><th scope="row">{storey}</th>(.*?)</tr>', text)
+        cells = [abs(float(cell)) for cell in re.findall(r'<td class="number">(.*?)</td>', row)]
+        assert cells[:3] == pytest.approx([height / 1000, drift, 100 * drift / height], rel=5e-3)
+    assert "<h1>Town hall &lt;1&gt;</h1>" in text
+    assert "A. B., 2026-01-02" in text
+    assert faults(text) == []
+
+
+def test_a_title_block_changes_nothing_that_is_computed() -> None:
+    plain, named = Scene(**FRAME), Scene(**FRAME, report={"project": "Town hall"})
+    assert lower(plain).labels.sha256 == lower(named).labels.sha256
+    assert named.with_({"output.until": "5 s"}).title_block == named.title_block
+    assert "report" not in plain.model_dump()
+    dimensionless = Scene.from_toml("drive_m1")
+    assert "report" not in dimensionless.model_dump()
+    assert Scene(**dimensionless.model_dump(), report={"author": "A"}).model_dump()["report"]["author"] == "A"
+    with pytest.raises(SceneError, match=r"report\.project: .* is not a line of text; write"):
+        Scene(**FRAME, report={"project": "two\nlines"})
 
 
 def vertices(path: str) -> Iterator[tuple[int, int]]:

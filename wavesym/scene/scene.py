@@ -34,6 +34,7 @@ from wavesym.scene.outputs import NoOutput, Observable, Output, observables
 from wavesym.scene.paths import changed
 from wavesym.scene.physical.scale import Scale, UnitsTable
 from wavesym.scene.physical.scene import PhysicalScene, physical
+from wavesym.scene.report import ReportTable
 from wavesym.scene.scene_file import read_toml
 from wavesym.systems import SYSTEMS, ExplicitChain, Preset, SystemTable
 
@@ -62,6 +63,7 @@ class Scene(SceneTable):
     system: SerializeAsAny[Preset | ExplicitChain] = Field(description="a table")
     load: tuple[SerializeAsAny[Load], ...] = ()
     output: Output = Field(description="a table")
+    title_block: ReportTable | None = Field(default=None, alias="report")
 
     _physical: PhysicalScene | None = PrivateAttr(default=None)
 
@@ -135,7 +137,8 @@ class Scene(SceneTable):
         """What was said. Without units there are none to tell of: so scenes keep the hash that they have had."""
         if self._physical is not None:
             return deepcopy(self._physical.said)
-        return {key: value for key, value in handler(self).items() if key != "units"}
+        left_out = {"units"} if self.title_block else {"units", "report"}
+        return {key: value for key, value in handler(self).items() if key not in left_out}
 
     @property
     def scale(self) -> Scale | None:

@@ -24,6 +24,7 @@ from wavesym.scene.physical.chain_parts import (
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
 from wavesym.scene.physical.scale import UnitsTable
+from wavesym.scene.report import ReportTable
 from wavesym.systems import SYSTEMS
 from wavesym.systems.parts import MARKS, ContactPart, JointPart, LinkPart, MassPart, MotionPart, RodPart
 
@@ -42,7 +43,7 @@ def scene_schema() -> str:
     may be, is for `wavesym inspect` to say.
     """
     loads: Tables = tuple(dict.fromkeys(kind for system in SYSTEMS.values() for kind in system.load_kinds))
-    every: Tables = (*_SYSTEMS, *_PARTS, *loads, Output, UnitsTable)
+    every: Tables = (*_SYSTEMS, *_PARTS, *loads, Output, UnitsTable, ReportTable)
     found, shared = models_json_schema([(table, "validation") for table in every], schema_generator=GenerateJsonSchema)
     refs: dict[type[SceneTable], dict[str, Any]] = {table: found[table, "validation"] for table in every}
     parts = {"type": "array", "items": {"anyOf": [{"enum": [*MARKS]}, *(refs[table] for table in _PARTS)]}}
@@ -63,6 +64,7 @@ def scene_schema() -> str:
             "system": {"anyOf": [refs[table] for table in _SYSTEMS]},
             "load": {"type": "array", "items": {"anyOf": [refs[table] for table in loads]}},
             "output": refs[Output],
+            "report": refs[ReportTable],
         },
         "required": ["name", "system"],
         "additionalProperties": False,

@@ -77,4 +77,4 @@ def drawn(history: History, grid: Grid, look: int) -> Svg:
         for kind, paths in (("jump", jumps), ("formal", formal), ("real", real))
         if paths
     ]
-    return element("g", *parts, class_=f"curve look{look}", data_name=history.name)
+    return element("g", *parts, class_=f"curve look{look}", data_name=history.output.name)

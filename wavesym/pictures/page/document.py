@@ -15,7 +15,9 @@ from wavesym.pictures.along import Along, along, observed
 from wavesym.pictures.groups import load_panel, notes, panels
 from wavesym.pictures.histories import Histories, History, drawable, histories
 from wavesym.pictures.loads import load_histories
+from wavesym.pictures.naming import with_titles
 from wavesym.pictures.page.crossings import crossings
+from wavesym.pictures.page.headline import Figure, headline, neglected, storeys
 from wavesym.pictures.page.places import along_pictures, maps
 from wavesym.pictures.page.plots import Shown, panel, picture
 from wavesym.pictures.page.said import SaidTable, advice_told, extremes_told
@@ -39,6 +41,11 @@ class Report:
     """What the template shows."""
 
     name: str
+    project: str
+    credit: str
+    headline: tuple[Figure, ...]
+    storeys: SaidTable
+    neglected: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     structure: Shown
     histories: tuple[Shown, ...]
@@ -64,7 +71,7 @@ class _Context:
 
 def page(scene: Scene) -> str:
     """The page of a scene, with the text it was read from. CostError, ToleranceError as for its histories."""
-    model = lower(scene)
+    model = with_titles(lower(scene))
     model.network.refuse_rodless("a report", "take `plot` and `summary`")
     drawn = model.watching(_fair(model))
     columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
@@ -87,9 +94,15 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     lines = scene.system.lines
     found, refused = _along(scene, model, None if searched else drawn_by)
     structured = structure(model, lines)
+    block = scene.title_block
     title = f"The structure of {model.name}"
     report = Report(
         name=model.name,
+        project=(block and block.project) or model.name,
+        credit=block.credit if block else "",
+        headline=tuple(headline(scene, model, summary, found, loads)),
+        storeys=storeys(scene, found, scale),
+        neglected=tuple(filter(None, neglected(model))),
         facts=tuple(_facts(model, made, found, loads, scale)),
         structure=Shown(
             title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")

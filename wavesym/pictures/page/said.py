@@ -73,7 +73,8 @@ def advice_told(model: Model) -> SaidTable:
     if not found.outputs:
         return SaidTable((), (), tuple(notes))
     head = ("Output", *(f"{_CALLED[each.name]}, {what}" for each in kept for what in ("history", "peak")))
-    rows = ((name, *_differences(kept, k)) for k, (name, *_) in enumerate(found.outputs))
+    labels = {probe.name: probe.label for probe in model.probes}
+    rows = ((labels[name], *_differences(kept, k)) for k, (name, *_) in enumerate(found.outputs))
     notes.append(
         f"Each number is the largest difference from waves at {found.instants} instants, in parts of the output's "
         "largest value: of the history at any time, and of the peak"
