@@ -65,7 +65,7 @@ MISTAKES = [
         DRIVE,
         'name = "good"',
         'name = "good"\ncolour = 1',
-        "colour: unknown key; write name, units, system, load or output",
+        "colour: unknown key; write name, units, system, load, output or report",
     ),
     (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key; write type, m, kappa, inertia or damping"),
     (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key; write times, body, steps or ramps'),
