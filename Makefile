@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated published examples bench prove misra targets fuzz mutants check-all
+.PHONY: install demo test lint generated published examples bench docs prove misra targets fuzz mutants check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -28,7 +28,7 @@ install: .venv/.installed
 	@$(PIP) '.[$(subst $() ,$(COMMA),$(NEEDED))]'
 	@touch $@
 
-.venv/.test .venv/.lint .venv/.check: .venv/.%: .venv/.installed
+.venv/.test .venv/.lint .venv/.check .venv/.docs: .venv/.%: .venv/.installed
 	@echo '== Python packages into .venv: what `make $*` needs'
 	@$(PIP) '.[$*]'
 	@touch $@
@@ -96,6 +96,11 @@ bench: install
 		$(BIN)/wavesym chart bench/$$scene.toml -o bench/$$scene.svg --csv bench/$$scene.csv; \
 	done
 	$(BIN)/python -m tools.front_page
+
+# the site, into build/site: open build/site/index.html
+docs: .venv/.docs
+	$(BIN)/python -m tools.site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 # what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not
 prove: install

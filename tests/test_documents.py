@@ -41,7 +41,7 @@ from wavesym.sweeps.request import SweepRequest
 ROOT = Path(wavesym.__file__).parents[1]
 PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md"))
 EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("*.md"))
-DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, *EXAMPLES)
+DOCUMENTS = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "llms.txt", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "exact", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(

@@ -1,0 +1,60 @@
+"""The site of `make docs`: all pictures, all public names, and no link that leads nowhere."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import wavesym
+from tools.site import NAMED, PAGES, ROOT, gallery, lay_out, public_names
+
+
+def test_the_gallery_has_every_picture_of_the_examples() -> None:
+    page = gallery(ROOT / "examples")
+    shown = set(re.findall(r"\]\((\S+\.png)\)", page))
+    assert shown == {path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").glob("*/*.png")}
+    assert all((ROOT / link).is_file() for link in re.findall(r"\]\(([^)]*)\)", page))
+
+
+def test_every_public_name_has_its_docstring_on_the_site() -> None:
+    assert public_names().count("\n::: ") == len(wavesym.__all__) - 1
+
+
+def test_blocks_that_are_saved_are_titled() -> None:
+    assert (
+        NAMED.sub(r'```\1 title="\2"', "```toml a.toml\nx\n```\n```sh\n") == '```toml title="a.toml"\nx\n```\n```sh\n'
+    )
+
+
+def test_every_page_of_the_menu_is_laid_out(tmp_path: Path) -> None:
+    lay_out(tmp_path / "pages")
+    menu = re.findall(r"^ *-.*?(\S+\.md)$", (ROOT / "mkdocs.yml").read_text().partition("\nnav:")[2], re.MULTILINE)
+    assert menu
+    assert [name for name in menu if not (tmp_path / "pages" / name).is_file()] == []
+
+
+def build(project: Path) -> subprocess.CompletedProcess[str]:
+    """Build the site of a folder that holds mkdocs.yml and build/pages."""
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict"]
+    return subprocess.run(command, cwd=project, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.slow
+def test_the_site_builds_and_a_broken_link_is_seen(tmp_path: Path) -> None:
+    pytest.importorskip("mkdocs")
+    shutil.copy(ROOT / "mkdocs.yml", tmp_path)
+    pages = tmp_path / PAGES.relative_to(ROOT)
+    lay_out(pages)
+    done = build(tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "build" / "site" / "index.html").is_file()
+    with (pages / "README.md").open("a") as page:
+        page.write("\n[nothing](docs/nothing.md)\n")
+    done = build(tmp_path)
+    assert done.returncode == 1
+    assert "docs/nothing.md" in done.stderr

@@ -1,0 +1,75 @@
+"""python -m tools.site: lay out the pages of the site in build/pages, as mkdocs.yml expects them.
+
+Folders stay as they are in the project, so that a link works there and on the site. Two pages are written here: the
+gallery, from the pictures of examples/, and the public names, which mkdocstrings fills from their docstrings.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import wavesym
+
+ROOT = Path(__file__).parents[1]
+PAGES = ROOT / "build" / "pages"
+FOLDERS = ("docs", "examples", "bench", "generated")
+FILES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE")
+NAMED = re.compile(r"^```(\w+) (\S+)$", re.MULTILINE)  # a block with the file that it is saved as
+TITLE = re.compile(r"^# (.*)$", re.MULTILINE)
+
+
+def gallery(examples: Path) -> str:
+    """A page with every picture of the examples, each beside a link to the page that draws it.
+
+    Args:
+        examples: the folder examples/; its pictures lie beside the README.md of each example.
+
+    Returns:
+        Markdown, with links from the folder above.
+    """
+    lines = ["# Gallery", "", "Each picture leads to the page with its scene and its commands."]
+    for page in sorted(examples.glob("*/README.md")):
+        pictures = sorted(page.parent.glob("*.png"))
+        title = TITLE.search(page.read_text(encoding="utf-8"))
+        assert title, page
+        link = f"{examples.name}/{page.parent.name}"
+        if pictures:
+            lines += ["", f"## [{title[1]}]({link}/README.md)", ""]
+        for picture in pictures:
+            name = picture.stem.replace("_", " ")
+            lines.append(f"[![{name}]({link}/{picture.name}){{ width=320 loading=lazy }}]({link}/README.md)")
+    return "\n".join([*lines, ""])
+
+
+def public_names() -> str:
+    """A page on which mkdocstrings puts the docstring of each public name."""
+    names = [name for name in wavesym.__all__ if name != "__version__"]
+    return "\n".join(
+        ["# Python, from docstrings", "", *(f"::: {home(name)}\n" for name in sorted(names, key=str.lower))]
+    )
+
+
+def home(name: str) -> str:
+    """Where a public name is defined, as `module.name`."""
+    found = getattr(wavesym, name)
+    return f"{found.__module__}.{found.__qualname__}"
+
+
+def lay_out(pages: Path) -> None:
+    """Write all pages anew into a folder."""
+    shutil.rmtree(pages, ignore_errors=True)
+    pages.mkdir(parents=True)
+    for folder in FOLDERS:
+        shutil.copytree(ROOT / folder, pages / folder)
+    for file in FILES:
+        shutil.copy(ROOT / file, pages)
+    for page in pages.rglob("*.md"):
+        page.write_text(NAMED.sub(r'```\1 title="\2"', page.read_text(encoding="utf-8")), encoding="utf-8")
+    (pages / "gallery.md").write_text(gallery(pages / "examples"), encoding="utf-8")
+    (pages / "docs" / "api.md").write_text(public_names(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    lay_out(PAGES)
