@@ -19,10 +19,9 @@ from flint import fmpq
 
 from wavesym.mechanics.network import End, Network
 from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.quantities import order_of
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
-ORDERS = {"displacement": -1, "acceleration": 1}
-"""How often waves are differentiated in quantities: others are what they are."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,7 @@ class Gauge:
     @property
     def order(self) -> int:
         """How often the waves are differentiated: -1 for an integral, a displacement; 1 for an acceleration."""
-        return ORDERS.get(self.quantity, 0)
+        return order_of(self.quantity)
 
 
 class Weighted(NamedTuple):

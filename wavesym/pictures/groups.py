@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.pictures.histories import Histories, History, Points
 from wavesym.pictures.timescale import Timescale, timescale
 from wavesym.pictures.units import unit_text
@@ -19,17 +20,7 @@ STRIPS = 4  # that take the room of a panel
 _STRIP = 0.9  # inches
 _TURNS, _LEVELS = 40, 20
 _MARKED = 3  # curves of a panel whose extremes are all marked; of more only the panel's own
-_CALLED = {"relative": "relative displacement"}
 _SYMBOL = {"collision": "u", "drive": "\u03b8", "building": "y"}
-_DEFINITION = {
-    "strain": "(l / {0}\u2080) \u2202{0}/\u2202x",
-    "velocity": "(l / (c {0}\u2080)) \u2202{0}/\u2202t",
-    "displacement": "{0} / {0}\u2080",
-    "acceleration": "(l\u00b2 / (c\u00b2 {0}\u2080)) \u2202\u00b2{0}/\u2202t\u00b2",
-    "force": "impedance \u00d7 strain",
-    "drift": "\u0394{0} / {0}\u2080",
-    "relative": "({0} \u2212 ground) / {0}\u2080",
-}
 
 
 @dataclass(frozen=True)
@@ -106,10 +97,10 @@ def load_panel(loads: Sequence[History], height: float) -> PlotPanel:
 def axis_title(model: Model, quantity: str, unit: str = "") -> str:
     """A quantity in its unit, or as section 4 of the paper makes it dimensionless."""
     if unit or model.clock is not None:
-        words = _CALLED.get(quantity, quantity)
+        words = QUANTITIES[quantity].called
         return f"{words}\nin {unit_text(unit)}" if unit else words
     letter = _SYMBOL.get(model.labels.system["type"], "u")
-    return f"{quantity}\n{_DEFINITION[quantity].format(letter)} (dimensionless)"
+    return f"{quantity}\n{QUANTITIES[quantity].axis.format(letter)} (dimensionless)"
 
 
 def quantities(histories: Histories) -> dict[str, list[History]]:

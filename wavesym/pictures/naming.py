@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.pictures.units import unit_text
 
 _PLACE = re.compile(r"[\d./]+(?: .*)?[+-]?")  # a number, perhaps with a unit and a side
-_RELATIVE = {"relative": "displacement relative to the ground"}
 
 
 def with_titles(model: Model) -> Model:
@@ -33,7 +33,7 @@ def output_title(model: Model, probe: Probe) -> str:
         probe: its name is QUANTITY@PLACE.
     """
     quantity, _, place = probe.name.partition("@")
-    words = _RELATIVE.get(quantity, quantity)
+    words = QUANTITIES[quantity].titled
     side = {"+": "above", "-": "below"}.get(place[-1:], "at")
     if model.labels.system["type"] == "building" and quantity != "strain" and place.rstrip("+-").isdecimal():
         place = place.rstrip("+-")

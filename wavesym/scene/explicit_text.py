@@ -10,9 +10,9 @@ from flint import fmpq
 from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load
 from wavesym.mechanics.network import Network, Point
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.scene.explicit_numbers import Dimensionless, InUnits, number_text
 from wavesym.scene.lowering import lower
-from wavesym.scene.outputs import QUANTITIES
 from wavesym.scene.scene import Scene
 
 

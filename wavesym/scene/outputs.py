@@ -22,13 +22,13 @@ from pydantic import (
 from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import Faults, SceneTable, Written, listed, shown, wrong
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.systems import SystemTable
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
 from wavesym.systems.watched import Watching
 
 # Beyond it even the integer part of an argument costs a double most of its digits.
 LONGEST_HORIZON = 10**9
-QUANTITIES = ("strain", "velocity", "displacement", "acceleration", "force", "drift", "relative")
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Output(SceneTable):
     def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Without new quantities that are not asked for: so scenes keep the hash that they have had."""
         said: dict[str, Any] = handler(self)
-        return {key: value for key, value in said.items() if value or key not in QUANTITIES[3:]}
+        return {key: value for key, value in said.items() if value or key not in QUANTITIES or QUANTITIES[key].usual}
 
     def of_every_rod(self, count: int) -> Self:
         """The same with a drift for each of the rods of the main line, where it says "all"."""

@@ -11,11 +11,9 @@ from typing import Protocol
 from wavesym.fields.loads import Load
 from wavesym.fields.table import Written, shown
 from wavesym.mechanics.network import Network
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines
-
-_LIKE = {"acceleration": "velocity", "relative": "displacement"}
-"""Quantities that are at the places of others."""
 
 
 class Located(Protocol):
@@ -44,7 +42,7 @@ class Watching:
         text = shown(Written(position.written))
         if quantity == "drift":
             return self._rod(position, text)
-        place = self.system.located(position, _LIKE.get(quantity, quantity), self.loads)
+        place = self.system.located(position, QUANTITIES[quantity].like, self.loads)
         if quantity == "relative":
             self._refuse_groundless(text)
         return place

@@ -11,6 +11,7 @@ from wavesym.exact.contacts.events import ContactEnd
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program
@@ -137,16 +138,7 @@ def describe(program: Program) -> Description:
 def _quantities(names: Sequence[str]) -> str:
     """In which order rows come: the first three always, of the others those that there are."""
     found = [name.partition("@")[0] for name in names]
-    more = [words for quantity, words in _MORE.items() if quantity in found]
-    return ", ".join(["strains, velocities, displacements", *more])
-
-
-_MORE = {
-    "acceleration": "accelerations",
-    "force": "forces",
-    "drift": "drifts",
-    "relative": "relative displacements",
-}
+    return ", ".join(each.plural for each in QUANTITIES.values() if each.usual or each.name in found)
 
 
 def _units(model: Model) -> str:

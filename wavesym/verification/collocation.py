@@ -24,7 +24,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from wavesym.mechanics.gauge import ORDERS, Gauge
+from wavesym.mechanics.gauge import Gauge
+from wavesym.mechanics.quantities import order_of
 from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import gauss
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
@@ -84,7 +85,7 @@ class Motion:
         """
         if not all(0 <= tau <= self.until for tau in taus):
             raise ValueError(f"tau outside [0, {self.until}]")
-        order = ORDERS.get(reading.quantity, 0)
+        order = order_of(reading.quantity)
         parts = [self._sent(side, number, taus, late, order) for side, number, late in self._read(reading)]
         if len(parts) == 1:
             return parts[0]

@@ -29,10 +29,10 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.records.load import RecordedLoad
 from wavesym.scene import Scene
-from wavesym.scene.outputs import QUANTITIES
 from wavesym.systems.building import Building
 from wavesym.systems.collision import Collision
 from wavesym.systems.drive import Drive

@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 from wavesym.fields.numbers import exact
 from wavesym.fields.table import Fault, Faults, key_path, placed, shown, wrong
 from wavesym.mechanics.length import LengthUnit
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.scene.outputs import LONGEST_HORIZON
 from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
@@ -32,7 +33,7 @@ _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive
     "drive": PhysicalDrive,
     "building": PhysicalBuilding,
 }
-_LENGTHS = {"strain", "velocity", "displacement", "acceleration", "force", "relative"}
+_LENGTHS = {each.name for each in QUANTITIES.values() if each.like}
 """Outputs whose places are lengths on a chain; a drift counts rods."""
 
 

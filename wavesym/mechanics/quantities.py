@@ -1,0 +1,69 @@
+"""The quantities that an output may be: one table, which scenes, headers, pictures and pages take their words from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of outputs.
+
+    Attributes:
+        name: as a scene writes it.
+        axis: what the dimensionless number is, for an axis; {0} stands for the letter of the displacement.
+        like: the quantity that is read at the same places, with a side where that has one; "" for what counts rods.
+        order: how often the waves are differentiated: -1 for an integral.
+        words: in a sentence; the name where there is nothing better.
+        title: the same in a title.
+        usual: whether it has been there from the start, so that it is part of every scene's canonical form.
+    """
+
+    name: str
+    axis: str
+    like: str
+    order: int = 0
+    words: str = ""
+    title: str = ""
+    usual: bool = False
+
+    @property
+    def called(self) -> str:
+        """In a sentence."""
+        return self.words or self.name
+
+    @property
+    def titled(self) -> str:
+        """In a title."""
+        return self.title or self.called
+
+    @property
+    def plural(self) -> str:
+        """Several of them."""
+        return f"{self.called[:-1]}ies" if self.called.endswith("y") else f"{self.called}s"
+
+
+QUANTITIES = {
+    each.name: each
+    for each in (
+        Quantity("strain", "(l / {0}\u2080) \u2202{0}/\u2202x", "strain", usual=True),
+        Quantity("velocity", "(l / (c {0}\u2080)) \u2202{0}/\u2202t", "velocity", usual=True),
+        Quantity("displacement", "{0} / {0}\u2080", "displacement", -1, usual=True),
+        Quantity("acceleration", "(l\u00b2 / (c\u00b2 {0}\u2080)) \u2202\u00b2{0}/\u2202t\u00b2", "velocity", 1),
+        Quantity("force", "impedance \u00d7 strain", "force"),
+        Quantity("drift", "\u0394{0} / {0}\u2080", ""),
+        Quantity(
+            "relative",
+            "({0} \u2212 ground) / {0}\u2080",
+            "displacement",
+            words="relative displacement",
+            title="displacement relative to the ground",
+        ),
+    )
+}
+"""By name, in the order of the outputs of a scene."""
+
+
+def order_of(quantity: str) -> int:
+    """How often the waves are differentiated in what is read; a load is none of an output's quantities."""
+    return QUANTITIES[quantity].order if quantity in QUANTITIES else 0
