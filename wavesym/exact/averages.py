@@ -41,15 +41,14 @@ class Averages:
 NO_AVERAGES = Averages(arb(0), arb(0), arb(0))
 
 
-def averages(pieces: Iterable[AveragedPiece], until: fmpq, unknown: arb) -> Averages:
+def averages(pieces: Iterable[AveragedPiece], until: fmpq) -> Averages:
     """The averages of an output over [0, until].
 
     Args:
         pieces: in order of time.
         until: the end of the last one, dimensionless.
-        unknown: how much of the integral, and of that of the square, may lie on stretches that no piece covers.
     """
-    integral, squares, last = arb(0, unknown), arb(0, unknown), arb(0)
+    integral, squares, last = arb(0), arb(0), arb(0)
     for piece in pieces:
         polynomial, length = arb_poly(list(piece.coefficients)), arb(piece.length)
         error = piece.radius

@@ -120,7 +120,7 @@ def _of_output(motion: Motion, probe: Probe) -> tuple[Range, Averages]:
         if (found := _extremes_of(pieces, max(sizes))) is None:
             return None
         largest = max(abs(extreme.value) for extreme in found)
-        averaged = _averages_of(pieces, motion.until, max(sizes)) if largest else NO_AVERAGES
+        averaged = _averages_of(pieces, motion.until) if largest else NO_AVERAGES
         return (found, averaged) if averaged.radius <= arb(largest) * _AVERAGED else None
 
     try:
@@ -172,12 +172,10 @@ class _Piece:
         return _Candidate(exact, tau, after, False)
 
 
-def _averages_of(pieces: Sequence[_Piece], until: fmpq, size: arb) -> Averages:
-    """The averages of an output; what is left out between pieces holds no double, and is at most `size`."""
-    covered = sum((piece.end - piece.start for piece in pieces), _ZERO)
-    unknown = arb(until - covered) * size * (1 + size)
+def _averages_of(pieces: Sequence[_Piece], until: fmpq) -> Averages:
+    """The averages of an output, but for what lies between pieces and holds no double: 2^-52 of the horizon at most."""
     every = (AveragedPiece(each.end - each.start, each.coefficients, each.radius, each.largest) for each in pieces)
-    return averages(every, until, unknown.upper())
+    return averages(every, until)
 
 
 def _shorten(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
