@@ -71,6 +71,7 @@
     });
   }).flat();
 
+  let started = false; // until then the animation shows the largest value
   function show() {
     const column = Number(slider.value);
     const digits = Math.max(0, Math.ceil(-Math.log10(until / columns)));
@@ -86,6 +87,40 @@
       plot.classList.add("read");
     }
     for (const read of curves) read(column);
+    if (started) move(column);
+  }
+
+  // the animation: parts that sway, or take colours, as the bytes of a frame say
+  const moving = document.getElementById("moving");
+  const parts = moving ? Array.from(moving.querySelectorAll(".part")) : [];
+  function move(column) {
+    if (!moving) return;
+    const count = Number(moving.dataset.count);
+    const frame = Math.round(column / columns * (count - 1));
+    parts.forEach((part, k) => {
+      const value = (parseInt(moving.dataset.values.substr(2 * (k * count + frame), 2), 16) - 128) / 127;
+      const size = Math.abs(value), pale = Math.round(247 * (1 - size));
+      if (moving.dataset.sways) part.setAttribute("transform", "translate(" + (90 * value).toFixed(1) + " 0)");
+      else part.setAttribute("fill", value > 0 ? "rgb(" + (pale + Math.round(178 * size)) + "," + pale + "," + pale + ")"
+        : "rgb(" + pale + "," + pale + "," + (pale + Math.round(168 * size)) + ")");
+    });
+  }
+
+  const play = document.getElementById("play");
+  if (play) {
+    let running = 0;
+    const stop = () => { clearInterval(running); running = 0; play.textContent = "Play"; };
+    play.addEventListener("click", () => {
+      if (running) { stop(); return; }
+      if (Number(slider.value) >= columns) slider.value = 0;
+      play.textContent = "Pause";
+      running = setInterval(() => {
+        slider.value = Number(slider.value) + Math.max(1, Math.round(columns / 600));
+        show();
+        if (Number(slider.value) >= columns) stop();
+      }, 50);
+    });
+    play.hidden = false;
   }
 
   for (const plot of plots) {
@@ -100,4 +135,5 @@
   reader.hidden = false;
   for (const value of document.querySelectorAll(".value")) value.hidden = false;
   show();
+  started = true;
 })();

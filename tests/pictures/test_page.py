@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import re
 from collections import Counter
@@ -10,6 +11,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -24,6 +26,7 @@ from wavesym.pictures.naming import with_titles
 from wavesym.pictures.page import small
 from wavesym.pictures.page.curves import HEIGHT, Grid
 from wavesym.pictures.page.document import _bound, page
+from wavesym.pictures.page.headline import _value
 from wavesym.pictures.page.said import SaidTable
 from wavesym.pictures.page.small import LARGEST, first_rows, first_text, fitting
 from wavesym.pictures.page.structure import structure
@@ -75,7 +78,7 @@ def faults(text: str) -> list[str]:
         address = attributes.get("href") or attributes.get("src") or ""
         if address.startswith("#"):
             found += [f"leads nowhere: {address}"] * (address[1:] not in ids)
-        elif address and not address.startswith("data:image/png;base64,"):
+        elif address and not address.startswith(("data:image/png;base64,", "data:text/csv;charset=utf-8,")):
             found.append(f"from outside: {address}")
         if tag == "svg" and "aria-hidden" not in attributes and attributes.get("role") != "img":
             found.append("an svg without a role")
@@ -253,6 +256,51 @@ def test_the_headline_is_what_an_engineer_computes_from_histories() -> None:
     assert "<h1>Town hall &lt;1&gt;</h1>" in text
     assert "A. B., 2026-01-02" in text
     assert faults(text) == []
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "shown"),
+    [(-3.298e6, "N", "3.298 MN"), (1500, "N", "1.5 kN"), (2, "N", "2 N"), (2e6, "mm", "2e+06 mm")],
+)
+def test_large_forces_are_shown_in_larger_units(value: float, unit: str, shown: str) -> None:
+    assert _value(value, unit) == shown
+
+
+def test_a_link_has_the_values_of_its_curve(building: str) -> None:
+    """As CSV: rows are what exact values do at their instants, and the extremes are among them."""
+    scene = Scene.from_toml("building_m2")
+    response = wavesym.evaluator(scene)
+    links = dict(re.findall(r'download="([^"]*)\.csv" href="data:text/csv;charset=utf-8,([^"]*)"', building))
+    for k, probe in enumerate(with_titles(lower(scene)).probes):
+        head, *rows = unquote(html.unescape(links[probe.label])).splitlines()
+        assert head == f'tau,"{probe.label}"'
+        taus, values = np.array([[float(cell) for cell in row.split(",")] for row in rows]).T
+        around = response(np.clip(taus[:, None] + [-1e-4, 0, 1e-4], 0, response.tau_max))[k]
+        size = np.max(np.abs(values))
+        assert np.all(values >= around.min(axis=1) - 1e-3 * size)
+        assert np.all(values <= around.max(axis=1) + 1e-3 * size)
+        peak = max((summary := wavesym.summary(scene)[probe.name]).max.value, -summary.min.value)
+        assert size == pytest.approx(peak, rel=2e-3)
+
+
+def test_the_animation_moves_with_the_cursor(tmp_path: Path) -> None:
+    """In a browser: floors are where the frames of the page, read here, have them; those are exact values."""
+    scene = Scene.from_toml("building_m2")
+    text = page(scene)
+    script = """
+      const slider = document.getElementById("cursor");
+      slider.value = 900; slider.dispatchEvent(new Event("input"));
+      const parts = Array.from(document.querySelectorAll("#moving .part"));
+      report([slider.max, parts.map((part) => part.getAttribute("transform"))]);
+    """
+    last, places = reported(text, script, tmp_path)  # type: ignore[misc]
+    moved = [float(place[10:].split(" ")[0]) / 90 for place in places]
+    response = wavesym.evaluator(scene.with_({"output.displacement": [0, 1, 2]}))
+    taus = np.linspace(0, response.tau_max, 20001)
+    rows = [response.outputs.index(f"displacement@{k}") for k in range(3)]
+    values = response(taus)[rows]
+    now = response([900 / float(last) * response.tau_max])[rows, 0] / np.max(np.abs(values))
+    assert moved == pytest.approx(now, abs=0.02)
 
 
 def test_a_title_block_changes_nothing_that_is_computed() -> None:

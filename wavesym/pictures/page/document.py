@@ -18,6 +18,7 @@ from wavesym.pictures.loads import load_histories
 from wavesym.pictures.naming import with_titles
 from wavesym.pictures.page.crossings import crossings
 from wavesym.pictures.page.headline import Figure, headline, neglected, storeys
+from wavesym.pictures.page.motion import Motion, motion
 from wavesym.pictures.page.places import along_pictures, maps
 from wavesym.pictures.page.plots import Shown, panel, picture
 from wavesym.pictures.page.said import SaidTable, advice_told, extremes_told
@@ -48,6 +49,7 @@ class Report:
     neglected: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     structure: Shown
+    motion: Motion | None
     histories: tuple[Shown, ...]
     notes: tuple[str, ...]
     until: str
@@ -85,7 +87,7 @@ def page(scene: Scene) -> str:
 def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[int], Report]:
     """All of it, computed once, whose curves may be drawn with fewer columns than `most`."""
     scale, until = timescale(model), nearest(model.until)
-    summary, searched = _summary(model, drifts(scene))
+    summary, searched = _summary(model, with_titles(model.watching(drifts(scene))).probes)
     drawn_by = searched or _program_of_all(drawn, observed(scene, model))
     made = histories(drawn, most, drawn_by)
     loads = load_histories(model, scene.scale)[:_LOADS]
@@ -107,6 +109,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         structure=Shown(
             title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")
         ),
+        motion=motion(model, found, scale),
         histories=(),
         notes=(*_left_out(model, drawn), *notes(made)),
         until=repr(until * scale.per_tau),

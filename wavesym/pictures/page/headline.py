@@ -70,8 +70,9 @@ def headline(
         peak = float(np.max(np.abs(loads[0].points[:, 1])))
         yield Figure("Peak ground acceleration", _value(peak, loads[0].output.unit), _in_g(scene, peak))
     with suppress(WavesymError):  # contacts have none
-        rows = [row for row in modes(model, _PERIODS) if row.period]
-        if rows:
+        known = modes(model, _PERIODS)
+        rows = [row for row in known if row.period]
+        if rows and known.complete:  # waves that leave a chain have none that anyone looks for
             unit = " s" if model.clock else ""
             values = ", ".join(f"{row.period:.3g}" for row in rows)
             yield Figure("Period" + "s" * (len(rows) > 1), f"{values}{unit}", "" if unit else "in tau")
@@ -163,4 +164,8 @@ def _in_g(scene: Scene, value: float) -> str:
 
 
 def _value(value: float, unit: str) -> str:
+    """A size in its unit, forces in N as kN or MN where they are large."""
+    if unit == "N":
+        power, prefix = next((each for each in ((6, "M"), (3, "k")) if abs(value) >= 10.0 ** each[0]), (0, ""))
+        value, unit = value / 10.0**power, prefix + unit
     return f"{abs(value):.4g} {unit_text(unit)}".rstrip()

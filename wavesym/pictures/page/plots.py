@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from urllib.parse import quote
 
 import numpy as np
 
@@ -11,20 +12,22 @@ from wavesym.pictures.histories import History
 from wavesym.pictures.page.curves import HEIGHT, Grid, drawn
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.svg import Svg, element, line, text
+from wavesym.pictures.reduction import reduced
 from wavesym.pictures.timescale import Timescale
 
 WIDTH, LEFT, RIGHT, TOP, BELOW = 900.0, 84.0, 12.0, 10.0, 44.0
 _LOAD, _STRIP, _PANEL = 90.0, 66.0, 190.0  # pixels high
 LETTER = 6.6  # wide
+_PER_ROW = 12  # columns of a picture that have three rows of a CSV
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A picture: what it is called, its markup, and the outputs that it has curves of (their look and name)."""
+    """A picture: what it is called, its markup, and its curves: their look, their name, and their values as CSV."""
 
     title: str
     drawn: Svg
-    curves: tuple[tuple[int, str], ...] = ()
+    curves: tuple[tuple[int, str, str], ...] = ()
     strip: bool = False
 
 
@@ -84,8 +87,21 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
         title,
         svg,
         strip=given.limits is not None,
-        curves=tuple((look, history.name) for look, history in enumerate(given.histories)),
+        curves=tuple(
+            (look, history.name, _csv_link(history, columns, until, scale))
+            for look, history in enumerate(given.histories)
+        ),
     )
+
+
+def _csv_link(history: History, columns: int, until: float, scale: Timescale) -> str:
+    """An address that is the curve itself as CSV: of every few columns the first, the least and the greatest value."""
+    time = f"t in {scale.unit}" if scale.unit else "tau"
+    name = f"{history.name} in {history.output.unit}" if history.output.unit else history.name
+    lines = [f'{time},"{name.replace(chr(34), chr(39))}"']
+    for tau, value in reduced(history.points, until, columns // _PER_ROW).tolist():
+        lines.append(f"{tau * scale.per_tau:.6g},{value:.6g}")
+    return "data:text/csv;charset=utf-8," + quote("\n".join(lines) + "\n", safe=",.+-")
 
 
 def _size(given: PlotPanel) -> tuple[float, tuple[float, float]]:
