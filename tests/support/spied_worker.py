@@ -2,7 +2,7 @@
 
 SPIED_LOG is a file that gets a line for each task, with its batch; SPIED_SECONDS is how long each takes at least. The
 batch SPIED_CRASH, and more than SPIED_MOST cases, kill the worker; the batch SPIED_EAT fills its memory. SPIED_VERSION
-is that of its wavesym.
+is that of its wavesym; with SPIED_TOGETHER no task is done before so many have begun.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ def _spied(batch: int, places: list[tuple[int, ...]]) -> None:
     with open(os.environ["SPIED_LOG"], "a", encoding="ascii") as log:
         log.write(f"{batch} {places}\n")
     time.sleep(float(os.environ.get("SPIED_SECONDS", "0")))
+    while _begun() < int(os.environ.get("SPIED_TOGETHER", "0")):
+        time.sleep(0.02)
     if os.environ.get("SPIED_CRASH") == str(batch) or len(places) > float(os.environ.get("SPIED_MOST", "inf")):
         os.kill(os.getpid(), signal.SIGKILL)
     if os.environ.get("SPIED_EAT") == str(batch):
@@ -28,6 +30,11 @@ def _spied(batch: int, places: list[tuple[int, ...]]) -> None:
         while True:
             eaten.append(bytearray(b"x" * 2**24))
             time.sleep(0.02)
+
+
+def _begun() -> int:
+    with open(os.environ["SPIED_LOG"], encoding="ascii") as log:
+        return len(log.readlines())
 
 
 def compute(plan: Any, batches: Any, batch: int, places: list[tuple[int, ...]] | None = None) -> Any:

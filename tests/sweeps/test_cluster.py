@@ -154,6 +154,20 @@ def test_a_worker_that_is_killed_takes_nothing_with_it(lab: Lab) -> None:
     assert files(lab.out) == lab.undisturbed()
 
 
+def test_a_cluster_that_grows_is_fed_by_the_threads_it_has_now(lab: Lab) -> None:
+    """More are under way at once than one worker was given ahead: nothing is done before."""
+    lab.scheduler()
+    lab.worker(SPIED_TOGETHER="5")
+    client = lab.client()
+    until(lambda: lab.computed() or client.poll() is not None)
+    for _ in range(4):
+        lab.worker(SPIED_TOGETHER="5")
+    code, err = finished(client)
+    assert code == 0, err
+    assert sorted(lab.computed()) == list(range(BATCHES))
+    assert files(lab.out) == lab.undisturbed()
+
+
 def test_a_client_that_is_killed_goes_on_where_it_was(lab: Lab) -> None:
     lab.scheduler()
     lab.worker(SPIED_SECONDS="0.3"), lab.worker(SPIED_SECONDS="0.3")
@@ -243,7 +257,7 @@ def test_workers_that_live_too_short_for_a_batch_finish_it_in_parts(lab: Lab) ->
 def test_an_address_where_nobody_listens_is_said(lab: Lab) -> None:
     code, err = finished(lab.client("--scheduler", "tcp://127.0.0.1:9"))
     assert code == 1
-    assert "tcp://127.0.0.1:9 given" in err
+    assert "no Dask scheduler answers at tcp://127.0.0.1:9" in err
     assert err.count("\n") == 1
 
 
@@ -275,7 +289,7 @@ def test_a_record_that_has_changed_meanwhile_makes_another_sweep(lab: Lab) -> No
     record.write_text("a\n0\n3\n0\n")
     code, err = finished(lab.client())
     assert code == 2, err
-    assert "the folder of another sweep given" in err
+    assert "the folder of another sweep" in err
     record.write_text("a\n0\n1\n0\n")
     code, err = finished(lab.client())
     assert code == 0, err
