@@ -39,7 +39,9 @@ from wavesym.sweeps.plan import plan
 from wavesym.sweeps.request import SweepRequest
 
 ROOT = Path(wavesym.__file__).parents[1]
-PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md"))
+PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md"))
+GUIDE = [page for page in PAGES if page.startswith("docs/guide/")]
+REFERENCE = [page for page in PAGES if page.startswith("docs/reference/")]
 EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("*.md"))
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "llms.txt", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "exact", "walls"}  # of architecture.md, by test_architecture.py
@@ -90,6 +92,7 @@ class Reader:
             shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("*.png"))
             self.folder = folder / beside.relative_to(ROOT)
         self.unused: set[str] = set()
+        self.used_elsewhere: set[str] = set()
         self.unread = False  # a command of this block, since it takes long
         programs = folder / "bin"
         programs.mkdir()
@@ -106,8 +109,16 @@ class Reader:
         for block in blocks(text):
             printed = self.follow(block, printed)
             followed += 1
-        assert not self.unused, "saved and never used"
+        assert self.unused <= self.used_elsewhere, "saved and never used"
         return followed
+
+    def share(self, pages: list[str]) -> None:
+        """Save what other pages of a book show: a page may use it, and use of it there counts."""
+        for block in (block for page in pages for block in blocks(document(page))):
+            if block.file:
+                (self.folder / block.file).write_text(block.text, encoding="utf-8")
+            elif block.language == "sh":
+                self.used_elsewhere |= words_of_files(block.text)
 
     def follow(self, block: Block, before: str | None) -> str | None:
         """What a block puts out; None of one that runs nothing, or not all."""
@@ -144,7 +155,7 @@ class Reader:
 
     def line(self, line: str) -> str | None:
         """What a command puts out; None of one that is not run, UNREAD of one that takes too long."""
-        self.unused -= set(re.split(r"[\s/]+", line))
+        self.unused -= words_of_files(line)
         words = shlex.split(line, comments=True)
         if self.unread and words[0] != "wavesym":  # it looks at what would have been made
             return UNREAD
@@ -204,6 +215,11 @@ class Reader:
         return done.stdout
 
 
+def words_of_files(text: str) -> set[str]:
+    """What may be the name of a file, without its folder, in lines of commands."""
+    return set(re.split(r"[\s/]+", text))
+
+
 def words_of_pipe(words: list[str]) -> list[list[str]]:
     """The commands of a line one after another; none where there is more to a line than that, or nothing of wavesym."""
     stages = [list(stage) for bar, stage in groupby(words, "|".__eq__) if not bar]
@@ -214,7 +230,15 @@ def words_of_pipe(words: list[str]) -> list[list[str]]:
 
 def reader(name: str, folder: Path, patience: bool) -> Reader:
     """Of a document of the project."""
-    return Reader(folder, patience, (ROOT / name).parent if name in EXAMPLES else None)
+    made = Reader(folder, patience, (ROOT / name).parent if name in EXAMPLES else None)
+    if name in GUIDE:
+        made.share([page for page in GUIDE if page != name])
+    return made
+
+
+def book(pages: list[str]) -> str:
+    """The text of several pages, one after another."""
+    return "\n".join(map(document, pages))
 
 
 def assert_made(targets: list[str]) -> None:
@@ -276,7 +300,7 @@ def test_the_example_in_the_help_of_a_command_works(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = shlex.join(["wavesym", *example(name, capsys)]).replace(" '>' ", " > ")
-    if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", document("docs/guide.md"), re.MULTILINE):
+    if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", book(GUIDE), re.MULTILINE):
         assert Reader(tmp_path, patience=True).line(line) is not None  # what is in the guide too is run there
 
 
@@ -309,9 +333,22 @@ def headings(text: str) -> set[str]:
 
 
 def test_every_page_can_be_found() -> None:
-    """README.md links to those of docs/, and to how to contribute."""
+    """README.md links to those of docs/ and to how to contribute, the guide and the reference to their pages."""
     linked = {file for file, _ in LINK.findall(document("README.md"))}
-    assert linked >= {"CONTRIBUTING.md", *PAGES}
+    assert linked >= {"CONTRIBUTING.md", *(page for page in PAGES if page.count("/") == 1)}
+    for first, pages in (("docs/guide.md", GUIDE), ("docs/reference.md", REFERENCE)):
+        assert {f"docs/{file}" for file, _ in LINK.findall(document(first))} >= set(pages)
+
+
+@pytest.mark.parametrize("name", [*GUIDE, *REFERENCE])
+def test_a_page_is_no_longer_than_is_read_at_once(name: str) -> None:
+    assert document(name).count("\n") <= (400 if name in GUIDE else 700)
+
+
+def test_no_file_is_shown_twice_in_the_guide() -> None:
+    """So a page may use what another one shows."""
+    shown = [block.file for block in blocks(book(GUIDE)) if block.file]
+    assert len(shown) == len(set(shown))
 
 
 def test_the_readme_says_how_to_start_on_its_first_screen() -> None:
@@ -329,9 +366,7 @@ def test_the_numbers_of_the_readme_are_those_of_the_bench() -> None:
 
 
 def test_no_source_names_a_document_that_is_not_here() -> None:
-    there = {
-        path.name for folder in (".", "docs", "bench", "generated", "examples") for path in (ROOT / folder).glob("*.md")
-    }
+    there = {Path(name).name for name in DOCUMENTS} | {"errata.md"}
     for path in (path for room in ("wavesym", "tests", "templates") for path in (ROOT / room).rglob("*.*")):
         if path.suffix in {".py", ".c", ".h", ".j2", ".toml"}:
             named = re.findall(r"\b(\w+\.md)\b", path.read_text(encoding="utf-8"))
@@ -339,7 +374,7 @@ def test_no_source_names_a_document_that_is_not_here() -> None:
 
 
 def test_the_reference_has_every_option_of_every_command() -> None:
-    rows = re.findall(r"^\| (`wavesym (\w+).*)$", document("docs/reference.md"), re.MULTILINE)
+    rows = re.findall(r"^\| (`wavesym (\w+).*)$", book(REFERENCE), re.MULTILINE)
     for name in COMMANDS:
         spans = " ".join(SPAN.findall("".join(row for row, named in rows if named == name)))
         wanted = {option for option in options(command(name)) if option.startswith("-")} - {"--help"}
@@ -347,17 +382,17 @@ def test_the_reference_has_every_option_of_every_command() -> None:
 
 
 def test_the_reference_has_everything_public() -> None:
-    code = set(re.findall(r"`wavesym\.(\w+)", document("docs/reference.md")))
+    code = set(re.findall(r"`wavesym\.(\w+)", book(REFERENCE)))
     assert code >= set(wavesym.__all__) - {"__version__"}
 
 
 def test_the_reference_has_every_target_of_the_makefile() -> None:
-    targets = set(re.findall(r"`make ([a-z-]+)`", document("docs/reference.md")))
+    targets = set(re.findall(r"`make ([a-z-]+)`", book(REFERENCE)))
     assert targets == set(re.findall(r"^\.PHONY: (.*)$", document("Makefile"), re.MULTILINE)[0].split())
 
 
 def test_the_guide_has_every_command() -> None:
-    code = "".join(block.text for block in blocks(document("docs/guide.md")) if block.language == "sh")
+    code = "".join(block.text for block in blocks(book(GUIDE)) if block.language == "sh")
     assert {name for name in COMMANDS if f"wavesym {name}" in code} == set(COMMANDS)
 
 

@@ -54,7 +54,14 @@ def test_the_site_builds_and_a_broken_link_is_seen(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "build" / "site" / "index.html").is_file()
     with (pages / "README.md").open("a") as page:
-        page.write("\n[nothing](docs/nothing.md)\n")
+        page.write("\n[nothing](docs/nothing.svg)\n")
     done = build(tmp_path)
     assert done.returncode == 1
-    assert "docs/nothing.md" in done.stderr
+    assert "docs/nothing.svg" in done.stderr
+
+
+def test_examples_in_docstrings_are_code() -> None:
+    pytest.importorskip("griffe")
+    from tools.docstrings import fenced
+
+    assert fenced("A.\n\n>>> 1 + 1\n2\n\nB.\n") == "A.\n\n```pycon\n>>> 1 + 1\n2\n```\n\nB.\n"

@@ -35,7 +35,7 @@ class Part(NamedTuple):
 
 
 class Row(NamedTuple):
-    """One coefficient of a table, as in docs/reference.md; all exact.
+    """One coefficient of a table, as in docs/reference/formats.md; all exact.
 
     Of a chain that is written out, `rod` may be a name, and `interval` is the tau at which the wave leaves its end.
     """
