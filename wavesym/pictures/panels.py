@@ -23,7 +23,7 @@ from wavesym.pictures.reduction import reduced
 from wavesym.pictures.style import FONT, HALO, WIDTH, draw_grid, new_figure, styled
 from wavesym.pictures.timescale import Timescale, timescale
 
-CHARACTERS = 74  # in a line of text across the figure
+CHARACTERS = 66  # in a line of text across the figure
 _LEFT, _RIGHT, _GAP = 1.05, 0.1, 0.22  # inches
 _TITLE = 0.62  # of an axis, to its left
 _LINE = 0.21  # height of a line of text
@@ -81,6 +81,7 @@ def stacked(
     scale: Timescale = Timescale(),  # noqa: B008  (frozen)
 ) -> Figure:
     """Panels one under the other, lines of text above and below them; all in tau, drawn in the time of `scale`."""
+    title, below = ([part for line in lines for part in _lines(line)] for lines in (title, below))
     panels, until = [_clocked(panel, scale) for panel in panels], until * scale.per_tau
     instants = [replace(instant, tau=instant.tau * scale.per_tau) for instant in instants]
     gaps = [0.0 if panel.goes_on(before) else _GAP for before, panel in pairwise(panels)]
@@ -104,6 +105,11 @@ def stacked(
         _fill(axes, panel, instants)
     axes.set_xlabel(scale.title)
     return figure
+
+
+def _lines(text: str) -> list[str]:
+    """A text in lines that fit across a figure, all with the blanks that it begins with."""
+    return wrap(text, CHARACTERS, subsequent_indent=text[: len(text) - len(text.lstrip())])
 
 
 def _clocked(panel: PlotPanel, scale: Timescale) -> PlotPanel:
