@@ -149,9 +149,9 @@ def test_a_page_lowers_once_and_takes_one_program_beside_the_extremes(
         counted["programs"] += 1
         return making(*given, **named)  # type: ignore[arg-type]
 
-    exact, making = summaries.extremes, histories.make
+    exact, making = summaries.extremes_and_averages, histories.make
     monkeypatch.setattr(lowering, "_lowered", lower)
-    monkeypatch.setattr(summaries, "extremes", extremes_of)
+    monkeypatch.setattr(summaries, "extremes_and_averages", extremes_of)
     monkeypatch.setattr(histories, "make", made)
     scene = Scene.from_toml("building_m2")
     wavesym.report(scene, tmp_path / "page.html")

