@@ -331,6 +331,8 @@ static void add_window(const progress *b, errors *w)
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
             if (is_body[joint]) {
                 add_residual(b, &now, w, joint, panel, 1, 1, 0, &energy, apart);
+            } else if (points_of(joint) == 1 && states_of(joint) == 0) {
+                add_residual(b, &now, w, joint, panel, 0, 1, 1, &energy, apart);
             } else {
                 const int points = points_of(joint);
                 add_residual(b, &now, w, joint, panel, states_of(joint), points, points, &energy, apart);

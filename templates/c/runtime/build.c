@@ -144,8 +144,12 @@ static void OF(march_again)(OF(progress) *b, int degree)
 /* Whether some set that is not refused misses more than its share; at the highest degree it is refused. */
 static int OF(misses)(OF(progress) *b)
 {
-    int found = 0;
-    for (int set = 0; set < OF(lanes_in_all); ++set) {
+    int found = 0, some = 0;
+    for (int side = 0; side < OF(parts); ++side) {
+        const TEST late = (b->leak[side] <= share * b->seen[side]) == 0;
+        some |= SOME(late);
+    }
+    for (int set = 0; some && set < OF(lanes_in_all); ++set) {
         const real missed = LANE(b->leak, set), seen = LANE(b->seen, set);
         if (b->status[set] == 0 && !(missed <= share * seen)) {
             found = 1;

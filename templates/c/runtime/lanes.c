@@ -2,9 +2,9 @@
  * Plain C of a program of a scene called `name`; what stands below the first empty line. */
 #include "model.c"
 
-/* Bytes of vectors: clang keeps several registers side by side in one, which hides what joints wait for. */
-#if defined(__clang__) && VECTOR
-#define WIDE 64
+/* Bytes of vectors: where they have 16, clang keeps two registers side by side in one, which hides what joints wait for. */
+#if defined(__clang__) && VECTOR == 16
+#define WIDE 32
 #else
 #define WIDE VECTOR
 #endif
@@ -41,12 +41,17 @@ static void add_magnitude_batch(wide *sum, const wide *x)
 /* Whether a test holds in some set. */
 static int in_some(const mask *test)
 {
-    int found = 0;
-    (void)test;
-    for (int lane = 0; lane < SETS; ++lane) {
-        found |= AT(*test, lane) != 0;
+#if VECTOR
+    typedef long long words __attribute__((vector_size(WIDE)));
+    const words all = (words)*test;
+    long long found = 0;
+    for (size_t k = 0; k < sizeof all / sizeof found; ++k) {
+        found |= all[k];
     }
-    return found;
+    return found != 0;
+#else
+    return *test;
+#endif
 }
 
 /* Of series with a set in each lane a pack is one number. */

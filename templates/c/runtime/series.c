@@ -24,7 +24,11 @@ enum { RATIO = 0, SUM_FIRST = 1, SUM_LAST = 2, SLACK = 0, LOSS = 1 };
 
 static real magnitude(real x)
 {
+#if defined(__GNUC__) && !defined(__FRAMAC__)
+    return (real)__builtin_fabs((double)x);
+#else
     return x < 0 ? -x : x;
+#endif
 }
 
 static real larger(real one, real other)

@@ -36,7 +36,7 @@ class Memory:
         self._constants = {f"{name.upper()}_OUTPUTS": outputs}
         number, vector = (real, real), (_VECTOR, real)
         numbers = dict.fromkeys(("double", "float", "real", "num"), number)
-        vectors = dict.fromkeys(("wide", "slice", "mask"), vector)
+        vectors = dict.fromkeys(("wide", "slice", "pack", "mask"), vector)
         self._types: dict[str, Layout] = {"int": (4, 4), "size_t": (8, 8), **numbers, **vectors}
 
     def read(self, text: str) -> None:
