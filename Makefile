@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated published examples bench docs prove misra targets fuzz mutants check-all
+.PHONY: install demo test lint generated published examples bench docs wheel prove misra targets fuzz mutants check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -101,6 +101,10 @@ bench: install
 docs: .venv/.docs
 	$(BIN)/python -m tools.site
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+# what `pip install` takes, into dist
+wheel: install
+	$(BIN)/python -m pip wheel --disable-pip-version-check --quiet --no-deps -w dist .
 
 # what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not
 prove: install
