@@ -74,6 +74,11 @@ def _own(path: str, numbers: Mapping[str, Any]) -> Sequence[float]:
             return [event.double * seconds for event in response.events[:count]]
         case "least":
             return [wavesym.summary(scene)[numbers["output"]].min.value]
+        case "arrival":
+            arrival = wavesym.summary(scene)[numbers["output"]].arrival
+            assert arrival is not None  # something arrives
+            assert arrival.time is not None  # the scene has units
+            return [arrival.time]
         case "peak":
             found = wavesym.frf(scene, numbers["band"])
             return [found.peaks()[numbers["output"]].amplitude]
