@@ -1,4 +1,4 @@
-"""What happens at a contact, and when: it opens, or it closes."""
+"""What happens at a contact, and when: it opens, or it closes; what rubs slips, or sticks."""
 
 from __future__ import annotations
 
@@ -28,11 +28,16 @@ class KnownInstant:
 
 @dataclass(frozen=True)
 class ContactEvent(KnownInstant):
-    """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball.
+    """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball; what rubs there slips or sticks.
 
     A contact that is closed from the start is no event.
     """
 
     x: str
-    kind: Literal["opens", "closes"]
+    kind: Literal["opens", "closes", "slips", "sticks"]
     tau: arb
+
+    @property
+    def subject(self) -> str:
+        """What it happens to."""
+        return f"friction at x = {self.x}" if self.kind in ("slips", "sticks") else f"contact at x = {self.x}"

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
+from wavesym.errors import UnservedError
 from wavesym.mechanics.network import End, Network
 from wavesym.mechanics.probe import Probe
 from wavesym.mechanics.quantities import order_of
@@ -116,6 +117,11 @@ def _acting(network: Network, point: int, before: int | None = None) -> Iterator
     for number, link in enumerate(network.links):
         if point not in (link.left, link.right) or number == before:
             continue
+        if link.friction != 0:
+            raise UnservedError(
+                f"output.acceleration: what rubs at {link.place} acts with a force that sticks and slips, which is no "
+                "sum of readings; take velocity"
+            )
         if link.contact:
             other, share = (link.right, link.ratio) if point == link.left else (link.left, 1 / link.ratio)
             yield from _times(share, _acting(network, other, number))

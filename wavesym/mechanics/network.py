@@ -82,7 +82,8 @@ class Link:
     """A spring and a dashpot between two points; their left end moves `ratio` times as fast as its point.
 
     A `contact` has neither: it pushes and never pulls, and is open while its two sides are apart, at tau = 0 by `gap`.
-    `place` is what a scene calls it.
+    Where it has `friction` R it has neither, too: its sides stick while it takes no more than R to hold them, else it
+    takes R against their sliding (Coulomb). `place` is what a scene calls it.
     """
 
     left: int
@@ -93,6 +94,12 @@ class Link:
     contact: bool = False
     gap: fmpq = _ZERO
     place: str = ""
+    friction: fmpq = _ZERO
+
+    @property
+    def has_corner(self) -> bool:
+        """Whether its law has a corner: it is another one from some instants on, which have to be found."""
+        return self.contact or self.friction != 0
 
 
 class End(NamedTuple):
@@ -142,8 +149,8 @@ class Network:
 
     @cached_property
     def contacts(self) -> tuple[int, ...]:
-        """The links that are contacts."""
-        return tuple(number for number, link in enumerate(self.links) if link.contact)
+        """The links whose laws have corners: contacts, and friction."""
+        return tuple(number for number, link in enumerate(self.links) if link.has_corner)
 
     def refuse_contacts(self) -> None:
         """UnservedError where contacts open and close: for what is one law from the start to the end.
@@ -151,9 +158,12 @@ class Network:
         (One may close without any front, where what it parts moves at constant speed.)
         """
         for number in self.contacts:
+            link = self.links[number]
+            what = f"the contact at {link.place} opens and closes"
+            if link.friction != 0:
+                what = f"what rubs at {link.place} sticks and slips"
             raise UnservedError(
-                f"system: the contact at {self.links[number].place} opens and closes, which tables, closed form "
-                "and march do not support (take pieces or `run`)"
+                f"system: {what}, which tables, closed form and march do not support (take pieces or `run`)"
             )
 
     def refuse_loss(self) -> None:
@@ -250,7 +260,7 @@ class Network:
         for link in self.links:
             if link.left in velocities:
                 opening = velocities[link.right] - link.ratio * velocities[link.left]
-                if opening != 0 and link.stiffness != 0:
+                if opening != 0 and (link.stiffness != 0 or link.friction != 0):
                     return False
                 pull = link.damping * opening
                 pulls[link.left] += link.ratio * pull

@@ -284,6 +284,8 @@ def network_problem(model: Model, kind: type[Stated]) -> Stated:
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
     gaps, parting = [], []
     for link in network.links:
+        if link.friction != 0:
+            raise UnservedError(f"system: friction at {link.place} is not supported by integrations; take `run`")
         pair = np.zeros(len(points))
         pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
         if link.contact:
@@ -326,7 +328,7 @@ def problem_of(model: Model) -> Problem:
     Raises:
         UnservedError: contacts open and close.
     """
-    if model.network.contacts:
+    if any(link.contact for link in model.network.links):
         raise UnservedError(
             "system: a contact that opens and closes is not supported by other methods; take pieces or `run`"
         )

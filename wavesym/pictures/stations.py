@@ -22,7 +22,7 @@ def open_times(model: Model, events: Iterable[ContactEvent]) -> Opened:
     for event in events:
         if event.kind == "opens":
             since[event.x] = event.double
-        else:
+        elif event.kind == "closes":
             found[event.x].append((since.pop(event.x), event.double))
     for place, begun in since.items():
         found[place].append((begun, nearest(model.until)))

@@ -38,7 +38,7 @@ def outside(model: Model, at: Sequence[float]) -> list[str]:
 def event_lines(response: Response) -> list[str]:
     """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
     return [
-        f"contact at x = {each.x} {each.kind} at tau = {each.digits}{_in_time(response.model, each.double)}"
+        f"{each.subject} {each.kind} at tau = {each.digits}{_in_time(response.model, each.double)}"
         for each in response.events
     ]
 

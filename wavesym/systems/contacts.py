@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from wavesym.fields.table import wrong
-from wavesym.mechanics.network import Link, Point
+from wavesym.mechanics.network import Link, Network, Point
 from wavesym.systems.lines import Keys
 
 
@@ -34,6 +34,20 @@ def refuse_impacts(points: Sequence[Point], contacts: Iterable[tuple[Link, Keys]
             )
         leader[other] = one
         rigid[one] = rigid[one] or rigid[other]
+
+
+def refuse_joined_friction(points: Sequence[Point], links: Sequence[Link], written: Mapping[int, Keys]) -> None:
+    """What rubs must be alone in its joint with a law that has a corner. Raises that of `table.wrong`."""
+    for joint in Network(tuple(points), (), tuple(links)).joints:
+        corners = [link for link in links if link.has_corner and link.left in joint.points]
+        rubbing = [link for link in corners if link.friction != 0]
+        if rubbing and len(corners) > 1:
+            other = "a contact" if len(rubbing) < len(corners) else "other friction"
+            raise wrong(
+                f"joined to {other} by what has no length; write a rod between them",
+                *written[rubbing[0].right],
+                "friction",
+            )
 
 
 def told_apart(links: Sequence[Link]) -> list[Link]:

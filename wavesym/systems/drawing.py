@@ -13,7 +13,7 @@ from wavesym.mechanics.length import LengthUnit, place_text
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
-from wavesym.systems.contacts import refuse_impacts, told_apart
+from wavesym.systems.contacts import refuse_impacts, refuse_joined_friction, told_apart
 from wavesym.systems.lines import Keys, PlacedBetween, PlacedNode, alternating
 from wavesym.systems.parts import Branch, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart
 from wavesym.systems.station import MAIN, Lines, Station
@@ -52,7 +52,8 @@ class Drawing:
         """With unit loads on its points; its places are told in a unit of length."""
         places = self._places(length)
         points = (
-            replace(point, loads=tuple(sources.get(k, ())), place=places[k]) for k, point in enumerate(self.points)
+            replace(point, loads=tuple(sources.get(k, ())), place=places.get(k, "ground"))
+            for k, point in enumerate(self.points)
         )
         called = {k: place_text(x, line, "", length) for k, (line, x) in self.contacts.items()}
         links = (replace(link, place=called.get(k, "")) for k, link in enumerate(self.links))
@@ -111,6 +112,7 @@ class _Pen:
         for k, point in enumerate(self.points):
             self._bearable(k, point)
         refuse_impacts(self.points, self.contacts)
+        refuse_joined_friction(self.points, self.links, self.written)
         return Drawing(tuple(self.points), tuple(self.bars), tuple(self.links), self.lines, self.names, self.places)
 
     def line(
@@ -144,6 +146,10 @@ class _Pen:
                 self._contact(part, left, right, turns, (*at, number))
             stations[-1] = replace(last, points=(*last.points, right))
         self.lines[name] = tuple(stations)
+        for placed, number in zip(nodes, numbers, strict=True):
+            if placed is not None and isinstance(placed[1], PointPart) and placed[1].friction:
+                x = next(station.x for station in stations if number in station.points)
+                self._rub(placed[1].friction, number, (name, x), (*at, placed[0]))
 
     def _drawn(self, nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], k: int, at: Keys) -> int:
         """A new point for a node."""
@@ -156,6 +162,14 @@ class _Pen:
             self._become(number, placed[1], [part for part in beside if isinstance(part, RodPart)], (*at, placed[0]))
         return number
 
+    def _rub(self, friction: Fraction, point: int, place: tuple[str, Fraction], at: Keys) -> None:
+        """Friction between a point and the ground, a point of its own."""
+        self.points.append(Point(fmpq(0), motion="fixed"))
+        ground = len(self.points) - 1
+        self.written[ground] = at
+        self.places[len(self.links)] = place
+        self.links.append(Link(ground, point, friction=rational(friction)))
+
     def _wheel(self, point: int, part: ChainPart | str, ratio: Fraction, at: Keys) -> None:
         """What stands first in a branch turns with its node, `ratio` times as fast: the node has all of it."""
         if not isinstance(part, PointPart):
@@ -163,6 +177,8 @@ class _Pen:
         if part.name or part.velocity is not None:
             key = "name" if part.name else "velocity"
             raise wrong("what turns with the node of the branch has that of the node; leave it out", *at, key)
+        if part.friction:
+            raise wrong("not of what turns with the node of a branch; write it at the node", *at, "friction")
         square, here = rational(ratio) ** 2, self.points[point]
         if here.motion is not None:
             raise wrong("a mass on an end that moves as it is told; write what holds the branch to it", *at)

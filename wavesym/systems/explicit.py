@@ -104,8 +104,10 @@ def _damper(network: Network) -> str:
         if point.damping != 0:
             return f"a dashpot or an absorbing end at {point.name or point.place}"
     for link in network.links:
-        if link.damping != 0 or link.contact:
-            return "a contact" if link.contact else "a dashpot"
+        if link.has_corner:
+            return "a contact" if link.contact else "friction"
+        if link.damping != 0:
+            return "a dashpot"
     return ""
 
 

@@ -72,11 +72,12 @@ class RodPart(ChainPart):
 
 
 class PointPart(ChainPart):
-    """What moves as one: a rigid mass or a massless joint, with a dashpot and a spring to the ground."""
+    """What moves as one: a rigid mass or a massless joint, with a dashpot, a spring and friction to the ground."""
 
     velocity: Exact | None = None
     dashpot: NotNegative = Fraction(0)
     spring: NotNegative = Fraction(0)
+    friction: NotNegative = Fraction(0)
     name: PartName | None = None
 
     @property

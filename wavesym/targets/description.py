@@ -49,12 +49,13 @@ class NamedContact:
 
 @dataclass(frozen=True)
 class NamedEvent:
-    """What a contact does: its place, "opens" or "closes", tau as a literal of Python, and with 20 digits."""
+    """What a contact or friction does: its place, what, tau as a literal of Python and with 20 digits; its subject."""
 
     x: str
     kind: str
     tau: str
     digits: str
+    subject: str
 
 
 @dataclass(frozen=True)
@@ -178,7 +179,8 @@ def _contact(end: ContactEnd, real: Real) -> NamedContact:
 
 
 def _event(event: ContactEvent, real: Real) -> NamedEvent:
-    return NamedEvent(event.x, event.kind, literal(real.nearest(rational(event.double)), real), event.digits)
+    tau = literal(real.nearest(rational(event.double)), real)
+    return NamedEvent(event.x, event.kind, tau, event.digits, event.subject)
 
 
 def _model(model: Model) -> list[str]:

@@ -93,10 +93,16 @@ def parts(model: Model) -> Iterator[Section]:
                 "dashpot": str(link.damping),
             }
             for link in network.links
-            if not link.contact
+            if not link.has_corner
         ],
     )
-    if network.contacts:
+    if any(link.friction != 0 for link in network.links):
+        yield Listing(
+            "friction",
+            "Friction: where a node rubs on the ground, and how much force that takes",
+            [{"x": link.place, "friction": str(link.friction)} for link in network.links if link.friction != 0],
+        )
+    if any(link.contact for link in network.links):
         yield Listing(
             "contacts",
             "Contacts: two points that push each other while they touch, and how far apart they are at tau = 0",

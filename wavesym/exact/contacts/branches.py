@@ -1,39 +1,90 @@
-"""The branches of a contact, and what ends each.
+"""The branches of links whose laws have corners, and what ends each.
 
 A contact is on one of two branches: closed, while it pushes, or open, while it has a gap. Each has a guard, a function
 of time that must not be negative: the force of what is closed, the gap of what is open (at first, the rate at which it
-grows). Where its guard ends a branch, the other one is its successor. A guard is known as a polynomial within an error,
-sometimes exactly; what is said here of its sign is certain.
+grows). What rubs is on one of three: it sticks, while its force is within R and -R, or slides one way or the other,
+while it goes that way. Where its guard ends a branch, another one is its successor. A guard is known as a polynomial
+within an error, sometimes exactly; what is said here of its sign is certain.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from flint import arb, fmpq
+from flint import arb, arb_poly, fmpq, fmpq_poly
 
+from wavesym.exact.contacts.cluster import Sliding
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.contacts.touching_joint import JointStretch
-from wavesym.exact.joints.enclosed import Enclosed
+from wavesym.exact.contacts.touching_joint import UNIT, JointStretch
+from wavesym.exact.joints.enclosed import Enclosed, add_terms
 from wavesym.numbers.doubles import middle
 
 
 class BranchEnd(NamedTuple):
-    """How long a branch certainly lasts; and how far off its end may be, in time, unless that is exact."""
+    """How long a branch certainly lasts; and how far off its end may be, in time, unless that is exact.
+
+    Or, how long it is taken to last, which is beyond its end by less than `late`.
+    """
 
     length: fmpq
     spread: fmpq | None
+    late: fmpq = fmpq(0)
+
+
+class Corner(ABC):
+    """A link whose law has a corner, as time goes on; which way it slides, where it rubs and is certain to (`sign`)."""
+
+    link: int
+    closed: bool
+    sign: int
+
+    @property
+    @abstractmethod
+    def may_close(self) -> bool:
+        """Whether a stretch may begin on which it is closed."""
+
+    @property
+    @abstractmethod
+    def is_unclear(self) -> bool:
+        """Whether nothing is certain of the branch that it is on."""
+
+    @property
+    def ways(self) -> tuple[int, ...]:
+        """The signs with which it may slide where it is not closed; 0 of what does not rub."""
+        return (0,)
+
+    @abstractmethod
+    def begins(self, moved: JointStretch) -> bool:
+        """Whether its branch on a stretch is certainly right just after the start."""
+
+    @abstractmethod
+    def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
+        """How long its branch certainly lasts on a stretch, as it does up to `low`; None: all the way."""
+
+    @abstractmethod
+    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
+        """Whether its branch is certainly right on all of a short stretch."""
+
+    @abstractmethod
+    def advance(self, moved: JointStretch, length: fmpq) -> None:
+        """Go to the end of a stretch on which its branch was right, or of a short one on which it was left open."""
+
+    @abstractmethod
+    def take(self, moved: JointStretch) -> bool:
+        """Be on the branch that a stretch begins with; whether that is another one."""
 
 
 @dataclass
-class Contact:
+class Contact(Corner):
     """A contact as time goes on: how wide its gap is, as far as that is known, and its branch when last decided."""
 
     link: int
     gap: arb
     exact: fmpq | None
     closed: bool
+    sign = 0
 
     @classmethod
     def of(cls, link: int, gap: fmpq) -> Contact:
@@ -41,9 +92,19 @@ class Contact:
         return cls(link, arb(gap), gap, gap == 0)
 
     @property
-    def shut(self) -> bool:
+    def may_close(self) -> bool:
         """Its gap is 0."""
         return self.exact is not None and self.exact == 0
+
+    @property
+    def is_unclear(self) -> bool:
+        """It is not known whether it has a gap."""
+        return not self.may_close and not self.wide
+
+    def take(self, moved: JointStretch) -> bool:
+        """Be closed or open; whether it was not."""
+        before, self.closed = self.closed, self.link in moved.closed
+        return before != self.closed
 
     @property
     def wide(self) -> bool:
@@ -51,25 +112,13 @@ class Contact:
         return self.exact > 0 if self.exact is not None else bool(self.gap > 0)
 
     def begins(self, moved: JointStretch) -> bool:
-        """Whether its branch on a stretch is certainly right just after the start."""
+        """Whether its force is not negative, or its gap grows, just after the start."""
         if self.link in moved.closed:
-            force = moved.pushes[self.link]
-            if force.least is not None and sign_after(force.least, fmpq(0)) >= 0:
-                return True
-            return all(
-                _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
-                for each in force.choices or (force,)
-            )
-        if self.wide:
-            return True
-        rate = moved.rates[self.link]
-        return all(
-            _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
-            for each in rate.choices or (rate,)
-        )
+            return _begins_bearable(moved.pushes[self.link])
+        return self.wide or _begins_to_grow(moved.rates[self.link])
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
-        """How long its branch certainly lasts on a stretch, as it does up to `low`; None: all the way."""
+        """How long its force, or its gap, is certainly not negative."""
         if self.link in moved.closed:
             return _positive(moved.pushes[self.link], low, moved.length, resolution)
         rate = moved.rates[self.link]
@@ -114,6 +163,137 @@ class Contact:
             self.gap, self.exact = arb(0), fmpq(0)
         else:
             self.gap, self.exact = _gap_within(self.gap + h * rate.union(arb(0))), None
+
+
+@dataclass
+class Friction(Corner):
+    """What rubs, as time goes on: how fast its right side goes less its left one, and which way it slid when decided.
+
+    Where both sides have mass, or the ground is one of them, it is `inert`: it goes on sliding until it is at rest.
+    Whatever it does for a moment, two motions under friction come no further apart, in energy, than they are: what is
+    taken for stuck while it may be sliding yet is another motion, nearer than the energy that is lost sight of. So of
+    what is inert it is the middle of what is known, itself a motion under friction, whose signs count.
+    """
+
+    link: int
+    limit: fmpq
+    inert: bool
+    rate: arb
+    sign: int
+    closed: bool
+    _decided: tuple[int, bool] = (0, False)
+
+    @classmethod
+    def of(cls, link: int, limit: fmpq, inert: bool, rate: fmpq) -> Friction:
+        """At the start: what is at rest sticks."""
+        sign = int(rate > 0) - int(rate < 0)
+        return cls(link, limit, inert, arb(rate), sign, rate == 0, (sign, rate == 0))
+
+    @property
+    def may_close(self) -> bool:
+        """Something without mass may stop at once."""
+        return not self.inert or bool(self.rate.contains(0))
+
+    @property
+    def is_unclear(self) -> bool:
+        """It is not known whether it sticks, nor which way it slides."""
+        return not self.closed and self.sign == 0
+
+    @property
+    def ways(self) -> tuple[int, ...]:
+        """Both, unless it goes on sliding as it does."""
+        if self.inert and not self.rate.contains(0):
+            return (1,) if self.rate > 0 else (-1,)
+        return (1, -1)
+
+    def begins(self, moved: JointStretch) -> bool:
+        """Whether its force is within its limits, or it goes the way it slides, just after the start."""
+        if self.link in moved.closed:
+            return all(map(_begins_bearable, self._margins(moved)))
+        forward = self._forward(moved)
+        if self.inert and self.closed and forward.begins is None:
+            return sign_after(_middles(forward), fmpq(0)) > 0
+        return _begins_to_grow(forward)
+
+    def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
+        """How long these are certainly not negative; what is inert sticks until its force is beyond its limits."""
+        if self.link not in moved.closed:
+            forward = self._forward(moved)
+            if not self.inert or forward.begins is not None:
+                return _positive(forward, low, moved.length, resolution)
+            end = _positive(_without_start(forward), low, moved.length, resolution)
+            return end and BranchEnd(end.length, _spread(forward, end.length))
+        guards = self._margins(moved)
+        ends = [end for guard in guards if (end := _positive(guard, low, moved.length, resolution)) is not None]
+        end = min(ends, key=lambda end: end.length, default=None)
+        if end is None or not self.inert or (end.spread is None and self.link in moved.known):
+            return end
+        late = 4 * ((end.spread or fmpq(0)) + resolution)
+        length = fmpq(((end.length + late) / resolution).ceil() * resolution)
+        return BranchEnd(length, None, late + 2 * resolution) if low < length < moved.length else None
+
+    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
+        """Whether they are on all of a short stretch."""
+        if self.link in moved.closed:
+            return all(_is_not_negative(margin, length) for margin in self._margins(moved))
+        return bool(_range(self._forward(moved), length) > 0)
+
+    def advance(self, moved: JointStretch, length: fmpq) -> None:
+        """Know how fast it slides at the end of a stretch."""
+        if self.link in moved.closed:
+            self.rate = arb(0)
+            return
+        self.rate = moved.rates[self.link].at(length)
+        if self.link in moved.vague:
+            self.sign, self.closed = 0, False
+
+    def take(self, moved: JointStretch) -> bool:
+        """Stick, or slide one way; whether it did not when that was last decided."""
+        before = self._decided
+        self._decided = self.sign, self.closed = _way(self.link, moved.sliding), self.link in moved.closed
+        return before != self._decided
+
+    def _margins(self, moved: JointStretch) -> list[Enclosed]:
+        """What is left of the limit either way."""
+        force = moved.pushes[self.link]
+        return [add_terms([(self.limit, UNIT), (fmpq(way), force)]) for way in (1, -1)]
+
+    def _forward(self, moved: JointStretch) -> Enclosed:
+        """How fast it goes the way it slides."""
+        return add_terms([(fmpq(_way(self.link, moved.sliding)), moved.rates[self.link])])
+
+
+def _middles(known: Enclosed) -> fmpq_poly:
+    """The polynomial that is the middle of what is known."""
+    return fmpq_poly([middle(c) for c in known.polynomial.coeffs()])
+
+
+def _without_start(known: Enclosed) -> Enclosed:
+    """A function with the signs of the middle of what is known, which is not 0 at the start."""
+    powers = [c.mid() for c in known.polynomial.coeffs()]
+    return Enclosed(arb_poly(powers[1:] if powers and powers[0] == 0 else powers), arb(0))
+
+
+def _way(link: int, sliding: Sliding) -> int:
+    return next((sign for n, sign in sliding if n == link), 0)
+
+
+def _begins_bearable(force: Enclosed) -> bool:
+    """Whether it is certainly not negative just after the start."""
+    if force.least is not None and sign_after(force.least, fmpq(0)) >= 0:
+        return True
+    return all(
+        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
+        for each in force.choices or (force,)
+    )
+
+
+def _begins_to_grow(rate: Enclosed) -> bool:
+    """Whether it is certainly positive just after the start."""
+    return all(
+        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
+        for each in rate.choices or (rate,)
+    )
 
 
 def _gap_within(gap: arb) -> arb:

@@ -1,4 +1,7 @@
-"""Points of a joint that move on their own while some contacts are closed and the others open."""
+"""Points of a joint that move on their own while some contacts are closed and the others open.
+
+What rubs and sticks is closed, too: its two sides move as one.
+"""
 
 from __future__ import annotations
 
@@ -16,31 +19,41 @@ from wavesym.exact.joints.relaxation import Relaxation
 Closed = frozenset[int]
 """Contacts, by the numbers of their links."""
 
+Sliding = frozenset[tuple[int, int]]
+"""What slides: the number of its link, and the sign of the velocity of its right side less that of its left one."""
+
 
 @dataclass(frozen=True)
 class Touch:
-    """A contact between two points of a joint, told by their places in it: closed, right moves `ratio` times left."""
+    """A contact between two points of a joint, told by their places in it: closed, right moves `ratio` times left.
+
+    Where it has `friction` it takes that much against sliding.
+    """
 
     left: int
     right: int
     ratio: fmpq
+    friction: fmpq
 
 
 @dataclass(frozen=True)
 class Cluster:
     """The points, their law with closed contacts, and for each of these the points and factors that make its force.
 
-    A contact pushes with N = sum over these of factor (C q + K u - s): what is on one side of it, without mass.
+    A contact pushes with N = sum over these of factor (C q + K u - s): what is on one side of it, without mass, or what
+    sticks to the ground. `stuck` are the points with mass that do.
     """
 
     points: tuple[int, ...]
     law: JointLaw
     pushes: Mapping[int, Sequence[tuple[int, fmpq]]]
+    stuck: tuple[int, ...] = ()
 
     @classmethod
     def of(cls, law: JointLaw, points: Sequence[int], touches: Mapping[int, Touch], closed: Closed) -> Cluster:
         """From the law of the joint with all contacts open. WavesymError where two rigid bodies would touch."""
-        rigid = [k for k in points if law.mass[k] != 0 or law.given[k] is not None]
+        rigid = [k for k in points if law.given[k] is not None]
+        heavy = [k for k in points if law.given[k] is None and law.mass[k] != 0]
         ways: dict[int, list[tuple[int, fmpq]]] = {k: [] for k in points}
         inside = [n for n in closed if touches[n].left in ways]
         for n in inside:
@@ -48,11 +61,16 @@ class Cluster:
             ways[touches[n].right].append((touches[n].left, 1 / touches[n].ratio))
         members: dict[int, tuple[int, fmpq]] = {}
         leaders: list[int] = []
-        for leader in chain(rigid, points):
+
+        def sticks(point: int) -> bool:
+            """Whether it is held by the ground."""
+            return law.given[leaders[members[point][0]]] == "fixed"
+
+        for leader in chain(rigid, heavy, points):
             if leader not in members:
                 members |= {k: (len(leaders), ratio) for k, ratio in _moving(leader, ways)}
                 leaders.append(leader)
-            elif leader in rigid and leader not in leaders:
+            elif leader not in leaders and (leader in rigid or (leader in heavy and not sticks(leader))):
                 raise WavesymError("contacts: two rigid bodies would touch each other; write a rod between them")
         pushes = {}
         for n in inside:
@@ -64,7 +82,7 @@ class Cluster:
             pushes[n] = [(k, sign * members[k][1] / members[touch.right][1]) for k in side]
         local = {k: n for n, k in enumerate(points)}
         grouped = law.among(points).group([members[k] for k in points], [local[k] for k in leaders])
-        return cls(tuple(points), grouped, pushes)
+        return cls(tuple(points), grouped, pushes, tuple(k for k in heavy if k not in leaders))
 
     @property
     def stateless(self) -> bool:

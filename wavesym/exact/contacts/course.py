@@ -7,7 +7,7 @@ from heapq import heappop
 
 from flint import fmpq
 
-from wavesym.exact.contacts.branches import Contact
+from wavesym.exact.contacts.branches import Corner
 from wavesym.exact.contacts.touching_joint import JointStretch
 from wavesym.exact.contacts.touching_waves import Stage
 
@@ -27,19 +27,20 @@ class Course:
 
     It is moved no further at a time than `shortest`: nobody reads what is sent before; and not beyond `end`, later than
     its `last` instant that matters: until then it is known what comes to it. `spread` is how far off the end of
-    its last stretch may be, where a contact may change.
+    its last stretch may be, where a contact may change; that is less than `late` beyond where it does.
     """
 
     number: int
     last: fmpq
     end: fmpq
     shortest: fmpq
-    contacts: tuple[Contact, ...]
+    contacts: tuple[Corner, ...]
     since: fmpq
     reached: fmpq
     moved: JointStretch | None = None
     doubt: Doubt | None = None
     spread: fmpq | None = None
+    late: fmpq = field(default_factory=fmpq)
     breakpoints: list[fmpq] = field(default_factory=list)
     stages: list[Stage] = field(default_factory=list)
 

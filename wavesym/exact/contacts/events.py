@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from flint import arb, fmpq
 
 from wavesym.mechanics.event import ContactEvent, KnownInstant
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import parted
+from wavesym.mechanics.network import Link, parted
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 if TYPE_CHECKING:
     from wavesym.exact.contacts.schedule import Schedule
+    from wavesym.exact.contacts.search import Change
 
 
 @dataclass(frozen=True)
@@ -46,10 +47,16 @@ def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
         return ()
     seen = model.contacts(until)
     return tuple(
-        ContactEvent(model.network.links[each.link].place, "closes" if each.closes else "opens", each.instant)
+        ContactEvent(model.network.links[each.link].place, _kind(model.network.links[each.link], each), each.instant)
         for each in known.changes
         if each.link in seen and each.low <= until
     )
+
+
+def _kind(link: Link, change: Change) -> Literal["opens", "closes", "slips", "sticks"]:
+    if link.friction != 0:
+        return "sticks" if change.closes else "slips"
+    return "closes" if change.closes else "opens"
 
 
 def what_helps(model: Model, real: Real = DOUBLE) -> str:
@@ -58,7 +65,7 @@ def what_helps(model: Model, real: Real = DOUBLE) -> str:
         number = real.nearest(rational(event.double))
         if not event.tau.is_exact() and event.tau.contains(arb(number)):
             return (
-                f"another gap, load or length at the contact at {event.x}, which {event.kind} where no bits tell it "
+                f"another gap, load or length at the {event.subject}, which {event.kind} where no bits tell it "
                 f"from tau = {number:.17g},"
             )
     return "a shorter horizon"

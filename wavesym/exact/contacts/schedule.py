@@ -87,10 +87,16 @@ def _attempt(
         if not search.has_relaxed:
             tried.append(bits)
     link = network.links[undecided.link]
+    tau = f"{nearest(undecided.tau):.17g}"
+    if link.friction != 0:
+        raise GrazingError(
+            f"friction at {link.place}: {bits} bits do not show whether it sticks or slips at tau = {tau} "
+            "(another friction, load or length helps)"
+        )
     what = "force" if undecided.closed else "gap"
     raise GrazingError(
-        f"contact at {link.place}: {bits} bits do not show the sign of its {what} at tau = "
-        f"{nearest(undecided.tau):.17g} (another gap, load or length, or heavier masses beside it, help)"
+        f"contact at {link.place}: {bits} bits do not show the sign of its {what} at tau = {tau} "
+        "(another gap, load or length, or heavier masses beside it, help)"
     )
 
 

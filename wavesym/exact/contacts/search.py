@@ -7,14 +7,15 @@ that, a contact that opens or closes on the way cuts the stretch there. `docs/co
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
+from itertools import product
 
 from flint import arb, ctx, fmpq
 
-from wavesym.exact.contacts.branches import BranchEnd, Contact
-from wavesym.exact.contacts.cluster import Closed, subsets
+from wavesym.exact.contacts.branches import BranchEnd, Contact, Corner, Friction
+from wavesym.exact.contacts.cluster import Closed, Sliding, subsets
 from wavesym.exact.contacts.cost import Cost
 from wavesym.exact.contacts.course import Course, Doubt
 from wavesym.exact.contacts.touching_joint import MOST_SWING, JointStretch, SwingError
@@ -88,7 +89,7 @@ class Search:
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> Course:
         network, joint = self._network, self._network.joints[number]
         far = [network.bars[end.bar].delay for end, _ in joint.ends]
-        contacts = tuple(Contact.of(n, network.links[n].gap) for n in self.waves.joints[number].touches)
+        contacts = tuple(self._corner(number, n) for n in self.waves.joints[number].touches)
         shortest = min(far, default=last + 1)
         course = Course(number, last, last + self._beyond, shortest, contacts, fmpq(0), fmpq(0))
         sources = {unit.source for point in joint.points for unit in network.points[point].loads}
@@ -96,6 +97,13 @@ class Search:
             if load.source in sources and 0 < load.time <= last:
                 heappush(course.breakpoints, load.time)
         return course
+
+    def _corner(self, number: int, n: int) -> Corner:
+        link, points = self._network.links[n], self._network.points
+        if link.friction == 0:
+            return Contact.of(n, link.gap)
+        rate = points[link.right].velocity - link.ratio * points[link.left].velocity
+        return Friction.of(n, link.friction, self.waves.joints[number].is_inert(n), rate)
 
     def steps(self) -> Iterator[None]:
         """Joints are moved in order of time."""
@@ -124,7 +132,7 @@ class Search:
         since, known = course.since, time - course.since
         if course.moved.swing * (limit - since) > MOST_SWING:
             return False
-        moved = self._move(course, since, limit - since, course.moved.closed)
+        moved = self._move(course, since, limit - since, course.moved.closed, course.moved.sliding)
         if moved.length <= known:
             return False
         moved, end = self._cut(course, since, moved, known)
@@ -133,14 +141,16 @@ class Search:
         self._keep(course, moved, end)
         return True
 
-    def _move(self, course: Course, start: fmpq, length: fmpq, closed: Closed) -> JointStretch:
+    def _move(
+        self, course: Course, start: fmpq, length: fmpq, closed: Closed, sliding: Sliding = frozenset()
+    ) -> JointStretch:
         """On a stretch, or on as much of it as a series bears."""
         joint = self.waves.joints[course.number]
         try:
             arriving = self.waves.arriving(course.number, start, length)
-            return joint.move(arriving, start, length, closed, relaxing=self._relaxing)
+            return joint.move(arriving, start, length, closed, sliding=sliding, relaxing=self._relaxing)
         except SwingError as error:
-            return self._move(course, start, error.longest, closed)
+            return self._move(course, start, error.longest, closed, sliding)
 
     def _cut(
         self, course: Course, start: fmpq, moved: JointStretch, low: fmpq
@@ -149,7 +159,7 @@ class Search:
         end = self._end(course, moved, low)
         if end is None or end.length == 0:
             return moved, end
-        moved = self._move(course, start, end.length, moved.closed)
+        moved = self._move(course, start, end.length, moved.closed, moved.sliding)
         return moved, end if moved.length == end.length else None
 
     def _end(self, course: Course, moved: JointStretch, low: fmpq) -> BranchEnd | None:
@@ -175,24 +185,23 @@ class Search:
             return
         moved, end = begun
         for contact in course.contacts:
-            closed = contact.link in moved.closed
-            if closed != contact.closed:
+            if contact.take(moved):
                 doubt = course.doubt
-                low = doubt.low if doubt is not None and doubt.high == start else start
-                self.changes.append(Change(contact.link, closed, low, start))
-                contact.closed = closed
-        course.since = start
-        self._add_stage(course, Stage(start, moved.closed), moved)
+                low = doubt.low if doubt is not None and doubt.high == start else start - course.late
+                self.changes.append(Change(contact.link, contact.closed, low, start))
+        course.since, course.late = start, fmpq(0)
+        self._add_stage(course, Stage(start, moved.closed, frozenset(), moved.sliding), moved)
         self._keep(course, moved, end)
 
     def _decide(self, course: Course, start: fmpq, limit: fmpq) -> tuple[JointStretch, BranchEnd | None] | None:
         """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
-        shut = [contact.link for contact in course.contacts if contact.shut]
+        shut = [contact.link for contact in course.contacts if contact.may_close]
         for closed in sorted(subsets(shut), key=len, reverse=True):
-            moved = self._move(course, start, limit - start, closed)
-            if all(contact.begins(moved) for contact in course.contacts):
-                moved, end = self._cut(course, start, moved, fmpq(0))
-                return (moved, end) if end is None or end.length > 0 else None
+            for sliding in _ways(contact for contact in course.contacts if contact.link not in closed):
+                moved = self._move(course, start, limit - start, closed, sliding)
+                if all(contact.begins(moved) for contact in course.contacts):
+                    moved, end = self._cut(course, start, moved, fmpq(0))
+                    return (moved, end) if end is None or end.length > 0 else None
         return None
 
     def _add_stage(self, course: Course, stage: Stage, moved: JointStretch) -> None:
@@ -209,7 +218,8 @@ class Search:
         if end.length > 0:
             self._send(course, since, moved)
             self._take(course, moved)
-        course.moved, course.reached, course.spread = None, since + end.length, end.spread
+        course.moved, course.reached = None, since + end.length
+        course.spread, course.late = end.spread, end.late
 
     def _take(self, course: Course, moved: JointStretch) -> None:
         """The joint goes to the end of its stretch; gaps become what they are there."""
@@ -237,7 +247,7 @@ class Search:
             doubt = course.doubt = Doubt(start, start, max(self._least, 4 * spread))
         if length > self.width:
             if doubt.next > self.width:
-                unclear = (contact for contact in course.contacts if not contact.shut and not contact.wide)
+                unclear = (contact for contact in course.contacts if contact.is_unclear)
                 worst = next(unclear, course.contacts[0])
                 raise UndecidedError(worst.link, worst.closed, start)
             length = min(length, doubt.next)
@@ -247,7 +257,7 @@ class Search:
         moved = self._move_vague(course, start, length)
         for contact in course.contacts:
             contact.advance(moved, length)
-        self._add_stage(course, Stage(start, moved.closed, moved.vague), moved)
+        self._add_stage(course, Stage(start, moved.closed, moved.vague, moved.sliding), moved)
         self._send(course, start, moved)
         self.waves.joints[course.number].take(moved)
         doubt.high = start + length
@@ -256,12 +266,21 @@ class Search:
     def _move_vague(self, course: Course, start: fmpq, length: fmpq) -> JointStretch:
         """The motion, with all contacts vague that are not certainly open or closed all the time."""
         joint, arriving = self.waves.joints[course.number], self.waves.arriving(course.number, start, length)
-        vague = frozenset(contact.link for contact in course.contacts if not contact.shut and not contact.wide)
+        vague = frozenset(contact.link for contact in course.contacts if contact.is_unclear)
         while True:
-            closed = frozenset(contact.link for contact in course.contacts if contact.shut) - vague
-            moved = joint.move(arriving, start, length, closed, vague)
+            others = [contact for contact in course.contacts if contact.link not in vague]
+            sliding = frozenset((contact.link, contact.sign) for contact in others if contact.sign)
+            closed = frozenset(contact.link for contact in others if contact.may_close and not contact.sign)
+            moved = joint.move(arriving, start, length, closed, vague, sliding)
             steady = (contact for contact in course.contacts if contact.link not in vague)
             wrong = frozenset(contact.link for contact in steady if not contact.lasts(moved, length))
             if not wrong:
                 return moved
             vague |= wrong
+
+
+def _ways(contacts: Iterable[Corner]) -> Iterator[Sliding]:
+    """How those that are not closed may slide."""
+    every = [(contact.link, contact.ways) for contact in contacts]
+    for signs in product(*(ways for _, ways in every)):
+        yield frozenset((link, sign) for (link, _), sign in zip(every, signs, strict=True) if sign)

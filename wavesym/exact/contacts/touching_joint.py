@@ -15,11 +15,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from math import log2
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Closed, Cluster, Touch, connected_sets, subsets
+from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, connected_sets, subsets
 from wavesym.exact.joints.enclosed import (
     STILL,
     Enclosed,
@@ -38,6 +39,7 @@ from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 
 _NOTHING, _ONE = fmpq(0), fmpq(1)
+UNIT = Enclosed.of(fmpq_poly([1]))
 _SLACK = fmpq(1, 2**20)
 _ROUNDS = 8  # in which a bound of the forces must hold
 MOST_SWING = fmpq(20)
@@ -71,19 +73,22 @@ class JointStretch:
     """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
     `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
-    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts. Its series, where it is one,
-    bears exp(`swing` length); it is `fleeting` where what decays fast keeps it short, until that has died away.
+    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts, `known` the contacts whose two
+    sides begin in a state that is known exactly. Its series, where it is one, bears exp(`swing` length); it is
+    `fleeting` where what decays fast keeps it short, until that has died away.
     """
 
     length: fmpq
     closed: Closed
     vague: Closed
+    sliding: Sliding
     velocities: dict[int, Terms]
     sends: dict[int, Enclosed] = field(default_factory=dict)
     state: dict[int, PointState] = field(default_factory=dict)
     rates: dict[int, Enclosed] = field(default_factory=dict)
     pushes: dict[int, Enclosed] = field(default_factory=dict)
     bare: set[int] = field(default_factory=set)
+    known: set[int] = field(default_factory=set)
     swing: fmpq = _NOTHING
     fleeting: bool = False
 
@@ -104,9 +109,9 @@ class TouchingJoint:
         place = {point: k for k, point in enumerate(joint.points)}
         self.law = JointLaw.of(network, joint)
         self.touches = {
-            n: Touch(place[link.left], place[link.right], link.ratio)
+            n: Touch(place[link.left], place[link.right], link.ratio, link.friction)
             for n, link in enumerate(network.links)
-            if link.contact and link.left in place
+            if link.has_corner and link.left in place
         }
         self._clusters: dict[tuple[Closed, Closed], list[Cluster]] = {}
         self._loads = [Acting(network, point, loads) for point in joint.points]
@@ -134,23 +139,28 @@ class TouchingJoint:
         length: fmpq,
         closed: Closed,
         vague: Closed = frozenset(),
+        sliding: Sliding = frozenset(),
         relaxing: bool | None = None,
     ) -> JointStretch:
         """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then.
+
+        What rubs is closed where it sticks, else one of those that are `sliding`.
 
         Where a series would have to bear more than exp(`MOST_SWING`), that is its motion without what decays fast. Such
         a stretch is decided already (`relaxing` None), or it is seen that this is lost among rounding errors:
         SwingError where it is not, or where it is not to be tried.
         """
         acting = [load.on(start) for load in self._loads]
-        forces = forces_on(self._ends, arriving, acting)
-        result = JointStretch(length, closed, vague, {})
+        forces = self._add_friction(forces_on(self._ends, arriving, acting), sliding)
+        result = JointStretch(length, closed, vague, sliding, {})
         for cluster in self._split(closed, vague):
             if any(self.touches[n].left in cluster.points for n in vague):
                 self._drift(cluster, result, arriving, forces, acting)
             else:
                 self._move_cluster(cluster, result, forces, acting, relaxing)
         for n, touch in self.touches.items():
+            if self._state[touch.left].exact is not None and self._state[touch.right].exact is not None:
+                result.known.add(n)
             if n not in closed and n not in vague:
                 result.rates[n] = add_terms(_rate(touch, result.velocities))
         for number, wave in enumerate(arriving):
@@ -158,6 +168,16 @@ class TouchingJoint:
                 result.sends[number] = self._outgoing(number, result.velocities, wave)
                 if number in self._bare and not collect(self._end_force(number, result.velocities, wave)):
                     result.bare.add(number)
+        return result
+
+    def _add_friction(self, forces: Sequence[Terms], sliding: Sliding) -> list[Terms]:
+        """With what is taken against sliding."""
+        result = list(forces)
+        for n, sign in sorted(sliding):
+            touch = self.touches[n]
+            against = -sign * touch.friction
+            result[touch.right] = [*result[touch.right], (against, UNIT)]
+            result[touch.left] = [*result[touch.left], (-against * touch.ratio, UNIT)]
         return result
 
     def _outgoing(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
@@ -193,6 +213,7 @@ class TouchingJoint:
         motion, places = None, None
         if cluster.stateless:
             q = scatter(law, pushed, _prescribed_terms(law, prescribed))
+            result.state |= self._stopped(cluster)
         elif (exact := self._move_exactly(cluster, pushed, prescribed)) is not None:
             q = [[(_ONE, Enclosed.of(p))] for p in exact]
             places = {
@@ -220,6 +241,10 @@ class TouchingJoint:
             self._energy = self._energy.max(motion.energy(motion.velocity, motion.displacement))
         for k, (group, ratio) in zip(points, law.moves, strict=True):
             result.velocities[k] = scale_terms(q[group], ratio)
+        for k in cluster.stuck:
+            if (unknown := result.state.get(k, self._state[k]).unknown) != 0:
+                slow = (2 * unknown / arb(self.law.mass[k])).sqrt().upper()
+                result.velocities[k] = [(_ONE, Enclosed(arb_poly(), slow))]
         for n, push in cluster.pushes.items():
             pull = self._pull(cluster, push, result.velocities, forces)
             if places is not None:
@@ -229,6 +254,22 @@ class TouchingJoint:
             result.pushes[n] = add_terms(pull)
             if motion is not None:
                 result.pushes[n] = self._add_springs(cluster, push, motion, result.pushes[n])
+        self._lose_excess(cluster, result)
+
+    def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
+        """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it."""
+        for n in cluster.pushes:
+            touch = self.touches[n]
+            for k in {touch.left, touch.right} & set(cluster.stuck):
+                force = result.pushes[n]
+                excess = abs(force.at(fmpq(0))).max(abs(force.at(result.length))) - arb(touch.friction)
+                if touch.friction == 0 or not excess.upper() > 0:
+                    continue
+                more = (excess.upper() * arb(result.length)) ** 2 / (2 * arb(self.law.mass[k]))
+                for j in cluster.points:
+                    state = result.state.get(j, self._state[j])
+                    unknown = ((state.unknown.sqrt() + more.sqrt()) ** 2).upper()
+                    result.state[j] = PointState(state.velocity, state.displacement, None, unknown)
 
     def _relax(
         self,
@@ -348,7 +389,22 @@ class TouchingJoint:
         displacement = [each.displacement for each in state]
         motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], unknown, decays=True)
         motion.round(velocity, displacement)
+        for k in cluster.stuck:
+            motion.lose(self._energy_of(k))
         return motion
+
+    def _energy_of(self, k: int) -> arb:
+        """The kinetic energy of a point, at most."""
+        return (arb(self.law.mass[k]) * self._state[k].velocity ** 2 / 2).upper()
+
+    def _stopped(self, cluster: Cluster) -> dict[int, PointState]:
+        """What was sliding and sticks, where nothing has a state: how fast it may be yet is energy not known of it."""
+        if not cluster.stuck or self._exact_state(cluster) is not None:
+            return {}
+        unknown = max(self._state[k].unknown for k in cluster.points)
+        for k in cluster.stuck:
+            unknown = ((unknown.sqrt() + self._energy_of(k).sqrt()) ** 2).upper()
+        return {k: PointState(arb(0), self._state[k].displacement, None, unknown) for k in cluster.points}
 
     def _state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
         leaders = dict(zip(cluster.law.leaders, motion.velocity, strict=True))
@@ -372,7 +428,8 @@ class TouchingJoint:
         closed = frozenset(n for n in result.closed if self.touches[n].left in points)
         span = arb(0).union(arb(result.length))
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
-        bounds = dict.fromkeys(vague, arb(0))
+        bounds = {n: arb(self.touches[n].friction) for n in vague}
+        pressing = [n for n in vague if self.touches[n].friction == 0]
         for _ in range(_ROUNDS):
             motion = self._balls(cluster)
             pushed = [add_terms(each) for each in group_forces(cluster, self._add_pushes(forces, bounds))]
@@ -384,10 +441,10 @@ class TouchingJoint:
             for k in points:
                 pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
             found = self._try_every_choice(points, closed, vague, known, arriving, pulls, span)
-            largest = {n: found.pushes[n].over(span).upper().max(arb(0)) for n in vague}
-            if all(largest[n] < bounds[n] or largest[n] == 0 for n in vague):
+            largest = {n: found.pushes[n].over(span).upper().max(arb(0)) for n in pressing}
+            if all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
                 break
-            bounds = {n: (largest[n] * arb(1 + _SLACK)).upper() for n in vague}
+            bounds |= {n: (largest[n] * arb(1 + _SLACK)).upper() for n in pressing}
         else:
             raise ArithmeticError("the force of a contact has no bound")
         result.velocities |= found.velocities
@@ -408,6 +465,8 @@ class TouchingJoint:
         forces: Sequence[Terms],
     ) -> None:
         """What is sent is on one side of what would be, were all vague contacts open: they push, and never pull."""
+        if any(self.touches[n].friction != 0 for n in vague):
+            return
         for alone in self._split(closed, frozenset()):
             law, points = alone.law, alone.points
             pushed = (
@@ -451,10 +510,11 @@ class TouchingJoint:
         sends: dict[int, list[Enclosed]] = {n: [] for n, end in enumerate(self._ends) if end.place in points}
         rates: dict[int, list[Enclosed]] = {}
         pushes: dict[int, list[Enclosed]] = {}
-        for chosen in subsets(vague):
+        for chosen, sliding in self._branches(vague):
             cluster = Cluster.of(self.law, points, self.touches, closed | chosen)
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
-            q = scatter(cluster.law, group_forces(cluster, pulls), rigid)
+            rubbed = self._add_friction(pulls, sliding)
+            q = scatter(cluster.law, group_forces(cluster, rubbed), rigid)
             moving = {k: scale_terms(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
             for k in points:
                 velocities[k].append(add_terms(moving[k]))
@@ -462,24 +522,51 @@ class TouchingJoint:
                 each.append(self._outgoing(n, moving, arriving[n]))
             for n, touch in self.touches.items():
                 if n in cluster.pushes:
-                    force = add_terms(self._pull(cluster, cluster.pushes[n], moving, pulls))
+                    force = add_terms(self._pull(cluster, cluster.pushes[n], moving, rubbed))
                     pushes.setdefault(n, []).append(force)
                 elif touch.left in moving and touch.right in moving:
                     rates.setdefault(n, []).append(add_terms(_rate(touch, moving)))
         result = JointStretch(
-            fmpq(0), closed, vague, {k: [(_ONE, one_at_each_instant(each, span))] for k, each in velocities.items()}
+            fmpq(0),
+            closed,
+            vague,
+            frozenset(),
+            {k: [(_ONE, one_at_each_instant(each, span))] for k, each in velocities.items()},
         )
         result.sends = {n: one_at_each_instant(each, span) for n, each in sends.items()}
         result.rates = {n: one_at_each_instant(each, span) for n, each in rates.items()}
         result.pushes = {n: one_at_each_instant(each, span) for n, each in pushes.items()}
         return result
 
+    def _branches(self, vague: Closed) -> list[tuple[Closed, Sliding]]:
+        """All that vague contacts may do: be closed or open; and what rubs: stick, or slide either way.
+
+        What rubs where both sides have mass, or move as is given, moves as these do whatever it does.
+        """
+        light = [n for n in sorted(vague) if not self.is_inert(n)]
+        found = []
+        for closed in subsets(light):
+            rubbing = [n for n in light if self.touches[n].friction != 0 and n not in closed]
+            found += [
+                (closed, frozenset(zip(rubbing, signs, strict=True))) for signs in product((1, -1), repeat=len(rubbing))
+            ]
+        return found
+
+    def is_inert(self, n: int) -> bool:
+        """Whether what rubs has no side without mass, so that it slides no other way at once."""
+        touch = self.touches[n]
+        return touch.friction != 0 and all(
+            self.law.mass[k] != 0 or self.law.given[k] is not None for k in (touch.left, touch.right)
+        )
+
     def _add_pushes(self, forces: Sequence[Terms], bounds: Mapping[int, arb]) -> list[Terms]:
-        """With contacts that push with anything between 0 and their bounds."""
+        """With contacts that push with anything between 0 and their bounds, friction either way."""
         result = list(forces)
         for n, bound in bounds.items():
             half = (bound / 2).upper()
             between = Enclosed(arb_poly([half]), half)
+            if self.touches[n].friction != 0:
+                between = Enclosed(arb_poly([0]), bound)
             result[self.touches[n].right] = [*result[self.touches[n].right], (_ONE, between)]
             result[self.touches[n].left] = [*result[self.touches[n].left], (-self.touches[n].ratio, between)]
         return result

@@ -11,7 +11,7 @@ from operator import itemgetter
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Closed
+from wavesym.exact.contacts.cluster import Closed, Sliding
 from wavesym.exact.contacts.touching_joint import JointStretch, TouchingJoint
 from wavesym.exact.joints.enclosed import Enclosed, add_terms
 from wavesym.exact.joints.network_waves import SentWave, Waves
@@ -21,11 +21,12 @@ from wavesym.mechanics.network import End, Network
 
 @dataclass(frozen=True)
 class Stage:
-    """A stretch of a joint: which of its contacts are closed, and of which it is not known."""
+    """A stretch of a joint: which of its contacts are closed, of which it is not known, and what slides which way."""
 
     start: fmpq
     closed: Closed = frozenset()
     vague: Closed = frozenset()
+    sliding: Sliding = frozenset()
 
 
 class TouchingWaves(Waves):
@@ -104,7 +105,7 @@ def replayed(
         last = place + 1 == len(stages[number])
         length = (ends[number] if last else stages[number][place + 1].start) - start
         joint, arriving = waves.joints[number], waves.arriving(number, start, length)
-        moved = joint.move(arriving, start, length, stage.closed, stage.vague)
+        moved = joint.move(arriving, start, length, stage.closed, stage.vague, stage.sliding)
         waves.record(number, start, moved)
         joint.take(moved)
         if not last:

@@ -37,8 +37,10 @@ def refuse_damped(network: Network) -> None:
                 "(take pieces or march)"
             )
     for link in network.links:
-        if link.contact or link.damping != 0:
-            what, serve = ("contact", "pieces serve") if link.contact else ("dashpot", "pieces and march serve")
+        if link.has_corner or link.damping != 0:
+            what, serve = "dashpot", "pieces and march serve"
+            if link.has_corner:
+                what, serve = "contact" if link.contact else "friction", "pieces serve"
             at = link.place or network.points[link.left].name or network.points[link.left].place
             raise UnservedError(f"system: the {what} at {at} is not supported by modes ({serve} it)")
 

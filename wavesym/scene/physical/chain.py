@@ -146,6 +146,7 @@ class _Pen:
             "spring": first.stiffness,
             "dashpot": first.stiffness * seconds,
             "contact": self.displacement,
+            "friction": self.force,
         }
 
     def line(self, name: str, parts: list[_Read]) -> list[object]:
@@ -193,7 +194,7 @@ class _Pen:
                 continue
             least = None if key == "velocity" else 1 if key == "mass" else 0
             with placed(key):
-                dimension = self.names["displacement" if key == "contact" else key]
+                dimension = self.names[{"contact": "displacement", "friction": "force"}.get(key, key)]
                 table[key] = measured(value, dimension, least) / self._units[key]
         return table
 

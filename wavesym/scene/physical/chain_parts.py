@@ -155,6 +155,7 @@ class MassKeys(SceneTable):
     velocity: Any = None
     dashpot: Any = None
     spring: Any = None
+    friction: Any = None
     name: PartName | None = None
 
 
@@ -167,6 +168,7 @@ class JointKeys(SceneTable):
     velocity: Any = None
     dashpot: Any = None
     spring: Any = None
+    friction: Any = None
     name: PartName | None = None
 
 

@@ -1,0 +1,228 @@
+"""Friction on the ground against closed forms and a grid of characteristics that knows nothing of events."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from flint import arb, fmpq
+
+import wavesym
+from wavesym.errors import WavesymError
+
+PUSHED = """
+name = "pushed"
+[system]
+type = "chain"
+parts = ["fixed", { spring = 1 }, { mass = 1, name = "block", friction = "1/2" }]
+[[load]]
+at = "block"
+times = [0, 2, 12]
+ramps = [1, -1, -1]
+[output]
+until = 13
+displacement = ["block"]
+"""
+THROWN = """
+name = "thrown"
+[system]
+type = "chain"
+parts = ["fixed", { spring = 1 }, { mass = 1, velocity = 10, name = "block", friction = 1 }]
+[output]
+until = 30
+displacement = ["block"]
+"""
+RODS = """
+name = "rods"
+[system]
+type = "chain"
+parts = [{{ mass = 2, name = "ram" }}, {{ rod = 1 }}, {held}, {{ rod = "3/2", impedance = 2 }}, "free"]
+[[load]]
+at = "ram"
+spacing = 1
+samples = [0, "1/2", 1, 0, -2, -1, "3/10", 0]
+[output]
+until = 9
+velocity = ["ram"]
+strain = ["1/2"]
+"""
+
+
+def scene(tmp_path, text):
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    return wavesym.Scene.from_toml(str(path))
+
+
+def assert_events(result, expected):
+    assert [event.kind for event in result.events] == [kind for kind, _ in expected]
+    for event, (_, tau) in zip(result.events, expected, strict=True):
+        assert event.tau.overlaps(tau)
+        assert event.tau.rad() < arb(2) ** -200
+
+
+def test_a_block_on_a_spring_that_is_thrown(tmp_path):
+    """It turns at atan 10 + k pi; amplitudes fall by 2 R/K each time, until the spring does not overcome R."""
+    result = scene(tmp_path, THROWN).run(times=[30])
+    turns = [arb(10).atan() + k * arb.pi() for k in range(6)]
+    assert_events(result, [*(("slips", tau) for tau in turns[:5]), ("sticks", turns[5])])
+    assert result["displacement@block"][0] == pytest.approx(11 - 101**0.5, rel=1e-15)
+
+
+def test_a_block_that_is_pushed_ever_harder(tmp_path):
+    """It slips when the load is R, turns twice, sticks; and slips again as the load falls, at rest until then."""
+    result = scene(tmp_path, PUSHED).run(times=[11])
+    turn = arb(2) + arb.pi() - arb(fmpq(3, 4))
+    rest = 11 + 2 * arb(fmpq(3, 4)).sin()
+    assert_events(result, [("slips", arb(fmpq(1, 2))), ("slips", turn), ("sticks", turn + arb.pi()), ("slips", rest)])
+    assert result["displacement@block"][0] == pytest.approx(3.5 - 2 * np.sin(0.75), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("held", "same"),
+    [
+        ('{ joint = true, name = "held", friction = 1000000 }', '{ joint = true, name = "held", friction = 999 }'),
+        ('{ joint = true, name = "held", friction = 0 }', '{ joint = true, name = "held" }'),
+        ('{ mass = 1, name = "held", friction = 0 }', '{ mass = 1, name = "held" }'),
+    ],
+)
+def test_friction_that_never_slips_or_is_none(tmp_path, held, same):
+    values = [scene(tmp_path, RODS.format(held=part)).run(samples=37) for part in (held, same)]
+    assert not values[0].events
+    for name in values[0].outputs:
+        assert np.array_equal(values[0][name], values[1][name])
+
+
+@pytest.mark.parametrize("part", ["{ joint = true, friction = 1000 }", "{ mass = 3, friction = 1000 }"])
+def test_what_never_slips_is_fixed(tmp_path, part):
+    """The rod on its other side never moves, and the ram sees a wall: bit for bit the scene that ends there."""
+    fixed = RODS.replace(', {{ rod = "3/2", impedance = 2 }}, "free"', "").format(held='"fixed"')
+    held, wall = (scene(tmp_path, text).run(samples=37) for text in (RODS.format(held=part), fixed))
+    assert not held.events
+    for name in held.outputs:
+        assert np.array_equal(held[name], wall[name])
+
+
+def test_a_step_through_a_collar(tmp_path):
+    """2 Z a - 2 Z v = R: a step of velocity 1 leaves 7/8."""
+    text = RODS.replace('"3/2", impedance = 2', "1").replace("mass = 2", "joint = true")
+    text = text.replace('spacing = 1\nsamples = [0, "1/2", 1, 0, -2, -1, "3/10", 0]', "times = [0]\nsteps = [1]")
+    text = text.format(held='{ joint = true, name = "collar", friction = "1/4" }').replace('["ram"]', '["collar"]')
+    result = scene(tmp_path, text).run(times=[0.5, 1.5])
+    assert_events(result, [("slips", arb(1))])
+    assert result["velocity@collar"].tolist() == [0, 0.875]
+
+
+def random_chain(seed):
+    """Nodes (mass, friction, velocity), rods (length, impedance), the node that a load acts on and its samples."""
+    rng = random.Random(seed)
+    count = rng.randint(2, 4)
+    nodes = [
+        (
+            mass := rng.choice([Fraction(0), Fraction(1, 2), Fraction(1), Fraction(2)]),
+            rng.choice([Fraction(0), Fraction(1, 8), Fraction(1, 4), Fraction(1, 3), Fraction(3)]),
+            Fraction(rng.randint(-2, 2)) if mass and rng.random() < 0.3 else Fraction(0),
+        )
+        for _ in range(count)
+    ]
+    rods = [
+        (rng.choice([Fraction(1), Fraction(3, 2), Fraction(1, 2)]), Fraction(rng.randint(1, 4), 2))
+        for _ in range(count - 1)
+    ]
+    return nodes, rods, rng.randrange(count), [Fraction(rng.randint(-8, 8), 4) for _ in range(8)]
+
+
+def written(nodes, rods, at, samples):
+    parts = []
+    for k, (mass, friction, velocity) in enumerate(nodes):
+        kind = f'mass = "{mass}", velocity = "{velocity}"' if mass else "joint = true"
+        parts.append(f'{{ {kind}, friction = "{friction}", name = "n{k}" }}')
+        parts += [f'{{ rod = "{length}", impedance = "{z}" }}' for length, z in rods[k : k + 1]]
+    numbers = ", ".join(f'"{each}"' for each in samples)
+    names = ", ".join(f'"n{k}"' for k in range(len(nodes)))
+    return f"""
+name = "random"
+[system]
+type = "chain"
+parts = [{", ".join(parts)}]
+[[load]]
+at = "n{at}"
+spacing = 1
+samples = [{numbers}]
+[output]
+until = 9
+velocity = [{names}]
+"""
+
+
+def on_a_grid(nodes, rods, at, samples, steps):
+    """Velocities of nodes (9 steps, nodes): waves in delay lines, and for each node an implicit Euler step.
+
+    (m/h + sum of Z) v + f = m/h v_before + sum of 2 Z a + F, f in R sign(v): v is 0 where the right side is within R.
+    """
+    lines = [np.zeros((2, int(length * steps))) for length, _ in rods]
+    load = np.interp((np.arange(9 * steps) + 1) / steps, np.arange(len(samples)), [float(each) for each in samples])
+    velocity = [float(each[2]) for each in nodes]
+    found = []
+    for step in range(9 * steps):
+        arriving = [line[:, step % line.shape[1]].copy() for line in lines]
+        for k, (mass, friction, _) in enumerate(nodes):
+            inertia = float(mass) * steps
+            right, slow = inertia * velocity[k] + (load[step] if k == at else 0.0), inertia
+            for rod, side in ((k, 0), (k - 1, 1)):
+                if 0 <= rod < len(rods):
+                    right += 2 * float(rods[rod][1]) * arriving[rod][side]
+                    slow += float(rods[rod][1])
+            velocity[k] = np.sign(right) * max(abs(right) - float(friction), 0.0) / slow
+        for k, line in enumerate(lines):
+            now = step % line.shape[1]
+            line[1, now], line[0, now] = velocity[k] - arriving[k][0], velocity[k + 1] - arriving[k][1]
+        found.append(list(velocity))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("seed", [1, 3, 5])
+def test_random_chains_against_a_grid(tmp_path, seed):
+    """An error of first order halves with the step: the finer grid is off by about what it differs by."""
+    chain, steps = random_chain(seed), 64
+    result = scene(tmp_path, written(*chain)).run(times=[k + 3 / 8 for k in range(9)])
+    values = np.array([result[name] for name in result.outputs]).T
+    coarse, fine = (on_a_grid(*chain, n)[[int((k + 3 / 8) * n) - 1 for k in range(9)]] for n in (steps, 2 * steps))
+    allowed = 4 * np.max(np.abs(coarse - fine)) + 1 / steps
+    assert result.events
+    assert np.max(np.abs(values - fine)) < allowed
+    nodes, *others = chain
+    slippery = [(mass, friction / 2, velocity) for mass, friction, velocity in nodes]
+    wrong = on_a_grid(slippery, *others, 2 * steps)[[int((k + 3 / 8) * 2 * steps) - 1 for k in range(9)]]
+    assert np.max(np.abs(values - wrong)) > allowed
+
+
+def test_pieces_follow_friction(tmp_path):
+    pushed = scene(tmp_path, RODS.format(held='{ mass = 1, name = "held", friction = "1/3" }'))
+    taus = np.linspace(0, 9, 50)
+    exact, piecewise = pushed.run(times=taus), wavesym.evaluator(pushed)
+    assert exact.events
+    for known, found in zip([exact[name] for name in exact.outputs], piecewise(taus), strict=True):
+        assert np.max(np.abs(known - found)) <= 1.01 * piecewise.error_bound * np.max(np.abs(known))
+
+
+@pytest.mark.parametrize(
+    ("held", "message"),
+    [
+        ("{ mass = 1, friction = 1 }, { spring = 1 }, { mass = 1, friction = 2 }", "other friction"),
+        ('{ mass = 1, friction = 1 }, "contact"', "a contact"),
+        ("{ mass = 1, friction = -1 }", "negative"),
+    ],
+)
+def test_refused_friction(tmp_path, held, message):
+    with pytest.raises(WavesymError, match=message):
+        scene(tmp_path, RODS.format(held=held))
+
+
+def test_others_refuse_friction(tmp_path):
+    rubbed = scene(tmp_path, RODS.format(held='{ mass = 1, name = "held", friction = "1/3" }'))
+    for refuse in (wavesym.verify, wavesym.modes, wavesym.frf):
+        with pytest.raises(WavesymError, match="friction at 1"):
+            refuse(rubbed)
