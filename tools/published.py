@@ -79,6 +79,9 @@ def _own(path: str, numbers: Mapping[str, Any]) -> Sequence[float]:
             assert arrival is not None  # something arrives
             assert arrival.time is not None  # the scene has units
             return [arrival.time]
+        case "response":
+            amplitudes: list[float] = abs(wavesym.frf(scene, numbers["frequencies"])[numbers["output"]]).tolist()
+            return amplitudes
         case "peak":
             found = wavesym.frf(scene, numbers["band"])
             return [found.peaks()[numbers["output"]].amplitude]
