@@ -214,6 +214,7 @@ def test_pieces_follow_friction(tmp_path):
         ("{ mass = 1, friction = 1 }, { spring = 1 }, { mass = 1, friction = 2 }", "other friction"),
         ('{ mass = 1, friction = 1 }, "contact"', "a contact"),
         ("{ mass = 1, friction = -1 }", "negative"),
+        ("{ mass = 1, friction = 1 }, { dashpot = 1 }, { joint = true }", "dashpot ties"),
     ],
 )
 def test_refused_friction(tmp_path, held, message):

@@ -48,6 +48,19 @@ def refuse_joined_friction(points: Sequence[Point], links: Sequence[Link], writt
                 *written[rubbing[0].right],
                 "friction",
             )
+        for link in rubbing:
+            if points[link.right].mass != 0 and _damps_massless(points, links, link.right):
+                raise wrong(
+                    "of a mass that a dashpot ties to a joint without mass, which is not proved; write a mass there too",
+                    *written[link.right],
+                    "friction",
+                )
+
+
+def _damps_massless(points: Sequence[Point], links: Iterable[Link], number: int) -> bool:
+    """Whether a dashpot alone says how fast something without mass beside a point is."""
+    beside = {link.left + link.right - number for link in links if link.damping and number in (link.left, link.right)}
+    return any(points[other].mass == 0 and points[other].motion is None for other in beside)
 
 
 def told_apart(links: Sequence[Link]) -> list[Link]:
