@@ -51,7 +51,7 @@ def refuse_joined_friction(points: Sequence[Point], links: Sequence[Link], writt
         for link in rubbing:
             if points[link.right].mass != 0 and _damps_massless(points, links, link.right):
                 raise wrong(
-                    "of a mass that a dashpot ties to a joint without mass, which is not proved; write a mass there too",
+                    "of a mass that a dashpot ties to a joint without mass, not proved; write a mass there too",
                     *written[link.right],
                     "friction",
                 )
