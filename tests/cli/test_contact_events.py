@@ -192,5 +192,6 @@ def test_an_event_that_may_be_at_a_double_is_named(tmp_path: Path, capsys: pytes
     asked = (["run", str(scene), "--samples", "9"], 2), (["generate", str(scene), "-o", str(tmp_path / "made")], 1)
     for command, status in asked:
         assert main(command) == status
-        assert "the contact at x = 1, which closes where no bits tell it from tau = 1.5, helps" in capsys.readouterr().err
+        named = "the contact at x = 1, which closes where no bits tell it from tau = 1.5, helps"
+        assert named in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == [scene]
