@@ -127,14 +127,14 @@ def differs():
 
 
 def test_a_force_of_the_wrong_sign_is_seen(monkeypatch):
-    made = Cluster.of
+    made = Cluster.from_law
 
     def wrong(*arguments):
         cluster = made(*arguments)
         pushes = {n: [(k, -factor) for k, factor in push] for n, push in cluster.pushes.items()}
         return Cluster(cluster.points, cluster.law, pushes)
 
-    monkeypatch.setattr(Cluster, "of", wrong)
+    monkeypatch.setattr(Cluster, "from_law", wrong)
     assert differs()
 
 

@@ -110,7 +110,7 @@ def _of_output(motion: Motion, probe: Probe) -> tuple[Range, Averages]:
         at_ends = (abs(segment.at(u)).lower() for segment, end in stretches for u in (_ZERO, end - segment.start))
         negligible = max(at_ends) * _NEGLIGIBLE
         pieces = [
-            _Piece.of(segment, end, segment is segments[-1], negligible)
+            _Piece.from_segment(segment, end, segment is segments[-1], negligible)
             for segment, end in stretches
             if not segment.vague
         ]
@@ -144,7 +144,7 @@ class _Piece:
     last: bool
 
     @classmethod
-    def of(cls, segment: Segment, end: fmpq, last: bool, negligible: arb) -> _Piece:
+    def from_segment(cls, segment: Segment, end: fmpq, last: bool, negligible: arb) -> _Piece:
         (polynomial,) = segment.families.values()
         half = arb((end - segment.start) / 2)
         middles, radius = _split(_shorten(polynomial, 2 * half, negligible)(arb_poly([half, half])))

@@ -87,7 +87,7 @@ class Contact(Corner):
     sign = 0
 
     @classmethod
-    def of(cls, link: int, gap: fmpq) -> Contact:
+    def begin(cls, link: int, gap: fmpq) -> Contact:
         """At the start, where what touches is taken for closed."""
         return cls(link, arb(gap), gap, gap == 0)
 
@@ -184,7 +184,7 @@ class Friction(Corner):
     _decided: tuple[int, bool] = (0, False)
 
     @classmethod
-    def of(cls, link: int, limit: fmpq, inert: bool, rate: fmpq) -> Friction:
+    def begin(cls, link: int, limit: fmpq, inert: bool, rate: fmpq) -> Friction:
         """At the start: what is at rest sticks."""
         sign = int(rate > 0) - int(rate < 0)
         return cls(link, limit, inert, arb(rate), sign, rate == 0, (sign, rate == 0))

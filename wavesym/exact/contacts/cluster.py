@@ -50,7 +50,7 @@ class Cluster:
     stuck: tuple[int, ...] = ()
 
     @classmethod
-    def of(cls, law: JointLaw, points: Sequence[int], touches: Mapping[int, Touch], closed: Closed) -> Cluster:
+    def from_law(cls, law: JointLaw, points: Sequence[int], touches: Mapping[int, Touch], closed: Closed) -> Cluster:
         """From the law of the joint with all contacts open. WavesymError where two rigid bodies would touch."""
         rigid = [k for k in points if law.given[k] is not None]
         heavy = [k for k in points if law.given[k] is None and law.mass[k] != 0]

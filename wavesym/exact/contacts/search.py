@@ -101,9 +101,9 @@ class Search:
     def _corner(self, number: int, n: int) -> Corner:
         link, points = self._network.links[n], self._network.points
         if link.friction == 0:
-            return Contact.of(n, link.gap)
+            return Contact.begin(n, link.gap)
         rate = points[link.right].velocity - link.ratio * points[link.left].velocity
-        return Friction.of(n, link.friction, self.waves.joints[number].is_inert(n), rate)
+        return Friction.begin(n, link.friction, self.waves.joints[number].is_inert(n), rate)
 
     def steps(self) -> Iterator[None]:
         """Joints are moved in order of time."""

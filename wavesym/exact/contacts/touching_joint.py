@@ -63,7 +63,7 @@ class PointState:
         return self.exact[1]
 
     @classmethod
-    def of(cls, velocity: fmpq, displacement: fmpq) -> PointState:
+    def from_exact(cls, velocity: fmpq, displacement: fmpq) -> PointState:
         """Known exactly."""
         return cls(arb(velocity), arb(displacement), (velocity, displacement), arb(0))
 
@@ -118,7 +118,9 @@ class TouchingJoint:
         self._ends = joint_ends(network, joint)
         touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
         self._bare = {n for n, end in enumerate(self._ends) if end.place in touched and self.law.mass[end.place] == 0}
-        self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
+        self._state = {
+            k: PointState.from_exact(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)
+        }
         self._energy = arb(0)  # the largest that a set had
         self.has_relaxed = False
         # sets of points that have energy: mass or springs
@@ -192,7 +194,7 @@ class TouchingJoint:
     def _split(self, closed: Closed, vague: Closed) -> list[Cluster]:
         if (closed, vague) not in self._clusters:
             self._clusters[closed, vague] = [
-                Cluster.of(self.law, points, self.touches, closed)
+                Cluster.from_law(self.law, points, self.touches, closed)
                 for points in connected_sets(self.law, self.touches, closed | vague)
             ]
         return self._clusters[closed, vague]
@@ -222,7 +224,7 @@ class TouchingJoint:
             }
             for k, (group, ratio) in zip(points, law.moves, strict=True):
                 place = places[k](result.length) if self._elastic(k) else fmpq(0)
-                result.state[k] = PointState.of(ratio * exact[group](result.length), place)
+                result.state[k] = PointState.from_exact(ratio * exact[group](result.length), place)
         else:
             motion = self._balls(cluster)
             waves = [add_terms(force) for force in pushed]
@@ -511,7 +513,7 @@ class TouchingJoint:
         rates: dict[int, list[Enclosed]] = {}
         pushes: dict[int, list[Enclosed]] = {}
         for chosen, sliding in self._branches(vague):
-            cluster = Cluster.of(self.law, points, self.touches, closed | chosen)
+            cluster = Cluster.from_law(self.law, points, self.touches, closed | chosen)
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
             rubbed = self._add_friction(pulls, sliding)
             q = scatter(cluster.law, group_forces(cluster, rubbed), rigid)
