@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -185,19 +186,19 @@ def test_evenly_lie_an_even_number_of_instants_from_sample_to_sample() -> None:
     assert set(np.bincount(inside.astype(int)).tolist()) == {4}
 
 
-def allowed(count: int, error: float, height: float, smooth: int) -> tuple[March, float]:
-    """The march of a hat and what is allowed of `count` of them, all of size 1, each so wrong, so large and level."""
+def allowed(samples: Sequence[int], error: float, height: float, smooth: int) -> tuple[March, float]:
+    """The march of a hat and what is allowed of those of `samples`, where one of 1 is so wrong, so large and level."""
     model = chain([{"at": "a", "spacing": "0.37", "samples": [1, 2, -1, 3, 0, 1, 5]}])
     (record,) = split(model).records
     of_hat, _ = judge_march(still(model, record), degree=smooth)
     verdict = Verdict(smooth, (error,), (height,), 0.0, 0.0, smooth, (height,), (0.0,))
-    return of_hat, float(hats._superposed(replace(record, samples=(fmpq(1),) * count), of_hat, verdict)[0, 0])
+    return of_hat, float(hats._superposed(replace(record, samples=tuple(map(fmpq, samples))), of_hat, verdict)[0, 0])
 
 
 def test_rounding_of_hats_that_are_added_one_by_one_is_bounded() -> None:
     """Hats of 1 that are right, and every sample, product and sum too large by u."""
     count = 2000
-    _, most = allowed(count, 1e-300, 1.0, 8)
+    _, most = allowed([1] * count, 1e-300, 1.0, 8)
     with ctx.workprec(300):
         more = 1 + arb(2) ** -53
         total = arb(0)
@@ -207,13 +208,26 @@ def test_rounding_of_hats_that_are_added_one_by_one_is_bounded() -> None:
     assert lost <= most <= 4 * lost
 
 
+def test_rounding_of_fourier_transforms_is_bounded() -> None:
+    """A sample of 1 among zeros, and a hat whose values are all 1.
+
+    Each of three transforms in t levels is wrong by at most t eta of the product of Euclid's norms, with
+    eta = u + 4 sqrt(2) u (N. J. Higham, Accuracy and Stability of Numerical Algorithms, theorem 24.2; of the last one
+    by Cauchy and Schwarz).
+    """
+    count = 2000
+    _, most = allowed([1, *[0] * (count - 1)], 1e-300, 1.0, 8)
+    lost = 3 * np.log2(2 * count) * (1 + 4 * np.sqrt(2)) * 2.0**-53 * np.sqrt(count)
+    assert lost <= most <= 4 * lost
+
+
 def test_hats_that_are_read_on_the_next_panel_are_bounded() -> None:
     """What is computed is 0, and 2 from an edge on; the truth is a polynomial within 1 that reaches 1 at that edge.
 
     So both panels are within 1 of it. It is as steep there as can be, and is read as much later as counts as one phase.
     """
     smooth = 18
-    of_hat, most = allowed(1, 1.0, 2.0, smooth)
+    of_hat, most = allowed([1], 1.0, 2.0, smooth)
     late = rational(ShiftedHats.NEAR * of_hat.tau_max)
     shortest = min(panel.length for panel in of_hat.plan.panels)
     with ctx.workprec(300):
