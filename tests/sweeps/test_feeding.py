@@ -61,9 +61,6 @@ class Crew:
         self.parts: list[list[Place]] = []
         self.most_parts = 0
 
-    def wait_for_workers(self, _: int, timeout: float) -> None:
-        pass
-
     def register_plugin(self, _: object) -> None:
         pass
 
@@ -113,6 +110,26 @@ def test_a_cluster_is_given_as_much_as_its_present_threads_want(
         assert sorted(batch for batch, _ in fed(crew, parts, monkeypatch)) == list(range(len(parts)))
         assert crew.most == most
         assert crew.under_way == 0
+
+
+def test_a_cluster_that_starts_workers_for_tasks_has_tasks_first(
+    sweep: tuple[SweepPlan, Batches], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    planned, parts = sweep
+    crew = Crew(planned, parts, [0, 0, 0, 2], set())
+    assert len(fed(crew, parts, monkeypatch)) == len(parts)
+    assert crew.most == 2 * cluster._AHEAD
+
+
+def test_a_cluster_without_workers_is_told_of(
+    sweep: tuple[SweepPlan, Batches], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, "_WAIT", 0)
+    planned, parts = sweep
+    crew = Crew(planned, parts, [0], set())
+    with pytest.raises(cluster.ClusterError, match="no worker at the Dask scheduler for 0 s; start at least 1"):
+        list(cluster.on_workers(crew, planned, parts, [(0, None)]))
+    assert crew.under_way == cluster._AHEAD - 2
 
 
 def test_batches_that_were_given_up_come_in_parts_side_by_side(

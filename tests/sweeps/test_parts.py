@@ -46,8 +46,6 @@ class Client:
     def register_plugin(self, plugin: Any) -> None:
         self.plan, self.batches = plugin.plan, plugin.batches
 
-    def wait_for_workers(self, *_: Any, **__: Any) -> None: ...
-
     def nthreads(self) -> dict[str, int]:
         return {"worker": self.threads(len(self.sent))}
 

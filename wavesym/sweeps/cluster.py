@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
+from math import inf
 from queue import Empty, SimpleQueue
 from time import monotonic
 from types import ModuleType
@@ -123,9 +124,7 @@ def on_workers(client: Any, plan: SweepPlan, batches: Batches, todo: Iterable[Ta
                 alone.append((batch, places))
             else:
                 values = BatchValues.empty(plan, places)
-                values.failed[places[0]] = (
-                    "the worker that computed it died, again and again (a crash, or out of memory)"
-                )
+                values.failed[places[0]] = _DIED
                 yield batch, values
         future.release()
 
@@ -142,19 +141,24 @@ class _Sent:
         self._client, self._plan = client, plan
         self._tasks: dict[str, tuple[Task, Any]] = {}
         self._done = SimpleQueue[Any]()
-        self._threads, self._asked = _threads(client), monotonic()
+        self._threads, self._asked = 0, -inf
+        self._late = monotonic() + _WAIT  # when there has to be a worker
 
     def __len__(self) -> int:
         return len(self._tasks)
 
     @property
     def threads(self) -> int:
-        """Of all workers, as many as there are now."""
+        """Of all workers, as many as there are now; 1 where there is none: a cluster may start one for a task."""
+        self._count_threads()
+        return max(self._threads, 1)
+
+    def _count_threads(self) -> None:
         if monotonic() > self._asked + _LOOK:
             with suppress(OSError, TimeoutError):  # where the scheduler is gone, futures say so
                 self._threads = sum(self._client.nthreads().values())
             self._asked = monotonic()
-        return self._threads
+            self._late = inf if self._threads else self._late
 
     def add(self, task: Task) -> None:
         """Send a task."""
@@ -167,10 +171,13 @@ class _Sent:
         future.add_done_callback(self._done.put)
 
     def next_done(self) -> tuple[Task, Any] | None:
-        """A task and its future; None where there is none for a while."""
+        """A task and its future; None where there is none for a while. ClusterError where no worker ever came."""
         try:
             return self._tasks.pop(self._done.get(timeout=_LOOK).key)
         except Empty:
+            self._count_threads()
+            if monotonic() > self._late:
+                raise ClusterError(f"no worker at the Dask scheduler for {_WAIT} s; start at least 1") from None
             return None
 
 
@@ -189,15 +196,6 @@ def _result(future: Any) -> BatchValues:
     except Exception as error:
         raise ClusterError(f"the workers cannot compute a batch: {type(error).__name__}: {error}") from None
     return values
-
-
-def _threads(client: Any) -> int:
-    """Of all workers. ClusterError where there is none."""
-    try:
-        client.wait_for_workers(1, timeout=_WAIT)
-    except TimeoutError:
-        raise ClusterError(f"no worker at the Dask scheduler for {_WAIT} s; start at least 1") from None
-    return sum(client.nthreads().values())
 
 
 def _send(client: Any, plan: SweepPlan, batches: Batches) -> None:
