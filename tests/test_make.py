@@ -42,7 +42,7 @@ def commands(folder: Path, target: str, programs: tuple[str, ...] = ()) -> str:
 def extras(text: str) -> list[str]:
     """What of the project is installed, in order; every time with the versions that are known to work."""
     installs = [line for line in text.splitlines() if " pip install " in line]
-    assert all(" -c constraints.txt " in line and "--quiet" not in line for line in installs)
+    assert all(" -c constraints.txt " in line and " --quiet " in line for line in installs)
     return [found for line in installs for found in re.findall(r"'\.\[(.*)\]'", line)]
 
 
@@ -70,6 +70,14 @@ def test_nothing_is_installed_twice(fresh: Path) -> None:
         (fresh / ".venv" / name).touch()
     for target in ("install", "test", "lint", "check-all"):
         assert extras(commands(fresh, target)) == []
+
+
+def test_the_demo_prints_what_matters_in_15_lines(fresh: Path) -> None:
+    printed = commands(fresh, "demo", ("cc",))
+    examples = re.findall(r"for scene in (.*); do", printed)[0].split()
+    lines = len(re.findall(r"^echo '", printed, re.MULTILINE)) + len(examples)
+    assert 10 < lines <= 15
+    assert "wavesym verify $scene -o" in printed, "what is printed for an example is read from all that was compared"
 
 
 def test_the_demo_ends_with_what_to_do_next(fresh: Path) -> None:
