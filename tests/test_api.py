@@ -1,10 +1,9 @@
-"""The door: results that show themselves, in the scene's own units, right as `run` is; each stage once."""
+"""The door: results that show themselves, in the scene's own units, right as `run` is."""
 
 from __future__ import annotations
 
 import io
 import warnings
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +12,7 @@ import pytest
 
 import wavesym
 from wavesym import Scene, api
-from wavesym.pictures import histories
-from wavesym.results import result as results
-from wavesym.results import summary as summaries
 from wavesym.results.rows import SAMPLES
-from wavesym.scene import lowering
 
 DRIVE = Scene.from_toml("drive_m1")
 FRAME = Scene(
@@ -110,51 +105,3 @@ def test_a_plot_is_a_figure_and_a_file(tmp_path: Path) -> None:
         DRIVE.plot(kind="map3")
     with pytest.raises(wavesym.SceneError, match="not a picture"):
         wavesym.plot(DRIVE, tmp_path / "drive.txt")
-
-
-def test_a_result_evaluates_a_scene_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    counted: Counter[str] = Counter()
-    lower, respond = results.lower, results.Response
-
-    def lowering(scene: Scene) -> object:
-        counted["lower"] += 1
-        return lower(scene)
-
-    def responding(model: object) -> object:
-        counted["response"] += 1
-        return respond(model)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(results, "lower", lowering)
-    monkeypatch.setattr(results, "Response", responding)
-    DRIVE.run(samples=3)
-    assert counted == {"lower": 1, "response": 1}
-
-
-def test_a_page_lowers_once_and_takes_one_program_beside_the_extremes(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """Exact extremes and one program for all curves; where extremes are searched, the program that is searched too."""
-    lowered = lowering._lowered
-    counted: Counter[str] = Counter()
-
-    def lower(scene: Scene) -> object:
-        counted["lowered"] += 1
-        return lowered(scene)
-
-    def extremes_of(model: object) -> object:
-        counted["exact"] += 1
-        return exact(model)  # type: ignore[arg-type]
-
-    def made(*given: object, **named: object) -> object:
-        counted["programs"] += 1
-        return making(*given, **named)  # type: ignore[arg-type]
-
-    exact, making = summaries.extremes_and_averages, histories.make
-    monkeypatch.setattr(lowering, "_lowered", lower)
-    monkeypatch.setattr(summaries, "extremes_and_averages", extremes_of)
-    monkeypatch.setattr(histories, "make", made)
-    scene = Scene.from_toml("building_m2")
-    wavesym.report(scene, tmp_path / "page.html")
-    api.unexpected_lines(scene)
-    assert (counted["lowered"], counted["exact"]) == (1, 1)
-    assert counted["programs"] <= 2  # a march is tried first, which may not serve

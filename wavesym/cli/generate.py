@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, put, scene_argument
+from wavesym.cli.parameters import NAMES, PATH, SCENE, put, scene_argument
 from wavesym.cli.progress import progress
 from wavesym.programs.request import AIMS, EVALUATORS, LANGUAGES, PRECISIONS, SIMULATORS, Request
 
@@ -64,6 +64,8 @@ KAPPA = PositiveParameter("a positive number; write one such as 5 or 1/2")
 )
 @click.option(
     "--runtime",
+    type=NAMES,
+    default=(),
     metavar="LIST",
     help="Parameters that come at run time, with commas between: of kappa, inertia, velocity and load; of a chain that "
     "is written out mass, dashpot, spring, impedance, velocity and load. A stream takes them when it starts, all but "
@@ -72,6 +74,8 @@ KAPPA = PositiveParameter("a positive number; write one such as 5 or 1/2")
 @click.option(
     "--with",
     "parts",
+    type=NAMES,
+    default=(),
     metavar="LIST",
     help="What that C has besides values and the estimate of their errors, with commas between: of peaks, gradients, "
     "batch, misfit (which brings batch) and bound.",
@@ -97,19 +101,9 @@ KAPPA = PositiveParameter("a positive number; write one such as 5 or 1/2")
 def generate(
     scene: Scene,
     directory: Path | None,
-    language: str,
-    evaluator: str,
-    precision: str,
-    optimize: str | None,
-    runtime: str | None,
-    parts: str | None,
-    kappa_max: Fraction | None,
-    stream: bool,
-    step: Fraction | None,
-    package: bool,
-    target: str | None,
     force: bool,
     only_check: bool,
+    **options: Any,  # as `Request` has them
 ) -> int:
     """Write C, NumPy or an FMU that evaluates a scene.
 
@@ -121,23 +115,11 @@ def generate(
     """
     from wavesym import api
 
-    if only_check and target:
+    if only_check and (target := options["target"]):
         raise click.UsageError(
             f"--check: binaries of --target {target} differ by compiler and cannot be compared; leave --target out"
         )
-    request = Request.checked(
-        evaluator=evaluator,
-        precision=precision,
-        optimize=optimize,
-        runtime=_names(runtime),
-        parts=_names(parts),
-        kappa_max=kappa_max,
-        stream=stream or target is not None,
-        step=step,
-        target=target or "",
-        language=language,
-        package=package,
-    )
+    request = Request.checked(**options)
     if only_check:
         with progress(f"check {scene.name}"):
             difference = api.check(scene, directory, request, scene_argument())
@@ -165,8 +147,3 @@ def _notes(scene: Scene, request: Request, written: tuple[Path, ...]) -> Iterato
         yield from api.scene_notes(scene)
     for manifest in (path for path in written if path.suffix == ".json"):
         yield str(json.loads(manifest.read_text(encoding="utf-8"))["reason"])
-
-
-def _names(text: str | None) -> tuple[str, ...]:
-    """The names in a list with commas between."""
-    return () if text is None else tuple(name.strip() for name in text.split(","))

@@ -142,7 +142,18 @@ class RatioParameter(click.ParamType[Any]):
         return ratio
 
 
+class NamesParameter(click.ParamType[Any]):
+    """Names with commas between."""
+
+    name = "list"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
+        """The names."""
+        return tuple(name.strip() for name in value.split(",")) if isinstance(value, str) else tuple(value)
+
+
 SCENE = SceneParameter()
+NAMES = NamesParameter()
 RATIO = RatioParameter()
 PATH = click.Path(path_type=Path)
 

@@ -44,7 +44,12 @@ def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
     with progress(f"spectrum {scene.name}"):
         from wavesym import api
 
-        lines, notes = api.spectrum_csv(scene, damping, out)
+        if out is not None:
+            api.refuse_no_picture(out)
+        found = api.spectrum(scene, damping)
+        if out is not None:
+            api.plot_spectra(found, out)
+        notes = api.spectrum_notes(scene, found)
     for line in notes:
         click.echo(f"{scene.name}: {line}", err=True)
-    put(lines)
+    put(found.csv())

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import OUT, SceneParameter, deliver, each_blamed, refuse_unwritable
+from wavesym.cli.parameters import NAMES, OUT, SceneParameter, deliver, each_blamed, refuse_unwritable
 from wavesym.cli.progress import progress
 from wavesym.programs.request import EVALUATORS, PRECISIONS
 
@@ -39,7 +39,9 @@ class _SceneOrId(SceneParameter):
 @click.option("--only", metavar="VERDICT", help="With --published: records of this verdict, after counts of all.")
 @click.option("--evaluator", type=click.Choice(EVALUATORS), help="This program alone.  [default: all programs]")
 @click.option("--precision", type=click.Choice(PRECISIONS), help="Programs of this precision alone.")
-@click.option("--runtime", metavar="LIST", help="The program that takes these parameters when it runs, alone.")
+@click.option(
+    "--runtime", type=NAMES, metavar="LIST", help="The program that takes these parameters when it runs, alone."
+)
 @click.option("--stream", is_flag=True, help="The program that takes loads sample by sample, alone.")
 @OUT
 def verify(
@@ -51,7 +53,7 @@ def verify(
     only: str | None,
     evaluator: str | None,
     precision: str | None,
-    runtime: str | None,
+    runtime: tuple[str, ...] | None,
     stream: bool,
     out: Path | None,
 ) -> int:
@@ -84,17 +86,16 @@ def verify(
 
         if published:
             names = [name for name in asked if isinstance(name, str)]
-            text, passed = api.published(
+            text, passed = api.verify_published(
                 format or "text", names, reproduce, lambda entries: line.each(entries, attrgetter("id")), only or ""
             )
         elif derived:
-            text, passed = api.derived(lambda systems: line.each(systems, attrgetter("name")))
+            text, passed = api.verify_derivation(lambda systems: line.each(systems, attrgetter("name")))
         else:
-            wanted = () if runtime is None else tuple(name.strip() for name in runtime.split(","))
             scenes = [scene for scene in asked if isinstance(scene, Scene)]
             told = line.each(scenes or [Scene.from_toml(name) for name in builtin_names()], attrgetter("name"))
             with ExitStack() as blame:
                 seen = each_blamed(told, blame) if scenes else told
-                text, passed = api.verify(seen, evaluator, precision, wanted, stream=stream)
+                text, passed = api.verify(seen, evaluator, precision, runtime or (), stream=stream)
     deliver(text, out)
     return 0 if passed else 1

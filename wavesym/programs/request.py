@@ -54,12 +54,21 @@ class Request:
     package: bool = False
 
     @classmethod
-    def checked(cls, *, step: Fraction | None = None, kappa_max: Fraction | None = None, **options: Any) -> Request:
+    def checked(
+        cls,
+        *,
+        step: Fraction | None = None,
+        kappa_max: Fraction | None = None,
+        runtime: Sequence[str] = (),
+        parts: Sequence[str] = (),
+        **options: Any,
+    ) -> Request:
         """A request of options that go together.
 
         Args:
             step, kappa_max: exact numbers, dimensionless.
-            options: all others, as they are kept.
+            runtime, parts: lists of names.
+            options: all others, as they are kept; None for what is usual.
 
         Raises:
             WavesymError: for a word that there is not, and for options that exclude each other.
@@ -67,7 +76,9 @@ class Request:
         from wavesym.numbers.doubles import rational
 
         every, largest = (None if number is None else rational(number) for number in (step, kappa_max))
-        request = cls(step=every, kappa_max=largest, **options)
+        chosen = {name: value for name, value in options.items() if value is not None}
+        chosen["stream"] = chosen.get("stream", False) or bool(chosen.get("target"))
+        request = cls(step=every, kappa_max=largest, runtime=tuple(runtime), parts=tuple(parts), **chosen)
         request.refuse_unknown()
         request._refuse_contradictions()
         return request

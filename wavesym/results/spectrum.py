@@ -62,12 +62,12 @@ class Spectra:
     step: float
     change: float
 
-
-def csv_lines(found: Spectra) -> list[str]:
-    """Spectra as CSV: a line for each period, in the header each output with its unit."""
-    names = [f"{name} [{unit}]" if unit else name for name, unit in zip(found.names, found.units, strict=True)]
-    header = ",".join(["period" if found.time_unit is None else f"period [{found.time_unit}]", *names]) + "\n"
-    return [header, *(",".join(map(repr, row)) + "\n" for row in np.vstack([found.periods, found.values]).T.tolist())]
+    def csv(self) -> list[str]:
+        """Lines of CSV: one for each period, in the header each output with its unit."""
+        names = [f"{name} [{unit}]" if unit else name for name, unit in zip(self.names, self.units, strict=True)]
+        header = ",".join(["period" if self.time_unit is None else f"period [{self.time_unit}]", *names]) + "\n"
+        rows = np.vstack([self.periods, self.values]).T.tolist()
+        return [header, *(",".join(map(repr, row)) + "\n" for row in rows)]
 
 
 def spectra(model: Model, damping: float) -> Spectra:

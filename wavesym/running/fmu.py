@@ -63,8 +63,8 @@ def fmu(program: Program, version: str) -> bytes:
     return _packed(content)
 
 
-def told(path: Path) -> list[str]:
-    """Of a file that was made: for which machines it has binaries, what would make more, and why this stream."""
+def notes(path: Path) -> list[str]:
+    """What to know of an FMU: for which machines it has binaries, what would make more, and why this stream."""
     with ZipFile(path) as archive:
         machines = [place.split("/")[1] for place in archive.namelist() if place.startswith("binaries/")]
         reason = json.loads(archive.read(f"resources/{path.stem}.json"))["reason"]

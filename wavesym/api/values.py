@@ -1,0 +1,207 @@
+"""What the outputs of a scene are: as functions, histories, statistics and response spectra."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from wavesym.scene import Scene, lower
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from wavesym.results.peaks import Peaks
+    from wavesym.results.response import Response
+    from wavesym.results.result import Result
+    from wavesym.results.spectrum import Spectra
+    from wavesym.results.summary import Summary
+
+
+def evaluator(scene: Scene) -> Response:
+    """The outputs of a scene as a function of tau, each value right to the last bit where that takes no minutes.
+
+    Args:
+        scene: what to compute.
+
+    Returns:
+        A callable: an array of tau (dimensionless) -> an array of shape (outputs, *tau.shape) in `units`. It has
+        `outputs`, `units`, `tau_max`, `error_bound` (relative to each output's largest value), `program` (None where
+        values are right to the last bit) and the `events` of contacts (`x`, `kind`, `tau` as a ball, `digits`).
+
+    Raises:
+        SceneError: for what is no Scene.
+        CostError, ToleranceError: when it is called, where no program serves the scene in moderate time or to its
+            tolerance.
+
+    >>> import wavesym
+    >>> response = wavesym.evaluator(wavesym.Scene.from_toml("drive_m1"))
+    >>> response.outputs[0], response.tau_max
+    ('strain@0', 10.0)
+    >>> response([2.0, 4.0])[0]
+    array([-1.34196715, -1.0316365 ])
+    """
+    from wavesym.results.response import Response
+
+    return Response(lower(scene))
+
+
+def run(scene: Scene, times: ArrayLike | None = None, samples: int = 1001, *, strict: bool = False) -> Result:
+    """The histories of a scene's outputs, as an object that shows itself.
+
+    Args:
+        scene: what to compute.
+        times: instants, one-dimensional, in the time unit of the scene's results (s), or tau where it has no units;
+            None for equally spaced ones on the horizon.
+        samples: how many of these, both ends included.
+        strict: whether an instant outside the horizon is an error; else its values are NaN, with one warning.
+
+    Returns:
+        `time`, `result[NAME]`, `outputs`, `units`, `bound` and `events`; it makes tables (`to_pandas`, `to_xarray`),
+        a picture (`plot`) and a `summary`.
+
+    Raises:
+        SceneError: for what is no Scene.
+        WavesymError: where `strict`, for an instant outside the horizon.
+        CostError, ToleranceError: where no program serves the scene in moderate time or to its tolerance.
+
+    >>> import wavesym
+    >>> result = wavesym.run(wavesym.Scene.from_toml("drive_m1"), times=[2, 4])
+    >>> result
+    Result('drive_m1', 5 outputs at 2 tau from 2 to 4, right to the last bit)
+    >>> result["strain@0"]
+    array([-1.34196715, -1.0316365 ])
+    """
+    from wavesym.api.pictures import plot
+    from wavesym.results.result import result
+
+    return result(scene, times, samples, strict=strict, plot=plot)
+
+
+def run_csv(
+    scene: Scene, samples: int, at: Sequence[float] | None = None, tell: Callable[[str], object] = lambda _: None
+) -> Iterator[str]:
+    """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
+
+    Args:
+        scene: what to compute.
+        samples: how many instants, where `at` is None.
+        at: instants, in the time unit of the results, or tau.
+        tell: called, before the first line, with what a user might not expect, when contacts open and close, and, where
+            values are not right to the last bit, of which program they are, and its bound.
+
+    Raises:
+        ToleranceError, CostError: where no program will do, or it would take minutes to know what contacts do.
+    """
+    from wavesym.results.response import Response
+    from wavesym.results.rows import csv_lines
+    from wavesym.results.unexpected import event_lines, outside, unexpected
+
+    model = lower(scene)
+    response = Response(model)
+    for line in (*outside(model, at or ()), *unexpected(model), *event_lines(response)):
+        tell(line)
+    lines = csv_lines(response, samples, at)
+    if made := response.program:
+        kind = "proved bound" if made.proved else "estimate"
+        bound = f"{kind} of the error {made.error_bound:g} of an output's largest value"
+        tell(f"values of {made.evaluator}, not right to the last bit: {bound}")
+    return lines
+
+
+def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
+    """Of each output the least and the greatest value, when, and when it first differs from 0.
+
+    Args:
+        scene: what to compute.
+        at_samples: whether they are those of the values at the samples of a record, else at 1001 equally spaced tau,
+            in place of true extremes, also between samples.
+
+    Returns:
+        `outputs` with `name`, `unit`, `min`, `max` and `arrival`, found by name too (`summary["strain@0"]`); a `min`
+        has `value` (in `unit`), `at` (`tau`, and `time` in the scene's unit) and `reached`. True extremes are `proved`
+        where `run` is right to the last bit; `how` says how they were found, `bound` what values are wrong by at most,
+        relative to an output's largest.
+
+    Raises:
+        ToleranceError, CostError: where nothing could be generated either.
+
+    >>> import wavesym
+    >>> strain = wavesym.summary(wavesym.Scene.from_toml("drive_m1"))["strain@0"]
+    >>> print(f"{strain.name}: {strain.max.value:.6g} at {strain.max.at.tau:.6g}, from {strain.arrival.tau} on")
+    strain@0: 1.20241 at 6.46788, from 0.0 on
+    """
+    from wavesym.results.rows import own_samples
+    from wavesym.results.summary import summarised
+    from wavesym.scene.lowering import drifts, sample_comb
+
+    model = lower(scene)
+    return summarised(model, own_samples(model, sample_comb(scene)) if at_samples else None, drifts(scene))
+
+
+def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Peaks:
+    """Statistics of one scene, or of several, as arrays: `min`, `tau_min`, `max`, `tau_max`, `arrival` (a tau), `mean`,
+    `rms` and `residual`, the value at the end.
+
+    Args:
+        scenes: what to compute.
+        at_samples: as of `summary`.
+
+    Returns:
+        A mapping of these names to NumPy arrays, (cases, outputs), or (outputs,) of one scene, with the names of
+        `cases` (by what varies) and `outputs`; `to_xarray()` and `to_pandas()` make labelled tables. What a scene does
+        not have is NaN.
+
+    Raises:
+        ToleranceError, CostError: as of `summary`.
+
+    >>> import wavesym
+    >>> scene = wavesym.Scene.from_toml("drive_m1")
+    >>> table = wavesym.peaks(scene.with_({"system.kappa[0]": kappa}) for kappa in ("1/2", 2))
+    >>> table.cases, table["max"].shape
+    (('system.kappa[0] = 1/2', 'system.kappa[0] = 2'), (2, 5))
+    """
+    from wavesym.results.peaks import peaks_of
+
+    every = [scenes] if isinstance(scenes, Scene) else list(scenes)
+    summaries = [summary(scene, at_samples=at_samples) for scene in every]
+    return peaks_of(every, summaries, several=not isinstance(scenes, Scene))
+
+
+def spectrum(scene: Scene, damping: float = 0.05) -> Spectra:
+    """Response spectra of the outputs of quantity acceleration.
+
+    Args:
+        scene: what to compute.
+        damping: the ratio of the oscillators' damping, from 0 to below 1.
+
+    Returns:
+        `periods` (n,) in `time_unit`, `values` (outputs, n), pseudo-accelerations in `units`, and `names`; `change` is
+        how much half as many steps change them, relative to each spectrum's largest value.
+
+    Raises:
+        WavesymError: for a scene without such outputs, or a horizon that is too short.
+        ToleranceError, CostError: where nothing could be generated either.
+
+    >>> import wavesym
+    >>> scene = wavesym.Scene.from_toml("building_m2").with_({"output.acceleration": [1, 2], "output.until": 40})
+    >>> wavesym.spectrum(scene, damping=0.02).names
+    ('acceleration@1', 'acceleration@2')
+    """
+    from wavesym.results.spectrum import spectra
+
+    return spectra(lower(scene), damping)
+
+
+def spectrum_notes(scene: Scene, found: Spectra) -> list[str]:
+    """What to know of response spectra: what `unexpected_lines` has, and how far the steps of their values matter."""
+    from wavesym.results.stepping import apart
+
+    steps = f"damping {found.damping:g}, values {apart(lower(scene), found.step)}; with half as many spectra change by"
+    return [*unexpected_lines(scene), f"{steps} {found.change:.1e}"]
+
+
+def unexpected_lines(scene: Scene) -> list[str]:
+    """What a user might not expect: how the scene was read, no load, contacts that open early enough to matter."""
+    from wavesym.results.unexpected import unexpected
+
+    return unexpected(lower(scene))
