@@ -1,7 +1,8 @@
 """python -m tools.site: lay out the pages of the site in build/pages, as mkdocs.yml expects them.
 
 Folders stay as they are in the project, so that a link works there and on the site. Two pages are written here: the
-gallery, from the pictures of examples/, and the public names, which mkdocstrings fills from their docstrings.
+gallery, from the pictures of examples/, and the public names, which mkdocstrings fills from their docstrings. Notebooks
+are executed, and are pages with what they print and draw.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import shutil
 from pathlib import Path
 
 import wavesym
+from tools.notebooks import write_pages
 
 ROOT = Path(__file__).parents[1]
 PAGES = ROOT / "build" / "pages"
@@ -73,3 +75,4 @@ def lay_out(pages: Path) -> None:
 
 if __name__ == "__main__":
     lay_out(PAGES)
+    write_pages(PAGES / "docs" / "notebooks")

@@ -216,6 +216,10 @@ def test_drawn_lines_do_not_slope_across_a_front(building: Histories, figure: Fi
             assert not at or low == nextafter(high, 0) or low == high
 
 
+def test_a_notebook_shows_a_figure_before_pyplot_is_there(figure: Figure) -> None:
+    assert figure._repr_png_()[:4] == b"\x89PNG"
+
+
 def test_same_histories_same_bytes(tmp_path: Path) -> None:
     for suffix in ("svg", "png"):
         for name in "ab":

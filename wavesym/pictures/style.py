@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from io import BytesIO
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib as mpl
@@ -27,6 +28,15 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
+class NotebookFigure(Figure):
+    """A figure that a notebook shows by itself, also before pyplot has taught it how."""
+
+    def _repr_png_(self) -> bytes:
+        content = BytesIO()
+        self.savefig(content, format="png")
+        return content.getvalue()
+
+
 def styled(draw: Callable[P, R]) -> Callable[P, R]:
     """A function that draws, with the font of all pictures and without a change of the user's settings."""
 
@@ -45,7 +55,7 @@ def new_figure(height: float, *, constrained: bool = True) -> Figure:
         height: in inches.
         constrained: whether matplotlib finds room for texts; else axes have places of their own.
     """
-    figure = Figure(figsize=(WIDTH, height), dpi=DPI, layout="constrained" if constrained else None)
+    figure = NotebookFigure(figsize=(WIDTH, height), dpi=DPI, layout="constrained" if constrained else None)
     FigureCanvasAgg(figure)
     return figure
 
