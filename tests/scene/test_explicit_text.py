@@ -5,14 +5,18 @@ from fractions import Fraction
 
 import pytest
 from flint import fmpq
+from hypothesis import given
 
 import wavesym
+from tests.support.drawn import systems
 from tests.support.scenes import NAMED
 from wavesym.cli import main
 from wavesym.errors import UnservedError
 from wavesym.mechanics.network import Network, Point
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
+from wavesym.systems import SYSTEMS
+from wavesym.systems.drawing import drawn
 
 
 def written(scene: Scene, tmp_path) -> Scene:
@@ -45,6 +49,13 @@ def others() -> list[Scene]:
         Scene(name="force", system={**building, "base": "force"}, load=samples, output=output),
         Scene(name="discs", system=drive, load=moments, output=output),
     ]
+
+
+@given(systems())
+def test_parts_of_a_preset_are_the_network_of_its_nodes(system) -> None:
+    """Parts are drawn as those of any chain, nodes are the paper's: two ways to the same masses and impedances."""
+    preset = SYSTEMS[system["type"]].model_validate(system)
+    assert bare(drawn(preset.parts, ()).network({})) == bare(preset.network(()))
 
 
 BUILT_IN = [pytest.param(scene, marks=pytest.mark.slow) for scene in map(Scene.from_toml, NAMED)]

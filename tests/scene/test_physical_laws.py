@@ -18,11 +18,11 @@ from wavesym.mechanics.clock import Clock
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import named_chain
-from wavesym.scene.physical.building import Columns
-from wavesym.scene.physical.drive import PhysicalDrive
-from wavesym.scene.physical.elastic import Rods
-from wavesym.scene.physical.rewritten import LoadUnit
 from wavesym.scene.physical.scale import Scale
+from wavesym.systems.building import Columns
+from wavesym.systems.dimensionless import LoadUnit
+from wavesym.systems.drive import PhysicalDrive
+from wavesym.systems.elastic import Rods
 
 CLOSE = 1e-13
 

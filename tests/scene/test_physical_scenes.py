@@ -26,13 +26,13 @@ from wavesym.cli import main
 from wavesym.documents.inspection.units import remarks
 from wavesym.errors import SceneError, UnservedError
 from wavesym.fields.numbers import decimal_text
+from wavesym.fields.rounding import decimal, polar_moment, root, rounded_root
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
 from wavesym.scene.lowering import named_chain
-from wavesym.scene.physical.rounding import decimal, polar_moment, root, rounded_root
 from wavesym.scene.physical.scene import physical
 
 FRAMES = Path(wavesym.__file__).parents[1] / "examples" / "frames"

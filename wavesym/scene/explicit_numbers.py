@@ -9,15 +9,18 @@ from fractions import Fraction
 from flint import fmpq
 
 from wavesym.fields.numbers import decimal_text
-from wavesym.mechanics.network import Bar, Network
 from wavesym.numbers.doubles import fraction
 from wavesym.scene.physical.scale import Scale
+from wavesym.systems.parts import ChainPart, RodPart
 from wavesym.systems.place import Position
 
+Number = fmpq | Fraction
 
-def number_text(value: fmpq) -> str:
+
+def number_text(value: Number) -> str:
     """An exact number as TOML."""
-    return str(value) if value.q == 1 else f'"{value}"'
+    text = str(value)
+    return text if "/" not in text else f'"{text}"'
 
 
 class Dimensionless:
@@ -25,27 +28,27 @@ class Dimensionless:
 
     remarks: Sequence[str] = ()
 
-    def rod(self, number: int, bar: Bar) -> dict[str, str]:
+    def rod(self, number: int, part: RodPart) -> dict[str, str]:
         """The keys of a rod."""
-        found = {"rod": number_text(bar.length)}
-        for key, value in (("impedance", bar.impedance), ("speed", bar.speed)):
+        found = {"rod": number_text(part.rod)}
+        for key, value in (("impedance", part.impedance), ("speed", part.speed)):
             if value != 1:
                 found[key] = number_text(value)
         return found
 
-    def mass(self, value: fmpq) -> str:
+    def mass(self, value: Number) -> str:
         """Of a body."""
         return number_text(value)
 
-    def velocity(self, value: fmpq) -> str:
+    def velocity(self, value: Number) -> str:
         """Of a rod or a body at first."""
         return number_text(value)
 
-    def time(self, value: fmpq) -> str:
+    def time(self, value: Number) -> str:
         """A time."""
         return number_text(value)
 
-    def load(self, value: fmpq, degree: int, moved: bool) -> str:
+    def load(self, value: Number, degree: int, moved: bool) -> str:
         """A step (degree 0) or a slope (1), of a force, or of an end that is moved."""
         return number_text(value)
 
@@ -61,10 +64,10 @@ class Dimensionless:
 class InUnits(Dimensionless):
     """Numbers as quantities in SI base units, so that what is written reads back as the same rods, masses and loads."""
 
-    def __init__(self, scale: Scale, network: Network) -> None:
+    def __init__(self, scale: Scale, parts: Sequence[ChainPart | str]) -> None:
         self.scale = scale
-        first = scale.rods.first
-        self._mass = first.mass / fraction(network.bars[0].impedance)
+        impedance = next(part.impedance for part in parts if isinstance(part, RodPart))
+        self._mass = scale.rods.first.mass / impedance
         turns = scale.kind == "torsional"
         self._names = ("rad", "kg*m^2", "N*m") if turns else ("m", "kg", "N")
         self.remarks = (
@@ -79,7 +82,7 @@ class InUnits(Dimensionless):
     def _modulus(self) -> str:
         return "E" if self.scale.kind == "longitudinal" else "G"
 
-    def rod(self, number: int, bar: Bar) -> dict[str, str]:
+    def rod(self, number: int, part: RodPart) -> dict[str, str]:
         """Its length, and what it is made of."""
         rod = self.scale.rods.all[number]
         key, size = self._section
@@ -90,21 +93,21 @@ class InUnits(Dimensionless):
             "rho": _quantity(rod.mass / rod.length, "kg/m^3"),
         }
 
-    def mass(self, value: fmpq) -> str:
+    def mass(self, value: Number) -> str:
         """Of a body, or its moment of inertia."""
-        return _quantity(fraction(value) * self._mass, self._names[1])
+        return _quantity(_fraction(value) * self._mass, self._names[1])
 
-    def velocity(self, value: fmpq) -> str:
+    def velocity(self, value: Number) -> str:
         """Of a rod or a body at first."""
-        return _quantity(fraction(value) * self.scale.displacement / self.scale.seconds, f"{self._names[0]}/s")
+        return _quantity(_fraction(value) * self.scale.displacement / self.scale.seconds, f"{self._names[0]}/s")
 
-    def time(self, value: fmpq) -> str:
+    def time(self, value: Number) -> str:
         """A time in seconds."""
-        return _quantity(fraction(value) * self.scale.seconds, "s")
+        return _quantity(_fraction(value) * self.scale.seconds, "s")
 
-    def load(self, value: fmpq, degree: int, moved: bool) -> str:
+    def load(self, value: Number, degree: int, moved: bool) -> str:
         """A step or slope of a force (a moment), or of the acceleration of an end."""
-        scale, number = self.scale, fraction(value) / self.scale.seconds**degree
+        scale, number = self.scale, _fraction(value) / self.scale.seconds**degree
         if moved:
             return _quantity(number * scale.displacement / scale.seconds**2, f"{self._names[0]}/s^{2 + degree}")
         return _quantity(number * scale.force, self._names[2] + degree * "/s")
@@ -122,6 +125,10 @@ class InUnits(Dimensionless):
         lengths = self.scale.lengths
         whole = min(int(x), len(lengths) - 1)
         return f"{decimal_text(sum(lengths[:whole], Fraction(0)) + (x - whole) * lengths[whole])} m"
+
+
+def _fraction(value: Number) -> Fraction:
+    return value if isinstance(value, Fraction) else fraction(value)
 
 
 def _quantity(value: Fraction, unit: str) -> str:

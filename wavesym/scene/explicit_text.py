@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 
 from flint import fmpq
 
@@ -14,6 +15,7 @@ from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.scene.explicit_numbers import Dimensionless, InUnits, number_text
 from wavesym.scene.lowering import lower
 from wavesym.scene.scene import Scene
+from wavesym.systems.parts import ChainPart, MassPart, MotionPart, RodPart
 
 
 def explicit_text(scene: Scene) -> str:
@@ -27,14 +29,14 @@ def _lines(scene: Scene) -> Iterator[str]:
         raise UnservedError(
             "system.type: a chain has all of its parts written already; write collision, drive or building"
         )
-    model = lower(scene)
-    told = InUnits(scene.physical.scale, model.network) if scene.physical else Dimensionless()
+    model, parts = lower(scene), scene.system.parts
+    numbers = InUnits(scene.physical.scale, parts) if scene.physical else Dimensionless()
     yield f"# {scene.name}, a {said.get('type', scene.system.type)}, written out part by part."
     parted = model.labels.system.get("contacts") == "open"
     if joined := [] if parted else [point.place for point in model.network.points if point.glued]:
         at = ", ".join(joined)
         yield f"# Its contacts are closed, as in the paper's formal model: the rods are joined at {at}."
-    yield from told.remarks
+    yield from numbers.remarks
     yield f"name = {json.dumps(scene.name)}"
     yield ""
     if scene.physical:
@@ -47,15 +49,15 @@ def _lines(scene: Scene) -> Iterator[str]:
     if damping := scene.system.model_dump(mode="json").get("damping"):
         yield f"damping = {_value(damping)}"
     yield "parts = ["
-    yield from (f"  {part}," for part in _parts(model.network, told))
+    yield from (f"  {part}," for part in _parts(parts, numbers))
     yield "]"
     for load in scene.load:
         yield ""
         yield "[[load]]"
-        yield from _load(load, model.network, told)
+        yield from _load(load, model.network, numbers)
     yield ""
     yield "[output]"
-    yield f"until = {told.time(model.until)}"
+    yield f"until = {numbers.time(model.until)}"
     yield f"tolerance = {number_text(model.tolerance)}"
     for quantity in QUANTITIES:
         if positions := getattr(scene.output, quantity):
@@ -63,35 +65,32 @@ def _lines(scene: Scene) -> Iterator[str]:
                 raise UnservedError(
                     'output.relative: base = "force" has no foundation that moves; write base = "ground"'
                 )
-            places = [told.position(position) if quantity != "drift" else position.written for position in positions]
+            places = [numbers.position(position) if quantity != "drift" else position.written for position in positions]
             yield f"{quantity} = {json.dumps(places)}"
 
 
-def _parts(network: Network, told: Dimensionless) -> Iterator[str]:
-    rods = {bar.left: number for number, bar in enumerate(network.bars)}
-    touching = {network.links[number].left for number in network.contacts}
-    for number, point in enumerate(network.points):
-        if point.motion:
-            accelerated = point.motion == "acceleration" or _accelerated(point)
-            yield _table({"motion": json.dumps("acceleration" if accelerated else "velocity")})
-        elif point.mass:
-            mass = {"mass": told.mass(point.mass), **_other("dashpot", point.damping)}
-            yield _table({**mass, **_moving(point.velocity, told)})
-        elif point.damping:
-            yield _table({"joint": "true", **_other("dashpot", point.damping)})
-        if number in touching:
-            yield '"contact"'
-        elif number in rods:
-            bar = network.bars[rods[number]]
-            yield _table({**told.rod(rods[number], bar), **_moving(bar.velocity, told)})
+def _parts(parts: Sequence[ChainPart | str], numbers: Dimensionless) -> Iterator[str]:
+    """The parts of a preset; a mass moves at first as the rod before it does."""
+    rods, velocity = 0, Fraction(0)
+    for part in parts:
+        match part:
+            case RodPart():
+                rods, velocity = rods + 1, part.velocity
+                yield _table({**numbers.rod(rods - 1, part), **_moving(velocity, numbers)})
+            case MassPart():
+                yield _table({"mass": numbers.mass(part.mass), **_moving(velocity, numbers)})
+            case MotionPart():
+                yield _table({"motion": json.dumps(part.motion)})
+            case "contact":
+                yield '"contact"'
 
 
 def _accelerated(point: Point) -> bool:
-    """Whether a velocity that is told is the integral of loads, which are accelerations."""
+    """Whether a prescribed velocity is the integral of loads, which are accelerations."""
     return point.motion == "velocity" and all(not load.coefficients[0] for load in point.loads)
 
 
-def _load(load: Load, network: Network, told: Dimensionless) -> Iterator[str]:
+def _load(load: Load, network: Network, numbers: Dimensionless) -> Iterator[str]:
     """A load as steps and ramps of what acts on a node, or of how it moves."""
     units = {unit.source: (x, unit.coefficients) for x, point in enumerate(network.points) for unit in point.loads}
     place = 0
@@ -104,12 +103,12 @@ def _load(load: Load, network: Network, told: Dimensionless) -> Iterator[str]:
         for k, c in enumerate(coefficients):
             terms[k] += applied.weight * c
     times = sorted(sums)
-    yield f"at = {told.place(place)}"
-    yield f"times = {_listed(map(told.time, times))}"
+    yield f"at = {numbers.place(place)}"
+    yield f"times = {_listed(map(numbers.time, times))}"
     moved = network.points[place].motion is not None
     for k, name in enumerate(("steps", "ramps")):
         if not k or any(sums[time][k] for time in times):
-            yield f"{name} = {_listed(told.load(sums[time][k], k, moved) for time in times)}"
+            yield f"{name} = {_listed(numbers.load(sums[time][k], k, moved) for time in times)}"
 
 
 def _value(value: object) -> str:
@@ -123,12 +122,8 @@ def _table(values: Mapping[str, str]) -> str:
     return f"{{ {', '.join(f'{key} = {value}' for key, value in values.items())} }}"
 
 
-def _moving(velocity: fmpq, told: Dimensionless) -> dict[str, str]:
-    return {"velocity": told.velocity(velocity)} if velocity else {}
-
-
-def _other(key: str, value: fmpq) -> dict[str, str]:
-    return {key: number_text(value)} if value else {}
+def _moving(velocity: Fraction, numbers: Dimensionless) -> dict[str, str]:
+    return {"velocity": numbers.velocity(velocity)} if velocity else {}
 
 
 def _listed(values: Iterable[str]) -> str:

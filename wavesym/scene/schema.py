@@ -9,7 +9,6 @@ from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
 from wavesym.fields.table import SceneTable
 from wavesym.scene.outputs import Output
-from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.chain_parts import (
     ContactKeys,
@@ -21,15 +20,13 @@ from wavesym.scene.physical.chain_parts import (
     ShearRod,
     TorsionalRod,
 )
-from wavesym.scene.physical.collision import PhysicalCollision
-from wavesym.scene.physical.drive import PhysicalDrive
 from wavesym.scene.physical.scale import UnitsTable
 from wavesym.scene.report import ReportTable
-from wavesym.systems import SYSTEMS
+from wavesym.systems import PHYSICAL, SYSTEMS
 from wavesym.systems.parts import MARKS, ContactPart, JointPart, LinkPart, MassPart, MotionPart, RodPart
 
 Tables = tuple[type[SceneTable], ...]
-_SYSTEMS: Tables = (*SYSTEMS.values(), PhysicalCollision, PhysicalDrive, PhysicalBuilding, PhysicalChain)
+_SYSTEMS: Tables = (*SYSTEMS.values(), *PHYSICAL.values(), PhysicalChain)
 _PARTS: Tables = (
     *(RodPart, MassPart, JointPart, MotionPart, LinkPart, ContactPart),
     *(LongitudinalRod, ShearRod, TorsionalRod, MassKeys, JointKeys, MotionKeys, LinkKeys, ContactKeys),

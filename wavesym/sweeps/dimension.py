@@ -13,11 +13,11 @@ from flint import arb, ctx
 from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
+from wavesym.fields.measured import plain
 from wavesym.fields.numbers import exact, written
 from wavesym.fields.quantity import parted
 from wavesym.fields.table import shown, wrong
 from wavesym.numbers.doubles import midpoint, rational
-from wavesym.scene.physical.measured import plain
 from wavesym.sweeps.request import Span
 
 _BITS = 128  # of values in equal ratios, each of which is rounded once to a double

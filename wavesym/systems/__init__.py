@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from wavesym.systems.building import Building
-from wavesym.systems.collision import Collision
-from wavesym.systems.drive import Drive
+from wavesym.systems.building import Building, PhysicalBuilding
+from wavesym.systems.collision import Collision, PhysicalCollision
+from wavesym.systems.drive import Drive, PhysicalDrive
 from wavesym.systems.explicit import ExplicitChain
 from wavesym.systems.preset import Preset
 from wavesym.systems.written_out import WrittenOut
 
 __all__ = [
+    "PHYSICAL",
     "SYSTEMS",
     "Building",
     "Collision",
@@ -29,6 +30,12 @@ SYSTEMS: dict[str, type[SystemTable]] = {
     "chain": ExplicitChain,
 }
 """By the `type` that a scene says; one more system is one more entry."""
+PHYSICAL: dict[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
+    "collision": PhysicalCollision,
+    "drive": PhysicalDrive,
+    "building": PhysicalBuilding,
+}
+"""The presets as a scene with units says them."""
 
 
 def presets() -> dict[str, type[Preset]]:

@@ -2,6 +2,10 @@
 
 Bodies sit at odd x, contacts at even x, the two ends are free. In the paper's formal model contacts stay closed; as
 "open" ones they open and close, which only a network knows.
+
+In units a rod has the mass and the stiffness that it has along its axis: rho A l, and E A / l. Then
+l/c = l sqrt(rho/E), and kappa = mass of one rod / mass of the body it is on. Displacements are counted in lengths of
+the first rod, so that velocities are in units of c.
 """
 
 from __future__ import annotations
@@ -9,17 +13,29 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, ClassVar, Literal
+from itertools import pairwise
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer
+from pydantic import (
+    BeforeValidator,
+    FailFast,
+    Field,
+    SerializerFunctionWrapHandler,
+    field_validator,
+    model_serializer,
+)
 
 from wavesym.fields.loads import Load
+from wavesym.fields.measured import Area, Density, Length, Mass, Modulus, Velocity, tidy
 from wavesym.fields.numbers import Numbers, Positives
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import SceneTable, listed, shown, wrong
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network, parted
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, single
+from wavesym.systems.dimensionless import DimensionlessSystem, LoadUnit
+from wavesym.systems.elastic import ElasticRod, Rods
+from wavesym.systems.parts import Table
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.preset import Preset
 
@@ -63,6 +79,17 @@ def known_contacts(contacts: object) -> str:
     if contacts in ("closed", "open"):
         return str(contacts)
     raise wrong(f'{shown(contacts)} is unknown; write "closed" or "open"')
+
+
+def collision_parts(
+    rods: Sequence[Table], masses: Sequence[Fraction], velocities: Sequence[Fraction], *, opens: bool
+) -> list[object]:
+    """From left to right of each body a rod, a mass and a rod; rods whose contact is closed for good are joined."""
+    parts: list[object] = []
+    for k, (mass, velocity) in enumerate(zip(masses, velocities, strict=True)):
+        left, right = (dict(rod) | {"velocity": velocity} for rod in rods[2 * k : 2 * k + 2])
+        parts += [*(["contact"] if k and opens else []), left, {"mass": mass}, right]
+    return parts
 
 
 class Collision(Preset):
@@ -126,3 +153,79 @@ class Collision(Preset):
         """The bodies and rods, with contacts that open where these do."""
         network = super().network(loads, length)
         return network if self.contacts == "closed" else parted(network, range(2, self.m, 2))
+
+    @property
+    def tables(self) -> list[object]:
+        """Its parts, in units of a rod."""
+        masses = [1 / kappa for kappa in self.kappa]
+        return collision_parts([{"rod": 1}] * self.m, masses, self.velocity, opens=self.contacts == "open")
+
+
+class RodOfBody(SceneTable):
+    """The rod on one side of a body."""
+
+    length: Length = Field(description='a length such as "1.2 m"')
+    A: Area = Field(description='an area such as "8 cm^2"')
+    E: Modulus = Field(description='a modulus such as "210 GPa"')
+    rho: Density = Field(description='a density such as "7850 kg/m^3"')
+
+    def rod(self) -> ElasticRod:
+        """As waves see it."""
+        return ElasticRod(self.length, self.rho * self.A * self.length, self.E * self.A / self.length, self.A)
+
+
+class Body(SceneTable):
+    """A rigid body with its rods, and how fast they move together at first."""
+
+    left: RodOfBody = Field(description="a rod, as a table")
+    right: RodOfBody = Field(description="a rod, as a table")
+    mass: Mass = Field(description='a mass such as "12 kg"')
+    velocity: Velocity = Field(description='a velocity such as "5 m/s"')
+
+
+class PhysicalCollision(SceneTable):
+    """Bodies from left to right, which touch at t = 0."""
+
+    type: str
+    body: Annotated[tuple[Body, ...], FailFast(), BeforeValidator(listed)] = Field(description="a list of bodies")
+    contacts: Any = "closed"
+
+    def without_units(self) -> DimensionlessSystem:
+        """As a collision without units, where rods differ part by part."""
+        bodies = self.body
+        if len(bodies) < 2:
+            raise wrong(f"{len(bodies)} bodies; write at least 2", "body")
+        for k, (body, after) in enumerate(pairwise(bodies), 1):
+            if after.velocity > body.velocity:
+                raise wrong(
+                    f"more than the {tidy(body.velocity)} m/s of the body on its left, and they would part; write that "
+                    "or less",
+                    "body",
+                    k,
+                    "velocity",
+                )
+        rods = Rods.of([side.rod() for body in bodies for side in (body.left, body.right)])
+        first = rods.first
+        velocities = [body.velocity * rods.seconds / first.length for body in bodies]
+        kappa = tuple(rod.mass / body.mass for body, rod in zip(bodies, rods.all[::2], strict=True))
+        if rods.alike:
+            table: dict[str, object] = {"type": "collision", "m": 2 * len(bodies), "kappa": kappa}
+            table |= {"velocity": velocities, "contacts": self.contacts}
+        else:
+            masses = [body.mass / first.mass for body in bodies]
+            opens = known_contacts(self.contacts) == "open"
+            table = {"type": "collision", "parts": collision_parts(rods.parts, masses, velocities, opens=opens)}
+        return DimensionlessSystem(
+            kind="longitudinal",
+            rods=rods,
+            system=table,
+            displacement=first.length,
+            force=first.stiffness * first.length,
+            lengths=tuple(rod.length for rod in rods.all),
+            acting=_unloaded,
+            kappa=kappa,
+        )
+
+
+def _unloaded(load: Mapping[str, Any]) -> LoadUnit:
+    raise wrong(f"{Collision.no_loads}; leave [[load]] out")

@@ -49,6 +49,10 @@ PartName = Annotated[str, PlainValidator(_name)]
 NotNegative = Annotated[Fraction, PlainValidator(_not_negative), PlainSerializer(str, return_type=str)]
 
 
+Table = Mapping[str, object]
+"""A part as it is written."""
+
+
 class ChainPart(SceneTable):
     """Something between the ends of a chain."""
 
@@ -162,7 +166,8 @@ def _part(value: object) -> ChainPart | str:
     return kind.model_validate(value)
 
 
-def _parts(value: object) -> tuple[Any, ...]:
+def read_parts(value: object) -> tuple[ChainPart | str, ...]:
+    """Parts as they are written. Raises the error of `table.wrong`, for all that are wrong at once."""
     faults = Faults()
     found = []
     for k, part in enumerate(listed(value)):
@@ -189,7 +194,7 @@ def _told(part: ChainPart) -> str:
     return ", ".join(key if given[key] is True else f"{key} {given[key]}" for key in keys)
 
 
-Parts = Annotated[tuple[Any, ...], PlainValidator(_parts), PlainSerializer(_written, return_type=list[Any])]
+Parts = Annotated[tuple[Any, ...], PlainValidator(read_parts), PlainSerializer(_written, return_type=list[Any])]
 
 
 class Branch(SceneTable):

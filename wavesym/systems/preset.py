@@ -12,6 +12,7 @@ from typing import ClassVar
 
 from pydantic import Field, ValidationInfo, field_validator
 
+from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.numbers import Integer
 from wavesym.fields.table import SceneTable, Written, shown, wrong
@@ -20,6 +21,7 @@ from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network, network_of
 from wavesym.mechanics.node import Parameters, System
 from wavesym.numbers.doubles import rational
+from wavesym.systems.parts import ChainPart, read_parts
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines, straight
 
@@ -74,6 +76,16 @@ class Preset(SceneTable):
     def choices(self) -> Mapping[str, str]:
         """What was chosen besides numbers, by key."""
         return {}
+
+    @property
+    def tables(self) -> list[object]:
+        """Its parts from left to right, as a chain has them. UnservedError where it has none."""
+        raise UnservedError(f"system.type: {self.type} has no parts; write collision, drive or building")
+
+    @property
+    def parts(self) -> tuple[ChainPart | str, ...]:
+        """The same, read."""
+        return read_parts(self.tables)
 
     @cached_property
     def chain(self) -> Chain:

@@ -10,9 +10,9 @@ from wavesym.documents.inspection.section import Facts, Listing, Plain, Section,
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.modes.frequencies import frequencies
 from wavesym.fields.numbers import decimal_text
+from wavesym.fields.rounding import DIGITS
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
-from wavesym.scene.physical.rounding import DIGITS
 from wavesym.scene.physical.scene import PhysicalScene
 
 _PERIODS = 5

@@ -13,14 +13,13 @@ from typing import Any
 
 from pydantic import Field
 
+from wavesym.fields.measured import measured
 from wavesym.fields.numbers import LONGEST, exact
 from wavesym.fields.table import Faults, SceneTable, listed, placed, shown, wrong
 from wavesym.scene.physical.chain_parts import OTHERS, RODS, LinkKeys, MotionKeys, RodKeys
-from wavesym.scene.physical.elastic import ElasticRod, Rods
-from wavesym.scene.physical.measured import measured
 from wavesym.scene.physical.places import PlaceInMetres, place
-from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
-from wavesym.scene.physical.scale import Kind
+from wavesym.systems.dimensionless import DimensionlessSystem, Kind, LoadUnit
+from wavesym.systems.elastic import ElasticRod, Rods
 from wavesym.systems.parts import PartName
 from wavesym.systems.place import PlaceInUnits
 
@@ -69,7 +68,7 @@ class PhysicalChain(SceneTable):
     branch: tuple[PhysicalBranch, ...] = ()
     damping: Any = None
 
-    def rewritten(self, kind: Kind) -> Rewritten:
+    def without_units(self, kind: Kind) -> DimensionlessSystem:
         """As a chain without units. Raises the error of `table.wrong`."""
         faults = Faults()
         main = _read(faults, self.parts, kind, "parts")
@@ -91,7 +90,7 @@ class PhysicalChain(SceneTable):
             ]
         if self.damping is not None:
             table["damping"] = self.damping
-        return Rewritten(
+        return DimensionlessSystem(
             kind=kind,
             rods=rods,
             system=table,

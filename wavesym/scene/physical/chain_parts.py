@@ -11,12 +11,12 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
+from wavesym.fields.measured import measured, missing, one_of
 from wavesym.fields.numbers import exact
+from wavesym.fields.rounding import polar_moment
 from wavesym.fields.table import SceneTable, placed, shown, wrong
-from wavesym.scene.physical.elastic import ElasticRod
-from wavesym.scene.physical.measured import measured, missing, one_of
-from wavesym.scene.physical.rounding import polar_moment
-from wavesym.scene.physical.scale import Kind
+from wavesym.systems.dimensionless import Kind
+from wavesym.systems.elastic import ElasticRod
 from wavesym.systems.parts import PartName
 
 

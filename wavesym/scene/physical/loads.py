@@ -12,13 +12,13 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
+from wavesym.fields.measured import measured
 from wavesym.fields.numbers import decimal_text, exact
 from wavesym.fields.quantity import unit
 from wavesym.fields.table import Written, listed, placed, shown, wrong
 from wavesym.records.record_file import RecordFile, damaged
 from wavesym.records.recording import Recording, recorded
-from wavesym.scene.physical.measured import measured
-from wavesym.scene.physical.rewritten import LoadUnit
+from wavesym.systems.dimensionless import LoadUnit
 
 _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
 

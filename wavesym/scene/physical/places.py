@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
+from wavesym.fields.measured import tidy
 from wavesym.fields.quantity import quantity
 from wavesym.fields.table import shown, wrong
-from wavesym.scene.physical.measured import tidy
 from wavesym.systems.place import Position
 
 _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?", re.DOTALL)

@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 from wavesym.fields.quantity import unit
 from wavesym.fields.table import SceneTable, placed, shown, wrong
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.length import LengthUnit
 from wavesym.numbers.doubles import rational
-from wavesym.scene.physical.elastic import Rods
+from wavesym.systems.dimensionless import Kind
+from wavesym.systems.elastic import Rods
 
-Kind = Literal["longitudinal", "torsional", "shear"]
 KINDS: tuple[Kind, ...] = ("longitudinal", "torsional", "shear")
 _ALONG = {"velocity": "velocity", "acceleration": "acceleration", "force": "force"}
 _ROUND = {"velocity": "angular velocity", "acceleration": "angular acceleration", "force": "moment"}

@@ -10,29 +10,21 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
+from wavesym.fields.measured import measured, plain, tidy
 from wavesym.fields.numbers import exact
 from wavesym.fields.table import Fault, Faults, key_path, placed, shown, wrong
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.scene.outputs import LONGEST_HORIZON
-from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
-from wavesym.scene.physical.collision import PhysicalCollision
-from wavesym.scene.physical.drive import PhysicalDrive
 from wavesym.scene.physical.loads import Acts, dimensionless, read
-from wavesym.scene.physical.measured import measured, plain, tidy
 from wavesym.scene.physical.places import place
-from wavesym.scene.physical.rewritten import Rewritten
 from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
-from wavesym.systems import SYSTEMS, ExplicitChain, SystemTable, WrittenOut
+from wavesym.systems import PHYSICAL, SYSTEMS, ExplicitChain, SystemTable, WrittenOut
+from wavesym.systems.dimensionless import DimensionlessSystem
 from wavesym.systems.place import titled
 
-_SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
-    "collision": PhysicalCollision,
-    "drive": PhysicalDrive,
-    "building": PhysicalBuilding,
-}
 _LENGTHS = {each.name for each in QUANTITIES.values() if each.like}
 """Outputs whose places are lengths on a chain; a drift counts rods."""
 
@@ -121,7 +113,7 @@ def _table(system: Mapping[str, object]) -> type[SystemTable]:
     return WrittenOut if "parts" in system and known is not ExplicitChain else known
 
 
-def _system(table: object, units: UnitsTable) -> Rewritten:
+def _system(table: object, units: UnitsTable) -> DimensionlessSystem:
     if not isinstance(table, Mapping):
         raise wrong(f"{shown(table)} is not a table; write [system]", "system")
     kind = table.get("type")
@@ -129,22 +121,22 @@ def _system(table: object, units: UnitsTable) -> Rewritten:
         with placed("units"):
             moved = units.chain_kind()
         with placed("system"):
-            return PhysicalChain.model_validate(table).rewritten(moved)
-    if not isinstance(kind, str) or kind not in _SYSTEMS:
-        *others, last = (f'"{name}"' for name in (*_SYSTEMS, "chain"))
+            return PhysicalChain.model_validate(table).without_units(moved)
+    if not isinstance(kind, str) or kind not in PHYSICAL:
+        *others, last = (f'"{name}"' for name in (*PHYSICAL, "chain"))
         what = "missing" if kind is None else f"{shown(kind)} is not a system"
         raise wrong(f"{what}; write {', '.join(others)} or {last}", "system", "type")
     if units.kind is not None:
         raise wrong(f"only chains have a choice, a {kind} has none; leave it out", "units", "kind")
     with placed("system"):
-        return _SYSTEMS[kind].model_validate(table).rewritten()
+        return PHYSICAL[kind].model_validate(table).without_units()
 
 
-def _load(load: object, found: Rewritten, seconds: Fraction) -> object:
+def _load(load: object, found: DimensionlessSystem, seconds: Fraction) -> object:
     return dimensionless(load, found.acting(load), seconds) if isinstance(load, Mapping) else load
 
 
-def _output(output: Mapping[str, Any], found: Rewritten, seconds: Fraction) -> dict[str, Any]:
+def _output(output: Mapping[str, Any], found: DimensionlessSystem, seconds: Fraction) -> dict[str, Any]:
     made = dict(output)
     faults = Faults()
     if "until" in output:
@@ -173,7 +165,7 @@ def _until(value: object, seconds: Fraction) -> object:
     return tau
 
 
-def _position(at: object, found: Rewritten, quantity: str, k: int) -> object:
+def _position(at: object, found: DimensionlessSystem, quantity: str, k: int) -> object:
     assert found.lines is not None  # places are lengths
     with placed(quantity, k):
         written, title = titled(at) if isinstance(at, Mapping) else (at, "")

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Any, Literal
 
-from wavesym.scene.physical.elastic import Rods
-from wavesym.scene.physical.scale import Kind
+from wavesym.systems.elastic import Rods
+
+Kind = Literal["longitudinal", "torsional", "shear"]
+"""How waves move the rods."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,7 @@ class LoadUnit:
 
 
 @dataclass(frozen=True)
-class Rewritten:
+class DimensionlessSystem:
     """The table of a dimensionless system; its rods; what a displacement and a force of 1 are in SI base units.
 
     `lengths` are the lengths of rods in units of x, in m, one alone where all are the same. `acting` says what a load's

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from wavesym.scene.physical.rounding import root, rounded_root
+from wavesym.fields.rounding import root, rounded_root
 
 
 @dataclass(frozen=True)
@@ -88,6 +88,11 @@ class Rods:
     def impedance(self, number: int) -> Fraction:
         """That of a rod, the first one's being 1."""
         return self.all[number].mass / self.first.mass / self.ratios[number]
+
+    @property
+    def parts(self) -> list[dict[str, object]]:
+        """Each of them as a part of a chain that counts rods."""
+        return [self.part(number, Fraction(1)) for number in range(len(self.all))]
 
     def part(self, number: int, length: Fraction) -> dict[str, object]:
         """A rod as a part of a chain that is so long there."""
