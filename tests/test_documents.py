@@ -42,8 +42,10 @@ ROOT = Path(wavesym.__file__).parents[1]
 PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md"))
 GUIDE = [page for page in PAGES if page.startswith("docs/guide/")]
 REFERENCE = [page for page in PAGES if page.startswith("docs/reference/")]
+TUTORIALS = [page for page in PAGES if page.startswith("docs/tutorials/")]
 EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("*.md"))
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "llms.txt", *PAGES, *EXAMPLES)
+QUICK = [name for name in DOCUMENTS if name not in EXAMPLES and name not in TUTORIALS]
 READ_ELSEWHERE = {"order", "exceptions", "exact", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(
@@ -267,7 +269,7 @@ def assert_spelt(words: list[str]) -> None:
     assert {word for word in words if word.startswith("-") and word != "-"} <= options(command(words[1]))
 
 
-@pytest.mark.parametrize("name", [name for name in DOCUMENTS if not name.startswith("examples/")])
+@pytest.mark.parametrize("name", QUICK)
 def test_what_a_document_says_works(name: str, tmp_path: Path) -> None:
     assert reader(name, tmp_path, patience=False).read(document(name)) == document(name).count("```") // 2
 
@@ -333,16 +335,20 @@ def headings(text: str) -> set[str]:
 
 
 def test_every_page_can_be_found() -> None:
-    """README.md links to those of docs/ and to how to contribute, the guide and the reference to their pages."""
+    """README.md links to those of docs/, to tutorials and how to contribute, guide and reference to their pages."""
     linked = {file for file, _ in LINK.findall(document("README.md"))}
-    assert linked >= {"CONTRIBUTING.md", *(page for page in PAGES if page.count("/") == 1)}
+    assert linked >= {"CONTRIBUTING.md", *TUTORIALS, *(page for page in PAGES if page.count("/") == 1)}
+    assert {page for page in PAGES if f": {page}\n" in document("mkdocs.yml")} >= set(TUTORIALS)
     for first, pages in (("docs/guide.md", GUIDE), ("docs/reference.md", REFERENCE)):
         assert {f"docs/{file}" for file, _ in LINK.findall(document(first))} >= set(pages)
 
 
-@pytest.mark.parametrize("name", [*GUIDE, *REFERENCE])
-def test_a_page_is_no_longer_than_is_read_at_once(name: str) -> None:
-    assert document(name).count("\n") <= (400 if name in GUIDE else 700)
+@pytest.mark.parametrize(
+    ("pages", "lines"), [(TUTORIALS, 130), (GUIDE, 400), (REFERENCE, 700)], ids=["tutorials", "guide", "reference"]
+)
+def test_a_page_is_no_longer_than_is_read_at_once(pages: list[str], lines: int) -> None:
+    assert pages
+    assert [page for page in pages if document(page).count("\n") > lines] == []
 
 
 def test_no_file_is_shown_twice_in_the_guide() -> None:

@@ -19,6 +19,7 @@ PAGES = ROOT / "build" / "pages"
 FOLDERS = ("docs", "examples", "bench", "generated")
 FILES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE")
 NAMED = re.compile(r"^```(\w+) (\S+)$", re.MULTILINE)  # a block with the file that it is saved as
+NOTEBOOK = re.compile(r"(\]\([^)]*notebooks/\w+)\.py\)")  # a link, which leads to its page here
 TITLE = re.compile(r"^# (.*)$", re.MULTILINE)
 
 
@@ -68,7 +69,8 @@ def lay_out(pages: Path) -> None:
     for file in FILES:
         shutil.copy(ROOT / file, pages)
     for page in pages.rglob("*.md"):
-        page.write_text(NAMED.sub(r'```\1 title="\2"', page.read_text(encoding="utf-8")), encoding="utf-8")
+        text = NAMED.sub(r'```\1 title="\2"', page.read_text(encoding="utf-8"))
+        page.write_text(NOTEBOOK.sub(r"\1.md)", text), encoding="utf-8")
     (pages / "gallery.md").write_text(gallery(pages / "examples"), encoding="utf-8")
     (pages / "docs" / "api.md").write_text(public_names(), encoding="utf-8")
 
