@@ -7,6 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from tools.formulas import typeset
+
 ROOT = Path(__file__).parents[1]
 NOTEBOOKS = ROOT / "docs" / "notebooks"
 HEADING = re.compile(r"^#+ (.*)$")
@@ -39,7 +41,7 @@ def write_page(notebook: Any, page: Path) -> None:
 
     resources = {"output_files_dir": f"{page.stem}_files"}
     text, found = MarkdownExporter().from_notebook_node(notebook, resources=resources)
-    page.write_text(described(text), encoding="utf-8")
+    page.write_text(typeset(described(text)), encoding="utf-8")
     for name, picture in found["outputs"].items():
         path = page.parent / name
         path.parent.mkdir(exist_ok=True)
@@ -47,12 +49,13 @@ def write_page(notebook: Any, page: Path) -> None:
 
 
 def described(text: str) -> str:
-    """Markdown in which a picture is described by the heading that it stands under."""
+    """Markdown in which a picture is described by the heading that it stands under, and HTML stays where it is."""
     lines, heading = [], ""
     for line in text.splitlines():
         if found := HEADING.match(line):
             heading = found[1]
-        lines.append(line.replace("![png]", f"![{heading}]") if line.startswith("![png]") else line)
+        line = re.sub(r"^!\[png\]", f"![{heading}]", line)
+        lines.append(f"<div>{line}</div>" if line.startswith("<p>") else line)
     return "\n".join([*lines, ""])
 
 

@@ -2,7 +2,7 @@
 
 Folders stay as they are in the project, so that a link works there and on the site. Two pages are written here: the
 gallery, from the pictures of examples/, and the public names, which mkdocstrings fills from their docstrings. Notebooks
-are executed, and are pages with what they print and draw.
+are executed, and are pages with what they print and draw; the errata show first what changes results.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import shutil
 from pathlib import Path
 
 import wavesym
+from tools.errata import errata_page
 from tools.notebooks import write_pages
 
 ROOT = Path(__file__).parents[1]
@@ -71,6 +72,8 @@ def lay_out(pages: Path) -> None:
     for page in pages.rglob("*.md"):
         text = NAMED.sub(r'```\1 title="\2"', page.read_text(encoding="utf-8"))
         page.write_text(NOTEBOOK.sub(r"\1.md)", text), encoding="utf-8")
+    errata = pages / "generated" / "errata.md"
+    errata.write_text(errata_page(errata.read_text(encoding="utf-8")), encoding="utf-8")
     (pages / "gallery.md").write_text(gallery(pages / "examples"), encoding="utf-8")
     (pages / "docs" / "api.md").write_text(public_names(), encoding="utf-8")
 

@@ -56,7 +56,7 @@ exact = wavesym.evaluator(bars)
 taus = [8.5 + n for n in range(len(steps))]
 values = exact(taus)[exact.outputs.index("strain@10")]
 for tau, value, step in zip(taus, values, steps, strict=True):
-    print(f"tau = {tau:4}: {value!r:22} {step}")
+    print(f"tau = {tau:4}: {float(value)!r:14} {step}")
 assert [float(step) for step in steps[:4]] == values[:4].tolist(), "right to the last bit"
 
 # %% [markdown]
@@ -65,7 +65,7 @@ assert [float(step) for step in steps[:4]] == values[:4].tolist(), "right to the
 
 # %%
 expected = steps[4] - steps[0]
-print(values[4], float(expected), expected)
+print(float(values[4]), float(expected), expected)
 assert values[4] == float(expected)
 
 # %% [markdown]
