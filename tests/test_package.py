@@ -219,3 +219,11 @@ def test_the_oldest_sympy_allowed_gives_the_same(here: dict[str, str], tmp_path:
     assert len(text) > 100_000
     assert told(commands, cwd=tmp_path, path=(old, ROOT)) == text
     assert generated(tmp_path / "out", path=(old, ROOT)) == here
+
+
+def test_the_version_is_the_same_wherever_it_stands() -> None:
+    first = re.findall(
+        r"^## \[(\d.*?)\]", (ROOT / "CHANGELOG").with_suffix(".md").read_text(encoding="utf-8"), re.MULTILINE
+    )[0]
+    cited = re.findall(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE)
+    assert [first, *cited] == [wavesym.__version__] * 2
