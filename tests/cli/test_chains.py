@@ -48,14 +48,14 @@ def test_the_law_of_a_joint_by_hand() -> None:
 
 def test_the_model_is_told_as_it_is() -> None:
     read = json.loads(inspection(chain(), "model", "json"))
-    assert [(bar["delay"], bar["impedance"], bar["ratios"]) for bar in read["bars"]] == [
-        ("1", "1", ["1", "1"]),
-        ("9", "2", ["1", "1"]),
-        ("1/2", "1", ["-2", "1"]),
+    assert [(bar["length"], bar["speed"], bar["impedance"], bar["ratios"]) for bar in read["bars"]] == [
+        ("1", "1", "1", ["1", "1"]),
+        ("9", "1", "2", ["1", "1"]),
+        ("1/2", "1", "1", ["-2", "1"]),
     ]
     assert [point["motion"] for point in read["points"]] == [None, None, None, "fixed", None]
     (link,) = read["links"]
-    assert link == {"left": "seat", "right": 2, "ratio": "1", "spring": "3", "dashpot": "1/4"}
+    assert [link[key] for key in ("left", "right", "ratio", "stiffness", "damping")] == [1, 2, "1", "3", "1/4"]
 
 
 def test_the_header_lists_the_parts(tmp_path: Path) -> None:

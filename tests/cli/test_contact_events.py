@@ -112,8 +112,8 @@ def test_run_and_inspect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         assert "contacts" not in read
     text = inspection(scene(), "program")
     agreed(re.findall(r"^  (0)  (opens|closes) +(\S+)$", text, re.MULTILINE))
-    (contact,) = json.loads(inspection(scene(), "model", "json"))["contacts"]
-    assert contact == {"x": "0", "left": "ground", "right": 1, "ratio": "1", "gap": "5"}
+    (contact,) = json.loads(inspection(scene(), "model", "json"))["links"]
+    assert [contact[key] for key in ("place", "left", "right", "ratio", "gap")] == ["0", 0, 1, "1", "5"]
 
 
 def test_an_open_collision_is_told_as_one() -> None:
@@ -122,7 +122,7 @@ def test_an_open_collision_is_told_as_one() -> None:
     read = json.loads(inspection(bars, "summary", "json"))
     assert read["system"] == {**read["system"], "type": "collision", "contacts": "open"}
     assert [(event["x"], event["kind"]) for event in read["events"]] == [("2", "opens")]
-    assert [row["x"] for row in json.loads(inspection(bars, "model", "json"))["contacts"]] == ["2"]
+    assert [row["place"] for row in json.loads(inspection(bars, "model", "json"))["links"]] == ["2"]
     header = files(lower(bars), "c")["bars.h"]
     assert "contacts = open" in header
     assert "CONTACT_END" not in header

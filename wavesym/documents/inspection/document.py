@@ -5,25 +5,25 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from wavesym.documents.inspection.laws import laws
-from wavesym.documents.inspection.modelled import modelled
-from wavesym.documents.inspection.programmed import programmed
-from wavesym.documents.inspection.said import said
+from wavesym.documents.inspection.laws import law_sections
+from wavesym.documents.inspection.model import model_sections
+from wavesym.documents.inspection.program import program_sections
+from wavesym.documents.inspection.scene import scene_sections
 from wavesym.documents.inspection.section import Section, plain
-from wavesym.documents.inspection.summary import summary
-from wavesym.documents.inspection.tabled import tabled
+from wavesym.documents.inspection.summary import summary_sections
+from wavesym.documents.inspection.table import table_sections
 from wavesym.documents.inspection.text import section_lines
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import named_chain, sources
 
 SUMMARY = "summary"
 _STAGES: Mapping[str, Callable[[Scene], Iterable[Section]]] = {
-    SUMMARY: lambda scene: summary(lower(scene), named_chain(scene), sources(scene), scene.physical),
-    "scene": said,
-    "model": lambda scene: modelled(lower(scene), named_chain(scene)),
-    "laws": lambda scene: laws(lower(scene), named_chain(scene)),
-    "table": lambda scene: tabled(lower(scene), named_chain(scene)),
-    "program": lambda scene: programmed(lower(scene), sources(scene)),
+    SUMMARY: lambda scene: summary_sections(lower(scene), named_chain(scene), sources(scene), scene.physical),
+    "scene": scene_sections,
+    "model": lambda scene: model_sections(lower(scene), named_chain(scene)),
+    "laws": lambda scene: law_sections(lower(scene), named_chain(scene)),
+    "table": lambda scene: table_sections(lower(scene), named_chain(scene)),
+    "program": lambda scene: program_sections(lower(scene), sources(scene)),
 }
 
 

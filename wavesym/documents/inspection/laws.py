@@ -2,27 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+
+from flint import fmpq
 
 from wavesym.derivation.rules import Linear, LoadTerm, Rule, Term, Weights
 from wavesym.derivation.table import Function, Rules
-from wavesym.documents.inspection.modelled import cone, nodes_in_reach
-from wavesym.documents.inspection.networked import joint_laws, not_served
-from wavesym.documents.inspection.section import Listing, Plain, Section, Told
+from wavesym.documents.inspection.model import light_cone
+from wavesym.documents.inspection.section import Display, Facts, Listing, Plain, Section
+from wavesym.errors import CostError, UnservedError
+from wavesym.exact.breakpoints import Breakpoints
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.tables.joint_response import joint_polynomial, rates, written
+from wavesym.exact.tables.network_joints import MOST_POINTS
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Joint
+from wavesym.numbers.doubles import rational
+
+LAW = "M q' + C q + K u = sum over ends of 2 n Z a + F, where u' = q, n q - a goes back into an end"
 
 
-def laws(model: Model, chain: Chain | None) -> Iterator[Section]:
+def law_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
     """The law of each joint in the light cone, and of a chain of the paper the recurrences of its wave functions."""
-    yield cone(model, chain)
+    yield light_cone(model)
     yield joint_laws(model)
     if chain is None:
         yield not_served(model)
         return
-    nodes = nodes_in_reach(model)
     rules = Rules(chain)
-    functions = [Function(name, rod) for rod in nodes[1:] for name in ("f", "g")]
+    reached = model.reached(rational(model.horizon()))
+    functions = [Function(name, rod) for rod in range(min(reached) + 1, max(reached) + 1) for name in ("f", "g")]
     yield Listing(
         "functions",
         f"Exponentials times powers, which tables and the closed form run, in intervals n of length {rules.interval}."
@@ -34,19 +44,109 @@ def laws(model: Model, chain: Chain | None) -> Iterator[Section]:
     )
 
 
+def not_served(model: Model) -> Facts:
+    """What named systems have and written-out chains have not."""
+    try:
+        model.network.refuse_contacts()
+        refusal = (
+            f"system.type: {model.labels.type} has no closed form, as collision, drive and building have; take "
+            "pieces, march or `run`"
+        )
+    except UnservedError as error:
+        refusal = str(error)
+    words = "Symbolic tables, walks and highest powers are not served"
+    return Facts("not_served", words, {"refusal": refusal})
+
+
+def joints(model: Model) -> Listing:
+    """What joints in the light cone are, in a line each: the points that they hold, and how they answer a wave."""
+    rows = []
+    for number in model.reached(rational(model.horizon())):
+        joint = model.network.joints[number]
+        points = Display([_named(model, point) for point in joint.points], _pointed(model, joint))
+        law = _polynomial(JointLaw.of(model.network, joint))
+        rows.append({"joint": number, "points": points, "ends": len(joint.ends), "law": law})
+    return Listing("joints", "Joints in the light cone: the points and ends of rods that move together", rows, ("law",))
+
+
+def joint_laws(model: Model) -> Listing:
+    """M, C and K of the joints in the light cone, and the knots of each."""
+    until = rational(model.horizon())
+    try:
+        found = Breakpoints(model, until)
+        knots = {number: found.count(number) for number in found.reached}
+        refusal = ""
+    except CostError as error:
+        knots, refusal = {}, str(error)
+    rows: list[dict[str, Plain | Display]] = []
+    for number in model.reached(until):
+        joint = model.network.joints[number]
+        law = JointLaw.of(model.network, joint)
+        mass = [[m if a == b else fmpq(0) for b in range(len(law.mass))] for a, m in enumerate(law.mass)]
+        rows.append(
+            {
+                "joint": number,
+                "points": Display([_named(model, point) for point in joint.points], _pointed(model, joint)),
+                "ends": len(joint.ends),
+                "knots": knots.get(number),
+                "M": _matrix("M", mass),
+                "C": _matrix("C", law.damping),
+                "K": _matrix("K", law.stiffness),
+                "polynomial": _polynomial(law),
+                "refusal": Display(None, "") if rows or not refusal else refusal,
+            }
+        )
+    parted = ", with all contacts open" if model.network.contacts else ""
+    return Listing(
+        "joints",
+        f"Joints in the light cone, with a knot for each start of a stretch without fronts{parted}:\n{LAW}",
+        rows,
+        ("M", "C", "K", "polynomial", "refusal"),
+    )
+
+
+def _polynomial(law: JointLaw) -> Display:
+    """Of a joint that is not large: its polynomial, and the rates where it splits."""
+    if len(law.mass) > MOST_POINTS:
+        return Display(None, f"more than {MOST_POINTS} points: no polynomial is made")
+    found, shown = rates(law), written(joint_polynomial(law))
+    if found is None:
+        return Display({"coefficients": _listed(law), "rates": None}, f"polynomial {shown}, which does not split")
+    words = f", rates {', '.join(map(str, found))}" if found else ""
+    return Display({"coefficients": _listed(law), "rates": list(map(str, found))}, f"polynomial {shown}{words}")
+
+
+def _listed(law: JointLaw) -> list[str]:
+    return list(map(str, joint_polynomial(law).coeffs()))
+
+
+def _named(model: Model, point: int) -> Plain:
+    return model.network.points[point].name or point
+
+
+def _pointed(model: Model, joint: Joint) -> str:
+    return ", ".join(str(_named(model, point)) for point in joint.points)
+
+
+def _matrix(name: str, rows: Sequence[Sequence[fmpq]]) -> Display:
+    """Rows apart by semicolons, where it is not 0."""
+    words = "; ".join(" ".join(map(str, row)) for row in rows) if any(value for row in rows for value in row) else "0"
+    return Display([list(map(str, row)) for row in rows], f"{name} = {words}")
+
+
 def _of_function(rule: Rule) -> dict[str, Plain]:
     terms, loads = list(map(_right, rule.terms)), list(map(_added, rule.loads))
     return {
         "function": rule.function,
         "rod": rule.rod,
-        "own": Told(_weights(rule.own), f"{_product(rule.own, f'{rule.function}_{rule.rod}', 0)} ="),
-        "terms": Told(list(map(_term, rule.terms)), "\n".join(terms) or ("" if loads else "0")),
-        "loads": Told(list(map(_load, rule.loads)), "\n".join(loads)),
+        "own": Display(_weights(rule.own), f"{_product(rule.own, f'{rule.function}_{rule.rod}', 0)} ="),
+        "terms": Display(list(map(_term, rule.terms)), "\n".join(terms) or ("" if loads else "0")),
+        "loads": Display(list(map(_load, rule.loads)), "\n".join(loads)),
     }
 
 
-def _linear(linear: Linear, variable: str) -> Told:
-    return Told({"constant": str(linear.constant), "slope": str(linear.slope)}, _in(linear, variable))
+def _linear(linear: Linear, variable: str) -> Display:
+    return Display({"constant": str(linear.constant), "slope": str(linear.slope)}, _in(linear, variable))
 
 
 def _in(linear: Linear, variable: str) -> str:

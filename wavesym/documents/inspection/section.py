@@ -6,15 +6,22 @@ Text and JSON are written of the same sections, so that neither can say what the
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from flint import fmpq
+
+from wavesym.mechanics.node import UnitLoad
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 # What JSON can hold: exact numbers are text such as "6/5", doubles and counts are numbers.
 Plain = Any
 
 
 @dataclass(frozen=True)
-class Told:
+class Display:
     """A value of JSON that is shown to a person in other `words`."""
 
     value: Plain
@@ -27,20 +34,21 @@ class Facts:
 
     key: str
     words: str
-    values: Mapping[str, Plain | Told]
+    values: Mapping[str, Plain | Display]
 
 
 @dataclass(frozen=True)
 class Listing:
     """Rows that all have the same columns. In JSON they are the list `key`.
 
-    Text shows `sentences`, which a row may have or not, on lines of their own below it.
+    Text shows `sentences`, which a row may have or not, on lines of their own below it; no `hidden` columns.
     """
 
     key: str
     words: str
-    rows: Sequence[Mapping[str, Plain | Told]]
+    rows: Sequence[Mapping[str, Plain | Display]]
     sentences: tuple[str, ...] = ()
+    hidden: tuple[str, ...] = ()
 
 
 Section = Facts | Listing
@@ -53,8 +61,34 @@ def plain(section: Section) -> Plain:
     return [_plain(row) for row in section.rows]
 
 
-def _plain(values: Mapping[str, Plain | Told]) -> dict[str, Plain]:
-    return {name: value.value if isinstance(value, Told) else value for name, value in values.items()}
+def _plain(values: Mapping[str, Plain | Display]) -> dict[str, Plain]:
+    return {name: value.value if isinstance(value, Display) else value for name, value in values.items()}
+
+
+def dump(key: str, words: str, values: Sequence[DataclassInstance], number: str = "", first: int = 0) -> Listing:
+    """Frozen values as rows: all of their fields under their own names; text leaves out what all have by default.
+
+    Args:
+        key, words: as of a listing.
+        values: of one class.
+        number: the name of a column that counts them, from `first` on; empty for none.
+    """
+    columns = fields(values[0]) if values else ()
+    rows = [
+        {**({number: k} if number else {}), **{each.name: _frozen(getattr(value, each.name)) for each in columns}}
+        for k, value in enumerate(values, first)
+    ]
+    usual = (each.name for each in columns if all(getattr(value, each.name) == each.default for value in values))
+    return Listing(key, words, rows, hidden=tuple(usual))
+
+
+def _frozen(value: Any) -> Plain:
+    """A field as JSON: exact numbers as text, what is made of others by its fields, names as they are."""
+    if isinstance(value, UnitLoad):
+        return value.source
+    if isinstance(value, tuple):
+        return list(map(_frozen, value))
+    return str(value) if isinstance(value, fmpq) else value
 
 
 def finite(value: float | None) -> float | None:

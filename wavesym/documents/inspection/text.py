@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from itertools import islice
 from textwrap import wrap
 
-from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.documents.inspection.section import Display, Facts, Listing, Plain, Section
 
 MOST_ROWS = 20
 MOST_ITEMS = 8  # of a list within a line
@@ -32,7 +32,7 @@ def _facts(section: Facts) -> Iterator[str]:
 
 def _rows(section: Listing) -> Iterator[str]:
     rows = [_shown_row(row) for row in islice(section.rows, MOST_ROWS)]
-    columns = [name for name in (rows[0] if rows else ()) if name not in section.sentences]
+    columns = [name for name in (rows[0] if rows else ()) if name not in (*section.sentences, *section.hidden)]
     indent = " " * (6 if columns else 2)
     widths = {name: max(len(name), *(len(row[name]) for row in rows)) for name in columns}
     if len(columns) > 1:
@@ -49,7 +49,7 @@ def _rows(section: Listing) -> Iterator[str]:
         yield "  none"
 
 
-def _shown_row(row: Mapping[str, Plain | Told]) -> dict[str, str]:
+def _shown_row(row: Mapping[str, Plain | Display]) -> dict[str, str]:
     return {name: shown(value) for name, value in row.items()}
 
 
@@ -57,10 +57,10 @@ def _line(row: Mapping[str, str], widths: Mapping[str, int]) -> str:
     return "  " + "  ".join(f"{row[name]:{width}}" for name, width in widths.items()).rstrip()
 
 
-def shown(value: Plain | Told) -> str:
+def shown(value: Plain | Display) -> str:
     """A value for a person."""
     match value:
-        case Told():
+        case Display():
             return value.words
         case None:
             return "-"

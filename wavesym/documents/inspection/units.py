@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from flint import arb
 
-from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.documents.inspection.section import Display, Facts, Listing, Plain, Section
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.modes.frequencies import frequencies
 from wavesym.fields.numbers import decimal_text
@@ -37,24 +37,24 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
         "In units",
         {
             "kind": scale.kind,
-            "seconds_per_tau": Told(
+            "seconds_per_tau": Display(
                 str(scale.seconds),
                 f"{_si(seconds, 's')}, l/c rounded to {DIGITS} digits: {decimal_text(scale.seconds)} s"
                 if rods.all
                 else "1 s, as there are no rods",
             ),
-            "c": Told(float(first.length) / seconds, f"{float(first.length) / seconds:.6g} m/s, of the first rod")
+            "c": Display(float(first.length) / seconds, f"{float(first.length) / seconds:.6g} m/s, of the first rod")
             if rods.all
             else None,
-            "kappa": Told([float(k) for k in physical.kappa], _several(sorted({float(k) for k in physical.kappa}))),
-            "periods": Told(
+            "kappa": Display([float(k) for k in physical.kappa], _several(sorted({float(k) for k in physical.kappa}))),
+            "periods": Display(
                 periods, why or ", ".join(f"T{k} = {_si(period, 's')}" for k, period in enumerate(periods, 1))
             ),
-            "horizon": Told(
+            "horizon": Display(
                 {"tau": model.horizon(), "time": clock.time(model.until), "unit": clock.unit},
                 f"{model.horizon():.6g} tau, {clock.told(model.until)}",
             ),
-            "physics_up_to": None if limit is None else Told(limit, f"{limit:.4g} Hz = c/(2 l): {above}"),
+            "physics_up_to": None if limit is None else Display(limit, f"{limit:.4g} Hz = c/(2 l): {above}"),
         },
     )
     if not rods.alike:
@@ -75,15 +75,15 @@ def _periods(model: Model, seconds: float) -> tuple[list[float], str]:
 def _rods(physical: PhysicalScene) -> Listing:
     """Rods that differ."""
     rods, seconds = physical.scale.rods, float(physical.scale.seconds)
-    rows: list[dict[str, Plain | Told]] = []
+    rows: list[dict[str, Plain | Display]] = []
     for number, (rod, ratio) in enumerate(zip(rods.all, rods.ratios, strict=True), 1):
         delay = seconds * float(ratio)
         rows.append(
             {
                 "rod": number,
-                "length": Told(float(rod.length), f"{float(rod.length):.6g} m"),
-                "l/c": Told(delay, _si(delay, "s")),
-                "c": Told(float(rod.length) / delay, f"{float(rod.length) / delay:.6g} m/s"),
+                "length": Display(float(rod.length), f"{float(rod.length):.6g} m"),
+                "l/c": Display(delay, _si(delay, "s")),
+                "c": Display(float(rod.length) / delay, f"{float(rod.length) / delay:.6g} m/s"),
                 "impedance": float(rods.impedance(number - 1)),
             }
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from wavesym.derivation.table import Table
-from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.documents.inspection.section import Display, Facts, Listing, Plain, Section
 from wavesym.documents.named_table import named_table
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.motion import Motion
@@ -15,25 +15,21 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
 MOST_COUNTED = 30_000  # coefficients, which take a second or two to make
-MOST_SHOWN = 8  # knots of an output of a chain that is written out
+MOST_SHOWN = 8  # knots of an output
 LONGEST = 10_000  # tau; to estimate the size of longer tables takes seconds, too
 
 
-def tabled(model: Model, chain: Chain | None) -> Iterator[Section]:
+def table_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
     """The size of the table that `tables` prints, and the knots of every output."""
     try:
         _refuse_long(model)
-        made = _made(model, chain)
+        made = _table(model, chain)
     except (CostError, UnservedError) as refusal:
         yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
     else:
         yield from _sizes(made)
-    where = "at 0 and at n + part, for each n = 0, 1, ... and each part of a unit of tau"
-    if chain is None:
-        where = f"at `count` instants; here are the first {MOST_SHOWN}"
-    yield Listing(
-        "knots", f"Knots: an output may jump or bend {where}", list(_knots(model, chain)), ("parts", "first", "refusal")
-    )
+    words = f"Knots: an output may jump or bend at `count` instants; here are the first {MOST_SHOWN}"
+    yield Listing("knots", words, list(_knots(model)), ("first", "refusal"))
 
 
 def _refuse_long(model: Model) -> None:
@@ -44,7 +40,7 @@ def _refuse_long(model: Model) -> None:
         )
 
 
-def _made(model: Model, chain: Chain | None) -> Table | NetworkTable:
+def _table(model: Model, chain: Chain | None) -> Table | NetworkTable:
     model.refuse_damping()
     until = rational(model.horizon())
     if chain is None:
@@ -79,19 +75,14 @@ def _sizes(table: Table | NetworkTable) -> Iterator[Section]:
     yield Listing("functions", "Its wave functions, for each source", rows)
 
 
-def _knots(model: Model, chain: Chain | None) -> Iterator[dict[str, Plain]]:
-    shown = "first" if chain is None else "parts"
+def _knots(model: Model) -> Iterator[dict[str, Plain]]:
     try:
         motion = Motion(model, rational(model.horizon()))
     except (CostError, UnservedError) as refusal:
         for probe in model.probes:
-            yield {"name": probe.name, "count": None, shown: Told(None, ""), "refusal": str(refusal)}
+            yield {"name": probe.name, "count": None, "first": Display(None, ""), "refusal": str(refusal)}
         return
     for probe in model.probes:
         starts = motion.starts(probe)
-        row: dict[str, Plain] = {"name": probe.name, "count": len(starts)}
-        if chain is None:
-            yield {**row, "first": list(map(str, starts[:MOST_SHOWN])), "refusal": Told(None, "")}
-        else:
-            parts = sorted({start - start.floor() for start in starts[len(starts) > 1 :]})
-            yield {**row, "parts": list(map(str, parts)), "refusal": Told(None, "")}
+        first = list(map(str, starts[:MOST_SHOWN]))
+        yield {"name": probe.name, "count": len(starts), "first": first, "refusal": Display(None, "")}
