@@ -1,4 +1,4 @@
-"""Names of outputs for people: shown wherever people look, beside the identifier that programs keep."""
+"""Names of outputs and loads for people: shown wherever people look, beside the identifier that programs keep."""
 
 from __future__ import annotations
 
@@ -8,11 +8,15 @@ from pathlib import Path
 import pytest
 
 import wavesym
-from wavesym import Scene
+from wavesym import Scene, api
 from wavesym.cli import main
 from wavesym.errors import SceneError
 from wavesym.pictures.histories import histories
+from wavesym.pictures.loads import load_histories
+from wavesym.programs.request import Request
 from wavesym.scene import lower
+from wavesym.scene.explicit_text import explicit_text
+from wavesym.targets.fmu.variables import variables
 
 FORCE = {"at": 0, "name": "Base shear"}
 
@@ -86,3 +90,59 @@ def test_what_is_no_name_gets_one_line(position: dict[str, object], message: str
     with pytest.raises(SceneError) as caught:
         Scene.from_toml("building_m2").with_({"output.force": [position]})
     assert message in str(caught.value)
+
+
+GUST = {"at": "roof", "times": [0, 2], "steps": [1, -1], "name": "Wind gust"}
+ROOM = {
+    "name": "room",
+    "system": {"type": "chain", "parts": ["fixed", {"rod": 1}, {"mass": 1, "name": "roof"}]},
+    "load": [GUST],
+    "output": {"until": 4, "force": [{"at": 0, "name": "Base shear"}]},
+}
+
+
+def test_a_load_is_called_by_its_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """In pictures, pages, headers, simulators and frequency responses; its key in sources and hashes stays."""
+    scene = Scene(**ROOM)
+    bare = scene.with_({"load": [{key: value for key, value in GUST.items() if key != "name"}]})
+    assert [load.name for load in load_histories(lower(scene))] == ["Wind gust"]
+    assert [load.name for load in load_histories(lower(bare))] == ["force at roof"]
+    assert lower(scene).loads == lower(bare).loads
+    assert "name" not in bare.model_dump()["load"][0]
+    assert Scene(**scene.model_dump()) == scene
+    page = tmp_path / "page.html"
+    wavesym.report(scene, page)
+    assert "Wind gust" in page.read_text(encoding="utf-8")
+    wavesym.generate(scene, tmp_path / "out")
+    assert "Wind gust: 1 roof:step at 0" in (tmp_path / "out" / "room.h").read_text()
+    seen = {each.name: each.about for each in variables(api.program(scene, Request.checked(target="fmu2")))}
+    assert seen["load@roof"].startswith("Wind gust, from the start of a step on")
+    assert seen["force@0"] == "Base shear: force at 0"
+    assert wavesym.frf(scene, [0.5], "Wind gust").load == wavesym.frf(scene, [0.5], "roof").load == "Wind gust"
+
+
+def test_names_are_in_what_is_written_out(tmp_path: Path) -> None:
+    """In numbers and in units; read back they are the same."""
+    storey = {"height": "3.5 m", "stiffness": "678 MN/m", "column_mass": "11 t", "floor_mass": "350 t"}
+    physical = Scene(
+        name="frame",
+        units={},
+        system={"type": "building", "base": "ground", "storey": [{**storey, "count": 2}]},
+        load=[{"times": ["0 s"], "a": ["1 m/s^2"], "name": "Earthquake \u00fc"}],
+        output={"until": "1 s", "force": [FORCE], "drift": [{"at": 2, "name": "Top drift"}]},
+    )
+    plain = Scene.from_toml("building_m2").with_({"load[0].name": "Earthquake \u00fc", "output.force": [FORCE]})
+    for scene in (physical, plain):
+        file = tmp_path / "explicit.toml"
+        file.write_text(explicit_text(scene), encoding="utf-8")
+        explicit = Scene.from_toml(str(file))
+        assert [load.label for load in explicit.load] == ["Earthquake \u00fc"]
+        assert [output.title for output in explicit.outputs] == [output.title for output in scene.outputs]
+    assert "Earthquake" in lower(physical).labels.load_names[0]
+    assert "Earthquake" not in lower(physical).labels.loads[0]
+
+
+@pytest.mark.parametrize("name", ["", " ", "a\nb", "*/ int x;", 3, "x" * 101])
+def test_what_is_no_name_of_a_load_gets_one_line(name: object) -> None:
+    with pytest.raises(SceneError, match=r"load\[0\]\.name: .* is not a name for people; write a line"):
+        Scene(**{**ROOM, "load": [{**GUST, "name": name}]})

@@ -6,13 +6,21 @@ from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
-from typing import ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from flint import fmpq
-from pydantic import Field, field_validator, model_validator
+from pydantic import (
+    Field,
+    PlainValidator,
+    SerializerFunctionWrapHandler,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 
 from wavesym.fields.numbers import Numbers, Positive
-from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.fields.table import SceneTable, shown, without_usual, wrong
+from wavesym.fields.titles import check_title
 from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import rational
 
@@ -20,7 +28,13 @@ _LONG = 440  # characters of a load that is written out
 
 
 class Load(SceneTable):
-    """A load of a scene."""
+    """A load of a scene; `name` is its name for people, if any."""
+
+    name: Annotated[str, PlainValidator(check_title)] = ""
+
+    @model_serializer(mode="wrap")
+    def _named(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return without_usual(handler(self), name="")
 
     @property
     @abstractmethod
@@ -28,9 +42,14 @@ class Load(SceneTable):
         """The unit loads that it is made of: a step, and a ramp."""
 
     @property
-    @abstractmethod
     def label(self) -> str:
-        """What it is, for people: "torque on disc 1"."""
+        """What it is, for people: its name, or else what it acts as."""
+        return self.name or self.action
+
+    @property
+    @abstractmethod
+    def action(self) -> str:
+        """What it acts as, for people: "torque on disc 1"."""
 
     @property
     def step(self) -> Fraction | None:

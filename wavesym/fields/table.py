@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Number
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 from pydantic import BaseModel, ConfigDict, ModelWrapValidatorHandler, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
@@ -54,6 +54,11 @@ def shown(value: object) -> str:
         case _:
             return f"a value of type {type(value).__name__}"
     return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+
+
+def without_usual(fields: dict[str, Any], **usual: object) -> dict[str, Any]:
+    """Fields of a table without those that are as usual: so scenes keep the hash that they have had."""
+    return {key: value for key, value in fields.items() if key not in usual or value != usual[key]}
 
 
 def wrong(what: str, *keys: str | int) -> PydanticCustomError:

@@ -24,7 +24,7 @@ from wavesym.numbers.reals import DOUBLE, Real
 @dataclass(frozen=True)
 class Labels:
     """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load,
-    `load_names` what each is, and `sources` what a unit load is one of.
+    `load_names` what each is, `sources` what a unit load is one of, and `titles` its name for people, if it has one.
 
     `sha256` is that of the scene, whatever way it was written. `notes` say how the scene was read where that may
     surprise. `size` is how many rods there are, `dimensions` what lengths and times count.
@@ -38,6 +38,7 @@ class Labels:
     dimensions: str = ""
     load_names: tuple[str, ...] = ()
     sources: Mapping[str, str] = field(default_factory=dict)
+    titles: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def type(self) -> str:

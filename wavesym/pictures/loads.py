@@ -66,6 +66,12 @@ def _power(unit: UnitLoad, point: Point) -> int:
 
 def _named(model: Model, point: Point, scale: Scale | None) -> tuple[str, str]:
     """What kind of quantity acts on a point, and what its scene calls that."""
+    kind, usual = _usual_name(model, point, scale)
+    titles = dict.fromkeys(title for unit in point.loads if (title := model.labels.titles.get(unit.source)))
+    return kind, " + ".join(titles) or usual
+
+
+def _usual_name(model: Model, point: Point, scale: Scale | None) -> tuple[str, str]:
     if model.labels.system["type"] == "building":
         return "acceleration", "acceleration of the base"
     if any(unit.number is not None for unit in point.loads):

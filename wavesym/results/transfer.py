@@ -55,18 +55,23 @@ def harmonic_load(model: Model, sources: tuple[str, ...], wanted: str | int | No
     Args:
         model: the chain.
         sources: what its loads are steps of, in the order of the scene.
-        wanted: its number from 0 on, its node or its source; None where there is one.
+        wanted: its number from 0 on, its name, its node or its source; None where there is one.
 
     Raises:
         WavesymError: where there is no load, more than one and none wanted, or none of that name.
     """
-    names = {source: source.partition(":")[0] if ":" in source else source for source in sources}
+    nodes = {source: source.partition(":")[0] for source in sources}
+    names = {source: model.labels.titles.get(source) or node for source, node in nodes.items()}
     known = ", ".join(f"{number} ({name})" for number, name in enumerate(names.values()))
     if not sources:
         raise WavesymError("load: there is none; a frequency response needs a [[load]] that says where it acts")
     if wanted is None and len(sources) > 1:
         raise WavesymError(f"--load: there are {len(sources)} loads; name one of {known}")
-    found = [s for number, s in enumerate(sources) if wanted is None or str(wanted) in (str(number), s, names[s])]
+    found = [
+        source
+        for number, source in enumerate(sources)
+        if wanted is None or str(wanted) in (str(number), source, nodes[source], names[source])
+    ]
     if len(found) != 1:
         hint = did_you_mean(str(wanted), names.values())
         raise WavesymError(f"--load: {wanted} is no load of this scene; it has {known}{hint and '. '}{hint}")

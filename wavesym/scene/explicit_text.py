@@ -16,6 +16,7 @@ from wavesym.scene.explicit_numbers import Dimensionless, InUnits, number_text
 from wavesym.scene.lowering import lower
 from wavesym.scene.scene import Scene
 from wavesym.systems.parts import ChainPart, MassPart, MotionPart, RodPart
+from wavesym.systems.place import Position
 
 
 def explicit_text(scene: Scene) -> str:
@@ -54,6 +55,8 @@ def _lines(scene: Scene) -> Iterator[str]:
     for load in scene.load:
         yield ""
         yield "[[load]]"
+        if load.name:
+            yield f"name = {_value(load.name)}"
         yield from _load(load, model.network, numbers)
     yield ""
     yield "[output]"
@@ -65,8 +68,8 @@ def _lines(scene: Scene) -> Iterator[str]:
                 raise UnservedError(
                     'output.relative: base = "force" has no foundation that moves; write base = "ground"'
                 )
-            places = [numbers.position(position) if quantity != "drift" else position.written for position in positions]
-            yield f"{quantity} = {json.dumps(places)}"
+            places = [position.written if quantity == "drift" else numbers.position(position) for position in positions]
+            yield f"{quantity} = {_listed(map(_place, places, positions))}"
 
 
 def _parts(parts: Sequence[ChainPart | str], numbers: Dimensionless) -> Iterator[str]:
@@ -111,11 +114,16 @@ def _load(load: Load, network: Network, numbers: Dimensionless) -> Iterator[str]
             yield f"{name} = {_listed(numbers.load(sums[time][k], k, moved) for time in times)}"
 
 
+def _place(written: str, position: Position) -> str:
+    """A place, with its name for people where it has one."""
+    return _value({"at": written, "name": position.title} if position.title else written)
+
+
 def _value(value: object) -> str:
     """Text, numbers, lists and tables as TOML."""
     if isinstance(value, Mapping):
         return _table({key: _value(each) for key, each in value.items()})
-    return json.dumps(value)
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _table(values: Mapping[str, str]) -> str:

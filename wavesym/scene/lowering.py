@@ -148,6 +148,7 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",
         load_names=load_names(scene),
         sources={source: load.label for load in scene.load for source in load.sources},
+        titles={source: load.name for load in scene.load if load.name for source in load.sources},
     )
 
 

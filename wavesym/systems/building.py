@@ -82,8 +82,8 @@ class OfBase(Load):
         return "a", "b"
 
     @property
-    def label(self) -> str:
-        """What it is, for people."""
+    def action(self) -> str:
+        """What it acts as, for people."""
         return "acceleration of the base"
 
 

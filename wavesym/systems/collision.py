@@ -28,7 +28,7 @@ from pydantic import (
 from wavesym.fields.loads import Load
 from wavesym.fields.measured import Area, Density, Length, Mass, Modulus, Velocity, tidy
 from wavesym.fields.numbers import Numbers, Positives
-from wavesym.fields.table import SceneTable, listed, shown, wrong
+from wavesym.fields.table import SceneTable, listed, shown, without_usual, wrong
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network, parted
@@ -111,9 +111,7 @@ class Collision(Preset):
 
     @model_serializer(mode="wrap")
     def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """What closed contacts are not said to be: so scenes keep the hash that they have had."""
-        said: dict[str, Any] = handler(self)
-        return {key: value for key, value in said.items() if (key, value) != ("contacts", "closed")}
+        return without_usual(handler(self), contacts="closed")
 
     @field_validator("velocity")
     @classmethod

@@ -21,7 +21,7 @@ from wavesym.fields.measured import Bore, Density, Inertia, Length, Modulus, Sec
 from wavesym.fields.numbers import Integer, Numbers, Positives
 from wavesym.fields.rounding import polar_moment
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.fields.table import SceneTable, listed, placed, shown, wrong
+from wavesym.fields.table import SceneTable, listed, placed, shown, without_usual, wrong
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
@@ -85,8 +85,8 @@ class OnBody(Load):
         return f"M{self.body}", f"R{self.body}"
 
     @property
-    def label(self) -> str:
-        """What it is, for people."""
+    def action(self) -> str:
+        """What it acts as, for people."""
         return f"torque on disc {self.body}"
 
 
@@ -98,9 +98,7 @@ class Moment(OnBody, TimedLoad):
 
     @model_serializer(mode="wrap")
     def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without ramps where there are none: so scenes keep the hash that they have had."""
-        said: dict[str, Any] = handler(self)
-        return {key: value for key, value in said.items() if key != "ramps" or self.ramps}
+        return without_usual(handler(self), name="", ramps=[])
 
 
 class SampledMoment(OnBody, SampledLoad):

@@ -38,8 +38,8 @@ class OnNode(Load):
         return f"{self.at}:step", f"{self.at}:ramp"
 
     @property
-    def label(self) -> str:
-        """What it is, for people."""
+    def action(self) -> str:
+        """What it acts as, for people."""
         return f"load at {self.at}"
 
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple, Self
 
-from wavesym.fields.numbers import LONGEST, exact, written
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.numbers import exact, written
+from wavesym.fields.table import wrong
+from wavesym.fields.titles import check_title
 
 
 class Position(NamedTuple):
@@ -23,10 +24,6 @@ class Position(NamedTuple):
     side: int
     name: str = ""
     title: str = ""
-
-
-_UNNAMED = ('"', "\\", "/*", "*/", "$")
-"""What names for people have none of, as they go into comments of programs and into pictures."""
 
 
 class PlaceInUnits(str):
@@ -54,12 +51,7 @@ def titled(value: Mapping[str, object]) -> tuple[object, str]:
     for key in ("at", "name"):
         if key not in value:
             raise wrong(f"missing; write {'a place' if key == 'at' else 'a name for people'}", key)
-    title = value["name"]
-    if not isinstance(title, str) or not title.strip() or len(title) > LONGEST or not title.isprintable():
-        raise wrong(f"{shown(title)} is not a name for people; write a line of at most {LONGEST} characters", "name")
-    if bad := next((each for each in _UNNAMED if each in title), ""):
-        raise wrong(f"{shown(title)} is not a name for people; write a line without {bad}", "name")
-    return value["at"], title
+    return value["at"], check_title(value["name"], "name")
 
 
 def position_of(value: object) -> Position:

@@ -55,7 +55,8 @@ class PhysicalScene:
     @property
     def loads(self) -> tuple[str, ...]:
         """A line for each load."""
-        return tuple(map(words, self.said.get("load", ())))
+        loads = self.said.get("load", ())
+        return tuple(words({key: value for key, value in load.items() if key != "name"}) for load in loads)
 
 
 def physical(fields: Mapping[str, Any]) -> PhysicalScene:

@@ -69,12 +69,12 @@ def _variables(program: Program) -> Iterator[Variable]:
     yield Variable("time", "independent", "continuous", "time" if seconds else "time in tau", unit=seconds)
     for source in program.sources:
         name, _, unit = source.partition(" [")
-        label = model.labels.sources.get(name) or f"load {name}"
+        label = model.labels.sources.get(name) or model.labels.sources[f"{name}:step"]
         about = f"{label}, from the start of a step on, or at its end where linear is true"
         yield Variable(f"load@{name}", "input", "continuous", about, "0.0", unit.removesuffix("]"))
     direct = program.direct or ((),) * len(program.outputs)
     for output, probe, of in zip(program.outputs, model.probes, direct, strict=True):
-        about = f"{probe.quantity} at {output.name.partition('@')[2]}"
+        about = f"{probe.title}{': ' if probe.title else ''}{probe.quantity} at {output.name.partition('@')[2]}"
         at_once = tuple(1 + j for j in of)
         yield Variable(output.name, "output", "continuous", about, unit=probe.unit, dependencies=at_once)
     if not stepped:
