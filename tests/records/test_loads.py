@@ -250,7 +250,7 @@ def test_a_path_counts_from_the_file_of_the_scene(tmp_path, monkeypatch, capsys)
         ("t,x\n1,1\n3,1\n", {}, r"load\[0\].record: a first sample after 0.5 steps, but the load comes from 0"),
         (TAU, {"column": "b"}, r"load\[0\].record: .*: line 1: no column called b; write the name of one \(a\)"),
         (TAU, {"column": 2}, r"load\[0\].column: 2 is not a name; write that of a column"),
-        (TAU, {"times": [0]}, r"load\[0\].times: unknown key; write column, spacing, start, scale or record"),
+        (TAU, {"times": [0]}, r"load\[0\].times: unknown key; write name, column, spacing, start, scale or record"),
     ],
 )
 def test_what_does_not_fit_is_refused_in_a_line(tmp_path, text, load, said):

@@ -68,7 +68,7 @@ MISTAKES = [
         "colour: unknown key; write name, units, system, load, output or report",
     ),
     (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key; write type, m, kappa, inertia or damping"),
-    (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key; write times, body, steps or ramps'),
+    (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key; write name, times, body, steps or ramps'),
     (DRIVE, "until", "untl", "output.untl: unknown key"),
     (DRIVE, 'name = "good"', "", "name: missing"),
     (DRIVE, "kappa = [1, 1]", "", "system.kappa: missing; write a list of m positive numbers"),
@@ -82,8 +82,8 @@ MISTAKES = [
     (BUILDING, "samples = [0, 0.1]", 'record = "?"', "load[1].record: "),
     (BUILDING, "samples = [0, 0.1]", 'record = "?"\ncolum = "a"', "load[1].colum: unknown key"),
     (BUILDING, 'spacing = "1/5"', "", "load[1].spacing: missing"),
-    (BUILDING, 'spacing = "1/5"', "times = [0]", "load[1].times: unknown key; write spacing or samples"),
-    (BUILDING, "times = [0,", "body = 1\ntimes = [0,", "load[0].body: unknown key; write times, a or b"),
+    (BUILDING, 'spacing = "1/5"', "times = [0]", "load[1].times: unknown key; write name, spacing or samples"),
+    (BUILDING, "times = [0,", "body = 1\ntimes = [0,", "load[0].body: unknown key; write name, times, a or b"),
     # the system
     (
         DRIVE,
