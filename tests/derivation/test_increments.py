@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Rational, Symbol, exp, expand
 
-from wavesym.derivation.increments import add, apply, combined, integrated, solve, start
+from wavesym.derivation.increments import add, apply, combine, integrate, solve, start
 from wavesym.derivation.rules import DERIVATIVE, Linear, Weights
 
 W = Symbol("w")
@@ -47,18 +47,18 @@ def test_solve_solves_and_starts_right(right, rate, jump):
     difference: dict = {}
     apply(weights(ONE, rate), found, difference)
     add(difference, right, fmpq(-1))
-    assert combined([(ONE, difference)]) == {}
+    assert combine([(ONE, difference)]) == {}
     assert start(found) == jump
 
 
 @given(increments)
 def test_integral_starts_at_zero_and_differentiates_back(increment):
-    whole = integrated(increment)
+    whole = integrate(increment)
     assert start(whole) == 0
     difference: dict = {}
     apply(DERIVATIVE, whole, difference)
     add(difference, increment, fmpq(-1))
-    assert combined([(ONE, difference)]) == {}
+    assert combine([(ONE, difference)]) == {}
 
 
 def test_solve_without_derivative_divides():

@@ -8,7 +8,7 @@ from graphlib import TopologicalSorter
 import pytest
 from flint import fmpq
 
-from wavesym.derivation.increments import integrated
+from wavesym.derivation.increments import integrate
 from wavesym.derivation.numbers import expression, number, symbol
 from wavesym.derivation.recurrence import RATE
 from wavesym.derivation.table import full_table
@@ -211,7 +211,7 @@ def test_the_integral_is_the_one_of_the_evaluators(name):
     for line in run.lines[name.upper(), 1]:
         run.line((name.upper(), 1), line, 1, "")
     found = {key[3:]: value for key, value in run.table.items() if key[0] == name.upper() and value != 0}
-    true = integrated(increment)
+    true = integrate(increment)
     assert found == {(rate, k): value for rate, powers in true.items() for k, value in enumerate(powers) if value != 0}
 
 

@@ -18,7 +18,7 @@ from tests.exact.test_chain_truth import STEPPED
 from tests.support.chains import chains
 from tests.support.drawn import scenes
 from tests.support.laplace import Laplace, Ratio
-from wavesym.derivation.increments import Increment, combined
+from wavesym.derivation.increments import Increment, combine
 from wavesym.derivation.table import Function, full_table
 from wavesym.documents.named_table import named_table
 from wavesym.errors import CostError, UnservedError
@@ -109,7 +109,7 @@ def test_a_named_system_that_is_written_out_has_the_same_table(name: str, tmp_pa
                 if power < len(coefficients) and coefficients[power] != 0:
                     for tau, increment in written[name_][function]:
                         parts.setdefault(tau, []).append((coefficients[power], increment))
-            total = {tau: combined(part) for tau, part in parts.items()}
+            total = {tau: combine(part) for tau, part in parts.items()}
             assert {tau: each for tau, each in total.items() if each} == dict(increments)
     assert seen
     assert signals(model) == signals(explicit)

@@ -27,7 +27,7 @@ from wavesym.results import sampled, statistics, summary
 from wavesym.results.peaks import case_names
 from wavesym.results.rows import SAMPLES, own_samples
 from wavesym.results.sampled import sampled_extremes
-from wavesym.results.summary import summarised
+from wavesym.results.summary import summarise
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import sample_comb
 
@@ -63,7 +63,7 @@ def test_json_is_what_text_is(capsys):
 
 def test_a_clock_tells_time():
     model = lower(Scene.from_toml("drive_m1"))
-    plain, timed = summarised(model), summarised(replace(model, clock=Clock(fmpq(1, 250), fmpq(4), "ms")))
+    plain, timed = summarise(model), summarise(replace(model, clock=Clock(fmpq(1, 250), fmpq(4), "ms")))
     assert timed.time_unit == "ms"
     for before, after in zip(plain.outputs, timed.outputs, strict=True):
         assert after.max.at == (before.max.at.tau, 4 * before.max.at.tau)
@@ -238,11 +238,11 @@ def storey(period):
 def test_published_peaks_of_one_storey(period, sampled, true):
     """Chopra's 2.674 and 7.465 in are those at the samples of the record; higher ones lie between."""
     scene, model = storey(period)
-    found = summarised(model)
+    found = summarise(model)
     assert not found.proved
     assert found.outputs[0].unit == "inch"
     assert abs(found.outputs[0].largest.value) == pytest.approx(true * MORE, abs=1e-5)
-    at = summarised(model, own_samples(model, sample_comb(scene)))
+    at = summarise(model, own_samples(model, sample_comb(scene)))
     assert abs(at.outputs[0].largest.value) == pytest.approx(sampled * MORE, abs=1e-5)
     assert at.how == "the values of modes at 1560 samples"
 

@@ -16,7 +16,7 @@ from wavesym.mechanics.network import Network, Point
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
 from wavesym.systems import SYSTEMS
-from wavesym.systems.drawing import drawn
+from wavesym.systems.drawing import draw_parts
 
 
 def written(scene: Scene, tmp_path) -> Scene:
@@ -55,7 +55,7 @@ def others() -> list[Scene]:
 def test_parts_of_a_preset_are_the_network_of_its_nodes(system) -> None:
     """Parts are drawn as those of any chain, nodes are the paper's: two ways to the same masses and impedances."""
     preset = SYSTEMS[system["type"]].model_validate(system)
-    assert bare(drawn(preset.parts, ()).network({})) == bare(preset.network(()))
+    assert bare(draw_parts(preset.parts, ()).network({})) == bare(preset.network(()))
 
 
 BUILT_IN = [pytest.param(scene, marks=pytest.mark.slow) for scene in map(Scene.from_toml, NAMED)]

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
 from wavesym.fields.numbers import exact
-from wavesym.fields.table import Written, shown
+from wavesym.fields.table import WrittenDecimal, show
 
 
 def from_toml(text: str) -> object:
-    return tomllib.loads(f"x = {text}", parse_float=Written)["x"]
+    return tomllib.loads(f"x = {text}", parse_float=WrittenDecimal)["x"]
 
 
 @given(st.decimals(allow_nan=False, allow_infinity=False, min_value=-(10**20), max_value=10**20, places=30))
@@ -63,16 +63,16 @@ def test_python_numbers() -> None:
 @pytest.mark.parametrize(
     ("value", "expected"),
     [
-        (Written("nan"), "is not a number"),
-        (Written("-inf"), "is not a number"),
+        (WrittenDecimal("nan"), "is not a number"),
+        (WrittenDecimal("-inf"), "is not a number"),
         (float("nan"), "is not a number"),
         (float("inf"), "is not a number"),
         (Decimal("sNaN"), "is not a number"),
-        (Written("1e400"), "an exponent from -300 to 300"),
-        (Written("1e-400"), "an exponent from -300 to 300"),
+        (WrittenDecimal("1e400"), "an exponent from -300 to 300"),
+        (WrittenDecimal("1e-400"), "an exponent from -300 to 300"),
         ("1e999999999", "an exponent from -300 to 300"),
-        (Written("99e300"), "a size from 1e-300 to 1e300"),
-        (Written("0.01e-300"), "a size from 1e-300 to 1e300"),
+        (WrittenDecimal("99e300"), "a size from 1e-300 to 1e300"),
+        (WrittenDecimal("0.01e-300"), "a size from 1e-300 to 1e300"),
         (5e-324, "an exponent from -300 to 300"),
         (10**400, "a size from 1e-300 to 1e300"),
         (10**4000, "a number of about 4000 digits has too many digits"),
@@ -127,5 +127,5 @@ def test_text_is_a_fraction_or_refused(text: str) -> None:
 @settings(max_examples=40)
 @given(st.recursive(st.none() | st.integers() | st.text() | st.floats(), st.lists))
 def test_any_value_can_be_shown_on_a_line(value: object) -> None:
-    assert shown(value).isprintable()
-    assert len(shown(value)) < 80
+    assert show(value).isprintable()
+    assert len(show(value)) < 80

@@ -15,7 +15,7 @@ pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
 from wavesym.errors import WavesymError
 from wavesym.results.response import Response
-from wavesym.results.summary import Summary, summarised
+from wavesym.results.summary import Summary, summarise
 from wavesym.scene import lower
 from wavesym.sweeps.batches import batches
 from wavesym.sweeps.kinds import kind
@@ -73,7 +73,7 @@ def computed(made: SweepPlan) -> list[tuple[tuple[int, ...], dict[str, Any], str
 
 def assert_alike(made: SweepPlan, place: tuple[int, ...], found: dict[str, Any]) -> None:
     try:
-        alone: Summary = summarised(lower(made.scene(place)))
+        alone: Summary = summarise(lower(made.scene(place)))
     except WavesymError:
         assert np.isnan(found["max"]).all()
         return
@@ -237,7 +237,7 @@ def test_histories_of_records_are_those_of_each_alone(tmp_path: Path, start: str
         except WavesymError:  # a jump
             assert np.isnan(found["history"]).all()
             continue
-        largest = np.abs([[each.min.value, each.max.value] for each in summarised(model).outputs]).max(axis=1)
+        largest = np.abs([[each.min.value, each.max.value] for each in summarise(model).outputs]).max(axis=1)
         both = (alone.error_bound + found["bound"]) * largest[:, None]
         assert np.all(np.abs(found["history"] - true) <= both), place
         assert np.abs(np.diff(true)).max() > 100 * both.max() or not true.any()

@@ -186,7 +186,7 @@ def test_without_any_compiler_it_says_so(monkeypatch, tmp_path):
 def test_the_hosts_own_compiler_is_said_in_one_line(tmp_path):
     """Times in the file are fixed; a file of somebody else is not replaced."""
     path = made(GEARED, tmp_path, "fmu3")
-    (binaries, reason) = fmu.notes(path)
+    (binaries, reason) = fmu.describe_fmu(path)
     own = fmu._host().fmi3
     assert binaries == f"binaries for {own}; pip install ziglang helps to have linux64, aarch64 and win64"
     assert reason.startswith("march as a stream")

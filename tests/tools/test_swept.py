@@ -9,7 +9,7 @@ pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
 from tools.bench import many_sets, swept
 from tools.bench.by_hand import SampleGrid, line, peaks_in_c, peaks_in_numpy
-from wavesym.results.summary import summarised
+from wavesym.results.summary import summarise
 from wavesym.scene import lower
 
 DRIVE = swept.drive()
@@ -35,7 +35,7 @@ def test_what_a_batch_costs_and_what_memory_is_measured(monkeypatch: pytest.Monk
 def test_programs_by_hand_find_the_peaks_that_the_exact_response_has() -> None:
     """In C and in NumPy alike; with twice the steps about eight times better, as a parabola's top is."""
     scenes = many_sets.varied(DRIVE, 4)
-    true = np.array([[(o.min.value, o.max.value) for o in summarised(lower(each)).outputs] for each in scenes])
+    true = np.array([[(o.min.value, o.max.value) for o in summarise(lower(each)).outputs] for each in scenes])
     kappa = np.array([many_sets.kappa_of(each) for each in scenes])
     assert many_sets._worst(many_sets.best_known(DRIVE, kappa), true) < 1e-11
     problems = [line(lower(each)) for each in scenes]

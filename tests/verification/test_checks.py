@@ -14,7 +14,7 @@ from flint import fmpq
 
 from tests.support.physical_time import differences
 from wavesym.derivation import table as tables
-from wavesym.derivation.increments import combined
+from wavesym.derivation.increments import combine
 from wavesym.derivation.table import Function, full_table
 from wavesym.errors import ToleranceError
 from wavesym.exact import reference
@@ -211,7 +211,7 @@ def test_a_wrong_law_of_joints_is_seen_by_all_that_is_not_derived(scene, monkeyp
 
     def wrong(self, *arrived):
         moved = right(self, *arrived)
-        return {point: combined([(1 + fmpq(1, 100000), velocity)]) for point, velocity in moved.items()}
+        return {point: combine([(1 + fmpq(1, 100000), velocity)]) for point, velocity in moved.items()}
 
     monkeypatch.setattr(RuledNetwork, "_velocities", wrong)
     truth = known_outputs(lower(scene))

@@ -8,8 +8,8 @@ from wavesym.cli import main
 from wavesym.derivation import table as tables
 from wavesym.derivation.delay import delay_equations
 from wavesym.systems.drive import DRIVE
-from wavesym.verification import derived as module
-from wavesym.verification.derived import derived
+from wavesym.verification import derivation_report as module
+from wavesym.verification.derived import derivation_report
 
 THEOREMS = (
     "The delay equations are the node law, for all i and m.",
@@ -50,7 +50,7 @@ def test_all_holds(capsys):
 
 
 def test_arguments_say_what_was_gone_through():
-    text, passed = derived(only_the_drive)
+    text, passed = derivation_report(only_the_drive)
     assert passed
     law, solved, powers, *_ = (" ".join(" ".join(lines).split()) for lines in sections(text).values())
     assert "f_1: s + kappa_1 and 1" in law
@@ -67,7 +67,7 @@ def test_an_argument_follows_what_is_proved(monkeypatch):
     family = module.FAMILIES["drive"][0]
     rows = tuple(replace(row, budget=row.budget - 6) for row in family.rows)
     monkeypatch.setitem(module.FAMILIES, "drive", (replace(family, rows=rows),))
-    text, _ = derived(only_the_drive)
+    text, _ = derivation_report(only_the_drive)
     assert "floor((n - |i - l| - |l - s| - 7)/2)" in " ".join(text.split())
 
 
@@ -76,7 +76,7 @@ def test_a_power_too_low_fails(monkeypatch):
     family = module.FAMILIES["drive"][0]
     rows = tuple(replace(row, budget=row.budget - 2) for row in family.rows[:1])
     monkeypatch.setitem(module.FAMILIES, "drive", (replace(family, rows=rows + family.rows[1:]),))
-    text, passed = derived(only_the_drive)
+    text, passed = derivation_report(only_the_drive)
     assert not passed
     assert failed(text) == {THEOREMS[2]}
     assert "is not at least 0" in text
@@ -88,7 +88,7 @@ def test_a_wrong_equation_fails(monkeypatch):
         return (replace(first, right=first.right.scaled(2)), *others)
 
     monkeypatch.setattr(module, "delay_equations", wrong)
-    text, passed = derived(only_the_drive)
+    text, passed = derivation_report(only_the_drive)
     assert not passed
     assert set(THEOREMS[:2]) <= failed(text)
     assert "Not so: the equation of f of rod 1 leaves" in text
@@ -97,7 +97,7 @@ def test_a_wrong_equation_fails(monkeypatch):
 def test_wrong_tables_fail_by_every_route_that_can_see_them(monkeypatch):
     right = tables.solve
     monkeypatch.setattr(tables, "solve", lambda own, right_side, jump: right(own, right_side, jump + 1))
-    text, passed = derived(only_the_drive)
+    text, passed = derivation_report(only_the_drive)
     assert not passed
     assert failed(text) == set(THEOREMS[3:])
 

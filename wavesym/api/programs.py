@@ -233,6 +233,6 @@ def scene_notes(scene: Scene) -> list[str]:
 
 def fmu_notes(path: Path) -> list[str]:
     """What to know of an FMU that was made."""
-    from wavesym.running.fmu import notes
+    from wavesym.running.fmu import describe_fmu
 
-    return notes(path)
+    return describe_fmu(path)

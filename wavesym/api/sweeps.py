@@ -40,11 +40,11 @@ def sweep(
     >>> wavesym.sweep(request, "stiffnesses")["max"].dims
     ('output.until', 'system.kappa[0]', 'output')
     """
-    from wavesym.sweeps.store import needed, opened
+    from wavesym.sweeps.store import open_dataset, require_packages
 
-    needed("xarray", "zarr")
+    require_packages("xarray", "zarr")
     run_sweep(source, folder, workers, scheduler, retry_failed)
-    return opened(folder)
+    return open_dataset(folder)
 
 
 def run_sweep(

@@ -94,11 +94,11 @@ def run_csv(
     """
     from wavesym.results.response import Response
     from wavesym.results.rows import csv_lines
-    from wavesym.results.unexpected import event_lines, outside, unexpected
+    from wavesym.results.unexpected import event_lines, outside_lines, warning_lines
 
     model = lower(scene)
     response = Response(model)
-    for line in (*outside(model, at or ()), *unexpected(model), *event_lines(response)):
+    for line in (*outside_lines(model, at or ()), *warning_lines(model), *event_lines(response)):
         tell(line)
     lines = csv_lines(response, samples, at)
     if made := response.program:
@@ -131,11 +131,11 @@ def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
     strain@0: 1.20241 at 6.46788, from 0.0 on
     """
     from wavesym.results.rows import own_samples
-    from wavesym.results.summary import summarised
+    from wavesym.results.summary import summarise
     from wavesym.scene.lowering import drifts, sample_comb
 
     model = lower(scene)
-    return summarised(model, own_samples(model, sample_comb(scene)) if at_samples else None, drifts(scene))
+    return summarise(model, own_samples(model, sample_comb(scene)) if at_samples else None, drifts(scene))
 
 
 def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Peaks:
@@ -194,14 +194,15 @@ def spectrum(scene: Scene, damping: float = 0.05) -> Spectra:
 
 def spectrum_notes(scene: Scene, found: Spectra) -> list[str]:
     """What to know of response spectra: what `unexpected_lines` has, and how far the steps of their values matter."""
-    from wavesym.results.stepping import apart
+    from wavesym.results.stepping import describe_step
 
-    steps = f"damping {found.damping:g}, values {apart(lower(scene), found.step)}; with half as many spectra change by"
-    return [*unexpected_lines(scene), f"{steps} {found.change:.1e}"]
+    damping, step = f"damping {found.damping:g}", describe_step(lower(scene), found.step)
+    change = f"with half as many spectra change by {found.change:.1e}"
+    return [*unexpected_lines(scene), f"{damping}, values {step}; {change}"]
 
 
 def unexpected_lines(scene: Scene) -> list[str]:
     """What a user might not expect: how the scene was read, no load, contacts that open early enough to matter."""
-    from wavesym.results.unexpected import unexpected
+    from wavesym.results.unexpected import warning_lines
 
-    return unexpected(lower(scene))
+    return warning_lines(lower(scene))

@@ -58,9 +58,9 @@ def verify_derivation(watch: Callable[[list[System]], Iterable[System]] = iter) 
 
     `watch` goes through the systems as they are proved.
     """
-    from wavesym.verification.derived import derived
+    from wavesym.verification.derived import derivation_report
 
-    return derived(watch)
+    return derivation_report(watch)
 
 
 def verify_published(
@@ -85,9 +85,9 @@ def verify_published(
     Raises:
         WavesymError: for a name that the paper does not have, and a verdict that there is not.
     """
-    from wavesym.papers.published import published
+    from wavesym.papers.published import published_report
 
-    return published(names, format, reproduce, watch, only)
+    return published_report(names, format, reproduce, watch, only)
 
 
 def advise(scene: Scene, tolerance: float = 0.01) -> Advice:

@@ -193,7 +193,7 @@ def put(text: str | Iterable[str]) -> None:
 
 def decimals(path: Path) -> list[float]:
     """The numbers in a file, each as a double; SceneError names the first line that holds something else."""
-    from wavesym.fields.table import shown
+    from wavesym.fields.table import show
     from wavesym.reading import read_text
 
     file, text = read_text(path, "a file with one decimal a line")
@@ -201,6 +201,6 @@ def decimals(path: Path) -> list[float]:
     for count, line in enumerate(text.split("\n"), 1):
         if written := line.partition("#")[0].strip():
             if not _DECIMAL.fullmatch(written) or not math.isfinite(float(written)):
-                raise SceneError(f"{shown(written)} is not a number; write one such as 0.25", f"line {count}", file)
+                raise SceneError(f"{show(written)} is not a number; write one such as 0.25", f"line {count}", file)
             numbers.append(float(written))
     return numbers

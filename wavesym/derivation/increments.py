@@ -87,12 +87,12 @@ def trimmed(increment: Increment) -> Increment:
     return result
 
 
-def integrated(increment: Increment) -> Increment:
+def integrate(increment: Increment) -> Increment:
     """The integral from w = 0: the rule with D alone on the left."""
     return solve(DERIVATIVE, increment, _ZERO)
 
 
-def differentiated(increment: Increment) -> Increment:
+def differentiate(increment: Increment) -> Increment:
     """The derivative, of an increment that does not jump: (k + 1) F[g,k+1] - g F[g,k]."""
     return trimmed(
         {
@@ -105,7 +105,7 @@ def differentiated(increment: Increment) -> Increment:
     )
 
 
-def combined(parts: Iterable[tuple[fmpq, Increment]]) -> Increment:
+def combine(parts: Iterable[tuple[fmpq, Increment]]) -> Increment:
     """A sum of increments that start together, each with its factor."""
     total: Increment = {}
     for factor, part in parts:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from wavesym.derivation.increments import Increment, add, integrated, trimmed
+from wavesym.derivation.increments import Increment, add, integrate, trimmed
 from wavesym.derivation.increments import start as begin
 from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.documents.latex_number import latex_number
@@ -264,7 +264,7 @@ def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmp
     for time in sorted(gains):
         total: Increment = {}
         for weight, increment, integral in gains[time]:
-            add(total, integrated(increment) if integral else increment, weight)
+            add(total, integrate(increment) if integral else increment, weight)
         whole = trimmed(total)
         if whole and not (time == model.until and begin(whole) == 0):
             made.append(Gain(time, whole))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from wavesym.errors import SceneError, WavesymError, printable
 from wavesym.fields.numbers import decimal_text
-from wavesym.fields.table import shown
+from wavesym.fields.table import show
 from wavesym.records.read import read_record
 from wavesym.records.record_file import RecordFile
 
@@ -79,7 +79,7 @@ def record_lines(path: Path, unit: str | None, column: str | None = None) -> tup
         WavesymError: for what is no unit.
     """
     if unit is not None and not _UNIT.fullmatch(unit):
-        raise WavesymError(f"--unit: {shown(unit)} is not a unit; write one such as g or m/s^2")
+        raise WavesymError(f"--unit: {show(unit)} is not a unit; write one such as g or m/s^2")
     found = read_record(path, column)
     if unit is not None and found.unit not in ("", unit):
         raise SceneError(f"--unit {unit} is not that of the file; write {found.unit}, or none", file=found.file)

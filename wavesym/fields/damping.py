@@ -10,7 +10,7 @@ from pydantic import PlainSerializer, PlainValidator
 
 from wavesym.errors import did_you_mean
 from wavesym.fields.numbers import decimal_text, exact, percentage
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import refusal, show
 from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import fraction, rational
 
@@ -32,18 +32,18 @@ def damping_ratio(value: object, *at: str | int) -> Fraction:
         The ratio, exact.
 
     Raises:
-        PydanticCustomError: that of `table.wrong`, for what is no ratio, negative, or above 1 without a percent sign.
+        PydanticCustomError: that of `table.refusal`, for what is no ratio, negative, or above 1 without a percent sign.
     """
     percent = percentage(value)
     number = exact(value) if percent is None else percent
     if number < 0:
-        raise wrong(f"{shown(value)} is negative; write a ratio of 0 or more", *at)
+        raise refusal(f"{show(value)} is negative; write a ratio of 0 or more", *at)
     if number > _LARGEST:
-        raise wrong(f"{shown(value)} is too large a ratio; write {_LARGEST} or less", *at)
+        raise refusal(f"{show(value)} is too large a ratio; write {_LARGEST} or less", *at)
     if number > 1 and percent is None:
         written = _percent_text(number / 100), _percent_text(number)
-        what = f'{shown(value)} is above critical damping; write "{written[0]}" or "{written[1]}", whichever is meant'
-        raise wrong(what, *at)
+        what = f'{show(value)} is above critical damping; write "{written[0]}" or "{written[1]}", whichever is meant'
+        raise refusal(what, *at)
     return number
 
 
@@ -58,7 +58,7 @@ def _damping(value: object) -> Damping | None:
         return _rayleigh(value)
     if isinstance(value, Sequence) and not isinstance(value, str):
         if not 0 < len(value) <= _MOST:
-            raise wrong(f"{len(value)} ratios; write 1 to {_MOST} of them")
+            raise refusal(f"{len(value)} ratios; write 1 to {_MOST} of them")
         return Damping(tuple(rational(damping_ratio(each, k)) for k, each in enumerate(value)))
     return Damping((rational(damping_ratio(value)),))
 
@@ -67,20 +67,20 @@ def _rayleigh(table: Mapping[Any, object]) -> Damping:
     for key in table:
         if key not in _KEYS:
             meant = did_you_mean(str(key)[:40], _KEYS)
-            raise wrong(f"unknown key; write modes or ratio{meant and f'. {meant}'}", str(key))
+            raise refusal(f"unknown key; write modes or ratio{meant and f'. {meant}'}", str(key))
     for key in _KEYS:
         if key not in table:
             form = "the numbers of two modes" if key == "modes" else "a ratio"
-            raise wrong(f"missing; write {form}", key)
+            raise refusal(f"missing; write {form}", key)
     modes = table["modes"]
     if not isinstance(modes, Sequence) or isinstance(modes, str) or len(modes) != 2:
-        raise wrong(f"{shown(modes)} is not a list of two modes; write [1, 3]", "modes")
+        raise refusal(f"{show(modes)} is not a list of two modes; write [1, 3]", "modes")
     for k, number in enumerate(modes):
         if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= _MOST:
-            raise wrong(f"{shown(number)} is not the number of a mode; write an integer from 1 to {_MOST}", "modes", k)
+            raise refusal(f"{show(number)} is not the number of a mode; write an integer from 1 to {_MOST}", "modes", k)
     first, second = sorted(modes)
     if first == second:
-        raise wrong(f"{first} stands twice; write two modes such as [1, 3]", "modes")
+        raise refusal(f"{first} stands twice; write two modes such as [1, 3]", "modes")
     return Damping((rational(damping_ratio(table["ratio"], "ratio")),), (first, second))
 
 

@@ -57,7 +57,7 @@ def fits(powers: Mapping[str, int], dimension: Dimension) -> bool:
     return angle in (0, -1) if dimension.angle is None else angle == dimension.angle
 
 
-def called(powers: Mapping[str, int]) -> str:
+def dimension_name(powers: Mapping[str, int]) -> str:
     """What has these powers, as a message names it: "a force", or its units."""
     for name, dimension in DIMENSIONS.items():
         if fits(powers, dimension):

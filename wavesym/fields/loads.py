@@ -19,7 +19,7 @@ from pydantic import (
 )
 
 from wavesym.fields.numbers import Numbers, Positive
-from wavesym.fields.table import SceneTable, shown, without_usual, wrong
+from wavesym.fields.table import SceneTable, refusal, show, without_usual
 from wavesym.fields.titles import check_title
 from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import rational
@@ -87,11 +87,12 @@ class TimedLoad(Load):
     @classmethod
     def _increasing(cls, times: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         if times and times[0] < 0:
-            raise wrong(f"{shown(times[0])} is before the start; write a time of 0 or later", 0)
+            raise refusal(f"{show(times[0])} is before the start; write a time of 0 or later", 0)
         for k, (before, time) in enumerate(pairwise(times), 1):
             if time <= before:
-                raise wrong(
-                    f"{shown(time)} is not later than the {shown(before)} before it; write times in rising order", k
+                raise refusal(
+                    f"{show(time)} is not later than the {show(before)} before it; write times in rising order",
+                    k,
                 )
         return times
 
@@ -99,11 +100,11 @@ class TimedLoad(Load):
     def _one_a_time(self) -> Self:
         for name, numbers in zip(self.lists, self._numbers, strict=True):
             if numbers and len(numbers) != len(self.times):
-                raise wrong(
+                raise refusal(
                     f"{len(numbers)} numbers for {len(self.times)} times; write {len(self.times)}, one for each", name
                 )
         if self.times and not any(self._numbers):
-            raise wrong(f"no numbers; write {' or '.join(self.lists)}")
+            raise refusal(f"no numbers; write {' or '.join(self.lists)}")
         return self
 
     @property
@@ -144,7 +145,7 @@ class SampledLoad(Load):
     @classmethod
     def _some(cls, samples: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         if not samples:
-            raise wrong("no numbers; write at least 1")
+            raise refusal("no numbers; write at least 1")
         return samples
 
     @property

@@ -10,7 +10,7 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, FailFast, PlainSerializer, PlainValidator
 
-from wavesym.fields.table import Written, listed, shown, wrong
+from wavesym.fields.table import WrittenDecimal, as_list, refusal, show
 
 # Short and of moderate size, so that no scene can make a number that takes long, or that is infinite or 0 as a double.
 LONGEST = 100
@@ -26,13 +26,13 @@ _DECIMAL = re.compile(r"([+-]?[0-9]+)(?:\.([0-9]+))?(?:[eE]([+-]?[0-9]+))?")
 _RATIO = re.compile(r"([+-]?[0-9]+)/([0-9]+)")
 
 
-def written(value: object) -> str | None:
+def number_text(value: object) -> str | None:
     """The text of a number that is given as text or as a floating-point number; None of anything else.
 
     A float stands for the shortest decimal that reads back to it.
     """
     match value:
-        case Written():
+        case WrittenDecimal():
             return value.replace("_", "")  # TOML has checked where they stand
         case str():
             return value
@@ -46,20 +46,20 @@ def written(value: object) -> str | None:
 def exact(value: object) -> Fraction:
     """A number: an integer, a decimal or a ratio `"p/q"` as TOML, text, or a Python number.
 
-    Raises (as does every validator here) the error of `table.wrong`.
+    Raises (as does every validator here) the error of `table.refusal`.
     """
     if type(value) is Fraction and max(n.bit_length() for n in value.as_integer_ratio()) <= _MODERATE_BITS:
         return value  # as the many samples of a record are
-    text = written(value)
+    text = number_text(value)
     if text is not None:
         number = _parsed(text, value)
     elif isinstance(value, Rational) and not isinstance(value, bool):
         number = _fraction(value)
     else:
-        raise wrong(f'{shown(value)} is not a number; write an integer, a decimal or "p/q"')
+        raise refusal(f'{show(value)} is not a number; write an integer, a decimal or "p/q"')
     if number and not _SMALLEST <= abs(number) <= _LARGEST:
-        raise wrong(
-            f"{shown(value)} is too large or too small; write 0 or a size from 1e-{LARGEST_EXPONENT} to "
+        raise refusal(
+            f"{show(value)} is too large or too small; write 0 or a size from 1e-{LARGEST_EXPONENT} to "
             f"1e{LARGEST_EXPONENT}"
         )
     return number
@@ -67,7 +67,7 @@ def exact(value: object) -> Fraction:
 
 def percentage(value: object) -> Fraction | None:
     """The ratio that text such as "5 %" writes, 1/20 here; None of anything else. Raises as `exact` does."""
-    if not isinstance(value, str) or isinstance(value, Written) or not value.endswith("%"):
+    if not isinstance(value, str) or isinstance(value, WrittenDecimal) or not value.endswith("%"):
         return None
     return _parsed(value[:-1].removesuffix(" "), value) / 100
 
@@ -75,8 +75,8 @@ def percentage(value: object) -> Fraction | None:
 def _fraction(value: Rational) -> Fraction:
     number = Fraction(int(value.numerator), int(value.denominator))  # of NumPy's integers too
     if max(number.numerator.bit_length(), number.denominator.bit_length()) > _MOST_BITS:
-        raise wrong(
-            f"{shown(number)} has too many digits; write at most {_MOST_BITS} bits in numerator and denominator"
+        raise refusal(
+            f"{show(number)} has too many digits; write at most {_MOST_BITS} bits in numerator and denominator"
         )
     return number
 
@@ -84,21 +84,21 @@ def _fraction(value: Rational) -> Fraction:
 def _parsed(text: str, value: object) -> Fraction:
     """The number that `text` writes; `value` is what the message shows where it writes none."""
     if len(text) > LONGEST:  # before anything is done with it
-        raise wrong(f"{shown(value)} is too long; write a number of at most {LONGEST} characters")
+        raise refusal(f"{show(value)} is too long; write a number of at most {LONGEST} characters")
     if ratio := _RATIO.fullmatch(text):
         above, below = int(ratio[1]), int(ratio[2])
         if not below:
-            raise wrong(f"{shown(value)} divides by 0; write another denominator")
+            raise refusal(f"{show(value)} divides by 0; write another denominator")
         return Fraction(above, below)
     if decimal := _DECIMAL.fullmatch(text):
         whole, digits, exponent = decimal[1], decimal[2] or "", int(decimal[3] or 0)
         if abs(exponent) > LARGEST_EXPONENT:  # before ten is raised to it
-            raise wrong(
-                f"{shown(value)} is too large or too small; write an exponent from -{LARGEST_EXPONENT} to "
+            raise refusal(
+                f"{show(value)} is too large or too small; write an exponent from -{LARGEST_EXPONENT} to "
                 f"{LARGEST_EXPONENT}"
             )
         return int(whole + digits) * Fraction(10) ** (exponent - len(digits))
-    raise wrong(f'{shown(value)} is not a number; write an integer, a decimal or "p/q"')
+    raise refusal(f'{show(value)} is not a number; write an integer, a decimal or "p/q"')
 
 
 def decimal_text(value: Fraction) -> str:
@@ -114,13 +114,13 @@ def decimal_text(value: Fraction) -> str:
 def _positive(value: object) -> Fraction:
     number = exact(value)
     if number <= 0:
-        raise wrong(f"{shown(value)} is not positive; write a number above 0")
+        raise refusal(f"{show(value)} is not positive; write a number above 0")
     return number
 
 
 def _integer(value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral):
-        raise wrong(f"{shown(value)} is not an integer; write one without point or quotes, such as 2")
+        raise refusal(f"{show(value)} is not an integer; write one without point or quotes, such as 2")
     return int(value)
 
 
@@ -129,5 +129,5 @@ Exact = Annotated[Fraction, PlainValidator(exact), PlainSerializer(str, return_t
 Positive = Annotated[Fraction, PlainValidator(_positive), PlainSerializer(str, return_type=str)]
 Integer = Annotated[int, PlainValidator(_integer)]
 # The first number that is wrong ends the reading of a list, however long.
-Numbers = Annotated[tuple[Exact, ...], FailFast(), BeforeValidator(listed)]
-Positives = Annotated[tuple[Positive, ...], FailFast(), BeforeValidator(listed)]
+Numbers = Annotated[tuple[Exact, ...], FailFast(), BeforeValidator(as_list)]
+Positives = Annotated[tuple[Positive, ...], FailFast(), BeforeValidator(as_list)]

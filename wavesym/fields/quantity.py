@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pydantic_core import PydanticCustomError
 
 from wavesym.errors import did_you_mean
-from wavesym.fields.dimensions import DIMENSIONS, called, fits, with_article
+from wavesym.fields.dimensions import DIMENSIONS, dimension_name, fits, with_article
 from wavesym.fields.numbers import LARGEST_EXPONENT, LONGEST, exact
-from wavesym.fields.table import Written, shown, wrong
+from wavesym.fields.table import WrittenDecimal, refusal, show
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -45,27 +45,27 @@ class _Meaning(NamedTuple):
     powers: Mapping[str, int]
 
 
-def quantity(value: object, dimension: str) -> Fraction:
+def si_value(value: object, dimension: str) -> Fraction:
     """A number with a unit, such as "3.5 m" or "0.3 g", as so many SI base units; exact but for units with pi in them.
     0 is one in every unit, and needs none.
 
     `dimension` is a name in `DIMENSIONS`. "g" is the acceleration of gravity where an acceleration (or its rate) is
-    expected, else the gram. Raises (as does every validator here) the error of `table.wrong`.
+    expected, else the gram. Raises (as does every validator here) the error of `table.refusal`.
     """
-    what = f"{shown(value)} is not {_example(dimension)}"
+    what = f"{show(value)} is not {_example(dimension)}"
     if _is_zero(value):
         return Fraction(0)
-    if not isinstance(value, str) or isinstance(value, Written):
-        raise wrong(what)
+    if not isinstance(value, str) or isinstance(value, WrittenDecimal):
+        raise refusal(what)
     if len(value) > LONGEST:  # before anything is done with it
-        raise wrong(f"{shown(value)} is too long; write at most {LONGEST} characters")
+        raise refusal(f"{show(value)} is too long; write at most {LONGEST} characters")
     if not (found := _QUANTITY.fullmatch(value)):
-        raise wrong(what)
+        raise refusal(what)
     meaning = _fitting(found[2], dimension, value)
     number = exact(found[1]) * meaning.factor
     if number and not 1 / _LARGEST <= abs(number) <= _LARGEST:
         size = f"0 or a size from 1e-{LARGEST_EXPONENT} to 1e{LARGEST_EXPONENT} in SI base units"
-        raise wrong(f"{shown(value)} is too large or too small; write {size}")
+        raise refusal(f"{show(value)} is too large or too small; write {size}")
     return number
 
 
@@ -82,21 +82,21 @@ def _example(dimension: str) -> str:
     return f'{with_article(dimension)}; write one such as "{DIMENSIONS[dimension].example}"'
 
 
-def parted(value: object) -> tuple[Fraction, str] | None:
+def split_quantity(value: object) -> tuple[Fraction, str] | None:
     """The number and the unit of a quantity, whatever the unit means; None of what is no quantity."""
-    if not isinstance(value, str) or isinstance(value, Written) or len(value) > LONGEST:
+    if not isinstance(value, str) or isinstance(value, WrittenDecimal) or len(value) > LONGEST:
         return None
     found = _QUANTITY.fullmatch(value)
     return (exact(found[1]), found[2]) if found else None
 
 
 def unit(value: object, dimension: str) -> Fraction:
-    """A unit without a number, such as "mm" or "kN*m": how many SI base units it is. Raises that of `table.wrong`."""
+    """A unit without a number, such as "mm" or "kN*m": how many SI base units it is. Raises that of `table.refusal`."""
     example = DIMENSIONS[dimension].example.partition(" ")[2]
-    if not isinstance(value, str) or isinstance(value, Written):
-        raise wrong(f'{shown(value)} is not a unit; write one such as "{example}"')
+    if not isinstance(value, str) or isinstance(value, WrittenDecimal):
+        raise refusal(f'{show(value)} is not a unit; write one such as "{example}"')
     if len(value) > LONGEST:
-        raise wrong(f"{shown(value)} is too long; write at most {LONGEST} characters")
+        raise refusal(f"{show(value)} is too long; write at most {LONGEST} characters")
     return _fitting(value, dimension, value).factor
 
 
@@ -116,27 +116,27 @@ def _fitting(text: str, dimension: str, value: str) -> _Meaning:
             if other != text and fits(_meaning(other, value, gravity=False).powers, DIMENSIONS[dimension])
         )
         hint = next((f'. Did you mean "{other}"?' for other in meant), "")
-        raise wrong(f"{shown(value)} is {called(meaning.powers)}, not {_example(dimension)}{hint}")
+        raise refusal(f"{show(value)} is {dimension_name(meaning.powers)}, not {_example(dimension)}{hint}")
     return meaning
 
 
 def _meaning(text: str, value: str, *, gravity: bool) -> _Meaning:
     if not _UNIT.fullmatch(text):
         grammar = 'a number and units joined by * and /, with powers up to ^9, such as "3 kN*s/m^2"'
-        raise wrong(f"{shown(value)} is not a quantity; write {grammar}")
+        raise refusal(f"{show(value)} is not a quantity; write {grammar}")
     factors = _FACTOR.findall(text)
     if len(factors) > _MOST_FACTORS:
-        raise wrong(f"{shown(value)} has too many units; write at most {_MOST_FACTORS}")
+        raise refusal(f"{show(value)} has too many units; write at most {_MOST_FACTORS}")
     factor, powers = Fraction(1), dict[str, int]()
     for sign, name, written in factors:
         power = int(written or 1) * (-1 if sign == "/" else 1)
         if name in _AMBIGUOUS:
-            raise wrong(f"{shown(value)}: {shown(name)} is two units; write {_AMBIGUOUS[name]}")
+            raise refusal(f"{show(value)}: {show(name)} is two units; write {_AMBIGUOUS[name]}")
         one = _named("standard_gravity" if gravity and name == "g" else name)
         if one is None:
             meant = did_you_mean(name, _names())
             known = "one of length, mass, time or angle, or made of these"
-            raise wrong(f"{shown(value)}: {shown(name)} is not a known unit; write {known}{meant and f'. {meant}'}")
+            raise refusal(f"{show(value)}: {show(name)} is not a known unit; write {known}{meant and f'. {meant}'}")
         factor *= one.factor**power
         for base, exponent in one.powers.items():
             powers[base] = powers.get(base, 0) + exponent * power

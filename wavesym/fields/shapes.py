@@ -18,7 +18,7 @@ from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 from wavesym.errors import CostError
 from wavesym.fields.loads import Load, linear
 from wavesym.fields.numbers import Exact, Positive, exact
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import refusal, show
 from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import fraction, middle, rational
 
@@ -36,13 +36,13 @@ def _shape(value: object) -> str:
     if isinstance(value, str) and value in SHAPES:
         return value
     *others, last = (f'"{shape}"' for shape in SHAPES)
-    raise wrong(f"{shown(value)} is not a shape; write {', '.join(others)} or {last}")
+    raise refusal(f"{show(value)} is not a shape; write {', '.join(others)} or {last}")
 
 
 def _start(value: object) -> Fraction:
     start = exact(value)
     if start < 0:
-        raise wrong(f"{shown(value)} is before the start; write a time of 0 or later")
+        raise refusal(f"{show(value)} is before the start; write a time of 0 or later")
     return start
 
 
@@ -69,9 +69,9 @@ class ShapedLoad(Load):
         needed = SHAPES[self.shape]
         other = "duration" if needed == "frequency" else "frequency"
         if getattr(self, needed) is None:
-            raise wrong(f"missing, and a {self.shape} has it; write a positive number", needed)
+            raise refusal(f"missing, and a {self.shape} has it; write a positive number", needed)
         if getattr(self, other) is not None:
-            raise wrong(f"not of a {self.shape}; write {needed}", other)
+            raise refusal(f"not of a {self.shape}; write {needed}", other)
         return self
 
     def within(self, until: Fraction, tolerance: Fraction) -> Self:

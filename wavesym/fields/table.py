@@ -28,13 +28,13 @@ class Fault(NamedTuple):
     keys: tuple[str | int, ...]
 
 
-class Written(str):
+class WrittenDecimal(str):
     """A TOML decimal as it is written, so that it never passes through binary floating point."""
 
     __slots__ = ()
 
 
-def shown(value: object) -> str:
+def show(value: object) -> str:
     """A value for a message: on one line, in ASCII, and short, however long the value is."""
     match value:
         case bool():
@@ -42,7 +42,7 @@ def shown(value: object) -> str:
         case int() | Fraction() if (bits := max(n.bit_length() for n in value.as_integer_ratio())) > 4 * _SHOWN:
             # not written out: Python refuses to print very long integers
             return f"a number of about {bits * 30103 // 100000} digits"
-        case Written() | Number() | Decimal():
+        case WrittenDecimal() | Number() | Decimal():
             text = ascii(str(value))[1:-1]
         case str():
             # cut first: escaping a long text would take long
@@ -61,7 +61,7 @@ def without_usual(fields: dict[str, Any], **usual: object) -> dict[str, Any]:
     return {key: value for key, value in fields.items() if key not in usual or value != usual[key]}
 
 
-def wrong(what: str, *keys: str | int) -> PydanticCustomError:
+def refusal(what: str, *keys: str | int) -> PydanticCustomError:
     """The error to raise in a validator; `keys` lead from the field that is validated to what is wrong in it."""
     return _refusal([Fault(what, keys)])
 
@@ -102,7 +102,7 @@ class Faults:
 
 
 @contextmanager
-def placed(*keys: str | int) -> Iterator[None]:
+def key_context(*keys: str | int) -> Iterator[None]:
     """Say of what the body finds wrong where in the scene it is: `keys` lead to what it reads."""
     faults = Faults()
     with faults.gathered(*keys):
@@ -117,14 +117,14 @@ def key_path(keys: Sequence[str | int]) -> str:
         if isinstance(key, int):
             path += f"[{key}]"
         else:
-            path += f".{key}" if len(key) <= _SHOWN and _BARE_KEY.fullmatch(key) else f".{shown(key)}"
+            path += f".{key}" if len(key) <= _SHOWN and _BARE_KEY.fullmatch(key) else f".{show(key)}"
     return path.removeprefix(".")
 
 
-def listed(value: object) -> tuple[object, ...]:
+def as_list(value: object) -> tuple[object, ...]:
     """A list, from TOML or from Python."""
     if isinstance(value, str) or not isinstance(value, Sequence):
-        raise wrong(f"{shown(value)} is not a list; write [ ] around it")
+        raise refusal(f"{show(value)} is not a list; write [ ] around it")
     return tuple(value)
 
 
@@ -147,7 +147,7 @@ class SceneTable(BaseModel):
         if isinstance(value, cls):
             return handler(value)
         if not isinstance(value, Mapping):
-            raise wrong(f"{shown(value)} is not a table; write its keys and values")
+            raise refusal(f"{show(value)} is not a table; write its keys and values")
         fields = {field.alias or name: field for name, field in cls.model_fields.items()}
         unknown = [Fault(_unknown(str(key), list(fields)), (str(key),)) for key in value if key not in fields]
         missing = [

@@ -38,7 +38,7 @@ class AppliedRecord(Applied):
         return self.samples
 
 
-def merged(loads: Iterable[Applied]) -> tuple[Applied, ...]:
+def merge_loads(loads: Iterable[Applied]) -> tuple[Applied, ...]:
     """Loads of the same source and time as one, none of weight 0, sorted by time and then by source."""
     # M2 comes before M10: a shorter name is a smaller number; sorted, as an fmpq is slow to hash
     ordered = sorted(loads, key=lambda load: (load.time, len(load.source), load.source))

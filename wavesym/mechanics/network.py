@@ -298,7 +298,7 @@ class Network:
         return bar.right if end.side else bar.left
 
 
-def parted(network: Network, contacts: Collection[int]) -> Network:
+def with_contacts(network: Network, contacts: Collection[int]) -> Network:
     """A line of rods whose points in `contacts` are two, a contact between them; points stay in their order."""
     points = [
         replace(point, glued=point.glued and x not in contacts)

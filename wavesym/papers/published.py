@@ -59,7 +59,7 @@ def _known(entries: Iterable[PaperEntry]) -> set[str]:
     return known
 
 
-def published(
+def published_report(
     names: Sequence[str],
     format: str,
     reproduce: bool = False,

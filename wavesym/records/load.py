@@ -15,7 +15,7 @@ from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 
 from wavesym.fields.loads import Load, linear
 from wavesym.fields.numbers import Exact, Positive, decimal_text
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import refusal, show
 from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import rational
 from wavesym.records.recording import Recorded
@@ -23,7 +23,7 @@ from wavesym.records.recording import Recorded
 
 def _text(value: object) -> str:
     if not isinstance(value, str):
-        raise wrong(f"{shown(value)} is not a name; write that of a column")
+        raise refusal(f"{show(value)} is not a name; write that of a column")
     return value
 
 
@@ -42,7 +42,7 @@ class RecordedLoad(Load):
     def _said_once(self) -> Self:
         if self.record.unit or self.record.clock:
             has = " and ".join(filter(None, (self.record.clock, self.record.unit)))
-            raise wrong(
+            raise refusal(
                 f"the file says {has}, but the scene has no units; write numbers without units, or [units] in the "
                 "scene",
                 "record",
@@ -50,16 +50,16 @@ class RecordedLoad(Load):
         self._once("spacing", self.spacing, self.record.spacing)
         self._once("start", self.start, self.record.start)
         if self.spacing is None and self.record.spacing is None:
-            raise wrong("missing, and the file does not say it; write the time between samples", "spacing")
+            raise refusal("missing, and the file does not say it; write the time between samples", "spacing")
         if self._start != 0 and self._start < self.step:
             steps = f"{decimal_text(self._start / self.step)} steps"
             key = "record" if self.start is None else "start"
-            raise wrong(f"a first sample after {steps}, but the load comes from 0; write 0, or 1 or more", key)
+            raise refusal(f"a first sample after {steps}, but the load comes from 0; write 0, or 1 or more", key)
         return self
 
     def _once(self, key: str, here: Fraction | None, there: Fraction | None) -> None:
         if here is not None and there is not None and here != there:
-            raise wrong(f"{decimal_text(here)}, but the file says {decimal_text(there)}; write that, or nothing", key)
+            raise refusal(f"{decimal_text(here)}, but the file says {decimal_text(there)}; write that, or nothing", key)
 
     @property
     def step(self) -> Fraction:

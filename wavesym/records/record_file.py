@@ -15,7 +15,7 @@ from math import lcm
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import LARGEST_EXPONENT, LONGEST, decimal_text
-from wavesym.fields.table import Written, shown
+from wavesym.fields.table import WrittenDecimal, show
 
 # as Fortran writes them, too: .0200, 5., -.1234E-02, 1.5D+00
 _DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eEdD]([+-]?[0-9]{1,4}))?")
@@ -109,4 +109,4 @@ def decimal(text: str) -> Fraction | None:
 
 def bare(text: str) -> str:
     """What a file says, for a message."""
-    return shown(Written(text))
+    return show(WrittenDecimal(text))

@@ -11,7 +11,7 @@ from pydantic import Field, PlainSerializer, PlainValidator, ValidationInfo
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import Exact, Numbers, Positive
-from wavesym.fields.table import SceneTable, placed, shown, wrong
+from wavesym.fields.table import SceneTable, key_context, refusal, show
 from wavesym.records.read import read_record
 from wavesym.records.record_file import RecordFile
 
@@ -26,7 +26,9 @@ class Recording(SceneTable):
     clock: str = ""
 
 
-def recorded(path: str | PathLike[str], column: str | None, told: Callable[[RecordFile], Fraction | None]) -> Recording:
+def read_recording(
+    path: str | PathLike[str], column: str | None, told: Callable[[RecordFile], Fraction | None]
+) -> Recording:
     """What the file at `path` says; `told` is the spacing that a scene says, in the file's unit of time. SceneError."""
     said = read_record(path, column)
     spacing = told(said)
@@ -46,13 +48,13 @@ def _recording(value: object, info: ValidationInfo) -> Recording:
         return value
     try:
         if isinstance(value, Mapping):
-            with placed():
+            with key_context():
                 return Recording.model_validate(value)
         if isinstance(value, str | PathLike):
-            return recorded(value, info.data.get("column"), lambda _: info.data.get("spacing"))
+            return read_recording(value, info.data.get("column"), lambda _: info.data.get("spacing"))
     except SceneError as error:
-        raise wrong(str(error)) from None
-    raise wrong(f"{shown(value)} is not a path; write that of a file")
+        raise refusal(str(error)) from None
+    raise refusal(f"{show(value)} is not a path; write that of a file")
 
 
 def _dumped(recording: Recording) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import above, midpoint, nearest
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
-from wavesym.results.optional import needed
+from wavesym.results.optional import require_packages
 from wavesym.results.resonance import Peaks, peaks
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
@@ -118,7 +118,7 @@ class FrequencyResponse:
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame: a complex column for each output over the frequency. WavesymError without pandas."""
-        pandas = needed("pandas", "sweep")
+        pandas = require_packages("pandas", "sweep")
         index = pandas.Index(self.frequency, name=self.frequency_label)
         return pandas.DataFrame(dict(zip(self.outputs, self.values, strict=True)), index=index)
 

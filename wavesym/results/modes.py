@@ -26,7 +26,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import above, midpoint, nearest
 from wavesym.programs.modes.undamped import damping_ratios
-from wavesym.results.optional import needed
+from wavesym.results.optional import require_packages
 from wavesym.results.participation import Participation, effective_mass, participations
 from wavesym.results.shapes import LineShapes, line_shapes
 from wavesym.systems.station import Lines
@@ -105,7 +105,7 @@ class Modes:
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame with a row for each mode. WavesymError where pandas is not installed."""
-        return needed("pandas", "sweep").DataFrame(self._rows(shapes=False)).set_index("number")
+        return require_packages("pandas", "sweep").DataFrame(self._rows(shapes=False)).set_index("number")
 
     def json(self, *, shapes: bool = False) -> str:
         """As JSON: `modes`, `complete`, `why`, `time_unit`; complex numbers of shapes as [real, imaginary]."""

@@ -8,7 +8,7 @@ from typing import Any
 from wavesym.errors import WavesymError
 
 
-def needed(library: str, extra: str) -> Any:
+def require_packages(library: str, extra: str) -> Any:
     """A library that an extra of wavesym brings. WavesymError, which names the extra, where it is not installed."""
     try:
         return import_module(library)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.results.optional import needed
+from wavesym.results.optional import require_packages
 from wavesym.results.statistics import ARRAYS, array_values
 from wavesym.results.summary import Summary
 from wavesym.scene import Scene
@@ -53,11 +53,11 @@ class Peaks(Mapping[str, NDArray[np.float64]]):
         """An xarray.Dataset of dimensions (case, output), or (output) of one scene. WavesymError without xarray."""
         labels = {**({"case": list(self.cases)} if self.several else {}), "output": list(self.outputs)}
         arrays = {name: (tuple(labels), values, {"long_name": ARRAYS[name]}) for name, values in self.items()}
-        return needed("xarray", "arrays").Dataset(arrays, labels)
+        return require_packages("xarray", "arrays").Dataset(arrays, labels)
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame with a row for each case and output. WavesymError without pandas."""
-        pandas = needed("pandas", "sweep")
+        pandas = require_packages("pandas", "sweep")
         rows = pandas.Index(list(self.outputs), name="output")
         if self.several:
             rows = pandas.MultiIndex.from_product([list(self.cases), rows], names=["case", "output"])

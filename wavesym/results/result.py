@@ -13,10 +13,10 @@ import numpy as np
 from wavesym.errors import WavesymError, did_you_mean
 from wavesym.mechanics.event import ContactEvent
 from wavesym.results.horizon import check_horizon
-from wavesym.results.optional import needed
+from wavesym.results.optional import require_packages
 from wavesym.results.response import Response
 from wavesym.results.rows import instants
-from wavesym.results.summary import Summary, summarised
+from wavesym.results.summary import Summary, summarise
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import drifts
 
@@ -93,7 +93,7 @@ class Result:
 
     def summary(self) -> Summary:
         """The extremes of the outputs on the whole horizon; errors as of `wavesym.summary`."""
-        return summarised(self._response.model, drifts=drifts(self.scene))
+        return summarise(self._response.model, drifts=drifts(self.scene))
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """The histories of the scene as a picture.
@@ -112,13 +112,13 @@ class Result:
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame: a column for each output, by name, over the time. WavesymError without pandas."""
-        pandas = needed("pandas", "sweep")
+        pandas = require_packages("pandas", "sweep")
         index = pandas.Index(self.time, name=self.time_label)
         return pandas.DataFrame(dict(zip(self.columns, self.values, strict=True)), index=index)
 
     def to_xarray(self) -> Any:
         """An xarray.DataArray of dimensions (output, time), with units as attributes. WavesymError without xarray."""
-        xarray = needed("xarray", "arrays")
+        xarray = require_packages("xarray", "arrays")
         unit = {} if self.time_unit is None else {"units": self.time_unit}
         coordinates = {
             "output": list(self.outputs),

@@ -30,7 +30,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
-from wavesym.results.stepping import jumps, just_before, sampled
+from wavesym.results.stepping import jumps, just_before, sample_program
 
 Numbers = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -127,7 +127,7 @@ def _periods(model: Model, per_tau: float) -> Numbers:
 def _stretches(model: Model, program: Program, step: float) -> list[tuple[Numbers, Numbers]]:
     """Stretches without jumps, each of an even number of equal steps: instants, and the outputs there."""
     if program.has_equal_steps or (program.hats and not jumps(program.under_jumps(model))):
-        taus, values = sampled(model, program, step)  # nothing jumps; steps of panels of one length are equal
+        taus, values = sample_program(model, program, step)  # nothing jumps; steps of panels of one length are equal
         steps = np.diff(taus)
         cuts = np.flatnonzero(np.abs(np.diff(steps)) > 1e-6 * steps[:-1]) + 1
         ends = [0, *cuts.tolist(), len(steps)]

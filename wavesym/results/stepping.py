@@ -29,13 +29,13 @@ def spacing(model: Model) -> float:
     return min(nearest(model.spacing) / _PER_STEP, crossing / _PER_CROSSING)
 
 
-def apart(model: Model, step: float) -> str:
+def describe_step(model: Model, step: float) -> str:
     """How far samples are apart, in a few words."""
     clock = model.clock
     return f"{clock.time(rational(step)):.4g} {clock.unit} apart" if clock else f"{step:g} tau apart"
 
 
-def sampled(model: Model, program: Program, step: float) -> tuple[Numbers, Numbers]:
+def sample_program(model: Model, program: Program, step: float) -> tuple[Numbers, Numbers]:
     """Instants no more than `step` apart, in order, with both sides of jumps, and the values of a program there."""
     if program.has_equal_steps and program.real is DOUBLE:
         return Panels.of(program).sampled(step)

@@ -20,11 +20,11 @@ from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import midpoint, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
-from wavesym.results.optional import needed
+from wavesym.results.optional import require_packages
 from wavesym.results.response import Response
 from wavesym.results.sampled import sampled_extremes
 from wavesym.results.statistics import STATISTICS
-from wavesym.results.stepping import apart, sampled, spacing
+from wavesym.results.stepping import describe_step, sample_program, spacing
 
 Numbers = NDArray[np.float64]
 
@@ -131,7 +131,7 @@ class Summary:
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame with a row for each output. WavesymError where pandas is not installed."""
-        return needed("pandas", "sweep").DataFrame(self._rows()).set_index("output")
+        return require_packages("pandas", "sweep").DataFrame(self._rows()).set_index("output")
 
     def _repr_html_(self) -> str:
         rows = self._rows()
@@ -152,7 +152,7 @@ def _cell(value: float | str | None) -> str:
     return "never" if value is None else escape(value) if isinstance(value, str) else f"{value:.7g}"
 
 
-def summarised(model: Model, samples: Sequence[float] | None = None, drifts: Sequence[Probe] = ()) -> Summary:
+def summarise(model: Model, samples: Sequence[float] | None = None, drifts: Sequence[Probe] = ()) -> Summary:
     """The summary of `summary_and_program`."""
     return summary_and_program(model, samples, drifts)[0]
 
@@ -289,9 +289,9 @@ def _searched(model: Model) -> _Found:
             f"each, the limit is {_MOST_SAMPLES // len(model.probes):.1e} (a shorter horizon or fewer outputs "
             "help)"
         )
-    taus, values = sampled(model, program, step)
+    taus, values = sample_program(model, program, step)
     ranges = _ranges(*sampled_extremes(taus, values, program.each, program.error_bound))
-    how = f"{program.evaluator} at {taus.size} samples, {apart(model, step)}, then refined"
+    how = f"{program.evaluator} at {taus.size} samples, {describe_step(model, step)}, then refined"
     return _Found(ranges, _averaged(values, _trapezoids(taus)), program.error_bound, False, how, program)
 
 

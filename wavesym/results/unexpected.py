@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from wavesym.results.response import Response
 
 
-def unexpected(model: Model) -> list[str]:
+def warning_lines(model: Model) -> list[str]:
     """How the scene was read, no load, contacts that open early enough to matter to an output."""
     return [*model.labels.notes, *without_load(model), *_formal(model)]
 
@@ -25,7 +25,7 @@ def without_load(model: Model) -> list[str]:
     return [] if model.loads or moving else ["no load, so that all outputs are 0"]
 
 
-def outside(model: Model, at: Sequence[float]) -> list[str]:
+def outside_lines(model: Model, at: Sequence[float]) -> list[str]:
     """A line where some of the instants that are asked for are not on the horizon."""
     from wavesym.results.rows import instants
 

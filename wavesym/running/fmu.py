@@ -63,7 +63,7 @@ def fmu(program: Program, version: str) -> bytes:
     return _packed(content)
 
 
-def notes(path: Path) -> list[str]:
+def describe_fmu(path: Path) -> list[str]:
     """What to know of an FMU: for which machines it has binaries, what would make more, and why this stream."""
     with ZipFile(path) as archive:
         machines = [place.split("/")[1] for place in archive.namelist() if place.startswith("binaries/")]

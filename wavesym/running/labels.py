@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.results.optional import needed
+from wavesym.results.optional import require_packages
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ class SetLabels:
         """
         if not find_spec("xarray"):
             return values
-        xarray = needed("xarray", "arrays")
+        xarray = require_packages("xarray", "arrays")
 
         varied = {name: column for name, column in self._columns() if len(np.unique(column)) > 1}
         along = next(iter(varied)) if len(varied) == 1 else SETS

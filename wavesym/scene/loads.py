@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from wavesym.fields.loads import Load
-from wavesym.fields.table import Faults, listed, wrong
+from wavesym.fields.table import Faults, as_list, refusal
 from wavesym.records.load import RecordedLoad
 from wavesym.systems import SystemTable
 
@@ -13,10 +13,10 @@ from wavesym.systems import SystemTable
 def loads(tables: object, system: SystemTable) -> tuple[Load, ...]:
     """The loads on a system. Which keys a table has depends on the system, so pydantic is told here."""
     if isinstance(tables, Sequence) and tables and not system.load_kinds:
-        raise wrong(f"{system.no_loads}; leave [[load]] out")
+        raise refusal(f"{system.no_loads}; leave [[load]] out")
     faults = Faults()
     found = []
-    for k, table in enumerate(listed(tables)):
+    for k, table in enumerate(as_list(tables)):
         with faults.gathered(k):
             found.append(_load(table, system))
     faults.refuse()
@@ -29,7 +29,7 @@ def loads(tables: object, system: SystemTable) -> tuple[Load, ...]:
 def _load(table: object, system: SystemTable) -> Load:
     load = _kind(table, system.load_kinds).model_validate(table)
     if refused := system.refused(load):
-        raise wrong(*refused)
+        raise refusal(*refused)
     return load
 
 

@@ -16,7 +16,7 @@ from wavesym.fields.loads import Load, SampledLoad, TimedLoad
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
-from wavesym.mechanics.loads import Applied, AppliedRecord, merged
+from wavesym.mechanics.loads import Applied, AppliedRecord, merge_loads
 from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import SystemParameters
@@ -180,7 +180,7 @@ def _loads(scene: Scene) -> tuple[Applied, ...]:
     """The loads, summed; sorted by time, and each source at a time once."""
     if not scene.system.load_kinds:
         return (Applied("impact", fmpq(0), fmpq(1)),)
-    return merged(unit for load in scene.load for unit in load.units())
+    return merge_loads(unit for load in scene.load for unit in load.units())
 
 
 def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
@@ -191,7 +191,7 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
     found: list[tuple[str, Applied]] = []
     for label, load in zip(load_names(scene), scene.load, strict=True):
         if not isinstance(load, TimedLoad):
-            samples = AppliedRecord(load.sources[0], fmpq(0), fmpq(1), merged(load.units()))
+            samples = AppliedRecord(load.sources[0], fmpq(0), fmpq(1), merge_loads(load.units()))
             found.append((f"factor of the {label}, samples at {_spacing(scene, load)}", samples))
             continue
         found += [

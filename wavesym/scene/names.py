@@ -8,7 +8,7 @@ from typing import Annotated
 
 from pydantic import PlainValidator
 
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import refusal, show
 
 # C99 tells no more than 63 characters of a name apart.
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
@@ -27,13 +27,13 @@ _IMPORTED = "numpy"  # by NAME.py, which must not import itself
 
 def _name(value: object) -> str:
     if not isinstance(value, str) or not _NAME.fullmatch(value):
-        raise wrong(
-            f"{shown(value)} is not an identifier; write at most 63 ASCII letters, digits and _, a letter first"
+        raise refusal(
+            f"{show(value)} is not an identifier; write at most 63 ASCII letters, digits and _, a letter first"
         )
     if value in _KEYWORDS:
-        raise wrong(f"{shown(value)} is a keyword of C, C++ or Python; write another name")
+        raise refusal(f"{show(value)} is a keyword of C, C++ or Python; write another name")
     if value == _IMPORTED:
-        raise wrong(f"{shown(value)} is a module that NAME.py imports; write another name")
+        raise refusal(f"{show(value)} is a module that NAME.py imports; write another name")
     return value
 
 

@@ -21,7 +21,7 @@ from pydantic import (
 
 from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Exact, Positive
-from wavesym.fields.table import Faults, SceneTable, Written, listed, shown, wrong
+from wavesym.fields.table import Faults, SceneTable, WrittenDecimal, as_list, refusal, show
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.systems import SystemTable
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
@@ -52,15 +52,15 @@ def _said(at: Position) -> str | dict[str, str]:
 
 
 Positioned = Annotated[Position, PlainValidator(position_of), PlainSerializer(_said, return_type=str | dict[str, str])]
-Positions = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(listed)]
+Positions = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(as_list)]
 EVERY = "all"
 """In place of a list of drifts: those of all rods of the main line."""
 
 
 def _drifts(value: object) -> tuple[object, ...]:
     if isinstance(value, str) and value != EVERY:
-        raise wrong(f'{shown(value)} is not a list; write [1, 2, 3], or "{EVERY}"')
-    return (EVERY,) if value == EVERY else listed(value)
+        raise refusal(f'{show(value)} is not a list; write [1, 2, 3], or "{EVERY}"')
+    return (EVERY,) if value == EVERY else as_list(value)
 
 
 Drifts = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(_drifts)]
@@ -84,22 +84,22 @@ class Output(SceneTable):
     def _reachable(cls, until: Fraction) -> Fraction:
         if until > LONGEST_HORIZON:
             # the longest intervals of a system are 2 long
-            cost = f"{shown(until)} would cost at least {shown(until // 2)} intervals of every function"
-            raise wrong(f"{cost}; write a horizon of {LONGEST_HORIZON} or less")
+            cost = f"{show(until)} would cost at least {show(until // 2)} intervals of every function"
+            raise refusal(f"{cost}; write a horizon of {LONGEST_HORIZON} or less")
         return until
 
     @field_validator("tolerance")
     @classmethod
     def _useful(cls, tolerance: Fraction) -> Fraction:
         if not 0 < tolerance < 1:
-            raise wrong(f"{shown(tolerance)} is not between 0 and 1; write a tolerance such as 1e-10")
+            raise refusal(f"{show(tolerance)} is not between 0 and 1; write a tolerance such as 1e-10")
         return tolerance
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not isinstance(self, NoOutput) and not any(getattr(self, quantity) for quantity in QUANTITIES):
             *others, last = QUANTITIES
-            raise wrong(f"no positions; write at least one of {', '.join(others)} or {last}")
+            raise refusal(f"no positions; write at least one of {', '.join(others)} or {last}")
         return self
 
     @model_serializer(mode="wrap")
@@ -122,21 +122,21 @@ class NoOutput(Output):
 
 
 def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> tuple[Observable, ...]:
-    """The outputs in order, checked against the chain; raises the error of `table.wrong`."""
+    """The outputs in order, checked against the chain; raises the error of `table.refusal`."""
     seen: dict[tuple[str, Place], str] = {}
     watching = Watching(system, loads)
     found, faults = [], Faults()
     for quantity in QUANTITIES:
         positions: tuple[Position, ...] = getattr(output, quantity)
         for k, position in enumerate(positions):
-            text = shown(Written(position.written))
+            text = show(WrittenDecimal(position.written))
             with faults.gathered("output", quantity, k):
                 try:
                     place = watching.place(position, quantity)
                 except MisplacedError as error:
-                    raise wrong(str(error)) from None
+                    raise refusal(str(error)) from None
                 if (quantity, place) in seen:
-                    raise wrong(f"{text} is the same place as {seen[quantity, place]}; write another")
+                    raise refusal(f"{text} is the same place as {seen[quantity, place]}; write another")
                 seen[quantity, place] = text
                 name = f"{quantity}@{position.written}"
                 found.append(Observable(quantity, place.x, place.side, name, place, position.title))

@@ -6,14 +6,14 @@ from typing import Annotated
 
 from pydantic import PlainValidator
 
-from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.fields.table import SceneTable, refusal, show
 
 _LONGEST = 200  # characters
 
 
 def _line(value: object) -> str:
     if not isinstance(value, str) or not 0 < len(value) <= _LONGEST or not value.isprintable():
-        raise wrong(f"{shown(value)} is not a line of text; write up to {_LONGEST} characters in quotes")
+        raise refusal(f"{show(value)} is not a line of text; write up to {_LONGEST} characters in quotes")
     return value
 
 

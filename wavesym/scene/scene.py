@@ -24,7 +24,7 @@ from pydantic_core import PydanticCustomError
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.fields.table import SceneTable, placed, scene_error, shown, wrong
+from wavesym.fields.table import SceneTable, key_context, refusal, scene_error, show
 from wavesym.numbers.doubles import rational
 from wavesym.scene.describe import describe
 from wavesym.scene.key_lines import key_lines, line_of
@@ -162,12 +162,12 @@ class Scene(SceneTable):
         *others, last = (f'"{name}"' for name in SYSTEMS)
         choice = f"{', '.join(others)} or {last}"
         if not isinstance(table, Mapping):
-            raise wrong(f"{shown(table)} is not a table; write [system]")
+            raise refusal(f"{show(table)} is not a table; write [system]")
         if "type" not in table:
-            raise wrong(f"missing; write {choice}", "type")
+            raise refusal(f"missing; write {choice}", "type")
         if not isinstance(name := table["type"], str) or name not in SYSTEMS:
-            raise wrong(f"{shown(table['type'])} is not a system; write {choice}", "type")
-        with placed():
+            raise refusal(f"{show(table['type'])} is not a system; write {choice}", "type")
+        with key_context():
             return SYSTEMS[name].model_validate(table)
 
     @field_validator("load", mode="wrap")

@@ -12,7 +12,7 @@ from os import PathLike
 from typing import Any
 
 from wavesym.errors import SceneError, did_you_mean
-from wavesym.fields.table import Written
+from wavesym.fields.table import WrittenDecimal
 from wavesym.reading import read_text
 
 _BUILTIN = files("wavesym.scene") / "builtin"
@@ -103,7 +103,7 @@ def parsed(file: str, text: str) -> dict[str, Any]:
     """The table in a text of TOML, decimals as they are written. SceneError, which names `file`, where it is none."""
     _refuse_large(file, text)
     try:
-        return tomllib.loads(text, parse_float=Written)
+        return tomllib.loads(text, parse_float=WrittenDecimal)
     except tomllib.TOMLDecodeError as error:
         raise SceneError(f"no TOML, {error}", file=file) from None
     except ValueError:  # the limit is Python's

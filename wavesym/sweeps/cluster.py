@@ -24,7 +24,7 @@ from wavesym import __version__
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches, Place, Task
 from wavesym.sweeps.plan import SweepPlan
-from wavesym.sweeps.store import needed
+from wavesym.sweeps.store import require_packages
 from wavesym.sweeps.values import BatchValues
 
 _AHEAD = 3  # batches under way for each thread, so that none waits for this process
@@ -45,7 +45,7 @@ class ClusterError(WavesymError):
 @contextmanager
 def connected(workers: int | None, address: str | None) -> Iterator[Any]:
     """A client of the cluster at an address, or of so many processes on this machine. ClusterError."""
-    needed("dask", "distributed")
+    require_packages("dask", "distributed")
     import dask
     from distributed import Client, LocalCluster
 

@@ -14,9 +14,9 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.measured import plain
-from wavesym.fields.numbers import exact, written
-from wavesym.fields.quantity import parted
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.numbers import exact, number_text
+from wavesym.fields.quantity import split_quantity
+from wavesym.fields.table import refusal, show
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.sweeps.request import Span
 
@@ -70,7 +70,7 @@ class SweepAxis:
         for k, key in enumerate(zip(*(column.keys for column in self.columns), strict=True)):
             if key in seen:
                 seen_value = ", ".join(column.told[k] for column in self.columns)
-                raise SceneError(f"{shown(seen_value)} stands at [{seen[key]}] and again at [{k}]; write it once", path)
+                raise SceneError(f"{show(seen_value)} stands at [{seen[key]}] and again at [{k}]; write it once", path)
             seen[key] = k
 
 
@@ -80,19 +80,19 @@ def count_of(values: Span | tuple[object, ...]) -> int:
 
 
 def spread(values: Span | tuple[object, ...]) -> Sequence[object]:
-    """The values, one by one. Raises the error of `table.wrong`."""
+    """The values, one by one. Raises the error of `table.refusal`."""
     if not isinstance(values, Span):
         return values
     (first, unit), (last, other) = _end(values.first, "from"), _end(values.last, "to")
     if unit != other:
-        raise wrong(f"{shown(values.last)} has another unit than `from`; write a number in {unit or 'no unit'}", "to")
+        raise refusal(f"{show(values.last)} has another unit than `from`; write a number in {unit or 'no unit'}", "to")
     steps = values.count - 1
     if not steps and first != last:
-        raise wrong("1 value, but `from` and `to` differ; write 2 or more", "count")
+        raise refusal("1 value, but `from` and `to` differ; write 2 or more", "count")
     if values.log:
         if first * last <= 0:
-            raise wrong(
-                f"{shown(values.last)} has another sign than `from`, so there are no equal ratios; write "
+            raise refusal(
+                f"{show(values.last)} has another sign than `from`, so there are no equal ratios; write "
                 "two numbers of one sign",
                 "to",
             )
@@ -119,15 +119,15 @@ def _written(number: Fraction, unit: str) -> object:
 def _end(value: object, key: str) -> tuple[Fraction, str]:
     found = number_of(plain(value))
     if found is None:
-        raise wrong(f"{shown(value)} is not a number; write one, with a unit or without", key)
+        raise refusal(f"{show(value)} is not a number; write one, with a unit or without", key)
     return found
 
 
 def number_of(value: object) -> tuple[Fraction, str] | None:
     """A number and its unit, "" without; None of anything else."""
-    if isinstance(value, bool) or (written(value) is None and not isinstance(value, int)):
+    if isinstance(value, bool) or (number_text(value) is None and not isinstance(value, int)):
         return None
     try:
         return exact(value), ""
     except PydanticCustomError:
-        return parted(value)
+        return split_quantity(value)

@@ -13,8 +13,8 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import exact
-from wavesym.fields.table import shown
-from wavesym.records.recording import recorded
+from wavesym.fields.table import show
+from wavesym.records.recording import read_recording
 from wavesym.scene.physical.loads import Acts, read
 from wavesym.sweeps.dimension import Column
 
@@ -32,7 +32,7 @@ def found(patterns: Sequence[str], folder: str) -> list[str]:
     for k, pattern in enumerate(patterns):
         some = sorted(glob(os.path.join(folder, pattern)))
         if not some:
-            raise SceneError(f"no file at {shown(pattern)}; write that of an AT2 or CSV file", f"records[{k}]")
+            raise SceneError(f"no file at {show(pattern)}; write that of an AT2 or CSV file", f"records[{k}]")
         every += [file for file in some if file not in every]
     return every
 
@@ -52,7 +52,7 @@ def _content(file: str, load: Mapping[str, Any], acts: Acts | None) -> dict[str,
             return dict(given["record"].model_dump(exclude_defaults=True))
         spacing = load.get("spacing")
         told = None if spacing is None else exact(spacing)
-        return recorded(file, load.get("column"), lambda _: told).model_dump(exclude_defaults=True)
+        return read_recording(file, load.get("column"), lambda _: told).model_dump(exclude_defaults=True)
     except SceneError as error:
         return Unreadable(str(error))
     except PydanticCustomError as error:

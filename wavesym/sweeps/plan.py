@@ -16,7 +16,7 @@ from pydantic_core import PydanticCustomError
 
 from wavesym import __version__
 from wavesym.errors import SceneError
-from wavesym.fields.table import faults_of, shown
+from wavesym.fields.table import faults_of, show
 from wavesym.scene.paths import changed, steps
 from wavesym.scene.physical.scene import acts
 from wavesym.scene.scene import Scene
@@ -184,7 +184,7 @@ def _refuse_many(request: SweepRequest, records: int) -> None:
 
 def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: str) -> Column:
     """The values of a path, which leads to a field of the scene."""
-    at = f"vary.{shown(path)}"
+    at = f"vary.{show(path)}"
     try:
         values = spread(request.vary[path])
         changed(fields, path, None)
@@ -225,8 +225,8 @@ def _refuse_overlap(paths: list[str]) -> None:
             inner, outer = steps(path), steps(other)
             if path != other and inner[: len(outer)] == outer:
                 raise SceneError(
-                    f"{shown(other)} is varied too, and one is part of the other; write fields that lie apart",
-                    f"vary.{shown(path)}",
+                    f"{show(other)} is varied too, and one is part of the other; write fields that lie apart",
+                    f"vary.{show(path)}",
                 )
 
 

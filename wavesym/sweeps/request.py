@@ -11,7 +11,7 @@ from pydantic import Field, PlainValidator, PrivateAttr, ValidationError, field_
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import Integer
-from wavesym.fields.table import SceneTable, listed, placed, scene_error, shown, wrong
+from wavesym.fields.table import SceneTable, as_list, key_context, refusal, scene_error, show
 from wavesym.reading import read_text
 from wavesym.results.statistics import ARRAYS, RUNTIME_ARRAYS
 from wavesym.scene.key_lines import key_lines, line_of
@@ -34,7 +34,7 @@ class Span(SceneTable):
     @classmethod
     def _some(cls, count: int) -> int:
         if count < 1:
-            raise wrong(f"{count} values; write at least 1")
+            raise refusal(f"{count} values; write at least 1")
         return count
 
 
@@ -43,13 +43,13 @@ def _values(value: object) -> Span | tuple[object, ...]:
     if isinstance(value, Span):
         return value
     if isinstance(value, Mapping):
-        with placed():
+        with key_context():
             return Span.model_validate(value)
     if isinstance(value, str) or not hasattr(value, "__len__"):
-        raise wrong(f"{shown(value)} is not a list of values; write one, or a table with from, to and count")
-    values = listed(value if isinstance(value, list | tuple) else list(value))  # type: ignore[call-overload]
+        raise refusal(f"{show(value)} is not a list of values; write one, or a table with from, to and count")
+    values = as_list(value if isinstance(value, list | tuple) else list(value))  # type: ignore[call-overload]
     if not values:
-        raise wrong("no values; write at least 1")
+        raise refusal("no values; write at least 1")
     return values
 
 
@@ -65,38 +65,38 @@ class Kept(SceneTable):
     @field_validator("summary", mode="before")
     @classmethod
     def _known(cls, value: object) -> tuple[object, ...]:
-        names = listed(value)
+        names = as_list(value)
         for k, name in enumerate(names):
             if name not in ARRAYS:
                 *others, last = ARRAYS
-                raise wrong(f"{shown(name)} is not a statistic; write {', '.join(others)} or {last}", k)
+                raise refusal(f"{show(name)} is not a statistic; write {', '.join(others)} or {last}", k)
             if name in names[:k]:
-                raise wrong(f"{shown(name)} stands twice; write it once", k)
+                raise refusal(f"{show(name)} stands twice; write it once", k)
         return names
 
     @field_validator("histories")
     @classmethod
     def _samples(cls, count: int | None) -> int | None:
         if count is not None and not 2 <= count <= MOST_SAMPLES:
-            raise wrong(f"{count} samples; write 2 to {MOST_SAMPLES}")
+            raise refusal(f"{count} samples; write 2 to {MOST_SAMPLES}")
         return count
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not self.summary and self.histories is None:
-            raise wrong("keeps nothing; write a summary or histories")
+            raise refusal("keeps nothing; write a summary or histories")
         return self
 
 
 def _texts(value: object) -> tuple[str, ...]:
     """A text, or a list of texts."""
     texts = []
-    for k, each in enumerate((value,) if isinstance(value, str | PathLike) else listed(value)):
+    for k, each in enumerate((value,) if isinstance(value, str | PathLike) else as_list(value)):
         if not isinstance(each, str | PathLike):
-            raise wrong(f"{shown(each)} is not a path; write that of a file (* stands for any characters)", k)
+            raise refusal(f"{show(each)} is not a path; write that of a file (* stands for any characters)", k)
         texts.append(str(os.fspath(each)))
     if not texts:
-        raise wrong("no path; write at least 1")
+        raise refusal("no path; write at least 1")
     return tuple(texts)
 
 
@@ -128,13 +128,13 @@ class SweepRequest(SceneTable):
     @classmethod
     def _true_or_false(cls, value: object) -> object:
         if not isinstance(value, bool):
-            raise wrong(f"{shown(value)} is not a truth value; write true or false")
+            raise refusal(f"{show(value)} is not a truth value; write true or false")
         return value
 
     @model_validator(mode="after")
     def _something(self) -> Self:
         if not self.vary and not self.records:
-            raise wrong("nothing is varied; write a table [vary], or records")
+            raise refusal("nothing is varied; write a table [vary], or records")
         return self
 
     @property
@@ -167,6 +167,6 @@ class SweepRequest(SceneTable):
         if isinstance(self.scene, Mapping):
             return Scene(**self.scene)
         if not isinstance(self.scene, str | PathLike):
-            raise wrong(f"{shown(self.scene)} is not a scene; write the path of one, or the name of a built-in one")
+            raise refusal(f"{show(self.scene)} is not a scene; write the path of one, or the name of a built-in one")
         path = os.fspath(self.scene)
         return Scene.from_toml(path if path in builtin_names() else os.path.join(self.folder, path))

@@ -22,7 +22,7 @@ from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
 from wavesym.sweeps.sealed import DamagedError
 from wavesym.sweeps.status import status
-from wavesym.sweeps.store import Store, needed
+from wavesym.sweeps.store import Store, require_packages
 from wavesym.sweeps.values import BatchValues
 from wavesym.sweeps.work import compute
 
@@ -54,7 +54,7 @@ def run(
     WavesymError for a request that is wrong, a folder of another sweep, or one that another process works in.
     """
     file, request = SweepRequest.read(source)
-    needed("zarr")
+    require_packages("zarr")
     planned = plan(request, file)
     parts = batches(planned, *kind(planned))
     place = Path(folder)

@@ -11,7 +11,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.results.response import Response
 from wavesym.results.statistics import array_values
-from wavesym.results.summary import summarised
+from wavesym.results.summary import summarise
 from wavesym.scene import Scene, lower
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.values import CaseValues, Numbers
@@ -24,7 +24,7 @@ def single(plan: SweepPlan, scene: Scene) -> CaseValues:
     made = dict[str, Numbers | float]()
     bounds, hows = [], []
     if plan.summary:
-        found = summarised(model)
+        found = summarise(model)
         every = [array_values(output) for output in found.outputs]
         for name in plan.summary:
             made[name] = spread_out(plan, rows, np.array([values[name] for values in every]))

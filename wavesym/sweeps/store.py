@@ -36,7 +36,7 @@ ATTRIBUTES = ".zattrs"
 _CHUNK = re.compile(r"\.?\d+(\.\d+)*(\.part)?")
 
 
-def needed(*libraries: str) -> None:
+def require_packages(*libraries: str) -> None:
     """WavesymError where a library of the extra `sweep` is missing."""
     from importlib.util import find_spec
 
@@ -202,13 +202,13 @@ def _plain(group: Any, name: str, dimension: str, values: Any, **attributes: obj
     group.create_array(name, data=values, chunks=values.shape, compressors=None, attributes=said)
 
 
-def opened(folder: str | PathLike[str]) -> Any:
+def open_dataset(folder: str | PathLike[str]) -> Any:
     """The results of a sweep that was just computed as an xarray.Dataset: labelled arrays, read when they are needed.
 
     The statistics, `bound` and what else was kept, over the varied paths, `record` and `output`; NaN where a case is
     not done, or failed. WavesymError where xarray is missing.
     """
-    needed("xarray")
+    require_packages("xarray")
     import xarray
 
     found = xarray.open_zarr(Path(folder, NAME), zarr_format=2, consolidated=False, chunks=None)

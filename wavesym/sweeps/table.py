@@ -15,7 +15,7 @@ import numpy as np
 from wavesym.errors import WavesymError, printable
 from wavesym.sweeps.plan import CASE
 from wavesym.sweeps.results import SweepResults, results
-from wavesym.sweeps.store import needed
+from wavesym.sweeps.store import require_packages
 from wavesym.writing import write_whole
 
 _ROWS = 4096
@@ -33,7 +33,7 @@ def write_table(folder: Path, path: Path) -> None:
     if path.suffix not in (".csv", ".parquet"):
         raise WavesymError(f"--table: {path} is not a table; write a file .csv or .parquet")
     if path.suffix == ".parquet":
-        needed("pyarrow")
+        require_packages("pyarrow")
     blocks = _columns(results(folder))
     if path.suffix == ".csv":
         write_whole({path: _csv(blocks)})

@@ -27,10 +27,10 @@ from pydantic import (
 
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
-from wavesym.fields.measured import Area, Density, Length, Mass, Modulus, SecondMoment, Stiffness, measured, one_of
+from wavesym.fields.measured import Area, Density, Length, Mass, Modulus, SecondMoment, Stiffness, one_of, read_quantity
 from wavesym.fields.numbers import Integer, Numbers, Positive, Positives
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.fields.table import SceneTable, listed, placed, shown, wrong
+from wavesym.fields.table import SceneTable, as_list, key_context, refusal, show
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
 from wavesym.systems.dimensionless import DimensionlessSystem, LoadUnit
@@ -109,10 +109,10 @@ class ShapedAcceleration(OfBase, ShapedLoad):
 
 
 def known_base(base: object) -> str:
-    """Which of the two bases. Raises the error of `table.wrong`."""
+    """Which of the two bases. Raises the error of `table.refusal`."""
     if base in ("force", "ground"):
         return str(base)
-    raise wrong(f'{shown(base)} is not a base; write "force" or "ground"')
+    raise refusal(f'{show(base)} is not a base; write "force" or "ground"')
 
 
 def building_parts(base: str, storeys: Iterable[tuple[Table, Fraction]]) -> list[object]:
@@ -202,10 +202,10 @@ class Shear(SceneTable):
 
 
 def _column_mass(value: object) -> Fraction:
-    mass = measured(value, "mass", 0)
+    mass = read_quantity(value, "mass", 0)
     if not mass:
         springs = 'type = "chain", parts { spring = "678 MN/m" } and { mass = "350 t" }'
-        raise wrong(f"columns without mass have no waves, and are springs; write {springs}")
+        raise refusal(f"columns without mass have no waves, and are springs; write {springs}")
     return mass
 
 
@@ -224,7 +224,7 @@ class Storey(SceneTable):
     floor_mass: Mass = Field(description='a mass such as "350 t"')
 
     def rod(self) -> ElasticRod:
-        """Its columns as one rod. Raises the error of `table.wrong`."""
+        """Its columns as one rod. Raises the error of `table.refusal`."""
         given = one_of(self, "stiffness", "columns", "shear")
         made = self.columns or self.shear
         stiffness = made.stiffness(self.height) if made else self.stiffness
@@ -235,13 +235,13 @@ class Storey(SceneTable):
     def _mass(self, given: str, made: Columns | Shear | None) -> Fraction:
         area, rho = (made.area, made.rho) if made else (None, None)
         if made and (made.A is None) != (rho is None) and given == "columns":
-            raise wrong("only one of A and rho; write both of the columns", given, "A" if made.A else "rho")
+            raise refusal("only one of A and rho; write both of the columns", given, "A" if made.A else "rho")
         if area is None or rho is None:
             if self.column_mass is None:
-                raise wrong('missing; write a mass such as "10.9 t"', "column_mass")
+                raise refusal('missing; write a mass such as "10.9 t"', "column_mass")
             return self.column_mass
         if self.column_mass is not None:
-            raise wrong(f"columns have rho of {given} already; write one of them", "column_mass")
+            raise refusal(f"columns have rho of {given} already; write one of them", "column_mass")
         return rho * area * self.height
 
 
@@ -250,7 +250,7 @@ class PhysicalBuilding(SceneTable):
 
     type: str
     base: Annotated[str, PlainValidator(known_base)] = Field(description='"force" or "ground"')
-    storey: Annotated[tuple[Storey, ...], FailFast(), BeforeValidator(listed)] = Field(description="a list of storeys")
+    storey: Annotated[tuple[Storey, ...], FailFast(), BeforeValidator(as_list)] = Field(description="a list of storeys")
     foundation_mass: Mass | None = None
     damping: Any = None
 
@@ -287,24 +287,24 @@ class PhysicalBuilding(SceneTable):
         )
 
     def _storeys(self) -> tuple[list[ElasticRod], list[Fraction]]:
-        """The rod of each storey, and the floor on it. Raises the error of `table.wrong`."""
+        """The rod of each storey, and the floor on it. Raises the error of `table.refusal`."""
         if not self.storey:
-            raise wrong("no storey; write at least one [[system.storey]]", "storey")
+            raise refusal("no storey; write at least one [[system.storey]]", "storey")
         rods: list[ElasticRod] = []
         floors: list[Fraction] = []
         for k, storey in enumerate(self.storey):
             if not 0 < storey.count <= MOST_STOREYS - len(rods):
                 most = f"{MOST_STOREYS} storeys in all"
-                raise wrong(f"{shown(storey.count)} is out of range; write 1 to {most}", "storey", k, "count")
-            with placed("storey", k):
+                raise refusal(f"{show(storey.count)} is out of range; write 1 to {most}", "storey", k, "count")
+            with key_context("storey", k):
                 rods += [storey.rod()] * storey.count
             floors += [storey.floor_mass] * storey.count
         return rods, floors
 
     def _foundation(self) -> Fraction | None:
-        """The mass of a foundation that is not moved with the ground. Raises the error of `table.wrong`."""
+        """The mass of a foundation that is not moved with the ground. Raises the error of `table.refusal`."""
         if self.base == "ground" and self.foundation_mass is not None:
-            raise wrong('base = "ground" moves the foundation, whatever its mass; leave it out', "foundation_mass")
+            raise refusal('base = "ground" moves the foundation, whatever its mass; leave it out', "foundation_mass")
         if self.base == "force" and self.foundation_mass is None:
-            raise wrong('missing, and base = "force" needs it; write a mass such as "350 t"', "foundation_mass")
+            raise refusal('missing, and base = "force" needs it; write a mass such as "350 t"', "foundation_mass")
         return self.foundation_mass

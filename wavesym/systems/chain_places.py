@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from wavesym.fields.table import Written, shown
+from wavesym.fields.table import WrittenDecimal, show
 from wavesym.mechanics.network import Point
 from wavesym.systems.drawing import Drawing
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
@@ -17,7 +17,7 @@ from wavesym.systems.station import Station
 def node(drawing: Drawing, at: str) -> int:
     """The point that a load acts on. MisplacedError."""
     position = position_of(at)
-    text = shown(position.written)
+    text = show(position.written)
     if position.x is None and position.name in drawing.names:
         return drawing.names[position.name]
     _, station, _ = _found(drawing, position, text)
@@ -30,7 +30,7 @@ def node(drawing: Drawing, at: str) -> int:
 
 def place(drawing: Drawing, position: Position, quantity: str, loaded: Collection[int]) -> Place:
     """The place of an output; `loaded` are the points that loads act on. MisplacedError."""
-    text = shown(Written(position.written))
+    text = show(WrittenDecimal(position.written))
     if position.x is None and position.name in drawing.names:
         return _at_node(drawing, drawing.names[position.name], position.side, quantity, text, loaded)
     line, station, before = _found(drawing, position, text)
@@ -50,7 +50,7 @@ def _found(drawing: Drawing, position: Position, text: str) -> tuple[str, Statio
         raise MisplacedError(f"{text} is not a place; write one, or the name of a node or branch")
     stations = drawing.lines[line]
     if not 0 <= x <= stations[-1].x:
-        raise MisplacedError(f"{text} is not on the chain; write a place from 0 to {shown(stations[-1].x)}")
+        raise MisplacedError(f"{text} is not on the chain; write a place from 0 to {show(stations[-1].x)}")
     before = next(k for k in reversed(range(len(stations))) if stations[k].x <= x)
     return line, stations[before] if stations[before].x == x else None, before
 

@@ -28,10 +28,10 @@ from pydantic import (
 from wavesym.fields.loads import Load
 from wavesym.fields.measured import Area, Density, Length, Mass, Modulus, Velocity, tidy
 from wavesym.fields.numbers import Numbers, Positives
-from wavesym.fields.table import SceneTable, listed, shown, without_usual, wrong
+from wavesym.fields.table import SceneTable, as_list, refusal, show, without_usual
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.length import LengthUnit
-from wavesym.mechanics.network import Network, parted
+from wavesym.mechanics.network import Network, with_contacts
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, single
 from wavesym.systems.dimensionless import DimensionlessSystem, LoadUnit
 from wavesym.systems.elastic import ElasticRod, Rods
@@ -75,10 +75,10 @@ COLLISION = System("collision", _families, _indices, smallest=4, step=2)
 
 
 def known_contacts(contacts: object) -> str:
-    """Whether contacts open. Raises the error of `table.wrong`."""
+    """Whether contacts open. Raises the error of `table.refusal`."""
     if contacts in ("closed", "open"):
         return str(contacts)
-    raise wrong(f'{shown(contacts)} is unknown; write "closed" or "open"')
+    raise refusal(f'{show(contacts)} is unknown; write "closed" or "open"')
 
 
 def collision_parts(
@@ -118,9 +118,9 @@ class Collision(Preset):
     def _closing(cls, velocity: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         for k in range(1, len(velocity)):
             if velocity[k] > velocity[k - 1]:
-                left = shown(velocity[k - 1])
-                raise wrong(
-                    f"{shown(velocity[k])} is more than the {left} on its left, and the bodies would part; write "
+                left = show(velocity[k - 1])
+                raise refusal(
+                    f"{show(velocity[k])} is more than the {left} on its left, and the bodies would part; write "
                     "that or less",
                     k,
                 )
@@ -150,7 +150,7 @@ class Collision(Preset):
     def network(self, loads: Sequence[Load], length: LengthUnit | None = None) -> Network:
         """The bodies and rods, with contacts that open where these do."""
         network = super().network(loads, length)
-        return network if self.contacts == "closed" else parted(network, range(2, self.m, 2))
+        return network if self.contacts == "closed" else with_contacts(network, range(2, self.m, 2))
 
     @property
     def tables(self) -> list[object]:
@@ -185,17 +185,17 @@ class PhysicalCollision(SceneTable):
     """Bodies from left to right, which touch at t = 0."""
 
     type: str
-    body: Annotated[tuple[Body, ...], FailFast(), BeforeValidator(listed)] = Field(description="a list of bodies")
+    body: Annotated[tuple[Body, ...], FailFast(), BeforeValidator(as_list)] = Field(description="a list of bodies")
     contacts: Any = "closed"
 
     def without_units(self) -> DimensionlessSystem:
         """As a collision without units, where rods differ part by part."""
         bodies = self.body
         if len(bodies) < 2:
-            raise wrong(f"{len(bodies)} bodies; write at least 2", "body")
+            raise refusal(f"{len(bodies)} bodies; write at least 2", "body")
         for k, (body, after) in enumerate(pairwise(bodies), 1):
             if after.velocity > body.velocity:
-                raise wrong(
+                raise refusal(
                     f"more than the {tidy(body.velocity)} m/s of the body on its left, and they would part; write that "
                     "or less",
                     "body",
@@ -226,4 +226,4 @@ class PhysicalCollision(SceneTable):
 
 
 def _unloaded(load: Mapping[str, Any]) -> LoadUnit:
-    raise wrong(f"{Collision.no_loads}; leave [[load]] out")
+    raise refusal(f"{Collision.no_loads}; leave [[load]] out")

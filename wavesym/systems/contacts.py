@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from wavesym.fields.table import wrong
+from wavesym.fields.table import refusal
 from wavesym.mechanics.network import Link, Network, Point
 from wavesym.systems.lines import Keys
 
 
 def refuse_impacts(points: Sequence[Point], contacts: Iterable[tuple[Link, Keys]]) -> None:
-    """Two rigid parts, each with where it is in a scene, must not strike each other. Raises that of `table.wrong`.
+    """Two rigid parts, each with where it is in a scene, must not strike each other. Raises that of `table.refusal`.
 
     Nor through what has no mass and touches both: all that contacts connect may have one rigid part.
     """
@@ -27,7 +27,7 @@ def refuse_impacts(points: Sequence[Point], contacts: Iterable[tuple[Link, Keys]
     for link, at in contacts:
         one, other = of(link.left), of(link.right)
         if rigid[one] and rigid[other]:
-            raise wrong(
+            raise refusal(
                 'a contact between two rigid parts ("fixed" and a motion are rigid too), which would need a law '
                 "of impact; write a rod on one side of it",
                 *at,
@@ -37,20 +37,20 @@ def refuse_impacts(points: Sequence[Point], contacts: Iterable[tuple[Link, Keys]
 
 
 def refuse_joined_friction(points: Sequence[Point], links: Sequence[Link], written: Mapping[int, Keys]) -> None:
-    """What rubs must be alone in its joint with a law that has a corner. Raises that of `table.wrong`."""
+    """What rubs must be alone in its joint with a law that has a corner. Raises that of `table.refusal`."""
     for joint in Network(tuple(points), (), tuple(links)).joints:
         corners = [link for link in links if link.has_corner and link.left in joint.points]
         rubbing = [link for link in corners if link.friction != 0]
         if rubbing and len(corners) > 1:
             other = "a contact" if len(rubbing) < len(corners) else "other friction"
-            raise wrong(
+            raise refusal(
                 f"joined to {other} by what has no length; write a rod between them",
                 *written[rubbing[0].right],
                 "friction",
             )
         for link in rubbing:
             if points[link.right].mass != 0 and _damps_massless(points, links, link.right):
-                raise wrong(
+                raise refusal(
                     "of a mass that a dashpot ties to a joint without mass, not proved; write a mass there too",
                     *written[link.right],
                     "friction",

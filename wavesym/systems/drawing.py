@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import refusal, show
 from wavesym.mechanics.length import LengthUnit, place_text
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
@@ -19,18 +19,18 @@ from wavesym.systems.parts import Branch, ChainPart, ContactPart, LinkPart, Moti
 from wavesym.systems.station import MAIN, Lines, Station
 
 
-def drawn(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawing:
-    """A chain and its branches. Raises the error of `table.wrong`."""
+def draw_parts(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawing:
+    """A chain and its branches. Raises the error of `table.refusal`."""
     pen = _Pen()
     pen.line(MAIN, parts, ("parts",))
     for number, branch in enumerate(branches):
         at = ("branch", number)
         if branch.from_ not in pen.names:
-            raise wrong(f"{shown(branch.from_)} is not a node before it; write the name of one", *at, "from")
+            raise refusal(f"{show(branch.from_)} is not a node before it; write the name of one", *at, "from")
         if branch.name in pen.lines or branch.name in pen.names:
-            raise wrong(f"{shown(branch.name)} is taken; write another name", *at, "name")
+            raise refusal(f"{show(branch.name)} is taken; write another name", *at, "name")
         if branch.ratio == 0:
-            raise wrong("0 is no ratio; write another number", *at, "ratio")
+            raise refusal("0 is no ratio; write another number", *at, "ratio")
         pen.agree(pen.names[branch.from_], branch)
         pen.line(branch.name, branch.parts, (*at, "parts"), pen.names[branch.from_], branch.ratio)
     return pen.drawing()
@@ -134,7 +134,7 @@ class _Pen:
             last, turns = stations[-1], ratio if begin is not None and k == 0 else Fraction(1)
             if isinstance(part, RodPart):
                 if part.name and any(part.name == bar.name for bar in self.bars):
-                    raise wrong(f"{shown(part.name)} is taken; write another name", *at, number, "name")
+                    raise refusal(f"{show(part.name)} is taken; write another name", *at, number, "name")
                 bar = self._bar(part, left, right, turns)
                 stations[-1] = replace(last, right=bar)
                 stations.append(Station(last.x + part.rod, (right,), bar, None))
@@ -173,15 +173,15 @@ class _Pen:
     def _wheel(self, point: int, part: ChainPart | str, ratio: Fraction, at: Keys) -> None:
         """What stands first in a branch turns with its node, `ratio` times as fast: the node has all of it."""
         if not isinstance(part, PointPart):
-            raise wrong(f"{shown(part)} first; write a mass, or what holds the branch to its node", *at)
+            raise refusal(f"{show(part)} first; write a mass, or what holds the branch to its node", *at)
         if part.name or part.velocity is not None:
             key = "name" if part.name else "velocity"
-            raise wrong("what turns with the node of the branch has that of the node; leave it out", *at, key)
+            raise refusal("what turns with the node of the branch has that of the node; leave it out", *at, key)
         if part.friction:
-            raise wrong("not of what turns with the node of a branch; write it at the node", *at, "friction")
+            raise refusal("not of what turns with the node of a branch; write it at the node", *at, "friction")
         square, here = rational(ratio) ** 2, self.points[point]
         if here.motion is not None:
-            raise wrong("a mass on an end that moves as it is told; write what holds the branch to it", *at)
+            raise refusal("a mass on an end that moves as it is told; write what holds the branch to it", *at)
         mass, damping, spring = (square * rational(each) for each in (part.inertia, part.dashpot, part.spring))
         self.points[point] = replace(
             here, mass=here.mass + mass, damping=here.damping + damping, stiffness=here.stiffness + spring
@@ -220,14 +220,14 @@ class _Pen:
         if point not in self.unsaid or not isinstance(first, RodPart):
             return
         if rational(first.velocity) != rational(branch.ratio) * self.points[point].velocity:
-            raise wrong(_UNSAID, *self.unsaid[point], "velocity")
+            raise refusal(_UNSAID, *self.unsaid[point], "velocity")
 
     def _become(self, point: int, part: ChainPart | str, rods: Sequence[RodPart], at: Keys) -> None:
         """Give a point what a part says of it; `rods` are those beside it."""
         if isinstance(part, PointPart):
             velocities = {rod.velocity for rod in rods}
             if part.velocity is None and len(velocities) > 1 and part.inertia:
-                raise wrong(_UNSAID, *at, "velocity")
+                raise refusal(_UNSAID, *at, "velocity")
             if part.velocity is None and part.inertia:
                 self.unsaid[point] = at
             velocity = part.velocity if part.velocity is not None else min(velocities, default=Fraction(0))
@@ -240,12 +240,12 @@ class _Pen:
             self.points[point] = Point(fmpq(0), motion="fixed")
         elif part == "absorbing":
             if not rods:
-                raise wrong('"absorbing" without a rod; write a rod beside it', *at)
+                raise refusal('"absorbing" without a rod; write a rod beside it', *at)
             self.points[point] = Point(fmpq(0), damping=rational(rods[0].impedance), absorbing=True)
         name = part.name if isinstance(part, PointPart | MotionPart) else None
         if name:
             if name in self.names or name in self.lines:
-                raise wrong(f"{shown(name)} is taken; write another name", *at, "name")
+                raise refusal(f"{show(name)} is taken; write another name", *at, "name")
             self.names[name] = point
 
     def _damped(self, number: int) -> bool:
@@ -268,9 +268,9 @@ class _Pen:
             return
         at = self.written[number]
         if any(number in (link.left, link.right) for link, _ in self.contacts):
-            raise wrong(
+            raise refusal(
                 "no mass, rod or dashpot holds a side of a contact, and what has lifted off needs a motion of "
                 "its own; write a dashpot beside its spring, or a mass",
                 *at,
             )
-        raise wrong("a joint without mass, rod or dashpot; write one of these at it", *at)
+        raise refusal("a joint without mass, rod or dashpot; write one of these at it", *at)

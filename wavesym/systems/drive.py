@@ -21,7 +21,7 @@ from wavesym.fields.measured import Bore, Density, Inertia, Length, Modulus, Sec
 from wavesym.fields.numbers import Integer, Numbers, Positives
 from wavesym.fields.rounding import polar_moment
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.fields.table import SceneTable, listed, placed, shown, without_usual, wrong
+from wavesym.fields.table import SceneTable, as_list, key_context, refusal, show, without_usual
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
@@ -77,7 +77,7 @@ class OnBody(Load):
         """A body that there is not."""
         if 1 <= self.body <= m + 1:
             return None
-        return f"{shown(self.body)} is not the number of a body; write 1 to {m + 1}", "body"
+        return f"{show(self.body)} is not the number of a body; write 1 to {m + 1}", "body"
 
     @property
     def sources(self) -> tuple[str, str]:
@@ -165,9 +165,9 @@ class Round(SceneTable):
     rho: Density = Field(description='a density such as "7850 kg/m^3"')
 
     def rod(self) -> ElasticRod:
-        """As a rod. Raises the error of `table.wrong`."""
+        """As a rod. Raises the error of `table.refusal`."""
         if one_of(self, "J", "diameter") == "J" and self.bore is not None:
-            raise wrong("stands beside J; write one of them", "bore")
+            raise refusal("stands beside J; write one of them", "bore")
         moment = self.J if self.diameter is None else self._polar(self.diameter)
         assert moment is not None  # one of the two is given
         return ElasticRod(
@@ -180,7 +180,7 @@ class Round(SceneTable):
     def _polar(self, diameter: Fraction) -> Fraction:
         bore = self.bore or Fraction(0)
         if bore >= diameter:
-            raise wrong("as wide as the shaft or wider; write a bore below the diameter", "bore")
+            raise refusal("as wide as the shaft or wider; write a bore below the diameter", "bore")
         return polar_moment(diameter, bore)
 
 
@@ -194,8 +194,8 @@ class PhysicalDrive(SceneTable):
     """Shafts from left to right, and one more disc than shafts."""
 
     type: str
-    shaft: Annotated[tuple[Round, ...], FailFast(), BeforeValidator(listed)] = Field(description="a list of shafts")
-    disc: Annotated[tuple[Disc, ...], FailFast(), BeforeValidator(listed)] = Field(description="a list of discs")
+    shaft: Annotated[tuple[Round, ...], FailFast(), BeforeValidator(as_list)] = Field(description="a list of shafts")
+    disc: Annotated[tuple[Disc, ...], FailFast(), BeforeValidator(as_list)] = Field(description="a list of discs")
     damping: Any = None
 
     def without_units(self) -> DimensionlessSystem:
@@ -233,18 +233,18 @@ class PhysicalDrive(SceneTable):
         bodies = len(self.disc)
         body = load.get("body")
         if not isinstance(body, int) or not 1 <= body <= bodies:
-            raise wrong(f"{shown(body)} is not the number of a body; write 1 to {bodies}", "body")
+            raise refusal(f"{show(body)} is not the number of a body; write 1 to {bodies}", "body")
         signed = -unit if body == bodies else unit
         return LoadUnit("moment", "moment rate", signed, {"body": "at"}, {"at": body - 1})
 
     def _rods(self) -> Rods:
-        """The shafts. Raises the error of `table.wrong`."""
+        """The shafts. Raises the error of `table.refusal`."""
         if not self.shaft:
-            raise wrong("no shaft; write at least one [[system.shaft]]", "shaft")
+            raise refusal("no shaft; write at least one [[system.shaft]]", "shaft")
         if len(self.disc) != len(self.shaft) + 1:
-            raise wrong(f"{len(self.disc)} discs; write {len(self.shaft) + 1} (one more than shafts)", "disc")
+            raise refusal(f"{len(self.disc)} discs; write {len(self.shaft) + 1} (one more than shafts)", "disc")
         rods = []
         for k, shaft in enumerate(self.shaft):
-            with placed("shaft", k):
+            with key_context("shaft", k):
                 rods.append(shaft.rod())
         return Rods.of(rods)

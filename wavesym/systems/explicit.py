@@ -11,14 +11,14 @@ from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, model
 
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds
-from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.fields.table import SceneTable, refusal, show
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import UnitLoad
 from wavesym.systems.chain_places import node, place
-from wavesym.systems.drawing import Drawing, drawn
+from wavesym.systems.drawing import Drawing, draw_parts
 from wavesym.systems.node_loads import NODE_LOADS, OnNode
-from wavesym.systems.parts import Branch, Parts, told
+from wavesym.systems.parts import Branch, Parts, describe_parts
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
 from wavesym.systems.station import Lines
 
@@ -39,7 +39,7 @@ class ExplicitChain(SceneTable):
         # which is refused where it cannot be drawn; a scene with units says what its places are told in
         network = self.drawing.network({}, info.context if isinstance(info.context, LengthUnit) else None)
         if self.damping and (other := _damper(network)):
-            raise wrong(f"stands beside {other}; write one of them", "damping")
+            raise refusal(f"stands beside {other}; write one of them", "damping")
         return self
 
     @model_serializer(mode="wrap")
@@ -49,7 +49,7 @@ class ExplicitChain(SceneTable):
     @cached_property
     def drawing(self) -> Drawing:
         """Its points, bars and links, and where they are."""
-        return drawn(self.parts, self.branch)
+        return draw_parts(self.parts, self.branch)
 
     @property
     def lines(self) -> Lines:
@@ -60,10 +60,11 @@ class ExplicitChain(SceneTable):
     def choices(self) -> Mapping[str, str]:
         """What it is made of, line by line."""
         branches = {
-            f"branch {each.name}": f"from {each.from_}, ratio {each.ratio}: {told(each.parts)}" for each in self.branch
+            f"branch {each.name}": f"from {each.from_}, ratio {each.ratio}: {describe_parts(each.parts)}"
+            for each in self.branch
         }
         damping = {"damping": self.damping.told} if self.damping else {}
-        return {"parts": told(self.parts), **branches, **damping}
+        return {"parts": describe_parts(self.parts), **branches, **damping}
 
     def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
@@ -77,7 +78,7 @@ class ExplicitChain(SceneTable):
             return str(error), "at"
         if self.drawing.points[point].motion == "fixed":
             return (
-                (f'{shown(position_of(_at(load)).written)} is a "fixed" end, which cannot move; write a node that can'),
+                (f'{show(position_of(_at(load)).written)} is a "fixed" end, which cannot move; write a node that can'),
                 "at",
             )
         return None

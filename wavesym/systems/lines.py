@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import refusal, show
 from wavesym.systems.parts import BETWEEN, ChainPart, ContactPart, LinkPart, MotionPart, RodPart
 
 Keys = tuple[str | int, ...]
@@ -22,7 +22,7 @@ def alternating(
 ) -> tuple[list[PlacedNode | None], list[PlacedBetween]]:
     """Nodes, one more than there is between them; None for one that is not written: a joint, or a free end.
 
-    A `branch` begins at a node that is there already. Raises the error of `table.wrong`.
+    A `branch` begins at a node that is there already. Raises the error of `table.refusal`.
     """
     nodes: list[PlacedNode | None] = [None]
     between: list[PlacedBetween] = []
@@ -35,9 +35,9 @@ def alternating(
             nodes.append(None)
             continue
         if nodes[-1] is not None:
-            raise wrong("a node beside another; write a rod, a spring or a dashpot between them", *at, k)
+            raise refusal("a node beside another; write a rod, a spring or a dashpot between them", *at, k)
         if 0 < k < len(parts) - 1 and (part in ("free", "fixed", "absorbing") or isinstance(part, MotionPart)):
-            raise wrong("an end between other parts; write a mass or a joint", *at, k)
+            raise refusal("an end between other parts; write a mass or a joint", *at, k)
         nodes[-1] = k, part
     _refuse_empty(between, at, branch, nodes[0] is not None)
     _refuse_ends(nodes, between, at, branch)
@@ -47,15 +47,15 @@ def alternating(
 def _refuse_loose(one: BETWEEN, other: BETWEEN, at: Keys) -> None:
     """Between two contacts nothing makes a joint of what is not written."""
     if isinstance(one, ContactPart) and isinstance(other, ContactPart):
-        raise wrong("a contact beside a contact; write a rod or a mass between them", *at)
+        raise refusal("a contact beside a contact; write a rod or a mass between them", *at)
 
 
 def _refuse_empty(between: Sequence[PlacedBetween], at: Keys, branch: bool, wheel: bool) -> None:
     """A chain has something between its nodes; a branch may be a `wheel` alone."""
     if not between and not (branch and wheel):
-        raise wrong("no rod, spring or dashpot; write at least one", *at)
+        raise refusal("no rod, spring or dashpot; write at least one", *at)
     if between and not branch and not any(isinstance(part, RodPart | LinkPart) for _, part in between):
-        raise wrong("contacts alone; write a rod, a spring or a dashpot, too", *at)
+        raise refusal("contacts alone; write a rod, a spring or a dashpot, too", *at)
 
 
 def _refuse_ends(nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:
@@ -65,10 +65,10 @@ def _refuse_ends(nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBet
     ends = [(nodes[-1], between[-1])] if branch else [(nodes[0], between[0]), (nodes[-1], between[-1])]
     for node, (k, part) in ends:
         if node is None and isinstance(part, LinkPart):
-            raise wrong("a spring or dashpot at an end; write something for it to hold", *at)
+            raise refusal("a spring or dashpot at an end; write something for it to hold", *at)
         if isinstance(part, ContactPart):
             if node is None:
-                raise wrong("a contact at an end; write something for it to touch", *at, k)
+                raise refusal("a contact at an end; write something for it to touch", *at, k)
             if node[1] in ("free", "absorbing"):
-                what = f'{shown(node[1])} beside a contact; write a rod, a mass, "fixed" or a motion'
-                raise wrong(what, *at, node[0])
+                what = f'{show(node[1])} beside a contact; write a rod, a mass, "fixed" or a motion'
+                raise refusal(what, *at, node[0])

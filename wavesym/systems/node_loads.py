@@ -7,19 +7,19 @@ from typing import Annotated
 from pydantic import Field, PlainValidator
 
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
-from wavesym.fields.numbers import LONGEST, Numbers, exact, written
+from wavesym.fields.numbers import LONGEST, Numbers, exact, number_text
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import refusal, show
 from wavesym.records.load import RecordedLoad
 from wavesym.systems.place import PlaceInUnits, position_of
 
 
 def _at(value: object) -> str:
-    text = written(value)
+    text = number_text(value)
     if text is None:
         text = str(exact(value))
     if len(text) > LONGEST:
-        raise wrong(f"{shown(value)} is too long; write at most {LONGEST} characters")
+        raise refusal(f"{show(value)} is too long; write at most {LONGEST} characters")
     position_of(text)
     return value if isinstance(value, PlaceInUnits) else str(text)
 

@@ -11,7 +11,7 @@ from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
 from wavesym.fields.damping import damping_ratio
 from wavesym.fields.numbers import Exact, Positive, exact
-from wavesym.fields.table import Faults, SceneTable, listed, shown, wrong
+from wavesym.fields.table import Faults, SceneTable, as_list, refusal, show
 
 _NAMES = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _MOST_TOLD = 40
@@ -20,20 +20,20 @@ MARKS = ("free", "fixed", "absorbing", "joint", "contact")
 
 def _name(value: object) -> str:
     if not isinstance(value, str) or not _NAMES.fullmatch(value):
-        raise wrong(f"{shown(value)} is not a name; write letters, digits and _, no digit first")
+        raise refusal(f"{show(value)} is not a name; write letters, digits and _, no digit first")
     return value
 
 
 def _not_negative(value: object) -> Fraction:
     number = exact(value)
     if number < 0:
-        raise wrong(f"{shown(value)} is negative; write a number of 0 or more")
+        raise refusal(f"{show(value)} is negative; write a number of 0 or more")
     return number
 
 
 def _true(value: object) -> bool:
     if value is not True:
-        raise wrong(f"{shown(value)} is not true; write true, or leave it out")
+        raise refusal(f"{show(value)} is not true; write true, or leave it out")
     return True
 
 
@@ -42,7 +42,7 @@ def _moved(value: object) -> Literal["velocity", "acceleration"]:
         return "velocity"
     if value == "acceleration":
         return "acceleration"
-    raise wrong(f'{shown(value)} is not a motion; write "velocity" or "acceleration"')
+    raise refusal(f'{show(value)} is not a motion; write "velocity" or "acceleration"')
 
 
 PartName = Annotated[str, PlainValidator(_name)]
@@ -134,7 +134,7 @@ class LinkPart(ChainPart):
     @model_validator(mode="after")
     def _something(self) -> LinkPart:
         if self.spring == self.dashpot == 0:
-            raise wrong("0 holds nothing; write a spring or a dashpot above 0")
+            raise refusal("0 holds nothing; write a spring or a dashpot above 0")
         return self
 
 
@@ -156,21 +156,21 @@ def _part(value: object) -> ChainPart | str:
         return value
     if isinstance(value, str):
         if value not in MARKS:
-            raise wrong(f"{shown(value)} is not a part; write {', '.join(MARKS)} or a table")
+            raise refusal(f"{show(value)} is not a part; write {', '.join(MARKS)} or a table")
         return value
     if not isinstance(value, Mapping):
-        raise wrong(f"{shown(value)} is not a part; write a table, or one of {', '.join(MARKS)}")
+        raise refusal(f"{show(value)} is not a part; write a table, or one of {', '.join(MARKS)}")
     kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
     if kind is LinkPart and not value.keys() & {"spring", "dashpot"}:
-        raise wrong("not a part; write one of rod, mass, joint, motion, contact, spring and dashpot")
+        raise refusal("not a part; write one of rod, mass, joint, motion, contact, spring and dashpot")
     return kind.model_validate(value)
 
 
 def read_parts(value: object) -> tuple[ChainPart | str, ...]:
-    """Parts as they are written. Raises the error of `table.wrong`, for all that are wrong at once."""
+    """Parts as they are written. Raises the error of `table.refusal`, for all that are wrong at once."""
     faults = Faults()
     found = []
-    for k, part in enumerate(listed(value)):
+    for k, part in enumerate(as_list(value)):
         with faults.gathered(k):
             found.append(_part(part))
     faults.refuse()
@@ -181,7 +181,7 @@ def _written(parts: tuple[ChainPart | str, ...]) -> list[Any]:
     return [part if isinstance(part, str) else part.model_dump(exclude_defaults=True) for part in parts]
 
 
-def told(parts: tuple[ChainPart | str, ...]) -> str:
+def describe_parts(parts: tuple[ChainPart | str, ...]) -> str:
     """Parts in a line; of a long one the first."""
     words = [part if isinstance(part, str) else _told(part) for part in parts[:_MOST_TOLD]]
     more = [f"... and {len(parts) - _MOST_TOLD} more"] if len(parts) > _MOST_TOLD else []

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple, Self
 
-from wavesym.fields.numbers import exact, written
-from wavesym.fields.table import wrong
+from wavesym.fields.numbers import exact, number_text
+from wavesym.fields.table import refusal
 from wavesym.fields.titles import check_title
 
 
@@ -43,14 +43,14 @@ class PlaceInUnits(str):
 _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?")
 
 
-def titled(value: Mapping[str, object]) -> tuple[object, str]:
-    """The place and the name for people of an output that is a table. Raises the error of `table.wrong`."""
+def read_titled_place(value: Mapping[str, object]) -> tuple[object, str]:
+    """The place and the name for people of an output that is a table. Raises the error of `table.refusal`."""
     for key in value:
         if key not in ("at", "name"):
-            raise wrong("unknown key; write at or name", str(key))
+            raise refusal("unknown key; write at or name", str(key))
     for key in ("at", "name"):
         if key not in value:
-            raise wrong(f"missing; write {'a place' if key == 'at' else 'a name for people'}", key)
+            raise refusal(f"missing; write {'a place' if key == 'at' else 'a name for people'}", key)
     return value["at"], check_title(value["name"], "name")
 
 
@@ -62,11 +62,11 @@ def position_of(value: object) -> Position:
     if isinstance(value, Position):
         return value
     if isinstance(value, Mapping):
-        place, title = titled(value)
+        place, title = read_titled_place(value)
         return position_of(place)._replace(title=title)
     if isinstance(value, PlaceInUnits):
         return position_of(str(value))._replace(written=value.written)
-    text = written(value)
+    text = number_text(value)
     if text is None:
         return Position(str(exact(value)), exact(value), 0)
     side = {"-": -1, "+": 1}.get(text[-1:], 0)

@@ -15,7 +15,7 @@ from pydantic import Field, ValidationInfo, field_validator
 from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.numbers import Integer
-from wavesym.fields.table import SceneTable, Written, shown, wrong
+from wavesym.fields.table import SceneTable, WrittenDecimal, refusal, show
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network, network_of
@@ -52,7 +52,7 @@ class Preset(SceneTable):
         fewest = cls.fewest or system.smallest
         if m < fewest or m % system.step:
             kind = "an even integer" if system.step == 2 else "an integer"
-            raise wrong(f"{shown(m)} is not {kind} of {fewest} or more; write one")
+            raise refusal(f"{show(m)} is not {kind} of {fewest} or more; write one")
         return m
 
     @field_validator("*")
@@ -64,7 +64,7 @@ class Preset(SceneTable):
             indices = cls.variants[0].indices(m)[name]
             count = max(0, -((indices.start - indices.stop) // indices.step))  # len() has a limit
             if len(value) != count:
-                raise wrong(f"{len(value)} numbers; write {shown(count)} ({cls.counts[name]})")
+                raise refusal(f"{len(value)} numbers; write {show(count)} ({cls.counts[name]})")
         return value
 
     @property
@@ -98,7 +98,7 @@ class Preset(SceneTable):
 
     def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
-        x, text = position.x, shown(Written(position.written))
+        x, text = position.x, show(WrittenDecimal(position.written))
         if x is None or not 0 <= x <= self.m:
             raise MisplacedError(f"{text} is not on the chain; write a position from 0 to {self.m}")
         divided = quantity in ("strain", "force") and self._divided_at(x, quantity)

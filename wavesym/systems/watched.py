@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Protocol
 
 from wavesym.fields.loads import Load
-from wavesym.fields.table import Written, shown
+from wavesym.fields.table import WrittenDecimal, show
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.systems.place import MisplacedError, Place, Position
@@ -39,7 +39,7 @@ class Watching:
 
     def place(self, position: Position, quantity: str) -> Place:
         """Where an output is. MisplacedError."""
-        text = shown(Written(position.written))
+        text = show(WrittenDecimal(position.written))
         if quantity == "drift":
             return self._rod(position, text)
         place = self.system.located(position, QUANTITIES[quantity].like, self.loads)

@@ -59,7 +59,7 @@ class Proof(NamedTuple):
         return self.cases > 0 and not self.failed
 
 
-def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
+def derivation_report(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
     """Every theorem with its argument and its proofs, and whether all hold.
 
     `watch` goes through the systems as they are proved.

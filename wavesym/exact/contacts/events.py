@@ -9,7 +9,7 @@ from flint import arb, fmpq
 
 from wavesym.mechanics.event import ContactEvent, KnownInstant
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Link, parted
+from wavesym.mechanics.network import Link, with_contacts
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 
@@ -87,7 +87,7 @@ def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
     for number in glued:
         if (latest := reached.get(network.joint_of[number])) is None:
             continue
-        apart = parted(network, (number,))
+        apart = with_contacts(network, (number,))
         (link,) = apart.links
         # what can reach the contact until its opening has the time to reach the nearest output
         distances = apart.distances((), (link.left, link.right))

@@ -15,7 +15,7 @@ from math import inf
 from flint import fmpq
 
 from wavesym.derivation.exact_rule import joint_rule
-from wavesym.derivation.increments import Increment, add, combined, integrated, trimmed
+from wavesym.derivation.increments import Increment, add, combine, integrate, trimmed
 from wavesym.derivation.table import Function, Part, Row, table_rows
 from wavesym.derivation.table_size import refuse_size
 from wavesym.exact.tables.foreseen import Foreseen
@@ -107,7 +107,7 @@ class RuledNetwork:
                     parts = [(fmpq(1), velocities.get(point, {}))]
                     if acts == START:
                         parts.append((fmpq(-1), {fmpq(0): [self.network.points[point].velocity]}))
-                    if gained := combined(parts):
+                    if gained := combine(parts):
                         found[watched].append((time, gained))
             return self._sent(number, acts, waves, velocities)
 
@@ -154,7 +154,7 @@ class RuledNetwork:
         for k, velocity in given.items():
             for other in (*law.heavy, *law.light):
                 add(forces[other], velocity, -law.damping[other][k])
-                add(forces[other], integrated(velocity), -law.stiffness[other][k])
+                add(forces[other], integrate(velocity), -law.stiffness[other][k])
         free = {k: trimmed(force) for k, force in forces.items() if law.given[k] is None}
         moved = self.joints.response(number).velocities(free, pushes)
         return {joint.points[k]: trimmed(velocity) for k, velocity in {**moved, **given}.items()}
@@ -168,7 +168,7 @@ class RuledNetwork:
             parts = [(bar.ratios[end.side], velocities.get(point, {})), (fmpq(-1), waves.get(end, {}))]
             if source == START:
                 parts.append((fmpq(-1), {fmpq(0): [bar.velocity]}))
-            if wave := combined(parts):
+            if wave := combine(parts):
                 yield end, wave
 
 

@@ -13,7 +13,7 @@ from math import inf
 
 from flint import fmpq
 
-from wavesym.derivation.increments import Increment, combined, differentiated, integrated
+from wavesym.derivation.increments import Increment, combine, differentiate, integrate
 from wavesym.derivation.increments import start as start_of
 from wavesym.derivation.table import Function
 from wavesym.errors import CostError
@@ -103,7 +103,7 @@ def observed(
                 if reading.point is not None and reading.quantity == "load" and load.time <= until:
                     acts = unit_at(ruled.network.points[reading.point], load.source)
                     here[load.time].append((weight * load.weight, acts))
-        moving = combined((weight, ruled.motion(reading)) for weight, reading in terms if parts[reading])
+        moving = combine((weight, ruled.motion(reading)) for weight, reading in terms if parts[reading])
         signals.append(_signal(probe, gains, moving, until))
     return tuple(signals)
 
@@ -115,12 +115,12 @@ _Gains = dict[fmpq, list[tuple[fmpq, Increment]]]
 def _signal(probe: Probe, every: dict[int, _Gains], moving: Increment, until: fmpq) -> Signal:
     """From what an output gains, and what that gains of which it is the integral, or the derivative; by order."""
     gains = every[0]
-    for order, change in ((-1, integrated), (1, differentiated)):
+    for order, change in ((-1, integrate), (1, differentiate)):
         for time, group in every[order].items():
-            gains[time].append((fmpq(1), change(combined(group))))
-    merged = {time: combined(group) for time, group in sorted(gains.items())}
+            gains[time].append((fmpq(1), change(combine(group))))
+    merged = {time: combine(group) for time, group in sorted(gains.items())}
     if moving:
-        merged[fmpq(0)] = combined([(fmpq(1), merged.get(fmpq(0), {})), (fmpq(1), moving)])
+        merged[fmpq(0)] = combine([(fmpq(1), merged.get(fmpq(0), {})), (fmpq(1), moving)])
     if until in merged and start_of(merged[until]) == 0:
         del merged[until]  # of what begins at the end of the horizon only the first value is seen
     return Signal(probe.name, tuple(Arrival(time, merged[time]) for time in sorted(merged) if merged[time]))

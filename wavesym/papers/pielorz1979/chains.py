@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.derivation.increments import Increment, combined, integrated, start
+from wavesym.derivation.increments import Increment, combine, integrate, start
 from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, System
@@ -228,7 +228,7 @@ class LoadedChain:
         key = source, *function, number, order
         if key not in self.known:
             increment = self.exact.responses[source][function][number]
-            self.known[key] = {0: integrated, 1: lambda same: same, 2: _derived}[order](increment)
+            self.known[key] = {0: integrate, 1: lambda same: same, 2: _derived}[order](increment)
         found: Increment = self.known[key]
         return found
 
@@ -257,7 +257,7 @@ class LoadedChain:
                 parts = [self.exact.increment(name, letter, rod, interval) for name in sources]
             except IndexError:
                 raise MeaninglessError(f"interval {interval} is beyond the tables") from None
-            self.known[key] = combined(zip(weights, parts, strict=True))
+            self.known[key] = combine(zip(weights, parts, strict=True))
         found: Increment = self.known[key]
         return found
 

@@ -18,7 +18,7 @@ from wavesym.pictures.page.said import SaidTable
 from wavesym.pictures.timescale import Timescale
 from wavesym.pictures.units import unit_text
 from wavesym.results.modes import modes
-from wavesym.results.summary import OutputSummary, Summary, summarised
+from wavesym.results.summary import OutputSummary, Summary, summarise
 from wavesym.scene import Scene
 from wavesym.scene.lowering import probes
 from wavesym.scene.outputs import Output, observables
@@ -115,7 +115,7 @@ def _outputs(scene: Scene, model: Model, summary: Summary | WavesymError) -> dic
     found = {} if isinstance(summary, WavesymError) else {each.name: each for each in summary.outputs}
     if missing := [probe for probe in _probes(scene) if probe.name not in found]:
         with suppress(WavesymError):
-            found |= {each.name: each for each in summarised(model.watching(missing)).outputs}
+            found |= {each.name: each for each in summarise(model.watching(missing)).outputs}
     return found
 
 

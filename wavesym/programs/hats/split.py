@@ -10,7 +10,7 @@ from itertools import pairwise
 from flint import fmpq
 
 from wavesym.errors import SpacingError
-from wavesym.mechanics.loads import Applied, merged
+from wavesym.mechanics.loads import Applied, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.programs.march.plan import readable
@@ -58,7 +58,7 @@ def split(model: Model) -> SplitLoads:
         record, jumps = _record(step, ramp, own, until)
         rest = [load for load in rest if load.source not in (step, ramp)] + jumps
         records.append(record)
-    return SplitLoads(merged(rest), tuple(records))
+    return SplitLoads(merge_loads(rest), tuple(records))
 
 
 def rest_of(model: Model) -> Model:

@@ -19,7 +19,7 @@ from flint import fmpq, fmpq_poly
 
 from wavesym.errors import UnservedError
 from wavesym.exact.arrivals import identically_zero
-from wavesym.mechanics.loads import Applied, AppliedRecord, merged
+from wavesym.mechanics.loads import Applied, AppliedRecord, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Point
 from wavesym.numbers.doubles import rational
@@ -131,7 +131,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real
         for load, changes in zip(loads, acting, strict=True)
         for change in changes
     )
-    own = march_plan(replace(model, loads=merged(known)), real, helps=HELPS)
+    own = march_plan(replace(model, loads=merge_loads(known)), real, helps=HELPS)
     is_zero = zero_outputs(free.some, loads, real)
     kept: list[Any] = [free.factors.force if probe.quantity == "force" else fmpq(1) for probe in model.probes]
     output_terms = tuple(

@@ -14,7 +14,7 @@ from math import inf, isfinite, log
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError, ToleranceError
-from wavesym.mechanics.loads import Applied, merged
+from wavesym.mechanics.loads import Applied, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
 from wavesym.numbers.reals import REALS, Real
@@ -179,7 +179,7 @@ def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValue
     applied = [Applied(plan.inputs[j].source, k * panel + late, rise / plan.inputs[j].size) for k, j, rise in jumps]
     looked = [(k + _PLACES[k % len(_PLACES)]) * panel for k in range(count)]
     taus = [nearest(tau) for tau in looked]
-    own = merged(applied) if plan.inputs else model.loads
+    own = merge_loads(applied) if plan.inputs else model.loads
     tested = replace(model.shortened(last), loads=own, endless=False)
     found = reference_values(tested, program.real, taus)
     columns = dict(zip(found.taus, zip(*found.values, strict=True), strict=True))

@@ -13,9 +13,9 @@ from typing import Any
 
 from pydantic import Field
 
-from wavesym.fields.measured import measured
+from wavesym.fields.measured import read_quantity
 from wavesym.fields.numbers import LONGEST, exact
-from wavesym.fields.table import Faults, SceneTable, listed, placed, shown, wrong
+from wavesym.fields.table import Faults, SceneTable, as_list, key_context, refusal, show
 from wavesym.scene.physical.chain_parts import OTHERS, RODS, LinkKeys, MotionKeys, RodKeys
 from wavesym.scene.physical.places import PlaceInMetres, place
 from wavesym.systems.dimensionless import DimensionlessSystem, Kind, LoadUnit
@@ -69,7 +69,7 @@ class PhysicalChain(SceneTable):
     damping: Any = None
 
     def without_units(self, kind: Kind) -> DimensionlessSystem:
-        """As a chain without units. Raises the error of `table.wrong`."""
+        """As a chain without units. Raises the error of `table.refusal`."""
         faults = Faults()
         main = _read(faults, self.parts, kind, "parts")
         branches = [_read(faults, branch.parts, kind, "branch", k, "parts") for k, branch in enumerate(self.branch)]
@@ -106,7 +106,7 @@ def _read(faults: Faults, parts: object, kind: Kind, *at: str | int) -> list[_Re
     """Parts by their keys; what is wrong with them is kept in `faults`."""
     values: Sequence[object] = ()
     with faults.gathered(*at):
-        values = listed(parts)
+        values = as_list(parts)
     found: list[_Read] = []
     for k, value in enumerate(values):
         with faults.gathered(*at, k):
@@ -153,7 +153,7 @@ class _Pen:
         x = Fraction(0)
         written: list[object] = []
         for keys, part in parts:
-            with placed(*keys):
+            with key_context(*keys):
                 if isinstance(part, RodKeys):
                     length = self.rods.all[self._next].length
                     written.append(self._rod(part, length))
@@ -178,10 +178,10 @@ class _Pen:
 
     def _strain(self, value: object) -> Fraction:
         """Of a rod at first: a number, in torsion an angle per length."""
-        with placed("strain"):
+        with key_context("strain"):
             if self.kind != "torsional":
                 return exact(value)
-            return measured(value, "rate of twist") * self.rods.first.length
+            return read_quantity(value, "rate of twist") * self.rods.first.length
 
     def _converted(self, part: SceneTable, *without: str) -> dict[str, object]:
         table: dict[str, object] = {}
@@ -192,22 +192,22 @@ class _Pen:
                 table[key] = value
                 continue
             least = None if key == "velocity" else 1 if key == "mass" else 0
-            with placed(key):
+            with key_context(key):
                 dimension = self.names[{"contact": "displacement", "friction": "force"}.get(key, key)]
-                table[key] = measured(value, dimension, least) / self._units[key]
+                table[key] = read_quantity(value, dimension, least) / self._units[key]
         return table
 
     def acting(self, load: Mapping[str, Any]) -> LoadUnit:
         """What a load does depends on where it is."""
         if "at" not in load:
             return LoadUnit(self.names["force"], self.names["force rate"], self.force)
-        with placed("at"):
+        with key_context("at"):
             found = place(load["at"], self.lines)
         at: object = found.name if isinstance(found, PlaceInMetres) and found.x is None else (found.line, found.x)
         unit = self.displacement / self.rods.seconds
         added = {"at": PlaceInUnits(found.dimensionless(self.rods.first.length), load["at"])}
         if len(added["at"]) > LONGEST:
-            raise wrong(f"{shown(load['at'])} has too many digits; write a place of fewer", "at")
+            raise refusal(f"{show(load['at'])} has too many digits; write a place of fewer", "at")
         match self.moved.get(at):
             case "velocity":
                 return LoadUnit(self.names["velocity"], self.names["acceleration"], unit, {}, added)

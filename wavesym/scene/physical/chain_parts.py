@@ -11,10 +11,10 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from wavesym.fields.measured import measured, missing, one_of
+from wavesym.fields.measured import missing, one_of, read_quantity
 from wavesym.fields.numbers import exact
 from wavesym.fields.rounding import polar_moment
-from wavesym.fields.table import SceneTable, placed, shown, wrong
+from wavesym.fields.table import SceneTable, key_context, refusal, show
 from wavesym.systems.dimensionless import Kind
 from wavesym.systems.elastic import ElasticRod
 from wavesym.systems.parts import PartName
@@ -37,16 +37,16 @@ class RodKeys(SceneTable):
     name: PartName | None = None
 
     def elastic(self, dashpot: str) -> ElasticRod:
-        """As waves see it; `dashpot` is the dimension of impedances. Raises the error of `table.wrong`."""
-        with placed("rod"):
-            length = measured(self.rod, "length", 1)
+        """As waves see it; `dashpot` is the dimension of impedances. Raises the error of `table.refusal`."""
+        with key_context("rod"):
+            length = read_quantity(self.rod, "length", 1)
         if self.impedance is None and self.speed is None:
             found = self._measured()
             return ElasticRod(length, self._mass(found) * length, self._stiffness(found) / length, self._square(found))
         for key in self.made_of():
             if getattr(self, key) is not None:
                 given = "impedance" if self.impedance is not None else "speed"
-                raise wrong(f"stands beside {given}; write one of them", key)
+                raise refusal(f"stands beside {given}; write one of them", key)
         impedance, speed = self._said("impedance", dashpot), self._said("speed", "velocity")
         return ElasticRod(length, impedance / speed * length, impedance * speed / length)
 
@@ -54,8 +54,8 @@ class RodKeys(SceneTable):
         value = getattr(self, key)
         if value is None:
             raise missing(dimension, key)
-        with placed(key):
-            return measured(value, dimension, least)
+        with key_context(key):
+            return read_quantity(value, dimension, least)
 
     def _measured(self) -> dict[str, Fraction]:
         return {key: self._said(key, dimension) for key, dimension in self.needed.items()}
@@ -104,10 +104,10 @@ class ShearRod(RodKeys):
     def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
         if self.k is None:
             return found["G"] * found["A"]
-        with placed("k"):
+        with key_context("k"):
             factor = exact(self.k)
             if factor <= 0:
-                raise wrong(f"{shown(self.k)} is not positive; write a number above 0")
+                raise refusal(f"{show(self.k)} is not positive; write a number above 0")
         return factor * found["G"] * found["A"]
 
 
@@ -128,12 +128,12 @@ class TorsionalRod(RodKeys):
     def _polar(self) -> Fraction:
         if one_of(self, "J", "diameter") == "J":
             if self.bore is not None:
-                raise wrong("stands beside J; write one of them", "bore")
+                raise refusal("stands beside J; write one of them", "bore")
             return self._said("J", "second moment of area")
         diameter = self._said("diameter", "length")
         bore = self._said("bore", "length", 0) if self.bore is not None else Fraction(0)
         if bore >= diameter:
-            raise wrong(f"{shown(self.bore)} is as wide as the shaft or wider; write less than the diameter", "bore")
+            raise refusal(f"{show(self.bore)} is as wide as the shaft or wider; write less than the diameter", "bore")
         return polar_moment(diameter, bore)
 
     def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:

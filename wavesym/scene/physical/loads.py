@@ -12,12 +12,12 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
-from wavesym.fields.measured import measured
+from wavesym.fields.measured import read_quantity
 from wavesym.fields.numbers import decimal_text, exact
 from wavesym.fields.quantity import unit
-from wavesym.fields.table import Written, listed, placed, shown, wrong
+from wavesym.fields.table import WrittenDecimal, as_list, key_context, refusal, show
 from wavesym.records.record_file import RecordFile, damaged
-from wavesym.records.recording import Recording, recorded
+from wavesym.records.recording import Recording, read_recording
 from wavesym.systems.dimensionless import LoadUnit
 
 _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
@@ -27,12 +27,12 @@ Acts = Callable[[Mapping[str, Any]], LoadUnit]
 
 
 def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
-    """A load's table. Raises the error of `table.wrong`."""
+    """A load's table. Raises the error of `table.refusal`."""
     table: dict[str, Any] = {}
     said = {"unit", "samples"} | ({"record", "start", "column"} if "record" in load else set())  # converted below
     for key, value in load.items():
         new = acting.renamed.get(key, key)
-        with placed(key):
+        with key_context(key):
             if key == "times":
                 table[new] = _times(value, seconds)
             elif key in _VALUES:
@@ -40,13 +40,13 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
             elif key in _SLOPES:
                 table[new] = _all(value, acting.slope, acting.size / seconds)
             elif key == "amplitude":
-                table[new] = measured(value, acting.dimension) / acting.size
+                table[new] = read_quantity(value, acting.dimension) / acting.size
             elif key == "frequency":
-                table[new] = measured(value, "frequency", 1) * seconds
+                table[new] = read_quantity(value, "frequency", 1) * seconds
             elif key == "duration" or (key == "start" and "shape" in load):
-                table[new] = measured(value, "time", int(key == "duration")) / seconds
+                table[new] = read_quantity(value, "time", int(key == "duration")) / seconds
             elif key == "spacing":
-                table[new] = measured(value, "time", 1) / seconds
+                table[new] = read_quantity(value, "time", 1) / seconds
             elif key not in said:
                 table[new] = value
     if "record" in load:
@@ -54,22 +54,21 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
     elif "samples" in load:
         table["samples"] = _samples(load, acting)
     elif "unit" in load:
-        raise wrong("is that of samples or a record; write these, or leave it out", "unit")
+        raise refusal("is that of samples or a record; write these, or leave it out", "unit")
     return {**table, **acting.added}
 
 
 def _times(value: object, seconds: Fraction) -> list[Fraction]:
     """Times in tau; here they are compared, as messages show them as they were given."""
-    values = listed(value)
+    values = as_list(value)
     times = []
     for k, each in enumerate(values):
-        with placed(k):
-            times.append(measured(each, "time", 0))
+        with key_context(k):
+            times.append(read_quantity(each, "time", 0))
     for k, (before, time) in enumerate(pairwise(times), 1):
         if time <= before:
-            raise wrong(
-                f"{shown(values[k])} is not later than the {shown(values[k - 1])} before it; write times "
-                "in rising order",
+            raise refusal(
+                f"{show(values[k])} is not later than the {show(values[k - 1])} before it; write times in rising order",
                 k,
             )
     return [time / seconds for time in times]
@@ -77,9 +76,9 @@ def _times(value: object, seconds: Fraction) -> list[Fraction]:
 
 def _all(value: object, dimension: str, size: Fraction) -> list[Fraction]:
     numbers = []
-    for k, each in enumerate(listed(value)):
-        with placed(k):
-            numbers.append(measured(each, dimension) / size)
+    for k, each in enumerate(as_list(value)):
+        with key_context(k):
+            numbers.append(read_quantity(each, dimension) / size)
     return numbers
 
 
@@ -87,8 +86,8 @@ def _samples(load: Mapping[str, Any], acting: LoadUnit) -> list[Fraction]:
     """Bare numbers, all in one unit."""
     factor = _unit(load, acting)
     numbers = []
-    for k, each in enumerate(listed(load["samples"])):
-        with placed("samples", k):
+    for k, each in enumerate(as_list(load["samples"])):
+        with key_context("samples", k):
             numbers.append(exact(each) * factor)
     return numbers
 
@@ -97,24 +96,24 @@ def _unit(load: Mapping[str, Any], acting: LoadUnit) -> Fraction:
     """How much a sample of 1 is without units."""
     if load.get("unit") is None:
         example = DIMENSIONS[acting.dimension].example.partition(" ")[2]
-        raise wrong(f'missing; write the unit of the samples, such as "{example}"', "unit")
-    with placed("unit"):
+        raise refusal(f'missing; write the unit of the samples, such as "{example}"', "unit")
+    with key_context("unit"):
         return unit(load["unit"], acting.dimension) / acting.size
 
 
 def read(load: object, acts: Acts) -> object:
-    """A load whose record is what was in its file. Raises the error of `table.wrong`."""
+    """A load whose record is what was in its file. Raises the error of `table.refusal`."""
     if not isinstance(load, Mapping) or not isinstance(path := load.get("record"), str | PathLike):
         return load
     dimension, spacing = acts(load).dimension, None
     if "spacing" in load:
-        with placed("spacing"):
-            spacing = measured(load["spacing"], "time", 1)
-    with placed("record"):
+        with key_context("spacing"):
+            spacing = read_quantity(load["spacing"], "time", 1)
+    with key_context("record"):
         try:
-            recording = recorded(path, load.get("column"), lambda said: _told(said, dimension, spacing))
+            recording = read_recording(path, load.get("column"), lambda said: _told(said, dimension, spacing))
         except SceneError as error:
-            raise wrong(str(error)) from None
+            raise refusal(str(error)) from None
     return {**load, "record": recording}
 
 
@@ -131,27 +130,27 @@ def _told(said: RecordFile, dimension: str, spacing: Fraction | None) -> Fractio
 
 def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
     """A record without units. What its file says may be said again, but not otherwise."""
-    with placed("record"):
+    with key_context("record"):
         if not isinstance(load["record"], Recording | Mapping):
-            raise wrong(f"{shown(load['record'])} is not a path; write that of a file")
+            raise refusal(f"{show(load['record'])} is not a path; write that of a file")
         recording = Recording.model_validate(load["record"])  # as it is, or as it was dumped
         clock = _clock(recording.clock)
         said = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
     factor = _unit(load, acting) if said is None or "unit" in load else said
     if said is not None and said != factor:
-        written = shown(Written(recording.unit))
-        raise wrong(f"{shown(load['unit'])}, but the file says {written}; write that, or nothing", "unit")
+        written = show(WrittenDecimal(recording.unit))
+        raise refusal(f"{show(load['unit'])}, but the file says {written}; write that, or nothing", "unit")
     made: dict[str, Any] = {"samples": [sample * factor for sample in recording.samples]}
     table: dict[str, Any] = {"record": made}
     for key, least, told in (("spacing", 1, recording.spacing), ("start", 0, recording.start)):
         if told is not None:
             made[key] = told * clock / seconds
         if key in load:
-            with placed(key):
-                time = measured(load[key], "time", least)
+            with key_context(key):
+                time = read_quantity(load[key], "time", least)
                 if told is not None and time != told * clock:
                     written = f"{decimal_text(told)} {recording.clock or 's'}"
-                    raise wrong(f"{shown(load[key])}, but the file says {written}; write that, or nothing")
+                    raise refusal(f"{show(load[key])}, but the file says {written}; write that, or nothing")
             table[key] = time / seconds
     return table
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from wavesym.fields.measured import tidy
-from wavesym.fields.quantity import quantity
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.quantity import si_value
+from wavesym.fields.table import refusal, show
 from wavesym.systems.place import Position
 
 _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?", re.DOTALL)
@@ -42,19 +42,19 @@ class PlaceInMetres:
 
 
 def place(value: object, lines: Mapping[str, Fraction]) -> PlaceInMetres:
-    """A place on one of some lines, with how long each is in m. Raises the error of `table.wrong`."""
+    """A place on one of some lines, with how long each is in m. Raises the error of `table.refusal`."""
     if not isinstance(value, str):
-        raise wrong(f'{shown(value)} is not a place; write one such as "1.2 m", or the name of a node')
+        raise refusal(f'{show(value)} is not a place; write one such as "1.2 m", or the name of a node')
     side = {"-": -1, "+": 1}.get(value[-1:], 0)
     bare = value[:-1] if side else value
     if not (found := _NAMED.fullmatch(bare)):
-        return PlaceInMetres(value, "", _along("", quantity(bare, "length"), value, lines), side)
+        return PlaceInMetres(value, "", _along("", si_value(bare, "length"), value, lines), side)
     if found[2] is None:
         return PlaceInMetres(value, found[1], None, side)
-    return PlaceInMetres(value, found[1], _along(found[1], quantity(found[2], "length"), value, lines), side)
+    return PlaceInMetres(value, found[1], _along(found[1], si_value(found[2], "length"), value, lines), side)
 
 
 def _along(line: str, x: Fraction, value: str, lines: Mapping[str, Fraction]) -> Fraction:
     if line in lines and not 0 <= x <= lines[line]:
-        raise wrong(f"{shown(value)} is not on the chain; write a place from 0 to {tidy(lines[line])} m")
+        raise refusal(f"{show(value)} is not on the chain; write a place from 0 to {tidy(lines[line])} m")
     return x

@@ -8,13 +8,13 @@ from typing import Any
 _MOST_PARTS, _MOST_NUMBERS = 40, 8
 
 
-def words(value: Any) -> str:
+def describe(value: Any) -> str:
     """Tables and lists as text; of long ones how long they are."""
     match value:
         case Mapping():
             return ", ".join(_keyed(key, each) for key, each in value.items())
         case list():
-            parts = [words(each) for each in value[:_MOST_PARTS]]
+            parts = [describe(each) for each in value[:_MOST_PARTS]]
             more = [f"... and {len(value) - _MOST_PARTS} more"] if len(value) > _MOST_PARTS else []
             return " | ".join([*parts, *more])
     return str(value)
@@ -28,5 +28,5 @@ def _keyed(key: str, value: Any) -> str:
             return f"{len(value)} {key}"
         return f"{key} {', '.join(map(str, value))}"
     if isinstance(value, Mapping):
-        return f"{key} ({words(value)})"
-    return key if value is True else f"{key} {words(value)}"
+        return f"{key} ({describe(value)})"
+    return key if value is True else f"{key} {describe(value)}"

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from wavesym.fields.quantity import unit
-from wavesym.fields.table import SceneTable, placed, shown, wrong
+from wavesym.fields.table import SceneTable, key_context, refusal, show
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.length import LengthUnit
 from wavesym.numbers.doubles import rational
@@ -49,7 +49,7 @@ class UnitsTable(SceneTable):
         for kind in KINDS:
             if self.kind == kind:
                 return kind
-        raise wrong(f'{shown(self.kind)} is not a kind of waves; write "longitudinal", "torsional" or "shear"', "kind")
+        raise refusal(f'{show(self.kind)} is not a kind of waves; write "longitudinal", "torsional" or "shear"', "kind")
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Results:
 
     @classmethod
     def of(cls, units: UnitsTable, kind: Kind) -> Results:
-        """Those of a scene. Raises the error of `table.wrong`."""
+        """Those of a scene. Raises the error of `table.refusal`."""
         dimensions = {key: key for key in _DEFAULTS} | (_ROUND | {"force": "force"} if kind == "torsional" else _ALONG)
         texts: dict[str, str] = {}
         sizes: dict[str, Fraction] = {}
@@ -69,7 +69,7 @@ class Results:
             given = getattr(units, key)
             if given is None:
                 given = usual.replace("m/", "rad/") if dimensions[key].startswith("angular") else usual
-            with placed(key):
+            with key_context(key):
                 sizes[key] = unit(given, dimensions[key])
             texts[key] = str(given)
         return cls(texts, sizes)

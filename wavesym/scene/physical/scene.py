@@ -10,20 +10,20 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
-from wavesym.fields.measured import measured, plain, tidy
+from wavesym.fields.measured import plain, read_quantity, tidy
 from wavesym.fields.numbers import exact
-from wavesym.fields.table import Fault, Faults, key_path, placed, shown, wrong
+from wavesym.fields.table import Fault, Faults, key_context, key_path, refusal, show
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.scene.outputs import LONGEST_HORIZON
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.loads import Acts, dimensionless, read
 from wavesym.scene.physical.places import place
-from wavesym.scene.physical.said import words
+from wavesym.scene.physical.said import describe
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
 from wavesym.systems import PHYSICAL, SYSTEMS, ExplicitChain, SystemTable, WrittenOut
 from wavesym.systems.dimensionless import DimensionlessSystem
-from wavesym.systems.place import titled
+from wavesym.systems.place import read_titled_place
 
 _LENGTHS = {each.name for each in QUANTITIES.values() if each.like}
 """Outputs whose places are lengths on a chain; a drift counts rods."""
@@ -50,24 +50,24 @@ class PhysicalScene:
     @property
     def system(self) -> dict[str, str]:
         """What it is made of, by key."""
-        return {key: words(value) for key, value in self.said["system"].items() if key != "type"}
+        return {key: describe(value) for key, value in self.said["system"].items() if key != "type"}
 
     @property
     def loads(self) -> tuple[str, ...]:
         """A line for each load."""
         loads = self.said.get("load", ())
-        return tuple(words({key: value for key, value in load.items() if key != "name"}) for load in loads)
+        return tuple(describe({key: value for key, value in load.items() if key != "name"}) for load in loads)
 
 
 def physical(fields: Mapping[str, Any]) -> PhysicalScene:
-    """The fields of a scene with [units], rewritten. Raises the error of `table.wrong`, or of a table's validation."""
-    with placed("units"):
+    """The fields of a scene with [units], rewritten. Raises that of `table.refusal`, or of a validation."""
+    with key_context("units"):
         units = UnitsTable.model_validate(fields["units"])
     made = dict(fields)
     found = _system(fields.get("system"), units)
-    with placed("units"):
+    with key_context("units"):
         results = Results.of(units, found.kind)
-    with placed("system"), _of_quantities(fields["system"]):  # before loads and places on it
+    with key_context("system"), _of_quantities(fields["system"]):  # before loads and places on it
         length = results.length(found.lengths[0]) if found.lines is not None else None
         made["system"] = _table(found.system).model_validate(found.system, context=length)
     seconds = found.rods.seconds
@@ -116,20 +116,20 @@ def _table(system: Mapping[str, object]) -> type[SystemTable]:
 
 def _system(table: object, units: UnitsTable) -> DimensionlessSystem:
     if not isinstance(table, Mapping):
-        raise wrong(f"{shown(table)} is not a table; write [system]", "system")
+        raise refusal(f"{show(table)} is not a table; write [system]", "system")
     kind = table.get("type")
     if kind == "chain":
-        with placed("units"):
+        with key_context("units"):
             moved = units.chain_kind()
-        with placed("system"):
+        with key_context("system"):
             return PhysicalChain.model_validate(table).without_units(moved)
     if not isinstance(kind, str) or kind not in PHYSICAL:
         *others, last = (f'"{name}"' for name in (*PHYSICAL, "chain"))
-        what = "missing" if kind is None else f"{shown(kind)} is not a system"
-        raise wrong(f"{what}; write {', '.join(others)} or {last}", "system", "type")
+        what = "missing" if kind is None else f"{show(kind)} is not a system"
+        raise refusal(f"{what}; write {', '.join(others)} or {last}", "system", "type")
     if units.kind is not None:
-        raise wrong(f"only chains have a choice, a {kind} has none; leave it out", "units", "kind")
-    with placed("system"):
+        raise refusal(f"only chains have a choice, a {kind} has none; leave it out", "units", "kind")
+    with key_context("system"):
         return PHYSICAL[kind].model_validate(table).without_units()
 
 
@@ -159,15 +159,15 @@ def _until(value: object, seconds: Fraction) -> object:
     try:
         return exact(value)
     except PydanticCustomError:
-        tau = measured(value, "time", 1) / seconds
+        tau = read_quantity(value, "time", 1) / seconds
     if tau > LONGEST_HORIZON:
         most = f"{tidy(LONGEST_HORIZON * seconds)} s ({LONGEST_HORIZON} of tau) or less"
-        raise wrong(f"{shown(value)} is {tidy(tau)} of tau, too long a horizon; write {most}")
+        raise refusal(f"{show(value)} is {tidy(tau)} of tau, too long a horizon; write {most}")
     return tau
 
 
 def _position(at: object, found: DimensionlessSystem, quantity: str, k: int) -> object:
     assert found.lines is not None  # places are lengths
-    with placed(quantity, k):
-        written, title = titled(at) if isinstance(at, Mapping) else (at, "")
+    with key_context(quantity, k):
+        written, title = read_titled_place(at) if isinstance(at, Mapping) else (at, "")
         return place(written, found.lines).position(found.rods.first.length)._replace(title=title)
