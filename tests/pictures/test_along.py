@@ -35,7 +35,7 @@ def exact(scene: Scene, quantity: str, places: list[str], taus: np.ndarray) -> n
 
 def test_floors_and_storeys_are_those_of_outputs() -> None:
     relative, drift = along(GROUND, lower(GROUND))
-    assert [spot.written for spot in drift.bands[0].spots] == ["1", "2", "3"]
+    assert [spot.position for spot in drift.bands[0].spots] == ["1", "2", "3"]
     at = relative.taus[::37]
     floors = exact(GROUND, "displacement", ["0", "1", "2", "3"], at)
     size = np.max(np.abs(floors))
@@ -65,7 +65,7 @@ def test_numbers_from_units_may_be_longer_than_text() -> None:
 def test_strains_run_from_end_to_end_of_each_rod() -> None:
     drive = Scene.from_toml("drive_m1")
     _, strain = along(drive, lower(drive))
-    written = [spot.written for spot in strain.bands[0].spots]
+    written = [spot.position for spot in strain.bands[0].spots]
     assert (written[0], written[-1]) == ("0+", "1-")
     assert strain.bands[0].spots[0].low == 0
     assert strain.bands[0].spots[-1].high == 1

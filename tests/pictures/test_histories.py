@@ -293,7 +293,7 @@ def test_many_curves_that_turn_often_have_strips_on_one_axis() -> None:
     assert [strip.histories[0].name for strip in strips] == [f"drift@{k}" for k in range(24)]
     assert "drift: the first 24 of 30 outputs that move are drawn" in notes(made)
     assert {strip.limits for strip in strips} == {(-2.0, 2.0)}
-    assert strips[1].told == "drift@1: 2 mm at 0.035, -2 mm at 0.105"
+    assert strips[1].summary == "drift@1: 2 mm at 0.035, -2 mm at 0.105"
     figure = draw(made)
     assert len({axes.get_ylim() for axes in figure.axes}) == 1
     assert texts_keep_clear(figure)

@@ -439,7 +439,7 @@ def test_all_that_a_chain_is_made_of_is_drawn() -> None:
     assert made.drawn.count('class="mass"') == 3
     assert made.drawn.count('class="rod"') == 4
     assert made.drawn.count('class="place"') == 2
-    assert "1 contact" in made.told
+    assert "1 contact" in made.description
 
 
 def test_report_is_a_command(

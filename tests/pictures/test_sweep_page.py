@@ -186,7 +186,7 @@ def test_a_scene_of_any_case_is_that_of_the_plan(folder: Path) -> None:
     found = results(folder)
     assert found.scene(3)["system"]["kappa"] == ["1/4"]
     assert found.scene(3)["output"]["until"] == 5
-    assert found.told(5) == {"system.kappa[0]": "0.5", "output.until": "5"}
+    assert found.labels_at(5) == {"system.kappa[0]": "0.5", "output.until": "5"}
 
 
 @pytest.mark.slow

@@ -120,7 +120,7 @@ def on(parts: list[object], at: str, unit: str, velocity: str) -> Scene:
     """The layers of soil.toml on a base, under a pulse of that unit at a place; the velocity at another."""
     said = scene("soil").physical
     assert said
-    layers = [part for part in said.said["system"]["parts"] if part == "free" or "rod" in part]
+    layers = [part for part in said.fields_in_units["system"]["parts"] if part == "free" or "rod" in part]
     return Scene(
         name="s",
         units={"kind": "shear"},

@@ -809,12 +809,12 @@ def test_what_is_refused_later_speaks_of_seconds_too(tmp_path: Path, capsys: pyt
 
 def test_taus_in_a_message_have_their_times_beside_them() -> None:
     clock = Clock(fmpq(1, 8), fmpq(125), "ms")
-    assert clock.beside("a bound to tau = 1.6e+1 for x") == "a bound to tau = 1.6e+1 (2000 ms) for x"
-    assert clock.beside("by tau = 58.5, at most 3 expected.") == "by tau = 58.5 (7312.5 ms), at most 3 expected."
-    assert clock.beside("from tau = 4. 3 nodes times 8 units of tau") == (
+    assert clock.append_times("a bound to tau = 1.6e+1 for x") == "a bound to tau = 1.6e+1 (2000 ms) for x"
+    assert clock.append_times("by tau = 58.5, at most 3 expected.") == "by tau = 58.5 (7312.5 ms), at most 3 expected."
+    assert clock.append_times("from tau = 4. 3 nodes times 8 units of tau") == (
         "from tau = 4 (500 ms). 3 nodes times 8 units of tau (1000 ms)"
     )
-    assert clock.beside("a tau that is no number") == "a tau that is no number"
+    assert clock.append_times("a tau that is no number") == "a tau that is no number"
 
 
 def test_places_of_pictures_have_units() -> None:

@@ -159,7 +159,7 @@ def test_a_sweep_is_the_product_of_what_is_varied(folder: Path) -> None:
     scenes = [made.scene(made.place(case)) for case in range(made.cases)]
     assert [scene.system.kappa[0] for scene in scenes[::2]] == [Fraction(1, 20) + k * Fraction(3, 20) for k in range(4)]
     assert [scene.output.until for scene in scenes[:2]] == [Fraction(1, 10), 5]
-    assert made.told(made.place(3)) == {"system.kappa[0]": "1/5", "output.until": "5"}
+    assert made.labels_at(made.place(3)) == {"system.kappa[0]": "1/5", "output.until": "5"}
 
 
 def test_ratios_are_equal_and_their_ends_exact(folder: Path) -> None:
@@ -256,7 +256,7 @@ def test_any_sweep_is_refused_in_a_line_or_has_all_its_cases(vary: dict, zipped:
     counts = [each["count"] if isinstance(each, dict) else len(each) for each in vary.values()]
     assert made.cases == (counts[0] if zipped else prod(counts))
     for case in {0, made.cases // 2, made.cases - 1}:
-        told = made.told(made.place(case))
+        told = made.labels_at(made.place(case))
         assert set(told) == set(vary)
         try:
             scene = made.scene(made.place(case))

@@ -71,7 +71,7 @@ def _blamed(scene: Scene, file: str) -> Iterator[None]:
     except SceneError:  # has its file
         raise
     except WavesymError as error:
-        what = scene.scale.clock.beside(str(error)) if scene.scale else str(error)
+        what = scene.scale.clock.append_times(str(error)) if scene.scale else str(error)
         # keeps its class, and so its exit status
         raise type(error)(str(SceneError(what, file=file))) from None
 

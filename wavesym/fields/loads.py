@@ -56,7 +56,7 @@ class Load(SceneTable):
         """The time between its samples, where it has any."""
         return None
 
-    def refused(self, m: int) -> tuple[str, str] | None:
+    def fault(self, m: int) -> tuple[str, str] | None:
         """What is wrong with it on a system of m elements, and under which key; None where nothing is."""
         return None
 
@@ -66,7 +66,7 @@ class Load(SceneTable):
 
     @property
     @abstractmethod
-    def told(self) -> str:
+    def description(self) -> str:
         """In a line, and a long one by its size; empty where it is nothing."""
 
 
@@ -127,7 +127,7 @@ class TimedLoad(Load):
                 yield Applied(source, rational(time), rational(numbers[k]))
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """In a line, and a long one by its size; empty where it is nothing."""
         line = ", ".join(f"{unit.weight} {unit.source} at {unit.time}" for unit in self.units() if unit.weight)
         if len(line) > _LONG:
@@ -158,7 +158,7 @@ class SampledLoad(Load):
         return linear(Fraction(0), self.spacing, self.samples, self.sources)
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """In a line."""
         last = (len(self.samples) - 1) * self.spacing
         return f"{len(self.samples)} samples at {self.spacing}, to tau = {last}"

@@ -167,7 +167,7 @@ class ShapedLoad(Load):
         return self.samples if self.shape in ("sine", "half-sine") else (*self.samples, fmpq(0))
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """In a line."""
         pace = f"{SHAPES[self.shape]} {getattr(self, SHAPES[self.shape])}"
         return f"{self.shape} of amplitude {self.amplitude}, {pace}, from tau = {self.start}, {self.sampling}"

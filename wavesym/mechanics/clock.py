@@ -26,11 +26,11 @@ class Clock:
         """The double nearest to a tau in the unit."""
         return nearest(tau * self.per_tau)
 
-    def told(self, tau: fmpq) -> str:
+    def format(self, tau: fmpq) -> str:
         """A tau in the unit, for people."""
         return f"{self.time(tau):.9g} {self.unit}"
 
-    def beside(self, text: str) -> str:
+    def append_times(self, text: str) -> str:
         """A message that speaks of tau, with what that is in the unit behind each."""
         per_tau = nearest(self.per_tau)
         return _TAU.sub(lambda found: f"{found[0]} ({float(found[1] or found[2]) * per_tau:.5g} {self.unit})", text)

@@ -23,7 +23,7 @@ class Damping:
         return any(self.ratios)
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """In a line."""
         ratios = ", ".join(map(str, self.ratios))
         return f"{ratios} in modes {self.modes[0]} and {self.modes[1]}, Rayleigh" if self.modes else ratios

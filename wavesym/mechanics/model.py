@@ -78,10 +78,10 @@ class Model:
         """Its numbers by name: those of a preset, or of the parts of the network."""
         return self.preset or PartParameters(self.network)
 
-    def told(self, load: Applied) -> str:
+    def describe_step(self, load: Applied) -> str:
         """A step of a load, in units where there are any: how much, and when."""
         factor, unit = self.inputs.get(load.source, (fmpq(1), ""))
-        when = self.clock.told(load.time) if self.clock else f"tau = {nearest(load.time):g}"
+        when = self.clock.format(load.time) if self.clock else f"tau = {nearest(load.time):g}"
         node, parts, _ = load.source.partition(":")  # of a chain, NODE:step
         if parts:
             point = next(p for p in self.network.points if any(unit.source == load.source for unit in p.loads))

@@ -32,6 +32,6 @@ class Probe:
         return self.title or self.name
 
     @property
-    def told(self) -> str:
+    def heading(self) -> str:
         """Its name, with its unit in brackets where it has one."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name

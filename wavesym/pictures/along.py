@@ -32,8 +32,8 @@ class Spot:
     """A place as it is `written` in a scene without units, and `told`, in the scene's own unit as are `x` along its
     line and what it stands for, [low, high]."""
 
-    written: str
-    told: str
+    position: str
+    label: str
     x: float
     low: float
     high: float
@@ -89,7 +89,7 @@ def along(scene: Scene, model: Model, program: Program | None = None) -> tuple[A
 def observed(scene: Scene, model: Model) -> Model:
     """The model of a scene with the outputs that tell what happens along its chain."""
     written = {
-        quantity: [spot.written for _, spots in _places(scene, quantity) for spot in spots]
+        quantity: [spot.position for _, spots in _places(scene, quantity) for spot in spots]
         for quantity in _quantities(scene)
     }
     # numbers stay as they are: written out, those that come from units may be longer than a scene's text may be
@@ -125,7 +125,7 @@ def _distinct(scene: Scene, quantity: str, spots: Iterable[Spot]) -> tuple[Spot,
     found: list[Spot] = []
     last: Place | None = None
     for spot in spots:
-        place = scene.system.located(position_of(spot.written), quantity, scene.load)
+        place = scene.system.located(position_of(spot.position), quantity, scene.load)
         if place == last:
             found[-1] = replace(found[-1], high=spot.high)
         else:

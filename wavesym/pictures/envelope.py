@@ -25,7 +25,7 @@ def description(model: Model, found: Sequence[Along]) -> str:
     """The extremes of all lines in words."""
     scale = timescale(model)
     return " ".join(
-        f"{word} {quantity.quantity}{band.line and ' of branch '}{band.line}: {each.told(scale)}."
+        f"{word} {quantity.quantity}{band.line and ' of branch '}{band.line}: {each.describe(scale)}."
         for quantity in found
         for band in quantity.bands
         for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
@@ -42,7 +42,7 @@ def draw(model: Model, found: Sequence[Along]) -> Figure:
     """
     upright, scale = model.labels.system["type"] == "building", timescale(model)
     figure = new_figure(_PANEL * len(found) + 0.4)
-    set_title(figure, f"{model.name}: least and greatest to {scale.told(float(found[0].taus[-1]))}")
+    set_title(figure, f"{model.name}: least and greatest to {scale.format(float(found[0].taus[-1]))}")
     lengths = [band.spots[-1].high for band in found[0].bands]
     widths = [max(length / lengths[0], _NARROWEST) for length in lengths]
     axes = figure.subplots(len(found), len(widths), squeeze=False, width_ratios=widths)
@@ -56,11 +56,11 @@ def draw(model: Model, found: Sequence[Along]) -> Figure:
         if upright:  # beside a curve there is no room
             panel.set_xlabel(title.replace("\n", " "))
             panel.plot([each.value for each in moved], [each.x for each in moved], "o", color="black", zorder=4)
-            panel.set_title("\n".join(each.told(scale) for each in moved), loc="left")
+            panel.set_title("\n".join(each.describe(scale) for each in moved), loc="left")
         else:
             panel.set_ylabel(title)
             for each in moved:
-                _mark(panel, (each.x, each.value), each.told(scale), above=each is moved[0])
+                _mark(panel, (each.x, each.value), each.describe(scale), above=each is moved[0])
     return figure
 
 

@@ -23,10 +23,10 @@ class BandExtreme:
     tau: float
     value: float
 
-    def told(self, scale: Timescale) -> str:
+    def describe(self, scale: Timescale) -> str:
         """In a line."""
         value = f"{self.value:.4g} {unit_text(self.unit)}".rstrip()
-        return f"{value} {self.place}, {scale.told(self.tau)}"
+        return f"{value} {self.place}, {scale.format(self.tau)}"
 
 
 def extremes(found: Along, band: Band) -> Iterator[BandExtreme]:
@@ -35,7 +35,7 @@ def extremes(found: Along, band: Band) -> Iterator[BandExtreme]:
         np.unravel_index(find(band.values), band.values.shape) for find in (np.nanargmax, np.nanargmin)
     ):
         spot = band.spots[place]
-        where = f"in storey {place + 1}" if found.storeys else f"at x = {spot.told}"
+        where = f"in storey {place + 1}" if found.storeys else f"at x = {spot.label}"
         tau, value = float(found.taus[instant]), float(band.values[place, instant])
         yield BandExtreme(where, found.unit, spot.x, tau, value)
 

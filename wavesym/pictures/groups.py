@@ -46,7 +46,7 @@ class PlotPanel:
     limits: tuple[float, float] | None = None
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
         """Of a strip: the curve's name, and its extremes."""
         return f"{self.histories[0].name}: {', '.join(mark.text for mark in self.marks)}"
 
@@ -146,4 +146,4 @@ def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
             tau, value = points[k]
             if value:
                 told = f"{value:.4g} {unit_text(shown[0].output.unit)}".rstrip()
-                yield Mark(f"{told} at {scale.of(tau)}", points[k : k + 1], "normal")
+                yield Mark(f"{told} at {scale.time_text(tau)}", points[k : k + 1], "normal")

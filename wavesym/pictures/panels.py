@@ -60,10 +60,10 @@ def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     """The outputs of a scene under its loads; the same bytes from the same scene where `saving.save` writes it."""
     model = histories.model
     until, scale = nearest(model.until), timescale(model)
-    title = [f"{model.name}: outputs over time, to {scale.told(until)}"]
+    title = [f"{model.name}: outputs over time, to {scale.format(until)}"]
     title += [line for note in notes(histories) for line in wrap(note, CHARACTERS)]
     opened = [
-        Instant(end.double, f"contact at x = {end.x} opens, {scale.told(end.double)}") for end in histories.contacts
+        Instant(end.double, f"contact at x = {end.x} opens, {scale.format(end.double)}") for end in histories.contacts
     ]
     if opened:
         title.append("thin and light: the formal continuation, as if the opened contact stayed closed")
@@ -159,7 +159,7 @@ def _strip(axes: Axes, panel: PlotPanel) -> None:
     inside = (low - 0.1 * size, high + 0.1 * size)  # above are the words, and another strip
     axes.set_yticks([tick for tick in MaxNLocator(3).tick_values(low, high) if inside[0] <= tick <= inside[1]])
     axes.yaxis.set_major_formatter("{x:g}")  # no room for a power of ten beside it
-    axes.text(0.004, 0.95, panel.told, transform=axes.transAxes, va="top", path_effects=HALO)
+    axes.text(0.004, 0.95, panel.summary, transform=axes.transAxes, va="top", path_effects=HALO)
 
 
 def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Curve]:

@@ -25,11 +25,11 @@ class Timescale:
         """What time is called in a sentence."""
         return "t" if self.unit else "tau"
 
-    def told(self, tau: float) -> str:
+    def format(self, tau: float) -> str:
         """A tau as it is told in a sentence: `tau = 8.902`, `t = 2.04 s`."""
-        return f"{self.symbol} = {self.of(tau)}"
+        return f"{self.symbol} = {self.time_text(tau)}"
 
-    def of(self, tau: float) -> str:
+    def time_text(self, tau: float) -> str:
         """The same without its name."""
         return f"{tau * self.per_tau:.4g}{self.unit and ' '}{self.unit}"
 

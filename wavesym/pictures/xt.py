@@ -49,7 +49,7 @@ def description(model: Model) -> str:
     """What is seen, for those who do not see it."""
     return (
         "Colours show the velocity, and below it the force, of every rod; place to the right and time upward to "
-        f"{timescale(model).told(nearest(model.until))}. Waves are bands that slope by one rod in one crossing."
+        f"{timescale(model).format(nearest(model.until))}. Waves are bands that slope by one rod in one crossing."
     )
 
 

@@ -99,7 +99,7 @@ class RecordedLoad(Load):
         return linear(self.begin - self.step, self.step, [end, *samples, end], self.sources)
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """In a line."""
         samples, begin = self.record.samples, self.begin
         last = begin + (len(samples) - 1) * self.step

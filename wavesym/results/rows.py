@@ -37,7 +37,7 @@ def _joined(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterabl
 
 def _columns(model: Model) -> list[str]:
     """The header, with units where there are any."""
-    names = [probe.told for probe in model.probes]
+    names = [probe.heading for probe in model.probes]
     clock = model.clock
     return ["tau" if clock is None else "time" if clock.unit == "s" else f"time [{clock.unit}]", *names]
 

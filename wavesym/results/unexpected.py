@@ -31,7 +31,7 @@ def outside_lines(model: Model, at: Sequence[float]) -> list[str]:
 
     last, clock = model.horizon(), model.clock
     count = sum(not 0 <= tau <= last for _, tau in instants(model, 0, at))
-    what, end = ("times", clock.told(model.until)) if clock else ("tau", str(model.until))
+    what, end = ("times", clock.format(model.until)) if clock else ("tau", str(model.until))
     return [f"{count} of {len(at)} {what} are outside 0 to {end}, where values are nan"] * bool(count)
 
 
@@ -53,4 +53,4 @@ def _formal(model: Model) -> list[str]:
 
 def _in_time(model: Model, tau: float) -> str:
     """The same instant in the unit of a physical scene, to stand behind a tau."""
-    return f", {model.clock.told(rational(tau))}" if model.clock else ""
+    return f", {model.clock.format(rational(tau))}" if model.clock else ""

@@ -88,7 +88,7 @@ class RuntimeModel:
         self.parameters: Mapping[str, Array] = {
             field.name: np.array([float(value) for value in field.values]) for field in laws.fields
         }
-        self.labels: Mapping[str, tuple[str, ...]] = {field.name: field.told for field in laws.fields}
+        self.labels: Mapping[str, tuple[str, ...]] = {field.name: field.captions for field in laws.fields}
         """What the numbers of each field are called."""
         self.units: Mapping[str, tuple[str, ...]] = {
             field.name: tuple(unit.text for unit in field.units) for field in laws.fields

@@ -25,7 +25,7 @@ def explicit_text(scene: Scene) -> str:
 
 
 def _lines(scene: Scene) -> Iterator[str]:
-    said = scene.physical.said["system"] if scene.physical else {}
+    said = scene.physical.fields_in_units["system"] if scene.physical else {}
     if said.get("type", scene.system.type) == "chain":
         raise UnservedError(
             "system.type: a chain has all of its parts written already; write collision, drive or building"
@@ -42,7 +42,7 @@ def _lines(scene: Scene) -> Iterator[str]:
     yield ""
     if scene.physical:
         yield "[units]"
-        units = {"kind": scene.physical.scale.kind, **scene.physical.said["units"]}
+        units = {"kind": scene.physical.scale.kind, **scene.physical.fields_in_units["units"]}
         yield from (f"{key} = {json.dumps(value)}" for key, value in units.items())
         yield ""
     yield "[system]"

@@ -28,7 +28,7 @@ def loads(tables: object, system: SystemTable) -> tuple[Load, ...]:
 
 def _load(table: object, system: SystemTable) -> Load:
     load = _kind(table, system.load_kinds).model_validate(table)
-    if refused := system.refused(load):
+    if refused := system.load_fault(load):
         raise refusal(*refused)
     return load
 

@@ -141,7 +141,7 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
     canonical = json.dumps(said, sort_keys=True, separators=(",", ":"))
     return Labels(
         system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
-        loads=scene.physical.loads if scene.physical else tuple(load.told for load in scene.load),
+        loads=scene.physical.loads if scene.physical else tuple(load.description for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
         notes=(*_damping_notes(scene), *_record_notes(scene), *_shape_notes(scene)),
         size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
@@ -213,7 +213,7 @@ def load_names(scene: Scene) -> tuple[str, ...]:
 
 def _spacing(scene: Scene, load: Load) -> str:
     assert load.step is not None  # as it has samples
-    return scene.scale.clock.told(rational(load.step)) if scene.scale else str(load.step)
+    return scene.scale.clock.format(rational(load.step)) if scene.scale else str(load.step)
 
 
 def sources(scene: Scene) -> tuple[str, ...]:
@@ -222,7 +222,7 @@ def sources(scene: Scene) -> tuple[str, ...]:
 
 
 def _when(scene: Scene, tau: Fraction) -> str:
-    return f"t = {scene.scale.clock.told(rational(tau))}" if scene.scale else f"tau = {tau}"
+    return f"t = {scene.scale.clock.format(rational(tau))}" if scene.scale else f"tau = {tau}"
 
 
 def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:

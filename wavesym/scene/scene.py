@@ -127,7 +127,7 @@ class Scene(SceneTable):
 
     def __repr__(self) -> str:
         until = self.output.until
-        horizon = self.scale.clock.told(rational(until)) if self.scale else f"tau = {until}"
+        horizon = self.scale.clock.format(rational(until)) if self.scale else f"tau = {until}"
         return f"Scene({describe(self.name, self.system, self.load, horizon)})"
 
     __str__ = __repr__
@@ -136,7 +136,7 @@ class Scene(SceneTable):
     def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """What was said. Without units there are none to tell of: so scenes keep the hash that they have had."""
         if self._physical is not None:
-            return deepcopy(self._physical.said)
+            return deepcopy(self._physical.fields_in_units)
         left_out = {"units"} if self.title_block else {"units", "report"}
         return {key: value for key, value in handler(self).items() if key not in left_out}
 

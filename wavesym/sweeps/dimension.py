@@ -32,7 +32,7 @@ class Column:
 
     path: str
     values: tuple[Any, ...]
-    told: tuple[str, ...]
+    labels: tuple[str, ...]
     coordinate: tuple[float, ...] | tuple[str, ...]
     unit: str = ""
 
@@ -51,7 +51,7 @@ class Column:
     @cached_property
     def keys(self) -> tuple[object, ...]:
         """What tells two values apart: 0.5 and "1/2" are the same."""
-        return tuple(number or told for number, told in zip(map(number_of, self.values), self.told, strict=True))
+        return tuple(number or told for number, told in zip(map(number_of, self.values), self.labels, strict=True))
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class SweepAxis:
         seen: dict[object, int] = {}
         for k, key in enumerate(zip(*(column.keys for column in self.columns), strict=True)):
             if key in seen:
-                seen_value = ", ".join(column.told[k] for column in self.columns)
+                seen_value = ", ".join(column.labels[k] for column in self.columns)
                 raise SceneError(f"{show(seen_value)} stands at [{seen[key]}] and again at [{k}]; write it once", path)
             seen[key] = k
 

@@ -72,10 +72,10 @@ class SweepPlan:
         """The case at a place."""
         return int(np.ravel_multi_index(place, self.shape))
 
-    def told(self, place: tuple[int, ...]) -> dict[str, str]:
+    def labels_at(self, place: tuple[int, ...]) -> dict[str, str]:
         """The values that make a case, by path, as they are written."""
         chosen = zip(self.dimensions, place, strict=True)
-        return {column.path: column.told[k] for dimension, k in chosen for column in dimension.columns}
+        return {column.path: column.labels[k] for dimension, k in chosen for column in dimension.columns}
 
     def fields_at(self, place: tuple[int, ...]) -> dict[str, Any]:
         """The fields of a case's scene. SceneError where its record cannot be read."""
@@ -99,7 +99,7 @@ class SweepPlan:
         for dimension in self.dimensions:
             for column in dimension.columns:
                 if isinstance(column.values[0], dict | Unreadable):
-                    fields = changed(fields, column.path, column.told[0])
+                    fields = changed(fields, column.path, column.labels[0])
         return fields
 
     @cached_property

@@ -43,7 +43,7 @@ class StoredColumn:
         """Whether all values are numbers, of one unit or none."""
         return not isinstance(self.coordinate[0], str)
 
-    def told(self, k: int) -> str:
+    def format(self, k: int) -> str:
         """A value, short, in one line without what a terminal or a browser would do."""
         value = self.coordinate[k]
         return printable(value) if isinstance(value, str) else f"{value:.6g} {self.unit}".rstrip()
@@ -119,10 +119,10 @@ class SweepResults:
         """The index of a case in each dimension."""
         return tuple(int(k) for k in np.unravel_index(case, self.shape))
 
-    def told(self, case: int) -> dict[str, str]:
+    def labels_at(self, case: int) -> dict[str, str]:
         """The values that make a case, short, by path."""
         chosen = zip(self.dimensions, self.place(case), strict=True)
-        return {column.path: column.told(k) for dimension, k in chosen for column in dimension.columns}
+        return {column.path: column.format(k) for dimension, k in chosen for column in dimension.columns}
 
     def scene(self, case: int) -> dict[str, Any]:
         """The fields of a case's scene, all values exact; records by their names, which count from the sweep's file."""

@@ -100,7 +100,7 @@ def keep(planned: SweepPlan, store: Store, marks: Marks, batch: int, values: Bat
         chunks=store.write(batch, values.arrays),
         how=dict(sorted(values.how.items())),
         failed=[
-            FailedCase(case=planned.number(place), values=planned.told(place), reason=reason)
+            FailedCase(case=planned.number(place), values=planned.labels_at(place), reason=reason)
             for place, reason in sorted(values.failed.items())
         ],
         left=sorted(map(planned.number, left)),

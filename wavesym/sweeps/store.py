@@ -192,7 +192,7 @@ def _coordinates(group: Any, dimension: SweepAxis) -> None:
             np.array(column.coordinate),
             path=column.path,
             number=number,
-            written=column.told,
+            written=column.labels,
             **units,
         )
 

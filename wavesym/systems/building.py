@@ -151,7 +151,7 @@ class Building(Preset):
     @property
     def choices(self) -> Mapping[str, str]:
         """Which base, and how its modes are damped."""
-        return {"base": self.base, **({"damping": self.damping.told} if self.damping else {})}
+        return {"base": self.base, **({"damping": self.damping.description} if self.damping else {})}
 
     @property
     def tables(self) -> list[object]:

@@ -73,7 +73,7 @@ class OnBody(Load):
 
     body: Integer = Field(description="the number of a body, 1 to m + 1")
 
-    def refused(self, m: int) -> tuple[str, str] | None:
+    def fault(self, m: int) -> tuple[str, str] | None:
         """A body that there is not."""
         if 1 <= self.body <= m + 1:
             return None
@@ -139,7 +139,7 @@ class Drive(Preset):
     @property
     def choices(self) -> Mapping[str, str]:
         """How its modes are damped."""
-        return {"damping": self.damping.told} if self.damping else {}
+        return {"damping": self.damping.description} if self.damping else {}
 
     def named_chain(self, loads: Sequence[Load]) -> Chain:
         """The chain as the paper has it, with ramps where a load needs them."""

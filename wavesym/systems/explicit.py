@@ -63,14 +63,14 @@ class ExplicitChain(SceneTable):
             f"branch {each.name}": f"from {each.from_}, ratio {each.ratio}: {describe_parts(each.parts)}"
             for each in self.branch
         }
-        damping = {"damping": self.damping.told} if self.damping else {}
+        damping = {"damping": self.damping.description} if self.damping else {}
         return {"parts": describe_parts(self.parts), **branches, **damping}
 
     def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
         return place(self.drawing, position, quantity, {self._point(load) for load in loads})
 
-    def refused(self, load: Load) -> tuple[str, str] | None:
+    def load_fault(self, load: Load) -> tuple[str, str] | None:
         """What is wrong with a load, and under which key; None where nothing is."""
         try:
             point = self._point(load)

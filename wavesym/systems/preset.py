@@ -118,9 +118,9 @@ class Preset(SceneTable):
         held = bool(node.inertia or node.damping or node.loads)
         return held or (quantity == "strain" and node.alpha != node.beta)
 
-    def refused(self, load: Load) -> tuple[str, str] | None:
+    def load_fault(self, load: Load) -> tuple[str, str] | None:
         """What is wrong with a load, and under which key; None where nothing is."""
-        return load.refused(self.m)
+        return load.fault(self.m)
 
     def named_chain(self, loads: Sequence[Load]) -> Chain | None:
         """The chain as the paper has it under these loads, None where the paper has none."""

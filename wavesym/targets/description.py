@@ -34,7 +34,7 @@ class NamedOutput:
     constant: str
     bound: str
     unit: str
-    told: str
+    heading: str
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ def _units(model: Model) -> str:
 
 def _described(probe: Probe) -> str:
     """An output as a comment names it."""
-    return f"{probe.told}: {ascii(probe.title)[1:-1]}" if probe.title else probe.told
+    return f"{probe.heading}: {ascii(probe.title)[1:-1]}" if probe.title else probe.heading
 
 
 def constants(names: Sequence[str]) -> list[str]:
@@ -194,7 +194,7 @@ def _model(model: Model) -> list[str]:
             lines.append(", ".join(f"{name}_{index} = {value}" for index, value in numbers.items()))
     named = zip(model.labels.load_names, model.labels.loads, strict=True)
     lines += [f"{label}: {line}" for label, line in named if line]
-    until = model.clock.told(model.until) if model.clock else model.until
+    until = model.clock.format(model.until) if model.clock else model.until
     return [*lines, f"until = {until}, tolerance = {_tolerance(model)}"]
 
 

@@ -22,7 +22,7 @@ def summary_sections(
     yield Facts(
         "system", "The chain, with the parameters that can matter", {**model.labels.system, **_parameters(model, chain)}
     )
-    until = Display(str(model.until), model.clock.told(model.until)) if model.clock else str(model.until)
+    until = Display(str(model.until), model.clock.format(model.until)) if model.clock else str(model.until)
     yield Facts(
         "horizon",
         "How long and how exactly",

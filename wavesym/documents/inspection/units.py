@@ -30,7 +30,7 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
     first = rods.first
     periods, why = _periods(model, seconds)
     limit = 1 / (2 * seconds * float(max(rods.ratios))) if rods.all else None
-    framed = physical.said["system"]["type"] == "building"
+    framed = physical.fields_in_units["system"]["type"] == "building"
     above = "above it a rod is not the columns that it stands for" if framed else "from it on rods swing by themselves"
     yield Facts(
         "units",
@@ -52,7 +52,7 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
             ),
             "horizon": Display(
                 {"tau": model.horizon(), "time": clock.time(model.until), "unit": clock.unit},
-                f"{model.horizon():.6g} tau, {clock.told(model.until)}",
+                f"{model.horizon():.6g} tau, {clock.format(model.until)}",
             ),
             "physics_up_to": None if limit is None else Display(limit, f"{limit:.4g} Hz = c/(2 l): {above}"),
         },

@@ -38,7 +38,7 @@ def refuse_jumps(model: Model, until: fmpq) -> None:
     fronts = _fronts(model)
     for probe, reading in readings:
         if (found := fronts.first(reading)) is not None and found[0] <= until:
-            cause = "the chain starts with a jump of velocity" if found[1] is None else model.told(found[1])
+            cause = "the chain starts with a jump of velocity" if found[1] is None else model.describe_step(found[1])
             raise WavesymError(
                 f"output.acceleration: {probe.name}: a front with a jump of velocity can pass there ({cause}) "
                 "(write a place with mass, or loads that do not jump)"

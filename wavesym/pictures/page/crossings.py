@@ -70,7 +70,7 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
     bar = colour_bar(words, ends, TOP + _TALL + BELOW)
     told = (
         f"Colours show the {name} of every rod of the main line, place to the right and time upward to "
-        f"{scale.told(until)}; waves are bands that slope by one rod in one crossing."
+        f"{scale.format(until)}; waves are bands that slope by one rod in one crossing."
     )
     title = f"{name}: place to the right, time upward".capitalize()
     height = TOP + _TALL + BELOW + 34

@@ -107,7 +107,8 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         neglected=tuple(filter(None, neglected(model))),
         facts=tuple(_facts(model, made, found, loads, scale)),
         structure=Shown(
-            title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")
+            title,
+            picture("structure", title, structured.description, structured.height, structured.drawn, class_="plot"),
         ),
         motion=motion(model, found, scale),
         histories=(),
@@ -186,10 +187,10 @@ def _facts(
     rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
     yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
     if model.damping is not None:
-        yield "Damping", f"of modes: {model.damping.told}"
+        yield "Damping", f"of modes: {model.damping.description}"
     if told := _loads(model, loads):
         yield "Loads", told
-    yield "Horizon", scale.told(nearest(model.until))
+    yield "Horizon", scale.format(nearest(model.until))
     if model.clock is not None:
         yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross a rod of length 1"
     yield "Computed by", program.provenance.reason.rpartition("; ")[2]
@@ -202,14 +203,15 @@ def _facts(
     for end in made.contacts:
         yield (
             "Contact",
-            f"that at x = {end.x} opens at {scale.told(end.double)}; what that reaches is drawn as if it stayed closed",
+            f"that at x = {end.x} opens at {scale.format(end.double)}; "
+            "what that reaches is drawn as if it stayed closed",
         )
     for number in network.contacts:
         place = network.links[number].place
         if own := [each for each in program.provenance.events or () if each.x == place]:
             yield (
                 "Contact",
-                f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own),
+                f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.format(each.double)}" for each in own),
             )
 
 

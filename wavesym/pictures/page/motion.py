@@ -59,7 +59,7 @@ def motion(model: Model, found: Sequence[Along], scale: Timescale) -> Motion | N
     still = int(np.argmax(np.max(np.abs(frames), axis=0)))
     title = "How the building sways" if sways else "How waves pass along the chain"
     name = axis_title(model, quantity.quantity, quantity.unit).replace("\n", " ")
-    told = f"Drawn at {scale.told(float(instants[still]))}; the largest {name} is {largest:.4g}."
+    told = f"Drawn at {scale.format(float(instants[still]))}; the largest {name} is {largest:.4g}."
     content, height = (_building if sways else _chain)(frames[:, still], quantity)
     drawn = picture("motion", title, told, height, *content, class_="plot moving")
     return Motion(Shown(title, drawn), "".join(f"{each:02x}" for each in bytes_.ravel().tolist()), count, sways)

@@ -32,7 +32,7 @@ def along_pictures(model: Model, found: Sequence[Along], scale: Timescale) -> It
             where = "height" if upright else "chain"
             title = f"Least and greatest {name} along the {where}"
             told = " ".join(
-                f"{word}: {each.told(scale)}."
+                f"{word}: {each.describe(scale)}."
                 for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
             )
             make = _over_height if upright else _along_line
@@ -95,7 +95,7 @@ def _named(x: float, y: float, extreme: BandExtreme, scale: Timescale, *, below:
     right, down = x < (LEFT + WIDTH - RIGHT) / 2, 15 if below else -7
     return together(
         spot(x, y),
-        text(x + (8 if right else -8), y + down, extreme.told(scale), "start" if right else "end", class_="halo"),
+        text(x + (8 if right else -8), y + down, extreme.describe(scale), "start" if right else "end", class_="halo"),
     )
 
 
@@ -108,7 +108,7 @@ def maps(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Sho
             name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
             title = f"{name} over place and time".capitalize()
             told = " ".join(
-                f"{word}: {each.told(scale)}."
+                f"{word}: {each.describe(scale)}."
                 for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
             )
             content, height = _map(model, quantity, band, own, largest, scale)

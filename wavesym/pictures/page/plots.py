@@ -61,7 +61,7 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
     spots = sorted((value, x.at(tau * scale.per_tau), mark.text) for mark in given.marks for tau, value in mark.points)
     marks = [spot(at, y.at(value)) for value, at, _ in spots]
     if given.limits:
-        marks.append(text(LEFT + 4, TOP + 11, given.told, "start", class_="halo"))
+        marks.append(text(LEFT + 4, TOP + 11, given.summary, "start", class_="halo"))
     else:
         marks += [_beside(at, y.at(value), words, above) for (value, at, words), above in _ends(spots)]
     told = " ".join(_told(history, scale) for history in given.histories)
@@ -120,8 +120,8 @@ def _told(history: History, scale: Timescale) -> str:
     least, greatest = points[int(np.argmin(points[:, 1]))], points[int(np.argmax(points[:, 1]))]
     unit = f" {history.output.unit}".rstrip()
     return (
-        f"{history.name}: from {least[1]:.4g}{unit} at {scale.told(least[0])} "
-        f"to {greatest[1]:.4g}{unit} at {scale.told(greatest[0])}."
+        f"{history.name}: from {least[1]:.4g}{unit} at {scale.format(least[0])} "
+        f"to {greatest[1]:.4g}{unit} at {scale.format(greatest[0])}."
     )
 
 

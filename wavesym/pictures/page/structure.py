@@ -36,7 +36,7 @@ class Picture:
 
     drawn: Svg
     height: float
-    told: str
+    description: str
 
 
 def structure(model: Model, lines: Lines) -> Picture:
@@ -58,7 +58,7 @@ def structure_html(title: str, model: Model, lines: Lines) -> str:
         viewBox=f"0 0 {WIDTH:g} {found.height:g}",
     )
     source = f"data:image/svg+xml;base64,{b64encode(alone.encode()).decode()}"
-    return together(element("p", title), element("img", src=source, alt=found.told, style="max-width: 100%"))
+    return together(element("p", title), element("img", src=source, alt=found.description, style="max-width: 100%"))
 
 
 def _building(model: Model) -> Picture:

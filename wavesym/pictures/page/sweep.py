@@ -88,7 +88,11 @@ def _facts(found: SweepResults) -> Iterator[tuple[str, str]]:
 
 def _varied(dimension: StoredAxis) -> Iterator[tuple[str, str]]:
     for column in dimension.columns:
-        ends = column.told(0) if len(dimension) == 1 else f"from {column.told(0)} to {column.told(len(dimension) - 1)}"
+        ends = (
+            column.format(0)
+            if len(dimension) == 1
+            else f"from {column.format(0)} to {column.format(len(dimension) - 1)}"
+        )
         yield column.path, f"{len(dimension)} {'value' if len(dimension) == 1 else 'values'}, {ends}"
 
 
@@ -146,7 +150,7 @@ def _cases(found: SweepResults, outputs: list[SweepOutput], linked: set[int]) ->
     for case in _worst_first(outputs)[:most]:
         values = (f"{side.flat[case]:.6g}" for output in outputs for side in (output.least, output.greatest))
         told = (value.replace("nan", "\u2013") for value in values)
-        rows.append((_link(case) if case in linked else str(case), *found.told(case).values(), *told))
+        rows.append((_link(case) if case in linked else str(case), *found.labels_at(case).values(), *told))
     note = f"{len(rows)} of {found.status.cases} cases, the worst first; wavesym sweep --table writes all"
     return SaidTable(head, tuple(rows), (note,))
 
@@ -175,4 +179,4 @@ def _shown(found: SweepResults, case: int) -> WorstCase:
     scene = json.dumps(found.scene(case), indent=1)
     if len(scene) > _SCENE:
         scene = f"{scene[:_SCENE]}\n... and {len(scene) - _SCENE} characters more, left out to keep the page small"
-    return WorstCase(case, tuple(found.told(case).items()), scene)
+    return WorstCase(case, tuple(found.labels_at(case).items()), scene)

@@ -160,7 +160,7 @@ def _axis_title(axis: StoredAxis) -> str:
 
 
 def _where(axis: StoredAxis, k: int) -> str:
-    return ", ".join(f"{column.path} = {column.told(k)}" for column in axis.columns)
+    return ", ".join(f"{column.path} = {column.format(k)}" for column in axis.columns)
 
 
 def _told(value: float, unit: str) -> str:

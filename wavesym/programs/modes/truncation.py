@@ -64,7 +64,7 @@ class ModalModel(ABC, Generic[K]):
 
     @cached_property
     def loads(self) -> LinearLoads:
-        return linear_loads(self.model.loads, self.sources, self.model.until, self.model.told)
+        return linear_loads(self.model.loads, self.sources, self.model.until, self.model.describe_step)
 
     @cached_property
     def roughness(self) -> tuple[Roughness, ...]:

@@ -46,7 +46,7 @@ class RuntimeField:
     labels: tuple[str, ...]
     values: tuple[fmpq, ...]
     units: tuple[ParameterUnit, ...]
-    told: tuple[str, ...]
+    captions: tuple[str, ...]
 
     @property
     def positive(self) -> bool:

@@ -78,7 +78,7 @@ class Results:
         """Their unit of length; `one` of x, in m, is so many of it."""
         return LengthUnit(one / self.sizes["length"], self.texts["length"])
 
-    def told(self, dimension: str) -> tuple[Fraction, str]:
+    def unit_of(self, dimension: str) -> tuple[Fraction, str]:
         """The unit that a load of a dimension would be told in: its size and its text."""
         key = dimension.removeprefix("angular ")
         return self.sizes[key], self.texts[key]

@@ -36,7 +36,7 @@ class PhysicalScene:
     `inputs` is of each load what 1 is in the unit of results, and that unit.
     """
 
-    said: dict[str, Any]
+    fields_in_units: dict[str, Any]
     fields: dict[str, Any]
     scale: Scale
     kappa: tuple[Fraction, ...]
@@ -45,17 +45,21 @@ class PhysicalScene:
     @property
     def length(self) -> LengthUnit | None:
         """The unit of results that places are lengths in; None where they count rods."""
-        return self.scale.results.length(self.scale.lengths[0]) if self.said["system"]["type"] == "chain" else None
+        return (
+            self.scale.results.length(self.scale.lengths[0])
+            if self.fields_in_units["system"]["type"] == "chain"
+            else None
+        )
 
     @property
     def system(self) -> dict[str, str]:
         """What it is made of, by key."""
-        return {key: describe(value) for key, value in self.said["system"].items() if key != "type"}
+        return {key: describe(value) for key, value in self.fields_in_units["system"].items() if key != "type"}
 
     @property
     def loads(self) -> tuple[str, ...]:
         """A line for each load."""
-        loads = self.said.get("load", ())
+        loads = self.fields_in_units.get("load", ())
         return tuple(describe({key: value for key, value in load.items() if key != "name"}) for load in loads)
 
 
@@ -85,7 +89,7 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
             made["output"] = _output(output, found, seconds)
     faults.refuse()
     for acting in (found.acting(load) for load in said.get("load", ()) if isinstance(load, Mapping)):
-        size, text = results.told(acting.dimension)
+        size, text = results.unit_of(acting.dimension)
         inputs.append((acting.size / size, text))
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
     return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))

@@ -272,7 +272,7 @@ def parameter_fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
             constant=field.name.upper(),
             count=str(len(field.values)),
             check="positive_number" if field.positive else "finite_number",
-            labels=tuple(map(_told, field.told, field.units)),
+            labels=tuple(map(_told, field.captions, field.units)),
             values=c_literals(map(real.nearest, field.values), real),
         )
 
