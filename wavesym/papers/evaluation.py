@@ -94,20 +94,15 @@ class Scope:
 
     def whole(self, tree: Tree) -> int:
         """The value of an index or a limit."""
-        value = _runner(tree)(self)
-        if type(value) is int:
-            return value
-        if isinstance(value, fmpq) and value.denom() == 1:
-            return int(value.numer())
-        raise MeaninglessError(f"{latex(tree)} = {value} is no whole number")
+        return _as_whole(_runner(tree)(self), tree)
 
     def indices(self, symbol: Symbol) -> tuple[int, ...]:
         """The lower indices."""
-        return tuple([self.whole(index) for index in symbol.below])
+        return _index_runners(symbol)[0](self)
 
     def upper(self, symbol: Symbol) -> tuple[int, ...]:
         """The upper indices."""
-        return tuple([self.whole(index) for index in symbol.above])
+        return _index_runners(symbol)[1](self)
 
     @contextmanager
     def binding(self, names: Mapping[str, Any]) -> Iterator[None]:
@@ -280,6 +275,40 @@ def _runner(tree: Tree) -> Runner:
         made = _MAKERS[type(tree)](tree)
         tree.__dict__["_runner"] = made
         return made
+
+
+def _as_whole(value: Any, tree: Tree) -> int:
+    if type(value) is int:
+        return value
+    if isinstance(value, fmpq) and value.denom() == 1:
+        return int(value.numer())
+    raise MeaninglessError(f"{latex(tree)} = {value} is no whole number")
+
+
+def _index_runners(symbol: Symbol) -> tuple[Callable[[Scope], tuple[int, ...]], Callable[[Scope], tuple[int, ...]]]:
+    """What gives the lower and the upper indices of a letter."""
+    try:
+        return symbol.__dict__["_index_runners"]  # type: ignore[no-any-return]
+    except KeyError:
+        made = _indices(symbol.below), _indices(symbol.above)
+        symbol.__dict__["_index_runners"] = made
+        return made
+
+
+def _indices(trees: tuple[Tree, ...]) -> Callable[[Scope], tuple[int, ...]]:
+    if all(isinstance(tree, Number) for tree in trees):
+        fixed = tuple([_as_whole(_runner(tree)(Scope()), tree) for tree in trees])
+        return lambda scope: fixed
+    runners = [(_runner(tree), tree) for tree in trees]
+
+    def run(scope: Scope) -> tuple[int, ...]:
+        values = tuple([runner(scope) for runner, _ in runners])
+        for value in values:
+            if type(value) is not int:
+                return tuple([_as_whole(value, tree) for value, (_, tree) in zip(values, runners, strict=True)])
+        return values
+
+    return run
 
 
 def _number(tree: Number) -> Runner:

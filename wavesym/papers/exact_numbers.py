@@ -54,7 +54,7 @@ class Exponentials:
     __radd__ = __add__
 
     def __neg__(self) -> Exponentials:
-        return _made({q: -c for q, c in self.parts.items()})
+        return _unfiltered({q: -c for q, c in self.parts.items()})
 
     def __sub__(self, other: Number) -> Exponentials:
         return self + -Exponentials.of(other)
@@ -64,7 +64,7 @@ class Exponentials:
 
     def __mul__(self, other: Number) -> Exponentials:
         if not isinstance(other, Exponentials):
-            return _made({q: c * other for q, c in self.parts.items()})
+            return _unfiltered({q: c * other for q, c in self.parts.items()} if other != 0 else {})
         pairs = product(self.parts.items(), other.parts.items())
         return Exponentials.total((fmpq(*p) + fmpq(*q), b * c) for (p, b), (q, c) in pairs)
 
@@ -100,8 +100,13 @@ Number = int | fmpq | Exponentials
 
 def _made(parts: dict[Key, fmpq]) -> Exponentials:
     """The sum with these parts, those left out that are 0."""
+    return _unfiltered({q: c for q, c in parts.items() if c != 0})
+
+
+def _unfiltered(parts: dict[Key, fmpq]) -> Exponentials:
+    """The sum with these parts, none of which is 0."""
     made = Exponentials.__new__(Exponentials)
-    made.parts = {q: c for q, c in parts.items() if c != 0}
+    made.parts = parts
     return made
 
 

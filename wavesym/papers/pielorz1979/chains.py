@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Any
 
-from flint import fmpq
+from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.derivation.increments import Increment, combine, integrate, start
 from wavesym.derivation.table import Function, Rules, unit_response
@@ -26,6 +26,9 @@ from wavesym.systems.drive import DRIVE
 
 INTERVALS = {"I": 9, "II": 14, "III": 9}
 """How many intervals of every function are tabulated, per example."""
+
+_SAMPLED_BITS = 160
+"""Enough for doubles: the terms of nearly equal rates cancel by less than 2^100 of a value."""
 
 Response = dict[Function, list[Increment]]
 
@@ -45,6 +48,23 @@ class Exact:
     def increment(self, source: str, letter: str, rod: int, interval: int) -> Increment:
         """What a function gains in interval 1, 2, ...; nothing before. KeyError, IndexError beyond the table."""
         return self.responses[source][Function(letter, rod)][interval - 1] if interval > 0 else {}
+
+    def sampled(self, source: str, letter: str, rod: int, instants: Sequence[float], order: int = 1) -> list[float]:
+        """A function at many z (order 1), or its integral from 0 on (order 0), to the last bit but a few."""
+        step, found = self.interval, []
+        with ctx.workprec(_SAMPLED_BITS):
+            later, pieces = arb_poly([step, 1]), [dict[fmpq, arb_poly]()]
+            for gain in self.responses[source][Function(letter, rod)]:
+                piece = {rate: powers(later) * (-rate * arb(step)).exp() for rate, powers in pieces[-1].items()}
+                for rate, powers in (integrated(gain) if order == 0 else gain).items():
+                    piece[rate] = piece.get(rate, arb_poly()) + arb_poly(powers)
+                pieces.append(piece)
+            for z in instants:
+                number = max(int(z // step) + 1, 0)
+                w = arb(z) - step * (number - 1)
+                values = [powers(w) * (-rate * w).exp() for rate, powers in pieces[number].items()]
+                found.append(float(sum(values, arb(0)).mid()))
+        return found
 
     def degree(self, letter: str, rod: int, interval: int, rate: fmpq, source: str | None = None) -> int:
         """The highest power at a rate, over all sources or for one; -1 where the rate does not occur."""
@@ -139,8 +159,14 @@ def _building(m: int, floors: dict[int, fmpq], system: System = BUILDING_FORCE) 
 
 
 def _exact(example: str, chain: Chain) -> Exact:
+    return exact_tables(chain, INTERVALS[example] * Rules(chain).interval)
+
+
+def exact_tables(chain: Chain, most_z: int) -> Exact:
+    """The increments of all functions of a chain that begin before `most_z`."""
     rules = Rules(chain)
-    wanted = {Function(letter, rod): INTERVALS[example] for letter in "fg" for rod in range(1, chain.m + 1)}
+    count = -(-most_z // rules.interval)
+    wanted = {Function(letter, rod): count for letter in "fg" for rod in range(1, chain.m + 1)}
     return Exact(chain, rules.interval, {source: unit_response(rules, source, wanted) for source in chain.sources})
 
 

@@ -19,16 +19,16 @@ from numpy.typing import NDArray
 
 from wavesym.errors import SceneError
 from wavesym.exact.contacts.events import contact_ends
-from wavesym.exact.reference import Reference
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, without_brackets
-from wavesym.papers.pielorz1979.chains import LoadStep
+from wavesym.papers.pielorz1979.chains import Exact, LoadStep, exact_tables
 from wavesym.papers.pielorz1979.transcript import entry
 from wavesym.papers.reader import read_formula
 from wavesym.papers.record import format_value
 from wavesym.papers.tree import Number, Product, Symbol, Tree, latex
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import named_chain
 from wavesym.systems.drive import DRIVE
 
 Array = NDArray[np.float64]
@@ -88,8 +88,7 @@ class FigureScene:
         """An output under a load at the instants. MeaninglessError where there is none."""
         total = np.zeros(SAMPLES)
         for source, steps in load.pieces:
-            known = place in PLOTTED[self.figure].get(quantity, ())
-            unit = _units(self, source, None if known else (quantity, place))[f"{quantity}@{place}"]
+            unit = _unit_curve(self, source, quantity, place)
             for step in steps:
                 late = int(step.time * (SAMPLES - 1) / UNTIL)
                 total[late:] += float(step.weight) * unit[: SAMPLES - late]
@@ -125,18 +124,35 @@ class FigureScene:
 
 
 @cache
-def _units(described: FigureScene, source: str, other: tuple[str, str] | None) -> Mapping[str, Array]:
-    """The plotted outputs under a unit of one source, at once as they have much in common; or one that is not plotted.
+def _exact_tables(described: FigureScene) -> Exact:
+    """The exact tables of the chain as far as UNTIL needs them. MeaninglessError where it is none."""
+    chain = named_chain(described.scene(loads(described.figure)[0]))
+    assert chain is not None  # as the paper has it
+    return exact_tables(chain, UNTIL + 2)  # g is taken as late as at UNTIL + 1
 
-    MeaninglessError where it is no output.
-    """
-    outputs = None if other is None else {other[0]: (other[1],)}
+
+@cache
+def _unit_curve(described: FigureScene, source: str, quantity: str, place: str) -> Array:
+    """An output under a unit of a source, by the exact tables. MeaninglessError where it is no output."""
+    unit = TriedLoad("unit", ((source, _steps([("0", "1")])),))
     try:
-        reference = Reference(lower(described.scene(TriedLoad("unit", ((source, _steps([("0", "1")])),)), outputs)))
+        (output,) = lower(described.scene(unit, {quantity: (place,)})).probes
     except SceneError as error:
         raise MeaninglessError(str(error)) from None
-    values = reference.values(np.linspace(0, reference.tau_max, SAMPLES).tolist())
-    return {output.name: np.array(row) for output, row in zip(reference.model.probes, values, strict=True)}
+    rod, x, tau = output.rod, output.rod - 1 + float(output.place), described.instants
+    clock, is_moved = _exact_tables(described).chain.rod(rod), quantity == "displacement"
+    f, g = (_wave(described, source, letter, rod, x, 0 if is_moved else 1) for letter in "fg")
+    velocity = float(clock.velocity)
+    return {"strain": g - f, "velocity": f + g + velocity, "displacement": f + g + velocity * tau}[quantity]
+
+
+@cache
+def _wave(described: FigureScene, source: str, letter: str, rod: int, x: float, order: int) -> Array:
+    """f or g of a rod at x, under a unit of a source, at the instants."""
+    exact = _exact_tables(described)
+    clock = exact.chain.rod(rod)
+    late = float(clock.tau0) + (x - float(clock.x0)) * (1 if letter == "f" else -1)
+    return np.array(exact.sampled(source, letter, rod, (described.instants - late).tolist(), order))
 
 
 @cache

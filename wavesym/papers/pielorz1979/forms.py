@@ -84,7 +84,7 @@ def functions(name: str, m: int) -> dict[Function, str]:
     return {function: id for id, row in right_rows(group, m).items() for function in row}
 
 
-_LETTERS = ("m", "n", "i", "j", "l", "r", "s")
+_LETTERS = ("m", "n", "half", "i", ALPHA, "j", "l", "r", "s")
 """What the value of a cell may depend on."""
 
 
@@ -200,6 +200,7 @@ class FormScope(Scope):
         self._stated: dict[int, list[tuple[Indices, Tree, Tree, dict[str, Any]]]] = {}
         self._totals: dict[tuple[int, int, int, int], Any] = {}
         self._limits: dict[tuple[Any, ...], Limit] = {}
+        self._values: dict[tuple[Any, ...], Any] = {}
         self._rates = motion.exact.rates
 
     def total(self, rod: int, number: int, z: fmpq) -> Any:
@@ -258,13 +259,15 @@ class FormScope(Scope):
             return self._motion.piece(source, number).time
         if name == "m" and len(indices) == 1:
             return self.last(f"M{indices[0]}" if is_drive else "a" if indices == (1,) else "")
-        limit = self._limit_of(name, indices)
-        if name == "w":  # depends on loads
-            return self.value(limit.tree)
-        place = tuple(map(self.bound.get, _LETTERS))
-        if place not in limit.values:
-            limit.values[place] = self.value(limit.tree)
-        return limit.values[place]
+        place = name, indices, *map(self.bound.get, _LETTERS)
+        if place not in self._values:
+            limit = self._limit_of(name, indices)
+            if name == "w":  # depends on loads
+                return self.value(limit.tree)
+            if place not in limit.values:
+                limit.values[place] = self.value(limit.tree)
+            self._values[place] = limit.values[place]
+        return self._values[place]
 
     def _limit_of(self, name: str, indices: Indices) -> Limit:
         """The right side of a definition, or a cell, that a letter is at this place; MeaninglessError."""
