@@ -44,13 +44,17 @@ class MeaninglessError(Exception):
     """A symbol, an index or a limit means nothing at a place: the reason, in a few words."""
 
 
+def letter_name(symbol: Symbol) -> str:
+    """A letter with its marks, but without its indices."""
+    return symbol.accent + symbol.name + "'" * symbol.primes
+
+
 class Scope:
     """What letters mean; `bound` are the plain ones by name: indices, sizes, variables of sums.
 
-    `constants` are those that the ranges of a formula say the value of (`given`).
-
-    Subclasses give `symbol`, `call` and `derivative`. Values are what Python's operators can combine: integers, fmpq,
-    `Exponentials`.
+    `constants` are those that the ranges of a formula say the value of (`given`). `letters` are functions of their
+    indices, `functions` of their indices and arguments, both by `letter_name`; a subclass fills them. Values are what
+    Python's operators can combine: integers, fmpq, `Exponentials`.
     """
 
     heaviside_at_0 = 1
@@ -59,16 +63,29 @@ class Scope:
     def __init__(self, bound: Mapping[str, Any] | None = None, constants: Mapping[Tree, Tree] | None = None) -> None:
         self.bound: dict[str, Any] = dict(bound or {})
         self.constants: Mapping[Tree, Tree] = dict(constants or {})
+        self.letters: dict[str, Callable[..., Any]] = {}
+        self.functions: dict[str, Callable[..., Any]] = {}
 
-    # what an adapter says
+    # what a test says
 
     def symbol(self, symbol: Symbol) -> Any:
         """The value of a letter that is not in `bound`, or has marks."""
-        raise MeaninglessError(f"{latex(symbol)} is not defined")
+        return self.meaning(self.letters, symbol)
 
     def call(self, call: Call) -> Any:
         """The value of a function other than H and E."""
-        raise MeaninglessError(f"{latex(call.function)} is not defined")
+        return self.meaning(self.functions, call.function, *map(self.value, call.arguments))
+
+    def meaning(self, known: Mapping[str, Callable[..., Any]], symbol: Symbol, *arguments: Any) -> Any:
+        """What a letter or function is there; MeaninglessError where it is not known, or has not these indices."""
+        if (means := known.get(letter_name(symbol))) is None or symbol.above:
+            raise MeaninglessError(f"{latex(symbol)} is not defined")
+        index = self.indices(symbol)
+        try:
+            return means(*index, *arguments)
+        except (LookupError, TypeError):
+            which = f"with indices ({', '.join(map(str, index))})" if index else "without an index"
+            raise MeaninglessError(f"{latex(symbol)} is not defined {which}") from None
 
     def derivative(self, derivative: Derivative) -> Any:
         """The value of a partial derivative."""

@@ -294,6 +294,11 @@ class LoadedChain:
             raise MeaninglessError(f"{source} has no piece {number}")
         return pieces[number]
 
+    def start_time(self, *index: int) -> fmpq:
+        """tau_(s,k) of a piece of moment s, tau_k of a piece of the load of a building."""
+        *moment, number = index
+        return self.piece(f"M{moment[0]}" if moment else "a", number).time
+
     def load(self, source: str, z: fmpq, power: int = 0) -> fmpq:
         """The sum of the source's pieces that have begun, each times the time since then to a power."""
         return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))

@@ -18,7 +18,7 @@ from flint import fmpq
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
 from wavesym.papers.pielorz1979.chains import example
-from wavesym.papers.pielorz1979.forms import form_chain, look_up
+from wavesym.papers.pielorz1979.forms import form_chain
 from wavesym.papers.pielorz1979.transcript import entry as transcribed
 from wavesym.papers.pielorz1979.transcript import ids, right_reading
 from wavesym.papers.record import Case, Reading, Reproduction, Test, by_size, case, reading
@@ -125,17 +125,16 @@ class Coefficients(Scope):
 
     def __init__(self, bound: Mapping[str, int], given: Callable[[Key], Any], opened: bool = False) -> None:
         super().__init__(bound)
-        self._truth, self._given, self._opened = truth(bound["m"]), given, opened
+        known = truth(bound["m"])
+        self._given, self._opened = given, opened
+        self.letters = {
+            r"\kappa": known.kappa.__getitem__,
+            r"\bara": lambda k: known.motion.piece("a", k).weight,
+            r"\barb": lambda k: known.motion.piece("b", k).weight,
+        }
 
     def symbol(self, symbol: Symbol) -> Any:
-        match symbol:
-            case Symbol("f" | "g", above=(_, *_)):
-                return self._given(key(symbol, self))
-            case Symbol(r"\kappa", accent="", below=(_,)):
-                return look_up(self._truth.kappa, self.indices(symbol)[0], symbol.name)
-            case Symbol("a" | "b" as source, accent=r"\bar", below=(_,)):
-                return self._truth.motion.piece(source, self.indices(symbol)[0]).weight
-        return super().symbol(symbol)
+        return self._given(key(symbol, self)) if symbol.above else super().symbol(symbol)
 
     def step(self, value: Any) -> Any:
         return 1 if self._opened else super().step(value)

@@ -9,14 +9,14 @@ from flint import fmpq
 
 from wavesym.mechanics.node import Node
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, letter_name, sides, span
 from wavesym.papers.pielorz1979.chains import (
     JumpingChain,
     LoadedChain,
     instants,
 )
 from wavesym.papers.pielorz1979.equation_group import EquationGroup, Key, Place, parts_of
-from wavesym.papers.pielorz1979.letters import DISPLACEMENTS, letter, rods_at
+from wavesym.papers.pielorz1979.letters import DISPLACEMENTS, rods_at
 from wavesym.papers.record import Case, Reading, Reproduction
 from wavesym.papers.tree import Call, Derivative, Symbol, Tree, latex
 
@@ -66,12 +66,12 @@ class Conditions(EquationGroup):
     def _rods(self, equation: Tree, i: int | None) -> set[int]:
         """The rods that a condition is about; MeaninglessError where it is about another place than the node."""
         for part in parts_of(equation):
-            is_moved = isinstance(part, Call) and letter(part.function) in DISPLACEMENTS.values()
+            is_moved = isinstance(part, Call) and letter_name(part.function) in DISPLACEMENTS.values()
             if is_moved and tuple(map(latex, part.arguments)) != (r"\bar{x}", r"\tau"):
                 raise MeaninglessError(f"{latex(part)} is not at the node")
         names = ("U", *DISPLACEMENTS.values())
         scope = Scope({"m": self.scope.chain.m} | ({} if i is None else {"i": i}))
-        moved = (part for part in parts_of(equation) if isinstance(part, Symbol) and letter(part) in names)
+        moved = (part for part in parts_of(equation) if isinstance(part, Symbol) and letter_name(part) in names)
         return {rod for symbol in moved for rod in scope.indices(symbol)}
 
     def key(self, equation: Tree, place: Place) -> Key:

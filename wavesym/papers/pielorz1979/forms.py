@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, letter_name, places, sides
 from wavesym.papers.pielorz1979.chains import Exact, LoadedChain, building, collision, drive, example, loads
 from wavesym.papers.pielorz1979.transcript import entries, ids, right_reading
 from wavesym.papers.record import Case, Reading, Reproduction, by_size, case
@@ -201,7 +201,15 @@ class FormScope(Scope):
         self._totals: dict[tuple[int, int, int, int], Any] = {}
         self._limits: dict[tuple[Any, ...], Limit] = {}
         self._values: dict[tuple[Any, ...], Any] = {}
+        is_drive = form.name == "II"
+        rates = motion.exact.rates if is_drive else motion.exact.chain.parameters.kappa
         self._rates = motion.exact.rates
+        self.letters = {
+            r"\gamma" if is_drive else r"\kappa": lambda i: look_up(rates, i, "a body"),
+            r"\barM": lambda s, k: motion.piece(f"M{s}", k).weight,
+            r"\tau": motion.start_time,
+            "m": lambda number: self.last(f"M{number}" if is_drive else "a" if number == 1 else ""),
+        }
 
     def total(self, rod: int, number: int, z: fmpq) -> Any:
         """F' of a rod at z as the form of interval 1, 2, ... has it; MeaninglessError."""
@@ -245,20 +253,12 @@ class FormScope(Scope):
 
     def symbol(self, symbol: Symbol) -> Any:
         """Coefficients, loads, rates, and the cells of the tables."""
-        name, indices, is_drive = symbol.name, self.indices(symbol), self._form.name == "II"
-        if name == "F" and symbol.above:
-            return self.coefficient(indices, self.upper(symbol))
-        if symbol.accent == r"\bar" and name == "M" and len(indices) == 2:
-            return self._motion.piece(f"M{indices[0]}", indices[1]).weight
-        if symbol.accent or symbol.above or symbol.primes:
+        if symbol.above and symbol.name == "F":
+            return self.coefficient(self.indices(symbol), self.upper(symbol))
+        name = letter_name(symbol)
+        if symbol.above or name != symbol.name or (name in self.letters and symbol.below):
             return super().symbol(symbol)
-        if len(indices) == 1 and name == (r"\gamma" if is_drive else r"\kappa"):
-            return look_up(self._rates if is_drive else self._motion.exact.chain.parameters.kappa, indices[0], name)
-        if name == r"\tau" and indices:
-            source, number = (f"M{indices[0]}", indices[1]) if len(indices) == 2 else ("a", indices[0])
-            return self._motion.piece(source, number).time
-        if name == "m" and len(indices) == 1:
-            return self.last(f"M{indices[0]}" if is_drive else "a" if indices == (1,) else "")
+        indices = self.indices(symbol)
         place = name, indices, *map(self.bound.get, _LETTERS)
         if place not in self._values:
             limit = self._limit_of(name, indices)

@@ -16,8 +16,7 @@ from wavesym.mechanics.chain import Chain
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.exact_numbers import Jet
 from wavesym.papers.pielorz1979.chains import LoadedChain
-from wavesym.papers.record import format_value
-from wavesym.papers.tree import Call, Derivative, Number, Symbol, Tree, latex
+from wavesym.papers.tree import Derivative, Number, Symbol, Tree, latex
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.drive import DRIVE
 
@@ -30,37 +29,6 @@ _C_F = Symbol("c", below=(Symbol("f"),))
 _S_0 = Symbol("S", below=(Number("0"),))
 _X_I = Symbol("x", below=(Symbol("i"),))
 _ANY_V_0 = fmpq(7, 5)
-
-
-def letter(symbol: Symbol) -> str:
-    """A letter with its marks, but without its indices."""
-    return symbol.accent + symbol.name + "'" * symbol.primes
-
-
-class IndexedLetters(Scope):
-    """Letters as functions of their indices, functions as those of their indices and arguments; each by `letter`."""
-
-    def __init__(self, bound: Mapping[str, Any], constants: Mapping[Tree, Tree] | None = None) -> None:
-        super().__init__(bound, constants)
-        self.letters: dict[str, Callable[..., Any]] = {}
-        self.functions: dict[str, Callable[..., Any]] = {}
-
-    def symbol(self, symbol: Symbol) -> Any:
-        return self.meaning(self.letters, symbol)
-
-    def call(self, call: Call) -> Any:
-        return self.meaning(self.functions, call.function, *map(self.value, call.arguments))
-
-    def meaning(self, known: Mapping[str, Callable[..., Any]], symbol: Symbol, *arguments: Any) -> Any:
-        """What a letter or function is there; MeaninglessError where it is not known, or has not these indices."""
-        if (means := known.get(letter(symbol))) is None or symbol.above:
-            raise MeaninglessError(f"{latex(symbol)} is not defined")
-        index = self.indices(symbol)
-        try:
-            return means(*index, *arguments)
-        except (LookupError, TypeError):
-            which = f"with indices {format_value(index)}" if index else "without an index"
-            raise MeaninglessError(f"{latex(symbol)} is not defined {which}") from None
 
 
 @dataclass(frozen=True)
@@ -149,7 +117,7 @@ def unit_of_moment(chain: Chain, body: int) -> fmpq:
     return -fmpq(value) if body == len(chain.nodes) else fmpq(value)
 
 
-class Motion(IndexedLetters):
+class Motion(Scope):
     """The letters on the motion of a chain; `seen` tells whether anything moved where it was looked at.
 
     `constants` are those that ranges say the value of; `velocities` whether a v is that of a "body" or of a "rod".
@@ -351,10 +319,9 @@ class Motion(IndexedLetters):
         *number, k = index
         if number == [0]:
             return fmpq(self.first(0, k).tau0)
-        source = f"M{number[0]}" if number else "a"
-        if source not in self.motion.loads:
-            raise LookupError(source)
-        return self.motion.piece(source, k).time
+        if (f"M{number[0]}" if number else "a") not in self.motion.loads:
+            raise LookupError(number)
+        return self.motion.start_time(*index)
 
     def first(self, zero: int, rod: int) -> Any:
         """Where and when the first disturbance reaches a rod."""

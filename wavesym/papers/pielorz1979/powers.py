@@ -27,7 +27,7 @@ from wavesym.papers.pielorz1979.forms import (
     right_rows,
 )
 from wavesym.papers.record import Case, Nothing, Reproduction, by_size, case
-from wavesym.papers.tree import Call, Power, Series, Symbol
+from wavesym.papers.tree import Call, Power, Series
 
 PAIRS = {
     "I": tuple(by_size(product((4, 6, 10), range(5)))),
@@ -47,6 +47,7 @@ class RequestScope(FormScope):
         self, name: str, motion: LoadedChain, letter: str, changed: Changed | None = None, part: int | None = None
     ) -> None:
         super().__init__(right_form(name), motion, letter, changed, max(n for _, n in PAIRS[name]))
+        self.letters |= dict.fromkeys((r"\barM", r"\tau"), lambda *index: 1)
         self._part = part
         self._requests: list[tuple[Indices, Indices]] = []
 
@@ -75,9 +76,6 @@ class RequestScope(FormScope):
 
     def raised(self, power: Power) -> Any:
         return 1
-
-    def symbol(self, symbol: Symbol) -> Any:
-        return 1 if symbol.accent or symbol.name == r"\tau" else super().symbol(symbol)
 
     def last(self, source: str) -> int:
         """Moments that do not exist are requested, too."""

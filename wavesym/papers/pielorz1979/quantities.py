@@ -10,12 +10,12 @@ from typing import Any, ClassVar
 from flint import fmpq
 
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, holds, items, sides, span
+from wavesym.papers.evaluation import MeaninglessError, holds, items, letter_name, sides, span
 from wavesym.papers.pielorz1979.chains import (
     LoadedChain,
 )
 from wavesym.papers.pielorz1979.equation_group import FAST, SLOW, EquationGroup, Key, Place
-from wavesym.papers.pielorz1979.letters import ONES, body_velocity, letter
+from wavesym.papers.pielorz1979.letters import ONES, body_velocity
 from wavesym.papers.reader import read_range
 from wavesym.papers.record import Case, Reading, case
 from wavesym.papers.tree import Call, Cases, Relation, Symbol, Tree, latex
@@ -91,7 +91,7 @@ class Loads(EquationGroup):
         function = left.function if isinstance(left, Call) else left
         if not isinstance(function, Symbol):
             raise MeaninglessError(f"{latex(left)} is no load")
-        return letter(function), *self.scope.indices(function)
+        return letter_name(function), *self.scope.indices(function)
 
     def required(self) -> Iterable[Key]:
         return [("M", body) for body in range(1, self.scope.chain.m + 2)] if self.scope.is_drive else [(r"\ddoty", 0)]
@@ -108,7 +108,7 @@ class Constants(Loads):
     units = (replace(SLOW, S_0=fmpq(7, 3)), replace(FAST, S_0=fmpq(2, 5)))
 
     def required(self) -> Iterable[Key]:
-        name = letter(self._defined())
+        name = letter_name(self._defined())
         if name == r"\kappa":
             return [(name, i) for i in self.scope.chain.system.indices(self.scope.chain.m)["kappa"]]
         return [(name, body) for body in range(1, self.scope.chain.m + 2)]
