@@ -7,7 +7,7 @@ A coefficient beyond the highest power does not exist, so that a limit may be ne
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
@@ -88,14 +88,6 @@ _LETTERS = ("m", "n", "half", "i", ALPHA, "j", "l", "r", "s")
 """What the value of a cell may depend on."""
 
 
-@dataclass(frozen=True, eq=False)
-class Limit:
-    """What a letter of a form is: its tree, and the values that are known for some _LETTERS."""
-
-    tree: Tree
-    values: dict[tuple[Any, ...], Any] = field(default_factory=dict)
-
-
 _WITHOUT_BRACES = str.maketrans("", "", "{}")
 _DEFINED: Mapping[tuple[str, Indices], str] = {
     ("L", (0,)): "(4.10).L_0",
@@ -154,11 +146,31 @@ def _limit(id: str, scope: Scope, changed: Changed) -> Tree:
 
 
 @cache
-def _right_limit(id: str, m: int, i: int, n: int) -> Limit:
-    return Limit(_limit(id, Scope({"m": m, "i": i, "n": n}), {}))
+def _right_limit(id: str, m: int, i: int, n: int) -> Tree:
+    return _limit(id, Scope({"m": m, "i": i, "n": n}), {})
+
+
+@cache
+def _right_values(name: str, m: int, letter: str) -> dict[tuple[Any, ...], Any]:
+    """Of letters of a form for functions f or g: their values as they are right, as far as they are known."""
+    return {}
+
+
+_ALL_LETTERS = ("j", "K", "d", "w", "s", "R", "L", "r")
+
+
+def _letters(id: str) -> Iterable[str]:
+    """The letters that may have other values where a record is changed."""
+    if id in _DEFINED.values():
+        return _ALL_LETTERS
+    return {part.rpartition(".")[2][0] for part in _part(id)}
 
 
 # forms
+
+
+Statement = tuple[Indices, Tree, Tree, dict[str, Any]]
+"""What a form says of a rod: the indices of an F', its argument, what it is, and at which n."""
 
 
 @dataclass(frozen=True)
@@ -169,6 +181,8 @@ class Form:
     step: Tree
     start: Tree
     numbers: Tree
+    statements: dict[tuple[int, int, int], list[Statement]] = field(default_factory=dict, init=False, compare=False)
+    """What is known of it, by m, the most n and a rod: with everything else as it is right."""
 
     @classmethod
     def of(cls, name: str, reading: Reading) -> Form:
@@ -197,10 +211,12 @@ class FormScope(Scope):
         super().__init__({"m": motion.exact.m})
         self._form, self._motion, self._letter, self._changed = form, motion, letter, changed or {}
         self._most_n = INTERVALS[form.name] if most_n is None else most_n
-        self._stated: dict[int, list[tuple[Indices, Tree, Tree, dict[str, Any]]]] = {}
+        self._stated: dict[int, list[Statement]] = {}
         self._totals: dict[tuple[int, int, int, int], Any] = {}
-        self._limits: dict[tuple[Any, ...], Limit] = {}
+        self._limits: dict[tuple[Any, ...], Tree] = {}
         self._values: dict[tuple[Any, ...], Any] = {}
+        self._right_values = _right_values(form.name, motion.exact.m, letter)
+        self._changed_letters = {letter for id in self._changed for letter in _letters(id)}
         is_drive = form.name == "II"
         rates = motion.exact.rates if is_drive else motion.exact.chain.parameters.kappa
         self._rates = motion.exact.rates
@@ -223,7 +239,7 @@ class FormScope(Scope):
 
     def _total(self, rod: int, number: int, z: fmpq) -> Any:
         if rod not in self._stated:
-            self._stated[rod] = list(self._statements(rod))
+            self._stated[rod] = self._statements(rod)
         found = []
         for indices, argument, right, place in self._stated[rod]:
             if indices == (rod, number):
@@ -236,15 +252,20 @@ class FormScope(Scope):
         with self.binding(bound):
             return self.value(right)
 
-    def _statements(self, rod: int) -> Iterator[tuple[Indices, Tree, Tree, dict[str, Any]]]:
-        """What the form says of a rod: the indices of an F', its argument, what it is, and at which n."""
-        halves = HALVES if self._form.name == "II" else (None,)
-        numbers = places([self._form.numbers], self, self._most_n)
-        steps = [(self._form.step, {**place, "half": half}) for place in numbers for half in halves]
-        for equation, place in ((self._form.start, self.bound), *steps):
-            left, right = sides(equation)
-            with self.binding({**place, "i": rod}):
-                yield self.indices(derivative(left).function), derivative(left).arguments[0], right, self.bound
+    def _statements(self, rod: int) -> list[Statement]:
+        known = self._form.statements if "d" not in self._changed_letters else {}
+        key = self._motion.exact.m, self._most_n, rod
+        if key not in known:
+            halves = HALVES if self._form.name == "II" else (None,)
+            numbers = places([self._form.numbers], self, self._most_n)
+            steps = [(self._form.step, {**place, "half": half}) for place in numbers for half in halves]
+            known[key] = []
+            for equation, place in ((self._form.start, self.bound), *steps):
+                left, right = sides(equation)
+                with self.binding({**place, "i": rod}):
+                    function = derivative(left)
+                    known[key].append((self.indices(function.function), function.arguments[0], right, self.bound))
+        return known[key]
 
     def call(self, call: Call) -> Any:
         """F' itself: what the form gives for another interval."""
@@ -259,17 +280,16 @@ class FormScope(Scope):
         if symbol.above or name != symbol.name or (name in self.letters and symbol.below):
             return super().symbol(symbol)
         indices = self.indices(symbol)
+        values = self._values if name in self._changed_letters else self._right_values
         place = name, indices, *map(self.bound.get, _LETTERS)
-        if place not in self._values:
+        if place not in values:
             limit = self._limit_of(name, indices)
             if name == "w":  # depends on loads
-                return self.value(limit.tree)
-            if place not in limit.values:
-                limit.values[place] = self.value(limit.tree)
-            self._values[place] = limit.values[place]
-        return self._values[place]
+                return self.value(limit)
+            values[place] = self.value(limit)
+        return values[place]
 
-    def _limit_of(self, name: str, indices: Indices) -> Limit:
+    def _limit_of(self, name: str, indices: Indices) -> Tree:
         """The right side of a definition, or a cell, that a letter is at this place; MeaninglessError."""
         bound, m = self.bound, self._motion.exact.m
         key = name, indices, *map(bound.get, ("n", "half", "i", ALPHA))
@@ -277,7 +297,7 @@ class FormScope(Scope):
             id = _DEFINED.get((name, indices)) or _cell(self._form.name, m, self._letter, name, indices, bound)
             try:
                 if not self._changed.keys().isdisjoint(_concerned(id)):
-                    self._limits[key] = Limit(_limit(id, self, self._changed))
+                    self._limits[key] = _limit(id, self, self._changed)
                 else:
                     self._limits[key] = _right_limit(id, m, bound.get("i", 0), bound.get("n", 0))
             except KeyError:
