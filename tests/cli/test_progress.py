@@ -12,7 +12,7 @@ import pytest
 
 from tests.papers.small import Paper
 from wavesym.cli import main, progress
-from wavesym.papers import published
+from wavesym.papers import verdict_page
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.record import Record
 
@@ -171,7 +171,7 @@ def test_commands_put_out_the_same_with_it_and_without(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr(published, "paper", Slow)  # ours takes longer, and no other way
+    monkeypatch.setattr(verdict_page, "paper", Slow)  # ours takes longer, and no other way
     monkeypatch.chdir(tmp_path_factory.mktemp("pipe"))
     status = main(arguments)
     out, aside = capsys.readouterr()

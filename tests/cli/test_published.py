@@ -10,7 +10,7 @@ import pytest
 from tests.papers.small import ENTRIES, Paper, entry
 from wavesym.cli import main
 from wavesym.cli.verify import FORMATS
-from wavesym.papers import published
+from wavesym.papers import verdict_page
 from wavesym.papers.record import Record
 from wavesym.scene import Scene
 
@@ -27,7 +27,7 @@ def judged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
             found.extend(record.id for record in made)
             return made
 
-    monkeypatch.setattr(published, "paper", Watched)
+    monkeypatch.setattr(verdict_page, "paper", Watched)
     monkeypatch.chdir(tmp_path)
     return found
 
@@ -41,7 +41,7 @@ def answer(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 0)
 
 
 def test_the_formats_are_those_that_there_are() -> None:
-    assert tuple(published.FORMATS) == FORMATS
+    assert tuple(verdict_page.FORMATS) == FORMATS
 
 
 @pytest.mark.parametrize("format", FORMATS)
@@ -107,7 +107,7 @@ def test_only_what_could_not_be_tested_fails(
         def records(*given: object) -> tuple[Record, ...]:
             return Paper.records([entry("(1.2).1", "n + n = 3n", "section 1")])
 
-    monkeypatch.setattr(published, "paper", Spoilt)
+    monkeypatch.setattr(verdict_page, "paper", Spoilt)
     assert "untested" in answer(capsys, "--published", "1.2", status=1)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from wavesym.papers.entries import About, Aside, PaperEntry, Passage, Slip, passage_hashes
+from wavesym.papers.entries import Aside, PaperDescription, PaperEntry, Passage, Slip, passage_hashes
 from wavesym.papers.entries import Paper as EntriesPaper
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.mutations import mutations
@@ -14,7 +14,7 @@ from wavesym.papers.tables import PrintedTable, TableHead
 from wavesym.papers.tree import Relation
 
 SCENE = 'name = "counterexample"\n\n[system]\ntype = "drive"\n'
-ABOUT = About(
+ABOUT = PaperDescription(
     author="A. Łoś",
     title="Sumy & <iloczyny>",
     english="Sums",
@@ -50,7 +50,7 @@ def entry(id: str, printed: str, where: str, slip: Slip | None = None, **more: o
 
 
 def _slip(corrected: str, note: str = "One more.", **more: object) -> dict[str, object]:
-    return {"slip": {"verdict": "misprint", "corrected": corrected, "note": note, **more}}
+    return {"slip": {"verdict": "misprint", "correction": corrected, "note": note, **more}}
 
 
 EQUIVALENT = (("sign of 0n in 0n + n", "-0 & 0 are one"), ("2 n for n in n", "0 times n is 0"))
@@ -92,7 +92,7 @@ PASSAGES = (
                     TableHead("U", "z"),
                 ),
                 rows=(TableHead("a", "a"), TableHead("n + 1 = 1 + n", "b")),
-                unjudged={"z": "a name"},
+                unjudged_columns={"z": "a name"},
             ),
         ),
     ),

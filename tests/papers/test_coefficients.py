@@ -52,9 +52,9 @@ def test_a_correction_is_the_whole_formula():
     """With H(n-2) left out of it III.12 lets in what does not exist."""
     entry = entries()["III.12"]
     assert verdict(entry.id) == "misprint"
-    shorter = entry.slip.corrected.replace("H(n-2)", "")
-    assert verdict(entry.id, slip=entry.slip.model_copy(update={"corrected": shorter})) == "untested"
-    assert verdict(entry.id, inferred=()) == "untested"
+    shorter = entry.slip.correction.replace("H(n-2)", "")
+    assert verdict(entry.id, slip=entry.slip.model_copy(update={"correction": shorter})) == "untested"
+    assert verdict(entry.id, inferred_ranges=()) == "untested"
 
 
 def test_the_list_by_itself():

@@ -34,7 +34,7 @@ def test_what_is_wrong_is_stated_beside_what_holds():
         ("(4.3).6", {"printed": r"\frac{\partial \bar{u}_m(\bar{x}, \tau)}{\partial \tau} = 0"}),
         ("(4.3).6", {"printed": r"\frac{\partial \bar{u}_m(\bar{x}, \tau)}{\partial \bar{x}}"}),
         ("(2.4).3", {"printed": r"\frac{\partial U_i}{\partial x} = \frac{\partial U_{i+1}}{\partial x}"}),
-        ("(2.4).4", {"about": {"at": "a body at a right end"}}),
+        ("(2.4).4", {"subject": {"at": "a body at a right end"}}),
         ("(4.4).4", {"printed": "-" + ENTRIES["(4.4).4"].printed}),
     ],
 )
@@ -50,8 +50,8 @@ def test_a_condition_that_is_falsified_loses_its_verdict(id, changes):
         ("(2.4).2", {"ranges": ("x_i = il",)}),
         ("(2.4).5", {"ranges": ("x_i = i",)}),
         ("(2.4).2", {"ranges": ()}),
-        ("(2.4).5", {"corrected": ENTRIES["(2.4).5"].printed.replace("S_i", "-S_i", 1)}),
-        ("(4.5).1", {"corrected": ENTRIES["(4.5).1"].printed}),
+        ("(2.4).5", {"correction": ENTRIES["(2.4).5"].printed.replace("S_i", "-S_i", 1)}),
+        ("(4.5).1", {"correction": ENTRIES["(4.5).1"].printed}),
     ],
 )
 def test_a_correction_that_is_falsified_loses_its_verdict(id, slip):
@@ -59,7 +59,7 @@ def test_a_correction_that_is_falsified_loses_its_verdict(id, slip):
 
 
 def test_a_slip_needs_something_that_fails():
-    right = ENTRIES["(4.4).1"].slip.corrected
+    right = ENTRIES["(4.4).1"].slip.correction
     assert judged("(4.4).1", printed=right).verdict == "untested"
 
 

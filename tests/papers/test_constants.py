@@ -13,11 +13,11 @@ from wavesym.papers.pielorz1979.letters import Material, Units
 @pytest.mark.parametrize(
     ("id", "changes"),
     [
-        ("(4.3).kappa", {"slip": {"corrected": r"\kappa_i = \frac{2F\rho l}{M_i}"}}),
-        ("(4.3).kappa", {"slip": {"corrected": r"\kappa_i = 0"}}),
+        ("(4.3).kappa", {"slip": {"correction": r"\kappa_i = \frac{2F\rho l}{M_i}"}}),
+        ("(4.3).kappa", {"slip": {"correction": r"\kappa_i = 0"}}),
         ("(4.3).kappa", {"ranges": (r"i = 1, 2, \dots, m-1",)}),
         ("(4.4).kappa", {"printed": r"\kappa_i = \frac{J_{0,1} \rho l}{J_i}"}),
-        ("(4.4).kappa", {"inferred": (r"i = 1, 2, \dots, m+1",)}),
+        ("(4.4).kappa", {"inferred_ranges": (r"i = 1, 2, \dots, m+1",)}),
         ("(4.4).A", {"slip": {"ranges": (r"S_0 = \frac{G J_{0,1} U_0}{2l}",)}}),
         ("(4.5).kappa", {"slip": {"ranges": ENTRIES["(4.5).kappa"].ranges}}),
         ("def.s", {"slip": {"ranges": ()}}),

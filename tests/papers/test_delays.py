@@ -32,9 +32,9 @@ def test_an_equation_that_is_falsified_loses_its_verdict(id, changes):
 
 
 def test_a_correction_that_is_falsified_loses_its_verdict():
-    right = ENTRIES["(4.7).2"].slip.corrected
+    right = ENTRIES["(4.7).2"].slip.correction
     for wrong in (right.replace("m_{m+1}", "m_m"), right.replace(r"= -\bar", r"= \bar"), ENTRIES["(4.7).2"].printed):
-        assert judged("(4.7).2", slip={"corrected": wrong}).verdict == "untested"
+        assert judged("(4.7).2", slip={"correction": wrong}).verdict == "untested"
 
 
 @pytest.mark.parametrize("m", range(2, 9))
@@ -47,5 +47,5 @@ def test_when_every_function_is_given_once(m):
     ("before", "after"), [("faster", "slower"), ("stay closed", "are closed at first"), ("second and first", "second")]
 )
 def test_a_sentence_that_is_falsified_loses_its_verdict(before, after):
-    right = ENTRIES["(4.6).contacts"].slip.corrected
-    assert judged("(4.6).contacts", slip={"corrected": right.replace(before, after)}).verdict == "untested"
+    right = ENTRIES["(4.6).contacts"].slip.correction
+    assert judged("(4.6).contacts", slip={"correction": right.replace(before, after)}).verdict == "untested"

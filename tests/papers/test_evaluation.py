@@ -95,4 +95,4 @@ def test_nearly_equal_is_not_equal():
     close = exponential(fmpq(1, 10**30))
     assert float(close) == 1
     assert close != 1
-    assert Exponentials.of(fmpq(1, 2)) == fmpq(1, 2)
+    assert Exponentials.from_number(fmpq(1, 2)) == fmpq(1, 2)

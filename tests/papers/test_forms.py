@@ -18,11 +18,11 @@ def corrected(id: str, *edits: tuple[str, str], ranges: Sequence[str] | None = N
     """The verdict where the correction says something else."""
     slip = entry(id).slip
     assert slip
-    text = slip.corrected
+    text = slip.correction
     for before, after in edits:
         assert before in text
         text = text.replace(before, after)
-    return verdict(id, slip=slip.model_copy(update={"corrected": text, "ranges": ranges}))
+    return verdict(id, slip=slip.model_copy(update={"correction": text, "ranges": ranges}))
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def test_a_form_that_becomes_otherwise_wrong_is_seen(id: str, before: str, after
     "ranges", [("n = 1, 2, \\dots",), ("n = 0, 2, \\dots",), ("n = -1, 0, \\dots",), ("i = 1, 2",)]
 )
 def test_the_numbers_of_a_form_are_judged(id: str, ranges: tuple[str, ...]) -> None:
-    assert verdict(id, inferred=ranges) == "untested"
+    assert verdict(id, inferred_ranges=ranges) == "untested"
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,7 @@ def by_id(judged):
 
 def test_everything_could_be_tested(judged):
     assert not [(record.id, record.problems) for record in judged if record.problems]
-    assert all(record.cases > 0 and record.mutations.tried > 0 for record in judged)
+    assert all(record.cases > 0 and record.mutations.count > 0 for record in judged)
     assert "untested" not in {record.verdict for record in judged}
 
 
@@ -112,7 +112,7 @@ def test_what_is_wrong_shows_where_and_what_is_right(judged):
     for record in judged:
         wrong = record.verdict != "holds"
         assert (record.counterexample is not None) == wrong, record.id
-        assert (record.corrected is not None) == wrong, record.id
+        assert (record.correction is not None) == wrong, record.id
         assert not wrong or not record.counterexample.agrees, record.id
         assert wrong or record.difference is None, record.id
 
@@ -126,9 +126,9 @@ def test_what_is_printed_less_what_is_right(by_id):
 
 
 def test_survivors_are_explained(judged):
-    survivors = [(record.id, change, why) for record in judged for change, why in record.mutations.survived]
+    survivors = [(record.id, change, why) for record in judged for change, why in record.mutations.survivors]
     assert all(why for _, _, why in survivors)
-    tried = sum(record.mutations.tried for record in judged)
+    tried = sum(record.mutations.count for record in judged)
     assert len(survivors) < tried / 40
 
 
@@ -216,13 +216,13 @@ def test_another_string_is_another_verdict(entry):
     wrong: Reading = random.Random(entry.id).choice(faults)
     printed = tuple(map(latex, wrong.ranges))
     if entry.slip:
-        count = len(printed) - len(entry.inferred)
-        slip = entry.slip.model_copy(update={"corrected": latex(wrong.formula), "ranges": printed[:count]})
-        record = _judged(entry, slip=slip, inferred=printed[count:])
+        count = len(printed) - len(entry.inferred_ranges)
+        slip = entry.slip.model_copy(update={"correction": latex(wrong.formula), "ranges": printed[:count]})
+        record = _judged(entry, slip=slip, inferred_ranges=printed[count:])
     elif entry.heads:
         record = _judged(entry, printed=latex(wrong.formula))
     else:
-        record = _judged(entry, printed=latex(wrong.formula), ranges=printed, inferred=())
+        record = _judged(entry, printed=latex(wrong.formula), ranges=printed, inferred_ranges=())
     assert record.verdict == "untested", (latex(wrong.formula), printed)
 
 
@@ -240,7 +240,7 @@ def test_what_is_wrong_and_becomes_otherwise_wrong_is_seen(entry):
         if entry.id in record:
             record[entry.id] = {**record[entry.id], "printed": f"{entry.printed}+1"}
         changed.append(changed_passage(passage, record=record) if record != passage.record else passage)
-    found = {id for id, _ in problems(Paper(paper().about, tuple(changed), paper().hashes))}
+    found = {id for id, _ in problems(Paper(paper().description, tuple(changed), paper().hashes))}
     assert entry.id in found
 
 
@@ -248,4 +248,4 @@ def test_faults_are_named_apart(judged):
     for record in islice(judged, 0, None, 9):
         test = ADAPTERS[record.entry.kind](record.entry)
         names = [change for change, _ in test.faults(test.read(*record.entry.right_strings))]
-        assert len(names) == len(set(names)) == record.mutations.tried
+        assert len(names) == len(set(names)) == record.mutations.count

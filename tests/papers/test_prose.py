@@ -17,8 +17,8 @@ def verdict(id: str, before: str = "", after: str = "") -> str:
     """The verdict on a sentence or formula with one piece of what holds changed."""
     told = entry(id)
     if told.slip:
-        assert before in told.slip.corrected
-        slip = told.slip.model_copy(update={"corrected": told.slip.corrected.replace(before, after)})
+        assert before in told.slip.correction
+        slip = told.slip.model_copy(update={"correction": told.slip.correction.replace(before, after)})
         told = told.model_copy(update={"slip": slip})
     else:
         assert before in told.statement

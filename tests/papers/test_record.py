@@ -7,7 +7,7 @@ import pytest
 from wavesym.papers.entries import PaperEntry, Slip
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, sides, span
 from wavesym.papers.reader import read_range
-from wavesym.papers.record import Case, Nothing, Reading, Test, case, judge
+from wavesym.papers.record import Case, NoValue, Reading, Test, case, judge
 from wavesym.papers.record import reading as read_reading
 from wavesym.papers.sentences import SentencePattern, SentenceReader
 
@@ -40,8 +40,8 @@ def test_what_holds_survives_no_fault():
     record = _judged()
     assert record.verdict == "holds"
     assert record.cases == 8
-    assert record.mutations.tried == record.mutations.turned + 1
-    assert record.mutations.survived == EQUIVALENT
+    assert record.mutations.count == record.mutations.turned_count + 1
+    assert record.mutations.survivors == EQUIVALENT
 
 
 def test_a_survivor_must_be_explained():
@@ -70,11 +70,11 @@ def test_what_fails_without_a_correction_is_untested(changes):
 
 
 def test_what_is_wrong_needs_a_correction_that_holds():
-    slip = Slip(verdict="misprint", corrected="a = n + 1", note="")
+    slip = Slip(verdict="misprint", correction="a = n + 1", note="")
     assert _judged(printed="a = n + 2", slip=slip).verdict == "misprint"
     assert _judged(printed="a = n +", slip=slip.model_copy(update={"verdict": "unreadable"})).verdict == "unreadable"
     assert _judged(printed="a = n + 2", slip=slip).counterexample == Case({"n": 0}, 2, 1)
-    assert _judged(printed="a = n + 2", slip=slip.model_copy(update={"corrected": "a = n + 3"})).verdict == "untested"
+    assert _judged(printed="a = n + 2", slip=slip.model_copy(update={"correction": "a = n + 3"})).verdict == "untested"
     assert "no case shows it" in _judged(slip=slip).problems[0]
     shorter = slip.model_copy(update={"ranges": ENTRY.ranges})
     assert _judged(ranges=(r"n = 0, 1, \dots, 3",), slip=shorter).verdict == "misprint"
@@ -85,12 +85,12 @@ def _kinds(reading, shift=0):
     for n in range(4):
         scope = Scope({"n": n})
         if all(holds(range_, scope) for range_ in reading.ranges):
-            with scope.binding({"n": n + shift}):
+            with scope.bind({"n": n + shift}):
                 yield case({"n": n}, lambda scope=scope: scope.value(sides(reading.formula)[1]), n + 1 if n < 3 else 0)
 
 
 UP_TO_2 = (r"n = 0, 1, \dots, 2",)
-SMALL = {"corrected": "a = n + 1", "ranges": UP_TO_2}
+SMALL = {"correction": "a = n + 1", "ranges": UP_TO_2}
 FROM_1 = {"conventions": {"n counts from 1": lambda reading: _kinds(Reading(reading.formula, _UP_TO_2), shift=1)}}
 _UP_TO_2 = tuple(map(read_range, UP_TO_2))
 KINDS = {
@@ -99,7 +99,7 @@ KINDS = {
     "incomplete": ({"printed": "a = n + 1"}, {}),
     "convention": ({"printed": "a = n"}, FROM_1),
     "model": ({"printed": "a = n"}, {"mathematics": FROM_1["conventions"]["n counts from 1"]}),
-    "depends": ({"printed": "a = n + 1"}, {"varied": "loads"}),
+    "depends": ({"printed": "a = n + 1"}, {"variation": "loads"}),
 }
 
 
@@ -132,7 +132,7 @@ def test_a_sentence_that_lacks_words_is_incomplete(printed, corrected, kind):
         lambda right: [("another", Reading("It stays."))],
     )
     entry = PaperEntry(
-        id="x", kind="test", printed="", english=printed, slip=Slip(verdict=kind, corrected=corrected, note="")
+        id="x", kind="test", printed="", english=printed, slip=Slip(verdict=kind, correction=corrected, note="")
     )
     assert judge(entry, test).verdict == kind
 
@@ -147,8 +147,8 @@ def test_no_meaning_is_no_value():
         raise MeaninglessError("no rod 5")
 
     found = case({"i": 5}, printed, 0)
-    assert str(found.printed) == "no value (no rod 5)"
-    assert found.printed != Nothing("no rod 5")
+    assert str(found.printed_value) == "no value (no rod 5)"
+    assert found.printed_value != NoValue("no rod 5")
     assert not found.agrees
     assert str(found) == "With i = 5, what is printed has no value (no rod 5); it should be 0"
 

@@ -50,7 +50,7 @@ def test_a_false_sentence_is_seen(id: str, word: str, other: str) -> None:
     ],
 )
 def test_a_false_correction_is_seen(id: str, text: str) -> None:
-    assert judged(id, slip={"corrected": text}).verdict == "untested"
+    assert judged(id, slip={"correction": text}).verdict == "untested"
 
 
 @pytest.mark.parametrize(
@@ -66,8 +66,8 @@ def test_every_load_is_told_with_its_outcome(id: str) -> None:
     true, _, false = told.partition("; false under ")
     slip = ENTRIES[id].slip
     assert slip is not None
-    named = slip.corrected.partition("under these: ")[2].split("; ")
-    for load in loads(ENTRIES[id].about["figure"]):
+    named = slip.correction.partition("under these: ")[2].split("; ")
+    for load in loads(ENTRIES[id].subject["figure"]):
         assert f"{load.name} (" in (true if load.name in named else false)
 
 

@@ -61,7 +61,7 @@ def test_a_range_too_long_or_short_is_a_verdict(id, wrong):
 def test_a_wrong_correction_is_seen(id):
     entry = entries()[id]
     assert verdict(id) == entry.slip.verdict
-    assert verdict(id, slip=entry.slip.model_copy(update={"corrected": entry.slip.corrected + "+1"})) == "untested"
+    assert verdict(id, slip=entry.slip.model_copy(update={"correction": entry.slip.correction + "+1"})) == "untested"
     assert verdict(id, slip=None) == "untested"
 
 
@@ -73,7 +73,7 @@ def test_a_range_that_corrects_is_tried():
 
 def test_cells_as_they_should_be():
     scope = FormScope(right_form("II"), form_chain("II", 5), "g")
-    with scope.binding({"i": 3, "n": 2, "half": "even", ALPHA: 2}):
+    with scope.bind({"i": 3, "n": 2, "half": "even", ALPHA: 2}):
         assert scope.value(read_formula(r"R_\alpha")) == 2  # as printed 3
         with pytest.raises(MeaninglessError, match=r"Q.* is not defined"):
             scope.value(read_formula("Q"))
@@ -102,6 +102,6 @@ def test_a_table_is_bound_to_the_source(before, after, problem):
     (table,) = (passage for passage in paper().passages if passage.where == "Table 2")
     assert before in table.text
     changed = data.Paper(
-        paper().about, (changed_passage(table, text=table.text.replace(before, after, 1)),), paper().hashes
+        paper().description, (changed_passage(table, text=table.text.replace(before, after, 1)),), paper().hashes
     )
     assert any(problem in found for _, found in data.problems(changed))

@@ -19,7 +19,7 @@ from wavesym.derivation.table import Function
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.exact_numbers import Jet
 from wavesym.papers.pielorz1979.chains import Exact, LoadedChain
-from wavesym.papers.pielorz1979.coefficients import STEP, Alone, right_lines, truth, unknowns
+from wavesym.papers.pielorz1979.coefficients import STEP, ListRun, right_lines, truth, unknowns
 from wavesym.papers.pielorz1979.letters import Motion
 from wavesym.papers.pielorz1979.transcript import right_reading
 from wavesym.papers.record import Reading, reading
@@ -70,7 +70,7 @@ class OneChain(Scope):
 
     def of(self, id: str, number: int) -> Any:
         """What a formula or cell gives for an i."""
-        with self.binding({"i": number}):
+        with self.bind({"i": number}):
             formula = self.formulas[id].formula
             return self.value(formula if id.startswith("T1.") else sides(formula)[1])
 
@@ -90,21 +90,21 @@ class OneChain(Scope):
     def moment(self, body: int, tau: Any) -> Any:
         if body not in self.numbers("(3.1)"):
             raise MeaninglessError(f"there is no moment {body}")
-        with self.binding({"t": Jet.of(tau).value}):
+        with self.bind({"t": Jet.from_number(tau).value}):
             return self.of("(3.1)", body)
 
     def displacement(self, rod: int, x: Any, tau: Any) -> Any:
         """(4.2), with what Table 1 has for the rod."""
         velocity = self.of(f"T1.{self.name}.v", rod)
-        with self.binding({r"\bar{x}": x, r"\tau": tau, "velocity": velocity}):
+        with self.bind({r"\bar{x}": x, r"\tau": tau, "velocity": velocity}):
             return self.of("(4.2)", rod)
 
     def body(self, number: int) -> int:
         """The number in its example of a body of (2.4), which may number bodies by their places."""
-        numbering = self.bound.get("numbering")
+        numbering = self.variables.get("numbering")
         if numbering is None:
             return number
-        with self.binding({"i": number, "numbering": None}):
+        with self.bind({"i": number, "numbering": None}):
             return int(self.value(numbering) / L) + (self.name == "II")
 
     def symbol(self, symbol: Symbol) -> Any:
@@ -117,11 +117,11 @@ class OneChain(Scope):
             case "J", (0, i) if drive:
                 return self.area(i)
             case r"\barx", ():
-                return self.bound[r"\bar{x}"]
+                return self.variables[r"\bar{x}"]
             case ((r"\barx" | r"\tau"), (0, i)) if 1 <= i <= self.m:
                 return self.of(f"T1.{self.name}.{'x' if 'x' in name else 'tau'}_0", i)
             case r"\barv", (i,):  # in (4.2) of a rod, elsewhere of a body
-                return self.bound["velocity"] if "velocity" in self.bound else fmpq(17 - i * i, 3 + i)
+                return self.variables["velocity"] if "velocity" in self.variables else fmpq(17 - i * i, 3 + i)
             case r"\barA", (i,) if i in self.numbers("(4.4).A"):
                 return self.of("(4.4).A", i)
             case ((r"\barM" | "M"), (i, k)) if drive and 0 <= k < self.pieces(i):
@@ -150,7 +150,9 @@ class OneChain(Scope):
         match name, index, [self.value(argument) for argument in call.arguments]:
             case (("f" | "g"), (rod,), (z,)) if 1 <= rod <= self.m:
                 own, order = self.waves.get((name, rod), fmpq(0)), call.function.primes
-                return Jet.of(z).of_function(lambda more: own * S ** (order + more) * _power(Jet.of(z).value))
+                return Jet.from_number(z).apply(
+                    lambda more: own * S ** (order + more) * _power(Jet.from_number(z).value)
+                )
             case _, (rod,), (x, tau) if name == DISPLACEMENTS[self.name]:
                 return self.displacement(rod, x, tau)
             case r"\barM", (body,), (tau,):
@@ -160,19 +162,19 @@ class OneChain(Scope):
             case "S", (number,), (t,):
                 if self.name != "II":
                     return 0
-                (unit,) = (r.shown[0] for r in self.formulas["def.s"].ranges if latex(r.variable) == "S_{0}")
+                (unit,) = (r.first_values[0] for r in self.formulas["def.s"].ranges if latex(r.variable) == "S_{0}")
                 return self.moment(self.body(number), t * C / L) * self.value(unit)
         raise MeaninglessError(f"{latex(call.function)} is not defined")
 
     def derivative(self, derivative: Derivative) -> Any:
-        by = latex(derivative.by)
-        with self.binding({by: Jet(self.bound[by], 1)}):
-            match derivative.of:
+        by = latex(derivative.variable)
+        with self.bind({by: Jet(self.variables[by], 1)}):
+            match derivative.function:
                 case Symbol("U", "") as physical:
                     (rod,) = self.indices(physical)
-                    moved = self.displacement(rod, self.bound["x"] / L, self.bound["t"] * C / L) * U_0
+                    moved = self.displacement(rod, self.variables["x"] / L, self.variables["t"] * C / L) * U_0
                 case other:
-                    moved = Jet.of(self.value(other))
+                    moved = Jet.from_number(self.value(other))
         return moved.first if derivative.order == 1 else moved.second
 
 
@@ -198,12 +200,12 @@ def _places(chain: OneChain, id: str) -> Iterator[tuple[Tree, dict[str, Any]]]:
             "4": [(0, 1)] if chain.name == "II" else [],
             "5": [(m, m)] if chain.name != "I" else [],
         }[id[-1]]
-        numbering = ranges["x_{i}"].shown[0] if "x_{i}" in ranges else None
+        numbering = ranges["x_{i}"].first_values[0] if "x_{i}" in ranges else None
         for x, i in at:
             yield read.formula, {"i": i, "x": x * L, "t": fmpq(0), "numbering": numbering}
         return
     for i in span(ranges["i"], chain) if "i" in ranges else (1,):
-        with chain.binding({"i": i}):
+        with chain.bind({"i": i}):
             found: dict[str, Any] = {"i": i, "z": 0, r"\tau": 0, "t": fmpq(0)}
             found |= {name: span(ranges[name], chain)[0] for name in (r"\bar{x}", "x") if name in ranges}
         for equation in items(read.formula):
@@ -215,8 +217,8 @@ def _left_over(chain: OneChain, id: str) -> list[fmpq]:
     found = []
     for equation, place in _places(chain, id):
         left, right = sides(equation)
-        with chain.binding(place):
-            found.append(fmpq(Jet.of(chain.value(left) - chain.value(right)).value))
+        with chain.bind(place):
+            found.append(fmpq(Jet.from_number(chain.value(left) - chain.value(right)).value))
     return found
 
 
@@ -244,7 +246,7 @@ def _solve(chain: OneChain) -> None:
 
 def _checked(name: str) -> list[str]:
     """What the solution has to satisfy."""
-    delays = [id for id, entry in ENTRIES.items() if entry.kind == "delay" and entry.about["example"] == name]
+    delays = [id for id, entry in ENTRIES.items() if entry.kind == "delay" and entry.subject["example"] == name]
     return [*delays, "(2.3)", *(f"(2.4).{line}" for line in range(1, 6))]
 
 
@@ -302,7 +304,7 @@ def test_the_model_of_the_text_goes_with_no_other_formula() -> None:
 def _against_the_list(lines: list[Reading]) -> set[str]:
     """The lines of (4.8) that (4.12) with these coefficients does not satisfy; g_1 is not in the list."""
     m, most = 3, 3
-    known, motion = Alone(lines, m, most), truth(m).motion
+    known, motion = ListRun(lines, m, most), truth(m).motion
     kappa, (a, b) = motion.exact.chain.parameters.kappa, (motion.piece(source, STEP) for source in "ab")
     gains: dict[Function, list[dict[fmpq, list[fmpq]]]] = {}
     for n in range(most + 1):
@@ -318,7 +320,7 @@ def _against_the_list(lines: list[Reading]) -> set[str]:
         left, right = sides(right_reading(id).formula)
         for i in span(range_of("i", right_reading(id).ranges), scope) if right_reading(id).ranges else (0,):
             for tenth in range(0, 20 * most, 7):
-                with scope.binding({"i": i, "z": fmpq(tenth, 10)}):
+                with scope.bind({"i": i, "z": fmpq(tenth, 10)}):
                     if scope.value(left) - scope.value(right) != 0:
                         found.add(id)
     return found

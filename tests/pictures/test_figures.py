@@ -67,7 +67,7 @@ def missing(found: Mapping[int, Figure], records: Mapping[str, Record]) -> set[s
     """The statements of section 5 that are not both listed and, where they have a place, marked in their figure."""
     absent = set()
     for id, record in records.items():
-        number = record.entry.about["figure"]
+        number = record.entry.subject["figure"]
         said = section_5.statements(number).get(id)
         nowhere = said is not None and not measured(number, said).spots
         if id.removeprefix("text.") not in listed(found[number]) & (
@@ -115,7 +115,7 @@ def test_each_load_is_said_to_bear_a_statement_out_or_not(
         for id, statement in section_5.statements(number).items():
             own = text.partition(records[id].entry.statement)[2].partition("false for ")
             false = own[2].partition("  ")[0]
-            corrected = records[id].corrected
+            corrected = records[id].correction
             named = corrected.partition(section_5.ONLY)[2].split("; ") if corrected else None
             for load, found in section_5.findings(number, statement):
                 said = f"{load.name} ({found.value:.4g})"
@@ -164,7 +164,7 @@ def test_a_distance_is_marked_where_it_is_largest(
     id: str, among: tuple[str, ...], records: Mapping[str, Record]
 ) -> None:
     """Again from the curves, by hand."""
-    number = records[id].entry.about["figure"]
+    number = records[id].entry.subject["figure"]
     found = measured(number, section_5.statements(number)[id])
     ((low, high),) = found.spots
     curves = {name: _curve(number, name) for name in among}

@@ -85,9 +85,9 @@ def verify_published(
     Raises:
         WavesymError: for a name that the paper does not have, and a verdict that there is not.
     """
-    from wavesym.papers.published import published_report
+    from wavesym.papers.verdict_page import verdict_page
 
-    return published_report(names, format, reproduce, watch, only)
+    return verdict_page(names, format, reproduce, watch, only)
 
 
 def advise(scene: Scene, tolerance: float = 0.01) -> Advice:

@@ -16,7 +16,7 @@ from typing import Any
 from wavesym.papers.tree import (
     Addition,
     Group,
-    Marked,
+    Highlight,
     Minus,
     Number,
     Power,
@@ -31,9 +31,9 @@ from wavesym.papers.tree import (
 
 
 def mark_differences(before: Tree, after: Tree) -> tuple[Tree, Tree]:
-    """Both formulas, with `Marked` around what differs; around nothing where they share nothing."""
-    _, one, other = _compared(before, after)
-    return (before, after) if isinstance(one, Marked) and isinstance(other, Marked) else (one, other)
+    """Both formulas, with `Highlight` around what differs; around nothing where they share nothing."""
+    _, one, other = _compare(before, after)
+    return (before, after) if isinstance(one, Highlight) and isinstance(other, Highlight) else (one, other)
 
 
 def mark_range_differences(before: Sequence[Tree], after: Sequence[Tree]) -> tuple[tuple[Tree, ...], tuple[Tree, ...]]:
@@ -46,27 +46,27 @@ _Pair = tuple[int, Any, Any]
 
 
 @cache
-def _compared(a: Any, b: Any) -> _Pair:
+def _compare(a: Any, b: Any) -> _Pair:
     if a == b:
         return 0, a, b
-    whole = _size(a) + _size(b), _marked(a), _marked(b)
-    return min((whole, *_mended(a, b)), key=lambda pair: pair[0])
+    whole = _size(a) + _size(b), _mark(a), _mark(b)
+    return min((whole, *_partial_marks(a, b)), key=lambda pair: pair[0])
 
 
-def _mended(a: Any, b: Any) -> list[_Pair]:
+def _partial_marks(a: Any, b: Any) -> list[_Pair]:
     """Ways to mark less than the whole."""
     found = []
     if isinstance(a, Minus) != isinstance(b, Minus):
-        cost, one, other = _compared(_unsigned(a), _unsigned(b))
-        found.append((cost + 1, _signed(one, a), _signed(other, b)))
+        cost, one, other = _compare(_without_sign(a), _without_sign(b))
+        found.append((cost + 1, _with_sign(one, a), _with_sign(other, b)))
     for kind, part in ((Addition, "terms"), (Product, "factors")):
         if isinstance(a, kind) or isinstance(b, kind):
             cost, one, other = _rows(_parts(a, kind, part), _parts(b, kind, part))
-            found.append((cost, _joined(one, kind), _joined(other, kind)))
+            found.append((cost, _join(one, kind), _join(other, kind)))
     if isinstance(a, Power) != isinstance(b, Power):
-        found.append(_raised(a, b))
+        found.append(_compare_powers(a, b))
     if isinstance(a, Group) != isinstance(b, Group):
-        found.append(_bracketed(a, b))
+        found.append(_compare_groups(a, b))
     if type(a) is type(b) and not isinstance(a, (Addition, Product, Number)) and is_dataclass(a):
         found += _by_field(a, b)
     return found
@@ -80,7 +80,7 @@ def _by_field(a: Any, b: Any) -> list[_Pair]:
         if x == y:
             continue
         if _is_tree(x) and _is_tree(y):
-            cost, one[field.name], other[field.name] = _compared(x, y)
+            cost, one[field.name], other[field.name] = _compare(x, y)
         elif isinstance(x, tuple) and isinstance(y, tuple) and all(map(_is_tree, x + y)):
             cost, one[field.name], other[field.name] = _rows(x, y)
         else:
@@ -91,21 +91,21 @@ def _by_field(a: Any, b: Any) -> list[_Pair]:
     return [(total, replace(a, **one), replace(b, **other))]
 
 
-def _raised(a: Any, b: Any) -> _Pair:
+def _compare_powers(a: Any, b: Any) -> _Pair:
     """One side has an exponent more."""
     if isinstance(a, Power):
-        cost, base, other = _compared(a.base, b)
-        return cost + _size(a.exponent), Power(base, _marked(a.exponent)), other
-    cost, one, base = _compared(a, b.base)
-    return cost + _size(b.exponent), one, Power(base, _marked(b.exponent))
+        cost, base, other = _compare(a.base, b)
+        return cost + _size(a.exponent), Power(base, _mark(a.exponent)), other
+    cost, one, base = _compare(a, b.base)
+    return cost + _size(b.exponent), one, Power(base, _mark(b.exponent))
 
 
-def _bracketed(a: Any, b: Any) -> _Pair:
+def _compare_groups(a: Any, b: Any) -> _Pair:
     """One side has a pair of brackets more; they are seen without a mark."""
     if isinstance(a, Group):
-        cost, inner, other = _compared(a.inner, b)
+        cost, inner, other = _compare(a.inner, b)
         return cost + 1, Group(a.bracket, inner), other
-    cost, one, inner = _compared(a, b.inner)
+    cost, one, inner = _compare(a, b.inner)
     return cost + 1, one, Group(b.bracket, inner)
 
 
@@ -113,17 +113,17 @@ def _bracketed(a: Any, b: Any) -> _Pair:
 def _rows(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[int, tuple[Any, ...], tuple[Any, ...]]:
     """Two rows of parts, aligned as cheaply as can be."""
     if not a or not b:
-        return sum(map(_size, a + b)), tuple(map(_marked, a)), tuple(map(_marked, b))
+        return sum(map(_size, a + b)), tuple(map(_mark, a)), tuple(map(_mark, b))
     if a[0] == b[0]:
         cost, one, other = _rows(a[1:], b[1:])
         return cost, (a[0], *one), (b[0], *other)
     ways = []
-    pair, (rest, one, other) = _compared(a[0], b[0]), _rows(a[1:], b[1:])
+    pair, (rest, one, other) = _compare(a[0], b[0]), _rows(a[1:], b[1:])
     ways.append((pair[0] + rest, (pair[1], *one), (pair[2], *other)))
     rest, one, other = _rows(a[1:], b)
-    ways.append((_size(a[0]) + rest, (_marked(a[0]), *one), other))
+    ways.append((_size(a[0]) + rest, (_mark(a[0]), *one), other))
     rest, one, other = _rows(a, b[1:])
-    ways.append((_size(b[0]) + rest, one, (_marked(b[0]), *other)))
+    ways.append((_size(b[0]) + rest, one, (_mark(b[0]), *other)))
     return min(ways, key=lambda way: way[0])
 
 
@@ -146,24 +146,24 @@ def _is_part(tree: Any, name: str) -> bool:
     return _is_tree(value) or isinstance(value, tuple)
 
 
-def _marked(tree: Any) -> Any:
-    return tuple(map(_marked, tree)) if isinstance(tree, tuple) else Marked(tree)
+def _mark(tree: Any) -> Any:
+    return tuple(map(_mark, tree)) if isinstance(tree, tuple) else Highlight(tree)
 
 
-def _unsigned(tree: Any) -> Any:
-    return tree.of if isinstance(tree, Minus) else tree
+def _without_sign(tree: Any) -> Any:
+    return tree.term if isinstance(tree, Minus) else tree
 
 
-def _signed(body: Any, before: Any) -> Marked:
+def _with_sign(body: Any, before: Any) -> Highlight:
     """A body with the sign that it had, which is marked."""
-    return Marked(Minus(body) if isinstance(before, Minus) else body, sign_only=True)
+    return Highlight(Minus(body) if isinstance(before, Minus) else body, sign_only=True)
 
 
 def _parts(tree: Any, kind: type, part: str) -> tuple[Any, ...]:
     return getattr(tree, part) if isinstance(tree, kind) else (tree,)
 
 
-def _joined(parts: tuple[Any, ...], kind: type) -> Any:
+def _join(parts: tuple[Any, ...], kind: type) -> Any:
     return parts[0] if len(parts) == 1 else kind(parts)
 
 
@@ -193,7 +193,7 @@ def _terms(tree: Tree) -> Iterator[Tree]:
             yield from map(negative, _terms(of))
         case Product(factors):
             for chosen in product(*([*_terms(f.inner)] if _brackets(f) else [f] for f in factors)):  # type: ignore[union-attr]
-                plain = [factor.of if isinstance(factor, Minus) else factor for factor in chosen]
+                plain = [factor.term if isinstance(factor, Minus) else factor for factor in chosen]
                 flat = [
                     part for factor in plain for part in (factor.factors if isinstance(factor, Product) else [factor])
                 ]

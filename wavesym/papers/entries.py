@@ -40,7 +40,7 @@ class Slip(_Data):
 
     verdict: Slipped
     origin: Origin = "unknown"
-    corrected: str
+    correction: str
     ranges: tuple[str, ...] | None = None
     note: str
 
@@ -50,9 +50,9 @@ class PaperEntry(_Data):
 
     `printed` stands in one line, a formula without words; `scan` is its part of the source, verbatim, from which it
     differs by `edits` alone (from, to, why). `english` is a sentence in the words that are judged; then `edits` are of
-    what it says. `ranges` are printed too, `inferred` ones are not. `equivalent` are the faults that no case can turn
-    (name, why). `about` is what the test of this `kind` needs to know. The ranges of a cell of a table are those of its
-    `heads`, whose records bind them to the source.
+    what it says. `ranges` are printed too, `inferred_ranges` are not. `equivalent` are the faults that no case can
+    turn (name, why). `subject` is what the test of this `kind` needs to know. The ranges of a cell of a table are those
+    of its `heads`, whose records bind them to the source.
     """
 
     id: str
@@ -61,12 +61,12 @@ class PaperEntry(_Data):
     english: str = ""
     scan: str = ""
     ranges: tuple[str, ...] = ()
-    inferred: tuple[str, ...] = ()
+    inferred_ranges: tuple[str, ...] = ()
     edits: tuple[tuple[str, str, str], ...] = ()
     equivalent: tuple[tuple[str, str], ...] = ()
     slip: Slip | None = None
     note: str = ""
-    about: Mapping[str, Any] = {}
+    subject: Mapping[str, Any] = {}
     where: str = ""
     lines: tuple[int, int] = (0, 0)
     heads: tuple[str, ...] = ()
@@ -80,9 +80,9 @@ class PaperEntry(_Data):
     def right_strings(self) -> tuple[str, tuple[str, ...]]:
         """What is right, as printed or as corrected: the formula, and its ranges."""
         if self.slip is None:
-            return self.statement, (*self.ranges, *self.inferred)
+            return self.statement, (*self.ranges, *self.inferred_ranges)
         ranges = self.ranges if self.slip.ranges is None else self.slip.ranges
-        return self.slip.corrected, (*ranges, *self.inferred)
+        return self.slip.correction, (*ranges, *self.inferred_ranges)
 
 
 class Aside(NamedTuple):
@@ -96,7 +96,7 @@ class Passage(_Data):
     """Lines of the source, first to last, with their text where anything of it is judged, else the reason.
 
     `where` names the place; {line} in it is the last part of a record's id. `record` has what is printed, by id; its
-    records have the `kind` and `about` of the passage unless they say otherwise. Every cell of a `table` is a record
+    records have the `kind` and `subject` of the passage unless they say otherwise. Every cell of a `table` is a record
     too, about which `record` may say more.
     """
 
@@ -105,7 +105,7 @@ class Passage(_Data):
     text: str = ""
     why: str = ""
     kind: str = ""
-    about: Mapping[str, Any] = {}
+    subject: Mapping[str, Any] = {}
     record: Mapping[str, Mapping[str, Any]] = {}
     aside: tuple[Aside, ...] = ()
     table: tuple[PrintedTable, ...] = ()
@@ -119,7 +119,7 @@ class Passage(_Data):
         return (*found, *self._cells({entry.id: entry for entry in found}))
 
     def _entry(self, id: str, data: Mapping[str, Any], used: list[tuple[int, int]]) -> PaperEntry:
-        entry = PaperEntry(**{"id": id, "kind": self.kind, "about": self.about, **data})
+        entry = PaperEntry(**{"id": id, "kind": self.kind, "subject": self.subject, **data})
         strings = (entry.printed,) if entry.english else (entry.printed, *entry.ranges)
         start, end = span = position(self.text, strings, () if entry.english else entry.edits, used) or (0, 0)
         used.append(span)
@@ -137,14 +137,14 @@ class Passage(_Data):
     def _cells(self, known: Mapping[str, PaperEntry]) -> Iterator[PaperEntry]:
         """The cells of tables, each with the ranges of its heads."""
         for place in tables.places(self.table, self.text, self.lines[0]):
-            if place.column.name in place.table.unjudged:
+            if place.column.name in place.table.unjudged_columns:
                 continue
             heads = tuple(head for head in place.heads if head in known)
             data: dict[str, Any] = {
                 "kind": "cell",
                 "printed": place.scan.strip("$"),
                 "ranges": tuple(range_ for head in heads for range_ in _head_ranges(known[head])),
-                "about": {"row": place.row.name, "column": place.column.name},
+                "subject": {"row": place.row.name, "column": place.column.name},
                 "where": f"{self.where}, row {place.row.name}, column {place.column.name}",
                 **self.record.get(place.id, {}),
             }
@@ -154,8 +154,8 @@ class Passage(_Data):
     def asides(self) -> tuple[Aside, ...]:
         """The parts that are not judged, columns of tables among them."""
         cells = tables.places(self.table, self.text, self.lines[0])
-        unjudged = (Aside(c.scan, c.table.unjudged[c.column.name]) for c in cells if c.column.name in c.table.unjudged)
-        return (*self.aside, *unjudged)
+        named = ((cell.scan, cell.table.unjudged_columns.get(cell.column.name)) for cell in cells)
+        return (*self.aside, *(Aside(scan, why) for scan, why in named if why))
 
 
 def _head_ranges(head: PaperEntry) -> tuple[str, ...]:
@@ -163,7 +163,7 @@ def _head_ranges(head: PaperEntry) -> tuple[str, ...]:
     return (head.printed, *head.ranges) if head.kind == "range" else head.ranges
 
 
-class About(_Data):
+class PaperDescription(_Data):
     """A paper: author, title, the title in English, its date, and in what form it was at hand."""
 
     author: str
@@ -177,14 +177,14 @@ class PassageHashes(NamedTuple):
     """The hashes of the lines of a passage, and of its translations and edits."""
 
     lines: str
-    checked: str
+    edits: str
 
 
 @dataclass(frozen=True)
 class Paper:
     """What is known of a paper itself, all passages in the order of the source, and their hashes, by their lines."""
 
-    about: About
+    description: PaperDescription
     passages: tuple[Passage, ...]
     hashes: Mapping[tuple[int, int], PassageHashes]
 
@@ -202,15 +202,15 @@ class Paper:
 def read_paper(directory: Path) -> Paper:
     """The passages of the TOML files of a directory, what paper.toml says of the paper, and hashes.txt."""
     data = {file.stem: tomllib.loads(file.read_text(encoding="utf-8")) for file in sorted(directory.glob("*.toml"))}
-    about = About(**data.pop("paper"))
+    description = PaperDescription(**data.pop("paper"))
     passages = [Passage(**passage) for file in data.values() for passage in file["passage"]]
-    for first, last, where, why in (row for file in data.values() for row in file.get("unjudged", ())):
+    for first, last, where, why in (row for file in data.values() for row in file.get("unjudged_lines", ())):
         passages.append(Passage(lines=(first, last), where=where, why=why))
     hashes = {}
     for line in (directory / "hashes.txt").read_text(encoding="utf-8").splitlines():
         first, last, *known = line.split()
         hashes[int(first), int(last)] = PassageHashes(*known)
-    return Paper(about, tuple(sorted(passages, key=lambda passage: passage.lines)), hashes)
+    return Paper(description, tuple(sorted(passages, key=lambda passage: passage.lines)), hashes)
 
 
 def digest(text: str) -> str:
@@ -232,7 +232,7 @@ WHOLE = "paper"
 
 def problems(paper: Paper) -> Iterator[tuple[str, str]]:
     """What does not fit: the id of a record, or `WHOLE`, and what is wrong. A passage's are all its records'."""
-    yield from _uncovered(paper)
+    yield from _coverage_problems(paper)
     for passage in paper.passages:
         for problem in _misfits(passage, paper.hashes.get(passage.lines)):
             message = f"lines {passage.lines[0]}-{passage.lines[1]}: {problem}"
@@ -243,7 +243,7 @@ def problems(paper: Paper) -> Iterator[tuple[str, str]]:
             yield from ((entry.id, problem) for problem in _unlike(entry))
 
 
-def _uncovered(paper: Paper) -> Iterator[tuple[str, str]]:
+def _coverage_problems(paper: Paper) -> Iterator[tuple[str, str]]:
     spans = [passage.lines for passage in paper.passages]
     if twice := [after for before, after in pairwise(spans) if after[0] <= before[1]]:
         yield WHOLE, f"lines in two passages: {twice}"
@@ -260,7 +260,7 @@ def _misfits(passage: Passage, known: PassageHashes | None) -> Iterator[str]:
     hashes = passage_hashes(passage.text, passage.entries)
     if known is None or hashes.lines != known.lines:
         yield "they are not the source's"
-    if known is None or hashes.checked != known.checked:
+    if known is None or hashes.edits != known.edits:
         yield "their translations and edits are not those that were checked"
     if len(passage.text.split("\n")) != passage.lines[1] - passage.lines[0] + 1:
         yield "not as many lines as it says"

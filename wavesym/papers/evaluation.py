@@ -20,10 +20,10 @@ from wavesym.papers.tree import (
     Call,
     Cases,
     Derivative,
+    FormulaList,
     Fraction,
     Group,
     Interval,
-    Listed,
     Minus,
     Number,
     Power,
@@ -50,7 +50,7 @@ def letter_name(symbol: Symbol) -> str:
 
 
 class Scope:
-    """What letters mean; `bound` are the plain ones by name: indices, sizes, variables of sums.
+    """What letters mean; `variables` are the plain ones by name: indices, sizes, variables of sums.
 
     `constants` are those that the ranges of a formula say the value of (`given`). `letters` are functions of their
     indices, `functions` of their indices and arguments, both by `letter_name`; a subclass fills them. Values are what
@@ -61,7 +61,7 @@ class Scope:
     """H(0), which the paper does not give."""
 
     def __init__(self, bound: Mapping[str, Any] | None = None, constants: Mapping[Tree, Tree] | None = None) -> None:
-        self.bound: dict[str, Any] = dict(bound or {})
+        self.variables: dict[str, Any] = dict(bound or {})
         self.constants: Mapping[Tree, Tree] = dict(constants or {})
         self.letters: dict[str, Callable[..., Any]] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
@@ -69,7 +69,7 @@ class Scope:
     # what a test says
 
     def symbol(self, symbol: Symbol) -> Any:
-        """The value of a letter that is not in `bound`, or has marks."""
+        """The value of a letter that is not in `variables`, or has marks."""
         return self.meaning(self.letters, symbol)
 
     def call(self, call: Call) -> Any:
@@ -93,11 +93,11 @@ class Scope:
 
     def at_value(self, tree: AtValue) -> Any:
         """What something is where a variable has a value."""
-        variable, value = sides(tree.where)
+        variable, value = sides(tree.condition)
         if not isinstance(variable, Symbol):
-            raise MeaninglessError(f"{latex(tree.where)} gives no value")
-        with self.binding({variable.name: self.value(value)}):
-            return self.value(tree.of)
+            raise MeaninglessError(f"{latex(tree.condition)} gives no value")
+        with self.bind({variable.name: self.value(value)}):
+            return self.value(tree.expression)
 
     # what all formulas share
 
@@ -122,14 +122,14 @@ class Scope:
         return _index_runners(symbol)[1](self)
 
     @contextmanager
-    def binding(self, names: Mapping[str, Any]) -> Iterator[None]:
+    def bind(self, names: Mapping[str, Any]) -> Iterator[None]:
         """The same scope with other values of plain letters."""
-        before = self.bound
-        self.bound = {**before, **names}
+        before = self.variables
+        self.variables = {**before, **names}
         try:
             yield
         finally:
-            self.bound = before
+            self.variables = before
 
     def _constant(self, symbol: Symbol) -> Any:
         """Its value, in letters that are no constants themselves."""
@@ -153,17 +153,17 @@ class Scope:
         if last - first > MOST_TERMS:
             raise MeaninglessError(f"a sum from {first} to {last}")
         total: Any = 0
-        body, name, before = _runner(series.body), series.variable.name, self.bound
+        body, name, before = _runner(series.body), series.variable.name, self.variables
         try:
-            self.bound = dict(before)
+            self.variables = dict(before)
             for number in range(first, last + 1):
-                self.bound[name] = number
+                self.variables[name] = number
                 total = total + body(self)
         finally:
-            self.bound = before
+            self.variables = before
         return total
 
-    def raised(self, power: Power) -> Any:
+    def power(self, power: Power) -> Any:
         """A base with an exponent."""
         exponent = self.value(power.exponent)
         if power.base == _E:
@@ -177,10 +177,10 @@ class Scope:
     def _cases(self, cases: Cases) -> Any:
         found = [value for value, where in cases.branches if holds(where, self)]
         if len(found) != 1:
-            raise MeaninglessError(f"{'no' if not found else 'more than one'} case for {self.bound}")
+            raise MeaninglessError(f"{'no' if not found else 'more than one'} case for {self.variables}")
         return self.value(found[0])
 
-    def _nothing(self, tree: Tree) -> Any:
+    def _refuse(self, tree: Tree) -> Any:
         raise MeaninglessError(f"{latex(tree)} is no value")
 
 
@@ -193,7 +193,7 @@ def sides(tree: Tree) -> tuple[Tree, ...]:
 
 def items(tree: Tree) -> tuple[Tree, ...]:
     """The formulas of a list; one alone is a list of one."""
-    return tree.items if isinstance(tree, Listed) else (tree,)
+    return tree.items if isinstance(tree, FormulaList) else (tree,)
 
 
 def without_brackets(tree: Tree) -> Tree:
@@ -231,7 +231,11 @@ def holds(where: Tree, scope: Scope) -> bool:
 
 def constants_in(ranges: Iterable[Tree]) -> dict[Tree, Tree]:
     """The constants that ranges say the value of, such as "v_0 = c_f U_0 / l"."""
-    return {r.variable: r.shown[0] for r in ranges if isinstance(r, Progression) and len(r.shown) == 1 and not r.dots}
+    return {
+        r.variable: r.first_values[0]
+        for r in ranges
+        if isinstance(r, Progression) and len(r.first_values) == 1 and not r.dots
+    }
 
 
 def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
@@ -242,7 +246,7 @@ def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
     """
     if not isinstance(progression, Progression):
         raise MeaninglessError(f"{latex(progression)} is no range of values")
-    shown = [scope.whole(value) for value in progression.shown]
+    shown = [scope.whole(value) for value in progression.first_values]
     if not progression.dots:
         return tuple(shown)
     if len(shown) < 2:
@@ -264,12 +268,12 @@ def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
 
 def places(ranges: Iterable[Tree], scope: Scope, most: int = 0) -> list[dict[str, Any]]:
     """The values of all running letters, range by range, for which the other ranges hold."""
-    found = [scope.bound]
+    found = [scope.variables]
     for range_ in ranges:
         before, found = found, []
         for place in before:
-            with scope.binding(place):
-                if isinstance(range_, Progression) and latex(range_.variable) not in scope.bound:
+            with scope.bind(place):
+                if isinstance(range_, Progression) and latex(range_.variable) not in scope.variables:
                     found += [{**place, latex(range_.variable): value} for value in span(range_, scope, most)]
                 elif holds(range_, scope):
                     found.append(place)
@@ -338,7 +342,7 @@ def _symbol(tree: Symbol) -> Runner:
     name = tree.name
 
     def plain(scope: Scope) -> Any:
-        bound = scope.bound
+        bound = scope.variables
         return bound[name] if name in bound else with_marks(scope)
 
     def with_marks(scope: Scope) -> Any:
@@ -350,8 +354,8 @@ def _symbol(tree: Symbol) -> Runner:
 
 
 def _minus(tree: Minus) -> Runner:
-    of = _runner(tree.of)
-    return lambda scope: -of(scope)
+    term = _runner(tree.term)
+    return lambda scope: -term(scope)
 
 
 def _addition(tree: Addition) -> Runner:
@@ -382,7 +386,7 @@ def _product(tree: Product) -> Runner:
 
 
 def _fraction(tree: Fraction) -> Runner:
-    above, below = _runner(tree.over), _runner(tree.under)
+    above, below = _runner(tree.numerator), _runner(tree.denominator)
 
     def run(scope: Scope) -> Any:
         over, under = above(scope), below(scope)
@@ -405,7 +409,7 @@ def _call(tree: Call) -> Runner:
     return lambda scope: scope.call(tree)
 
 
-def _by(method: Callable[[Scope, Any], Any]) -> Callable[[Any], Runner]:
+def _method_runner(method: Callable[[Scope, Any], Any]) -> Callable[[Any], Runner]:
     return lambda tree: lambda scope: method(scope, tree)
 
 
@@ -417,12 +421,12 @@ _MAKERS: dict[type, Callable[[Any], Runner]] = {
     Addition: _addition,
     Product: _product,
     Fraction: _fraction,
-    Power: _by(lambda scope, tree: scope.raised(tree)),
+    Power: _method_runner(lambda scope, tree: scope.power(tree)),
     Group: lambda tree: _runner(tree.inner),
     Call: _call,
-    Series: _by(lambda scope, tree: scope.series(tree)),
-    Derivative: _by(lambda scope, tree: scope.derivative(tree)),
-    AtValue: _by(lambda scope, tree: scope.at_value(tree)),
-    Cases: _by(Scope._cases),
-    **dict.fromkeys((Blank, Relation, Listed, Progression, Interval), _by(Scope._nothing)),
+    Series: _method_runner(lambda scope, tree: scope.series(tree)),
+    Derivative: _method_runner(lambda scope, tree: scope.derivative(tree)),
+    AtValue: _method_runner(lambda scope, tree: scope.at_value(tree)),
+    Cases: _method_runner(Scope._cases),
+    **dict.fromkeys((Blank, Relation, FormulaList, Progression, Interval), _method_runner(Scope._refuse)),
 }

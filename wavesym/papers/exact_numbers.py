@@ -32,9 +32,9 @@ class Exponentials:
         self.parts: dict[Key, fmpq] = {(int(q.p), int(q.q)): c for q, c in parts.items() if c != 0}
 
     @classmethod
-    def of(cls, value: Number) -> Exponentials:
+    def from_number(cls, value: Number) -> Exponentials:
         """A rational as such a sum."""
-        return value if isinstance(value, Exponentials) else _made({(0, 1): fmpq(value)})
+        return value if isinstance(value, Exponentials) else _from_parts({(0, 1): fmpq(value)})
 
     @classmethod
     def total(cls, terms: Iterable[tuple[fmpq, fmpq]]) -> Exponentials:
@@ -43,28 +43,28 @@ class Exponentials:
         for q, c in terms:
             key = int(q.p), int(q.q)
             parts[key] = parts[key] + c if key in parts else c
-        return _made(parts)
+        return _from_parts(parts)
 
     def __add__(self, other: Number) -> Exponentials:
         total = dict(self.parts)
-        for q, c in Exponentials.of(other).parts.items():
+        for q, c in Exponentials.from_number(other).parts.items():
             total[q] = total[q] + c if q in total else c
-        return _made(total)
+        return _from_parts(total)
 
     __radd__ = __add__
 
     def __neg__(self) -> Exponentials:
-        return _unfiltered({q: -c for q, c in self.parts.items()})
+        return _from_nonzero_parts({q: -c for q, c in self.parts.items()})
 
     def __sub__(self, other: Number) -> Exponentials:
-        return self + -Exponentials.of(other)
+        return self + -Exponentials.from_number(other)
 
     def __rsub__(self, other: Number) -> Exponentials:
         return -self + other
 
     def __mul__(self, other: Number) -> Exponentials:
         if not isinstance(other, Exponentials):
-            return _unfiltered({q: c * other for q, c in self.parts.items()} if other != 0 else {})
+            return _from_nonzero_parts({q: c * other for q, c in self.parts.items()} if other != 0 else {})
         pairs = product(self.parts.items(), other.parts.items())
         return Exponentials.total((fmpq(*p) + fmpq(*q), b * c) for (p, b), (q, c) in pairs)
 
@@ -76,7 +76,7 @@ class Exponentials:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, (Exponentials, int, fmpq)):
             return NotImplemented
-        return self.parts == Exponentials.of(other).parts
+        return self.parts == Exponentials.from_number(other).parts
 
     def __hash__(self) -> int:
         return hash(frozenset(self.parts.items()))
@@ -98,12 +98,12 @@ class Exponentials:
 Number = int | fmpq | Exponentials
 
 
-def _made(parts: dict[Key, fmpq]) -> Exponentials:
+def _from_parts(parts: dict[Key, fmpq]) -> Exponentials:
     """The sum with these parts, those left out that are 0."""
-    return _unfiltered({q: c for q, c in parts.items() if c != 0})
+    return _from_nonzero_parts({q: c for q, c in parts.items() if c != 0})
 
 
-def _unfiltered(parts: dict[Key, fmpq]) -> Exponentials:
+def _from_nonzero_parts(parts: dict[Key, fmpq]) -> Exponentials:
     """The sum with these parts, none of which is 0."""
     made = Exponentials.__new__(Exponentials)
     made.parts = parts
@@ -124,12 +124,12 @@ class Jet:
     second: Any = 0
 
     @classmethod
-    def of(cls, value: Any) -> Jet:
+    def from_number(cls, value: Any) -> Jet:
         """A number as one that does not change."""
         return value if isinstance(value, Jet) else cls(value)
 
     def __add__(self, other: Any) -> Jet:
-        that = Jet.of(other)
+        that = Jet.from_number(other)
         return Jet(self.value + that.value, self.first + that.first, self.second + that.second)
 
     __radd__ = __add__
@@ -138,10 +138,10 @@ class Jet:
         return Jet(-self.value, -self.first, -self.second)
 
     def __sub__(self, other: Any) -> Jet:
-        return self + -Jet.of(other)
+        return self + -Jet.from_number(other)
 
     def __rsub__(self, other: Any) -> Jet:
-        return Jet.of(other) + -self
+        return Jet.from_number(other) + -self
 
     def __mul__(self, other: Any) -> Jet:
         if not isinstance(other, Jet):
@@ -157,7 +157,7 @@ class Jet:
     def __truediv__(self, other: Any) -> Jet:
         return Jet(self.value / other, self.first / other, self.second / other)
 
-    def of_function(self, derivative: Callable[[int], Any], most: int = 2) -> Jet:
+    def apply(self, derivative: Callable[[int], Any], most: int = 2) -> Jet:
         """A function of this; `derivative(order)` is what it is here: itself, its derivative, the next.
 
         Those that nothing asks for are not taken: the second with `most` 1, and none of what does not change.

@@ -39,7 +39,7 @@ def mutations(tree: Tree) -> Iterator[tuple[str, Tree]]:
     """The tree with one fault each, by what was changed; no two have the same name."""
     seen: dict[str, int] = {}
     made: set[Tree] = {tree}
-    for change, wrong in _changed(tree, ""):
+    for change, wrong in _tree_faults(tree, ""):
         if wrong in made:
             continue
         made.add(wrong)
@@ -61,17 +61,17 @@ def ends(range_: Tree) -> Iterator[tuple[str, Tree]]:
         yield from mutations(range_)
         return
     text = latex(range_)
-    first, *others = range_.shown
+    first, *others = range_.first_values
     for by in (1, -1):
-        moved = tuple(_plus(value, by) for value in range_.shown)
+        moved = tuple(_plus(value, by) for value in range_.first_values)
         if len(others) == 0:
-            yield f"first {latex(moved[0])} for {latex(first)} in {text}", replace(range_, shown=moved)
+            yield f"first {latex(moved[0])} for {latex(first)} in {text}", replace(range_, first_values=moved)
     if others:
         later = tuple(others)
         shown = (*later, *(() if len(later) > 1 else (_twice_less(others[-1], first),)))
-        yield f"without {latex(first)} in {text}", replace(range_, shown=shown)
-        earlier = (_twice_less(first, others[0]), *range_.shown)
-        yield f"with {latex(earlier[0])} in {text}", replace(range_, shown=earlier)
+        yield f"without {latex(first)} in {text}", replace(range_, first_values=shown)
+        earlier = (_twice_less(first, others[0]), *range_.first_values)
+        yield f"with {latex(earlier[0])} in {text}", replace(range_, first_values=earlier)
     if range_.last is not None:
         for by in (1, -1):
             step = _step(range_)
@@ -79,32 +79,32 @@ def ends(range_: Tree) -> Iterator[tuple[str, Tree]]:
             yield f"last {latex(last)} for {latex(range_.last)} in {text}", replace(range_, last=last)
 
 
-def _changed(tree: Any, context: str) -> Iterator[tuple[str, Any]]:
+def _tree_faults(tree: Any, context: str) -> Iterator[tuple[str, Any]]:
     here = context or _short(latex(tree)) or "the formula"
-    yield from _own(tree, here)
-    yield from _within(tree, here)
+    yield from _own_faults(tree, here)
+    yield from _inner_faults(tree, here)
 
 
-def _within(tree: Any, here: str) -> Iterator[tuple[str, Any]]:
+def _inner_faults(tree: Any, here: str) -> Iterator[tuple[str, Any]]:
     """Faults in the parts."""
     for field in fields(tree):
         value = getattr(tree, field.name)
         if isinstance(value, tuple):
             for place, part in enumerate(value):
-                for change, wrong in _part_changed(part, tree, here):
+                for change, wrong in _part_faults(part, tree, here):
                     yield change, replace(tree, **{field.name: (*value[:place], wrong, *value[place + 1 :])})
         elif is_dataclass(value) and not _is_label(tree, field.name):
             inner = _context(value, here)
             # the letter of a function is no quantity
-            found = _within(value, inner) if isinstance(tree, Call) else _changed(value, inner)
+            found = _inner_faults(value, inner) if isinstance(tree, Call) else _tree_faults(value, inner)
             for change, wrong in found:
                 yield change, replace(tree, **{field.name: wrong})
 
 
-def _part_changed(part: Any, parent: Any, here: str) -> Iterator[tuple[str, Any]]:
+def _part_faults(part: Any, parent: Any, here: str) -> Iterator[tuple[str, Any]]:
     if isinstance(part, tuple):  # a branch of cases
         for place, inner in enumerate(part):
-            found = ends(inner) if isinstance(inner, Progression) else _changed(inner, _context(inner, here))
+            found = ends(inner) if isinstance(inner, Progression) else _tree_faults(inner, _context(inner, here))
             for change, wrong in found:
                 yield change, (*part[:place], wrong, *part[place + 1 :])
     elif is_dataclass(part):
@@ -114,13 +114,13 @@ def _part_changed(part: Any, parent: Any, here: str) -> Iterator[tuple[str, Any]
                 yield f"index {latex(wrong)} for {latex(cast(Tree, part))} in {here}", wrong
             return
         if isinstance(parent, Addition) and isinstance(part, Minus):  # its sign is the sum's
-            for change, inner_wrong in _changed(part.of, _context(part.of, here)):
+            for change, inner_wrong in _tree_faults(part.term, _context(part.term, here)):
                 yield change, Minus(inner_wrong)
             return
-        yield from _changed(part, _context(part, here))
+        yield from _tree_faults(part, _context(part, here))
 
 
-def _own(tree: Any, here: str) -> Iterator[tuple[str, Any]]:
+def _own_faults(tree: Any, here: str) -> Iterator[tuple[str, Any]]:
     match tree:
         case Number(digits) if "." not in digits:
             for by in (1, -1):
@@ -158,7 +158,7 @@ def _own(tree: Any, here: str) -> Iterator[tuple[str, Any]]:
 def _is_label(tree: Any, field: str) -> bool:
     """Parts that name something and are no quantity: what is summed over, or derived by; a function's letter."""
     return (isinstance(tree, Series) and field in ("variable", "first", "last")) or (
-        isinstance(tree, Derivative) and field == "by"
+        isinstance(tree, Derivative) and field == "variable"
     )
 
 
@@ -183,23 +183,23 @@ def _plus(tree: Tree, by: int) -> Tree:
             return _plus(Number("0"), by - int(digits))
         case Addition((*before, Number() | Minus(Number()) as last)):
             value = (-1 if isinstance(last, Minus) else 1) * int(
-                cast(Number, last.of if isinstance(last, Minus) else last).digits
+                cast(Number, last.term if isinstance(last, Minus) else last).digits
             ) + by
             if value == 0:
                 return before[0] if len(before) == 1 else Addition(tuple(before))
-            return Addition((*before, _signed(value)))
+            return Addition((*before, _signed_number(value)))
         case Addition(terms):
-            return Addition((*terms, _signed(by)))
-    return Addition((tree, _signed(by)))
+            return Addition((*terms, _signed_number(by)))
+    return Addition((tree, _signed_number(by)))
 
 
-def _signed(value: int) -> Tree:
+def _signed_number(value: int) -> Tree:
     return Number(str(value)) if value > 0 else Minus(Number(str(-value)))
 
 
 def _step(range_: Progression) -> int:
     """The step of the values shown, where it can be seen."""
-    first, *others = range_.shown
+    first, *others = range_.first_values
     for step in (1, 2, -1, -2, 4):
         if others and _plus(first, step) == others[0]:
             return step

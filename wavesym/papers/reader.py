@@ -16,10 +16,10 @@ from wavesym.papers.tree import (
     Call,
     Cases,
     Derivative,
+    FormulaList,
     Fraction,
     Group,
     Interval,
-    Listed,
     Minus,
     Number,
     Power,
@@ -74,7 +74,7 @@ class _Trees(Transformer[Token, Any]):
     """Lark's parse to our trees."""
 
     def formula(self, items: list[Tree]) -> Tree:
-        return items[0] if len(items) == 1 else Listed(tuple(items))
+        return items[0] if len(items) == 1 else FormulaList(tuple(items))
 
     def progression(self, items: list[Any]) -> Tree:
         variable, shown, dots, last = items
@@ -86,7 +86,7 @@ class _Trees(Transformer[Token, Any]):
     def next_value(self, items: list[Any]) -> tuple[Tree, ...]:
         return (*items[0], items[1])
 
-    def compared(self, items: list[Any]) -> Tree:
+    def comparison(self, items: list[Any]) -> Tree:
         kept = [item for item in items if item is not None]
         return Relation(tuple(kept[::2]), tuple(map(str, kept[1::2])))
 
@@ -108,7 +108,7 @@ class _Trees(Transformer[Token, Any]):
     def otherwise(self, items: list[Token]) -> str:
         return str(items[0])
 
-    def added(self, items: list[Any]) -> Tree:
+    def signed_terms(self, items: list[Any]) -> Tree:
         terms: list[Tree] = []
         negative = False
         for item in items:
@@ -149,13 +149,13 @@ class _Trees(Transformer[Token, Any]):
         *inner, power = items
         if len(inner) > 1:
             return _Arguments(inner)
-        return _raised(Group("(", inner[0]), power)
+        return _power(Group("(", inner[0]), power)
 
     def square(self, items: list[Any]) -> Tree:
-        return _raised(Group("[", items[0]), items[1])
+        return _power(Group("[", items[0]), items[1])
 
     def curly(self, items: list[Any]) -> Tree:
-        return _raised(Group("{", items[1]), items[3])
+        return _power(Group("{", items[1]), items[3])
 
     def fraction(self, items: list[Any]) -> Tree:
         return Fraction(items[1], items[2])
@@ -246,7 +246,7 @@ def _applies(symbol: Symbol) -> bool:
     return symbol.name in _FUNCTIONS and not symbol.above
 
 
-def _raised(group: Tree, power: Tree | None) -> Tree:
+def _power(group: Tree, power: Tree | None) -> Tree:
     return group if power is None else Power(group, power)
 
 

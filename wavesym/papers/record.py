@@ -50,29 +50,29 @@ class Case:
     `telling`: whether it says anything (0 = 0 does not). `example` makes the scene that shows it.
     """
 
-    at: Mapping[str, object]
-    printed: object
-    true: object
-    telling: bool = True
+    place: Mapping[str, object]
+    printed_value: object
+    true_value: object
+    is_telling: bool = True
     example: Callable[[], Reproduction] | None = field(default=None, compare=False)
 
     @property
     def agrees(self) -> bool:
-        return bool(self.printed == self.true)
+        return bool(self.printed_value == self.true_value)
 
     def __str__(self) -> str:
-        where = ", ".join(f"{name} = {format_value(value)}" for name, value in self.at.items())
-        match self.printed, self.true:
+        where = ", ".join(f"{name} = {format_value(value)}" for name, value in self.place.items())
+        match self.printed_value, self.true_value:
             case bool(), bool():
                 said = f"what is printed is {'' if self.agrees else 'not '}so"
             case printed, true:
-                verb = "has" if isinstance(printed, Nothing) else "gives"
+                verb = "has" if isinstance(printed, NoValue) else "gives"
                 said = f"what is printed {verb} {format_value(printed)}; it should be {format_value(true)}"
         return f"With {where}, {said}" if where else said[0].upper() + said[1:]
 
 
 @dataclass(frozen=True, eq=False)
-class Nothing:
+class NoValue:
     """What a formula gives where it means nothing: the reason. Equal to no value."""
 
     why: str
@@ -92,7 +92,7 @@ def case(
     try:
         value = printed()
     except MeaninglessError as error:
-        value = Nothing(str(error))
+        value = NoValue(str(error))
     return Case(at, value, true, telling, example)
 
 
@@ -137,24 +137,24 @@ def faults(right: Reading) -> Iterator[tuple[str, Reading]]:
 class Test:
     """How records of a kind are tried. `cases` come in order of size, the smallest first.
 
-    `against` is what they are compared with. `read` makes a reading of strings, `faults` puts faults into one.
+    `reference` is what they are compared with. `read` makes a reading of strings, `faults` puts faults into one.
     `is_subtracted`: whether printed less corrected is shown, term by term. `mathematics` are the cases in which a
     `model` holds nevertheless; `conventions` are those of what is printed under something that the text may mean, by
-    what that is. `varied` is what the cases differ by, where the text does not give it. `observed` is what was
+    what that is. `variation` is what the cases differ by, where the text does not give it. `observation` is what was
     measured, in a sentence.
     """
 
     __test__ = False  # not pytest's
 
-    against: str
+    reference: str
     cases: Callable[[Reading], Iterable[Case]]
     read: Callable[[str, Iterable[str]], Reading] = reading
     faults: Callable[[Reading], Iterable[tuple[str, Reading]]] = faults
     is_subtracted: bool = False
     mathematics: Callable[[Reading], Iterable[Case]] | None = None
     conventions: Mapping[str, Callable[[Reading], Iterable[Case]]] = field(default_factory=dict)
-    varied: str = ""
-    observed: Callable[[], str] | None = None
+    variation: str = ""
+    observation: Callable[[], str] | None = None
 
 
 Adapter = Callable[[PaperEntry], Test]
@@ -164,9 +164,9 @@ Adapter = Callable[[PaperEntry], Test]
 class Mutations:
     """Faults tried and turned, and those that no case turned, each with the reason."""
 
-    tried: int = 0
-    turned: int = 0
-    survived: tuple[tuple[str, str], ...] = ()
+    count: int = 0
+    turned_count: int = 0
+    survivors: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ class Record:
     """
 
     entry: PaperEntry
-    against: str
+    reference: str
     verdict: Verdict
     evidence: tuple[str, ...]
     cases: int
@@ -196,30 +196,30 @@ class Record:
         return " ".join(note for note in (self.entry.slip and self.entry.slip.note, self.entry.note) if note)
 
     @property
-    def corrected(self) -> str | None:
+    def correction(self) -> str | None:
         """The whole formula or sentence as it should be, where what is printed does not hold."""
-        return self.entry.slip.corrected if self.entry.slip else None
+        return self.entry.slip.correction if self.entry.slip else None
 
 
 def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record:
     """The verdict on an entry, with its evidence. `problems` are those of its transcription."""
     found = list(problems)
     slip = entry.slip
-    stop_at: Literal["", "value"] = "value" if slip and not test.varied else ""
-    printed = _Trial.of(test, entry.statement, (*entry.ranges, *entry.inferred), stop_at)
-    settled, text, ranges = printed, entry.statement, (*entry.ranges, *entry.inferred)
+    stop_at: Literal["", "value"] = "value" if slip and not test.variation else ""
+    printed = _Trial.run(test, entry.statement, (*entry.ranges, *entry.inferred_ranges), stop_at)
+    settled, text, ranges = printed, entry.statement, (*entry.ranges, *entry.inferred_ranges)
     evidence: list[str] = []
     if slip:
-        text = slip.corrected
-        ranges = (*(entry.ranges if slip.ranges is None else slip.ranges), *entry.inferred)
-        settled = _Trial.of(test, text, ranges)
+        text = slip.correction
+        ranges = (*(entry.ranges if slip.ranges is None else slip.ranges), *entry.inferred_ranges)
+        settled = _Trial.run(test, text, ranges)
         if printed.wrong is None:
             found.append("called wrong, yet no case shows it")
         else:
             evidence.append(f"{printed.wrong}.")
         if settled.wrong:
             found.append(f"the correction fails: {settled.wrong}")
-        evidence.append(f"As corrected it holds in {_all(settled.telling)}.")
+        evidence.append(f"As corrected it holds in {_all(settled.telling_count)}.")
         shown_kind, why = _kind(entry, test, printed)
         if slip.verdict != shown_kind:
             found.append(f"called {slip.verdict}, yet it is {shown_kind}: {why}")
@@ -227,19 +227,27 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
     elif printed.wrong:
         found.append(f"fails, and no correction is known: {printed.wrong}")
     else:
-        evidence.append(f"It holds in {_all(printed.telling)}.")
-    if not settled.telling:
+        evidence.append(f"It holds in {_all(printed.telling_count)}.")
+    if not settled.telling_count:
         found.append("no case tells anything")
     turned, unturned = _faulty(entry, test, text, ranges) if settled.wrong is None else (Mutations(), ())
     found += unturned
     difference = None
     if test.is_subtracted and slip and not settled.wrong:
-        difference = _subtracted(test, entry.statement, text)
-    if test.observed:
-        evidence.append(test.observed())
+        difference = _difference(test, entry.statement, text)
+    if test.observation:
+        evidence.append(test.observation())
     verdict: Verdict = "untested" if found else slip.verdict if slip else "holds"
     return Record(
-        entry, test.against, verdict, tuple(evidence), settled.telling, turned, printed.wrong, difference, tuple(found)
+        entry,
+        test.reference,
+        verdict,
+        tuple(evidence),
+        settled.telling_count,
+        turned,
+        printed.wrong,
+        difference,
+        tuple(found),
     )
 
 
@@ -249,15 +257,15 @@ def _kind(entry: PaperEntry, test: Test, printed: _Trial) -> tuple[Verdict, str]
     if test.mathematics:
         under.append(("model", "As mathematics", test.mathematics))
     under += [("convention", f"Where {meaning},", cases) for meaning, cases in test.conventions.items()]
-    text, ranges = entry.statement, (*entry.ranges, *entry.inferred)
+    text, ranges = entry.statement, (*entry.ranges, *entry.inferred_ranges)
     for verdict, words, cases in under:
-        held = _Trial.of(replace(test, cases=cases), text, ranges, stop_at="failure")
-        if held.telling and held.wrong is None:
-            return verdict, f"{words} it holds as printed in {_all(held.telling)}."
+        held = _Trial.run(replace(test, cases=cases), text, ranges, stop_at="failure")
+        if held.telling_count and held.wrong is None:
+            return verdict, f"{words} it holds as printed in {_all(held.telling_count)}."
     if printed.false is None:
         return "unreadable", "Wherever it fails it has no value."
-    if test.varied and printed.agreed:
-        return "depends", f"It is so under some of the {test.varied} that were tried, and not under others."
+    if test.variation and printed.agreeing_count:
+        return "depends", f"It is so under some of the {test.variation} that were tried, and not under others."
     if _adds(entry):
         return "incomplete", "The correction adds a hypothesis and changes nothing else."
     return "misprint", "Where it fails it has a value, which is wrong."
@@ -267,14 +275,14 @@ def _adds(entry: PaperEntry) -> bool:
     """Whether what is right is what is printed and something more: ranges, or words in one place."""
     slip, before = entry.slip, entry.statement
     assert slip
-    if slip.corrected == before:
+    if slip.correction == before:
         return slip.ranges is not None and {*entry.ranges} < {*slip.ranges}
     cuts = ((before[:at], before[at:]) for at in range(len(before) + 1))
-    right = slip.corrected if entry.english else ""
+    right = slip.correction if entry.english else ""
     return any(right.startswith(start) and right.endswith(end) for start, end in cuts)
 
 
-def _subtracted(test: Test, printed: str, corrected: str) -> str | None:
+def _difference(test: Test, printed: str, corrected: str) -> str | None:
     """Printed less corrected, where both can be read and differ."""
     try:
         return subtract(test.read(printed, ()).formula, test.read(corrected, ()).formula) or None
@@ -288,7 +296,7 @@ def _faulty(entry: PaperEntry, test: Test, text: str, ranges: Iterable[str]) -> 
     tried, problems, survived = 0, [], []
     for change, wrong in test.faults(test.read(text, ranges)):
         tried += 1
-        turned = _Trial.turned(test, wrong)
+        turned = _Trial.is_turned(test, wrong)
         if turned and change in reasons:
             problems.append(f"called equivalent, yet a case turns it: {change}")
         elif not turned and change not in reasons:
@@ -310,33 +318,33 @@ class _Trial:
     """
 
     def __init__(self, cases: Iterable[Case], stop_at: Literal["", "failure", "value"] = "") -> None:
-        self.telling = self.agreed = 0
+        self.telling_count = self.agreeing_count = 0
         self.wrong: Case | None = None
         self.false: Case | None = None
         try:
             for tried in cases:
-                self.telling += tried.telling
-                self.agreed += tried.telling and tried.agrees
+                self.telling_count += tried.is_telling
+                self.agreeing_count += tried.is_telling and tried.agrees
                 if not tried.agrees:
                     self.wrong = self.wrong or tried
-                    if not isinstance(tried.printed, Nothing):
+                    if not isinstance(tried.printed_value, NoValue):
                         self.false = self.false or tried
                     if stop_at == "failure" or (stop_at == "value" and self.false):
                         break
         except MeaninglessError as error:
-            self.wrong = self.wrong or Case({}, Nothing(str(error)), "a value")
+            self.wrong = self.wrong or Case({}, NoValue(str(error)), "a value")
 
     @classmethod
-    def of(cls, test: Test, text: str, ranges: Iterable[str], stop_at: Literal["", "failure", "value"] = "") -> _Trial:
+    def run(cls, test: Test, text: str, ranges: Iterable[str], stop_at: Literal["", "failure", "value"] = "") -> _Trial:
         """A string tried, to its end or to the first case that fails; one that cannot be read fails."""
         try:
             read = test.read(text, ranges)
         except UnreadableError as error:
-            return cls(iter([Case({}, Nothing(str(error)), "a formula")]))
+            return cls(iter([Case({}, NoValue(str(error)), "a formula")]))
         return cls(test.cases(read), stop_at)
 
     @classmethod
-    def turned(cls, test: Test, read: Reading) -> bool:
+    def is_turned(cls, test: Test, read: Reading) -> bool:
         """Whether a faulty reading is seen."""
         return cls(test.cases(read), stop_at="failure").wrong is not None
 

@@ -37,7 +37,7 @@ class TracedText:
     spans: tuple[tuple[int, int], ...]
 
     @classmethod
-    def of_source(cls, source: str) -> TracedText:
+    def from_source(cls, source: str) -> TracedText:
         """A source as it stands."""
         return cls(source, tuple((place, place + 1) for place in range(len(source))))
 
@@ -64,7 +64,7 @@ class TracedText:
 
 @lru_cache(maxsize=64)
 def _without_layout(source: str) -> TracedText:
-    traced = TracedText.of_source(source)
+    traced = TracedText.from_source(source)
     for pattern, instead in _LAYOUT:
         traced = traced.replace(pattern, instead)
     return traced
@@ -99,14 +99,14 @@ def position(
         return None
     starts = [match.start() for match in re.finditer(f"(?={re.escape(searched)})", traced.text)]
     found = [
-        _closed(source, traced.spans[start][0], traced.spans[start + len(searched) - 1][1], strings[-1])
+        _extend_span(source, traced.spans[start][0], traced.spans[start + len(searched) - 1][1], strings[-1])
         for start in starts
     ]
     taken = set(used)
     return next((span for span in found if span not in taken), found[0] if found else None)
 
 
-def _closed(source: str, start: int, end: int, printed: str) -> tuple[int, int]:
+def _extend_span(source: str, start: int, end: int, printed: str) -> tuple[int, int]:
     """A part, longer by the end of cases that it begins, the dollar signs around it, and its last full stop."""
     part = source[start:end]
     if part.count(_CASES_BEGIN) > part.count(_CASES_END):

@@ -31,16 +31,16 @@ class SentencePattern:
     """A sentence with places in braces, such as "the {quantity} at x = {place} rises", and the words for each.
 
     A place whose words include "" may be left out, with a space or comma of its own inside the words. One for which no
-    words are given takes a formula. After a sentence may stand `more`, and a list of some words. `about` is what else
-    is known of it.
+    words are given takes a formula. After a sentence may stand `list_opening`, and a list of some words. `data` is what
+    else is known of it.
     """
 
     name: str
     text: str
     words: Mapping[str, Sequence[str]]
-    more: str = ""
-    listed: Sequence[str] = ()
-    about: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    list_opening: str = ""
+    list_words: Sequence[str] = ()
+    data: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     @cached_property
     def _expression(self) -> re.Pattern[str]:
@@ -52,7 +52,7 @@ class SentencePattern:
                 pattern += f"(?P<{part}>{choices or '.+'})"
             else:
                 pattern += re.escape(part)
-        return re.compile(pattern + (f"({re.escape(self.more)}(?P<listed>.*))?" if self.more else ""))
+        return re.compile(pattern + (f"({re.escape(self.list_opening)}(?P<listed>.*))?" if self.list_opening else ""))
 
     def match(self, sentence: str) -> Sentence | None:
         """The sentence with its words, where it is one of this pattern; UnreadableError for a list of other words."""
@@ -60,7 +60,7 @@ class SentencePattern:
         if not found:
             return None
         words = {place: word for place, word in found.groupdict().items() if word is not None}
-        if unknown := sorted(set(words.get("listed", "").split(LIST)) - {*self.listed, ""}):
+        if unknown := sorted(set(words.get("listed", "").split(LIST)) - {*self.list_words, ""}):
             raise UnreadableError(f"nothing is called {', '.join(unknown)}")
         return Sentence(self.name, words)
 
@@ -75,7 +75,7 @@ class SentencePattern:
                     change = f"{word or 'nothing'} for {sentence.words[place] or 'nothing'}"
                     yield change, Sentence(self.name, {**sentence.words, place: word})
         own = sentence.words.get("listed")
-        for word in self.listed if own is not None else ():
+        for word in self.list_words if own is not None else ():
             names = own.split(LIST) if own else []
             change = f"not under {word}" if word in names else f"under {word} too"
             names = [name for name in names if name != word] if word in names else [*names, word]
@@ -107,15 +107,15 @@ class SentenceReader:
             for change, wrong in ends(range_):
                 yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
 
-    def about(self, sentence: Sentence) -> Mapping[str, Any]:
+    def pattern_data(self, sentence: Sentence) -> Mapping[str, Any]:
         """What else is known of a sentence's pattern."""
-        return self.patterns[sentence.pattern].about
+        return self.patterns[sentence.pattern].data
 
 
 def read_patterns(path: Path) -> list[SentencePattern]:
     """The patterns of a TOML file, by name: `text`, `words`, and what else is said of them."""
     data = tomllib.loads(path.read_text(encoding="utf-8"))
-    return [SentencePattern(name, known["text"], known["words"], about=known) for name, known in data.items()]
+    return [SentencePattern(name, known["text"], known["words"], data=known) for name, known in data.items()]
 
 
 def sentence_test(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Case]]]) -> Adapter:
@@ -126,31 +126,31 @@ def sentence_test(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Cas
     """
     reader = SentenceReader(read_patterns(path))
 
-    def tried(reading: Reading) -> Iterator[Case]:
+    def cases_in_range(reading: Reading) -> Iterator[Case]:
         none = True
         for case in cases[reading.formula.pattern](reading.formula.words):
-            if all(holds(range_, Scope(case.at)) for range_ in reading.ranges):
+            if all(holds(range_, Scope(case.place)) for range_ in reading.ranges):
                 none = False
                 yield case
         if none:
             raise MeaninglessError("nothing is within its ranges")
 
     def test(entry: PaperEntry) -> Test:
-        against = _about(reader, entry.right_strings[0]).get("against", "nothing known")
-        meant = _about(reader, entry.statement).get("convention")
+        against = _pattern_data(reader, entry.right_strings[0]).get("reference", "nothing known")
+        meant = _pattern_data(reader, entry.statement).get("convention")
 
         def as_meant(reading: Reading) -> Iterator[Case]:
             words = {**reading.formula.words, **(meant["words"] if meant else {})}
-            return tried(Reading(Sentence(reading.formula.pattern, words), reading.ranges))
+            return cases_in_range(Reading(Sentence(reading.formula.pattern, words), reading.ranges))
 
         conventions = {meant["meaning"]: as_meant} if meant else {}
-        return Test(against, tried, reader.read, reader.faults, conventions=conventions)
+        return Test(against, cases_in_range, reader.read, reader.faults, conventions=conventions)
 
     return test
 
 
-def _about(reader: SentenceReader, sentence: str) -> Mapping[str, Any]:
+def _pattern_data(reader: SentenceReader, sentence: str) -> Mapping[str, Any]:
     try:
-        return reader.about(reader.sentence(sentence))
+        return reader.pattern_data(reader.sentence(sentence))
     except UnreadableError:
         return {}

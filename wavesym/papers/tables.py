@@ -24,9 +24,9 @@ class TableHead(NamedTuple):
 class PrintedTable(BaseModel):
     """A block of cells, whose ids are made of {row} and {column} by `cell`; `name` and `caption` are for readers.
 
-    `head` is the line of the columns' labels, `line` that of the first row; labels stand at `left` or later. `heads`
-    are the ids of the records whose ranges hold in every cell; `row_head` and `column_head` make those of a row or
-    column. `unjudged` columns, by name, are no records, for a reason.
+    `head` is the line of the columns' labels, `line` that of the first row; labels stand at `left_column` or later.
+    `heads` are the ids of the records whose ranges hold in every cell; `row_head` and `column_head` make those of a row
+    or column. `unjudged_columns`, by name, are no records, for a reason.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -35,14 +35,14 @@ class PrintedTable(BaseModel):
     cell: str
     head: int
     line: int
-    left: int = 0
+    left_column: int = 0
     caption: str = ""
     heads: tuple[str, ...] = ()
     row_head: str = ""
     column_head: str = ""
     columns: tuple[TableHead, ...]
     rows: tuple[TableHead, ...]
-    unjudged: Mapping[str, str] = {}
+    unjudged_columns: Mapping[str, str] = {}
 
     def cell_id(self, row: TableHead, column: TableHead) -> str:
         """The id of a cell."""
@@ -103,9 +103,9 @@ def places(tables: Iterable[PrintedTable], text: str, start: int) -> Iterator[Ce
 
 def _columns(table: PrintedTable, row: TableHead, line: Sequence[str]) -> list[int]:
     """Where the cells of a row stand in its line: what is not empty behind its label; nowhere without the label."""
-    if row.label not in line[table.left :]:
+    if row.label not in line[table.left_column :]:
         return []
-    after = line.index(row.label, table.left) + 1
+    after = line.index(row.label, table.left_column) + 1
     return [x for x in range(after, len(line)) if line[x]][: len(table.columns)]
 
 

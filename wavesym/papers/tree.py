@@ -40,7 +40,7 @@ class Blank:
 class Minus:
     """A term that is taken away."""
 
-    of: Tree
+    term: Tree
 
 
 @dataclass(frozen=True)
@@ -61,8 +61,8 @@ class Product:
 class Fraction:
     """A fraction; `bar` is False for a slash."""
 
-    over: Tree
-    under: Tree
+    numerator: Tree
+    denominator: Tree
     bar: bool = True
 
 
@@ -105,16 +105,16 @@ class Derivative:
     """A partial derivative of some order."""
 
     order: int
-    of: Tree
-    by: Symbol
+    function: Tree
+    variable: Symbol
 
 
 @dataclass(frozen=True)
 class AtValue:
     """What a derivative is where a variable has a value."""
 
-    of: Tree
-    where: Relation
+    expression: Tree
+    condition: Relation
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ class Relation:
 
 
 @dataclass(frozen=True)
-class Listed:
+class FormulaList:
     """Formulas with commas between them."""
 
     items: tuple[Tree, ...]
@@ -144,7 +144,7 @@ class Progression:
     """A range: a variable, the values that are shown, and after dots the last one, or none where it does not end."""
 
     variable: Tree
-    shown: tuple[Tree, ...]
+    first_values: tuple[Tree, ...]
     dots: bool = False
     last: Tree | None = None
 
@@ -160,10 +160,10 @@ class Interval:
 
 
 @dataclass(frozen=True)
-class Marked:
+class Highlight:
     """A part that a page shows as different; of `sign_only`, a term, just its sign. Pages alone use it."""
 
-    of: Tree
+    part: Tree
     sign_only: bool = False
 
 
@@ -183,10 +183,10 @@ Tree = (
     | AtValue
     | Cases
     | Relation
-    | Listed
+    | FormulaList
     | Progression
     | Interval
-    | Marked
+    | Highlight
 )
 
 _CLOSING = {"(": ")", "[": "]", "{": r"\}", r"\langle": r"\rangle"}
@@ -232,25 +232,25 @@ def latex(tree: Tree) -> str:
             for sign, side in zip(signs, sides[1:], strict=True):
                 parts += [sign, latex(side)]
             return " ".join(parts)
-        case Listed(items):
+        case FormulaList(items):
             return ", ".join(map(latex, items))
         case Progression(variable, shown, dots, last):
             ends = [latex(value) for value in shown] + ([r"\dots"] if dots else []) + ([latex(last)] if last else [])
             return f"{latex(variable)} = {', '.join(ends)}"
         case Interval(variable, (low, high), start, end):
             return rf"{latex(variable)} \in {low} {latex(start)}, {latex(end)} {high}"
-        case Marked(Minus(of), True):
+        case Highlight(Minus(of), True):
             return rf"\marked{{-}}{latex(of)}"
-        case Marked(of, True):
+        case Highlight(of, True):
             return latex(of)
-        case Marked(of):
+        case Highlight(of):
             return rf"\marked{{{latex(of)}}}"
     raise TypeError(tree)
 
 
 def negative(term: Tree) -> Tree:
     """A term with the other sign."""
-    return term.of if isinstance(term, Minus) else Minus(term)
+    return term.term if isinstance(term, Minus) else Minus(term)
 
 
 def symbols(tree: Any) -> Iterator[Symbol]:
@@ -292,10 +292,10 @@ def _term(term: Tree, place: int) -> str:
     text = latex(term)
     if place == 0:
         return text
-    if isinstance(term, Marked) and term.sign_only:
-        return f" {text}" if isinstance(term.of, Minus) else rf" \marked{{+}} {text}"
-    if isinstance(term, Marked):
-        return rf" \marked{{{_term(term.of, place)}}}"
+    if isinstance(term, Highlight) and term.sign_only:
+        return f" {text}" if isinstance(term.part, Minus) else rf" \marked{{+}} {text}"
+    if isinstance(term, Highlight):
+        return rf" \marked{{{_term(term.part, place)}}}"
     return f" - {text[1:]}" if isinstance(term, Minus) else f" + {text}"
 
 

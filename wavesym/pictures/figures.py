@@ -57,7 +57,7 @@ def published(directory: Path, number: int) -> list[Path]:
 
 def judged(number: int) -> dict[str, Record]:
     """The verdicts on what the paper says of a figure."""
-    said = [e for e in entries().values() if e.about.get("figure") == number and e.kind != "caption"]
+    said = [e for e in entries().values() if e.subject.get("figure") == number and e.kind != "caption"]
     return {record.id: record for record in records(said)}
 
 
@@ -68,7 +68,7 @@ def redrawn(number: int, verdicts: Mapping[str, Record]) -> Figure:
     panels = [_panel(made, number, quantity, load) for quantity in FIGURES[number]]
     if made.model.labels.loads:
         panels.insert(0, _load(made.model))
-    ends = [r for r in verdicts.values() if r.entry.kind == "contact" and r.entry.about["figure"] == number]
+    ends = [r for r in verdicts.values() if r.entry.kind == "contact" and r.entry.subject["figure"] == number]
     return stacked(
         panels,
         nearest(made.model.until),

@@ -53,7 +53,7 @@ class Findings:
         return tuple(record for record in self.records if self.only in ("", record.verdict))
 
     @property
-    def passed(self) -> bool:
+    def all_tested(self) -> bool:
         """Whether everything could be tested."""
         return all(record.verdict != "untested" for record in self.records)
 
@@ -67,7 +67,7 @@ class Findings:
     def faults(self) -> tuple[int, int]:
         """How many faults were put in, and seen."""
         mutations = [record.mutations for record in self.records]
-        return sum(each.tried for each in mutations), sum(each.turned for each in mutations)
+        return sum(each.count for each in mutations), sum(each.turned_count for each in mutations)
 
     @property
     def errors(self) -> list[tuple[Record, ...]]:
@@ -174,7 +174,7 @@ def document(findings: Findings, format: str) -> Document:
         findings: the verdicts.
         format: its name; markdown has no tables of the paper.
     """
-    about, (tried, turned) = findings.paper.about, findings.faults
+    about, (tried, turned) = findings.paper.description, findings.faults
     errors = [
         Block(_titles(group), group[0].verdict, entries=tuple(_entry(record, findings) for record in group))
         for group in findings.errors
@@ -185,7 +185,7 @@ def document(findings: Findings, format: str) -> Document:
         Section("", "", (counts(findings), statistics(findings))),
         Section("What does not hold as printed", "errors", tuple(errors)),
         Section("The tables, cell by cell", "tables", tuple(printed)),
-        Section("What holds", "holds", tuple(_held(held))),
+        Section("What holds", "holds", tuple(_holding_blocks(held))),
         *appendices(findings),
     ]
     return Document(
@@ -232,11 +232,11 @@ def appendices(findings: Findings) -> list[Section]:
     survivors = tuple(
         (Cell((record.id,)), Cell((Code(change),)), Cell((because or "unknown",)))
         for record in findings.visible
-        for change, because in record.mutations.survived
+        for change, because in record.mutations.survivors
     )
     unjudged = tuple(
         (Cell((span(lines), f", {where}" if where else "")), Cell((Code(" ".join(scan.split())),)), Cell((why,)))
-        for lines, where, scan, why in _unjudged(findings)
+        for lines, where, scan, why in _unjudged_parts(findings)
     )
     parts = [
         ("What is read otherwise than the scan has it", "edits", ("id", "scan", "read as", "why"), edits, (2, 3, 3, 2)),
@@ -249,7 +249,7 @@ def appendices(findings: Findings) -> list[Section]:
     ]
 
 
-def _unjudged(findings: Findings) -> Iterable[tuple[tuple[int, int], str, str, str]]:
+def _unjudged_parts(findings: Findings) -> Iterable[tuple[tuple[int, int], str, str, str]]:
     for passage in findings.paper.passages if findings.whole else ():
         if passage.why:
             yield passage.lines, passage.where, passage.text, passage.why
@@ -257,11 +257,11 @@ def _unjudged(findings: Findings) -> Iterable[tuple[tuple[int, int], str, str, s
             yield passage.lines, passage.where, aside.scan, aside.why
 
 
-def _held(records: Sequence[Record]) -> list[Block]:
+def _holding_blocks(records: Sequence[Record]) -> list[Block]:
     """What holds, by place and by what it was compared with."""
     blocks = []
     for name, group in by_place(records).items():
-        for against, same in groupby(group, attrgetter("against")):
+        for against, same in groupby(group, attrgetter("reference")):
             rows = [
                 (
                     Cell((record.id,), anchor=_anchor(record)),
@@ -285,7 +285,7 @@ def _full_statement(record: Record) -> Line:
     """What is printed, in English too, and the ranges that are not printed."""
     parts = [*((prose(record.entry.printed), ("in English: ",)) if record.entry.english else ()), *statement(record)]
     line = join_lines(parts) if not record.entry.english else (*join_lines(parts[:2]), *join_lines(parts[2:]))
-    inferred = join_lines([(formula(range_),) for range_ in record.entry.inferred])
+    inferred = join_lines([(formula(range_),) for range_ in record.entry.inferred_ranges])
     return (*line, " (not printed: ", *inferred, ")") if inferred else line
 
 
@@ -302,8 +302,8 @@ def fields(record: Record, findings: Findings) -> Iterable[Field]:
         yield Field("in English", statement(record))
     else:
         yield Field("printed", statement(record))
-    if entry.inferred:
-        yield Field("not printed", tuple((formula(range_),) for range_ in entry.inferred))
+    if entry.inferred_ranges:
+        yield Field("not printed", tuple((formula(range_),) for range_ in entry.inferred_ranges))
     for before, after, why in entry.edits:
         yield Field("read", ((Code(before), " as ", Code(after) if after else "nothing", f": {why}"),))
     if slip:
@@ -315,8 +315,8 @@ def fields(record: Record, findings: Findings) -> Iterable[Field]:
         yield Field("note", ((readable(record.note),),))
     if slip and slip.verdict in ("misprint", "unreadable"):
         yield Field("origin", ((ORIGINS[slip.origin],),))
-    yield Field("tested", ((f"Compared with {record.against}; {_faults(record)}.",),))
-    for change, because in record.mutations.survived if not findings.whole else ():
+    yield Field("tested", ((f"Compared with {record.reference}; {_faults(record)}.",),))
+    for change, because in record.mutations.survivors if not findings.whole else ():
         yield Field("survived", ((Code(change), f": {because}"),))
     for problem in record.problems:
         yield Field("problem", ((problem,),))
@@ -355,20 +355,22 @@ def _printed_tables(findings: Findings) -> list[Block]:
         for place in places(passage.table, passage.text, passage.lines[0])
     }
     return [
-        Block(table.name, text=table.caption, table=_printed(table, judged, scans, findings))
+        Block(table.name, text=table.caption, table=_printed_table(table, judged, scans, findings))
         for table in findings.paper.tables
         if table.ids & judged.keys()
     ]
 
 
-def _printed(table: PrintedTable, judged: Mapping[str, Record], scans: Mapping[str, str], findings: Findings) -> Table:
+def _printed_table(
+    table: PrintedTable, judged: Mapping[str, Record], scans: Mapping[str, str], findings: Findings
+) -> Table:
     """A table as it is printed; each cell with its verdict."""
 
     def cell(row: TableHead, column: TableHead) -> Cell:
         id = table.cell_id(row, column)
         if id in judged:
             return Cell(statement(judged[id])[0], judged[id].verdict, _anchor(judged[id]))
-        if column.name in table.unjudged:
+        if column.name in table.unjudged_columns:
             return Cell((formula(scans[id]),))
         return Cell(("not requested" if id in findings.paper.entries else "",))
 
@@ -418,8 +420,8 @@ def _anchor(record: Record) -> str:
 
 def _faults(record: Record) -> str:
     """How many faults were tried, in words."""
-    tried = record.mutations.tried
-    return f"{tried} fault{'' if tried == 1 else 's'} put in, {record.mutations.turned} of them seen"
+    tried = record.mutations.count
+    return f"{tried} fault{'' if tried == 1 else 's'} put in, {record.mutations.turned_count} of them seen"
 
 
 def _titles(group: Sequence[Record]) -> str:

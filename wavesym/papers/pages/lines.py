@@ -103,9 +103,9 @@ def _versions(record: Record) -> tuple[tuple[Line, ...], tuple[Line, ...]]:
         own = prose(entry.english) if entry.english else (formula(entry.printed),)
         return (own, *((range_of_values(range_),) for range_ in entry.ranges)), ()
     if entry.english:
-        sentences = _compared_words(entry.english, slip.corrected)
+        sentences = _compared_words(entry.english, slip.correction)
     else:
-        one, other = formula(entry.printed), formula(slip.corrected)
+        one, other = formula(entry.printed), formula(slip.correction)
         if isinstance(one, Formula) and isinstance(other, Formula):
             trees = mark_differences(one.tree, other.tree)
             one, other = (Formula(f.text, tree) for f, tree in zip((one, other), trees, strict=True))

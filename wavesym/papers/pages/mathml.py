@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from wavesym.errors import WavesymError
-from wavesym.papers.tree import Addition, Group, Listed, Marked, Minus, Product, Relation, Series, Tree, latex
+from wavesym.papers.tree import Addition, FormulaList, Group, Highlight, Minus, Product, Relation, Series, Tree, latex
 
 LONGEST = 90
 """Characters of LaTeX that are not broken: about what a line of a phone holds."""
@@ -42,28 +42,28 @@ def pieces(tree: Tree) -> list[str]:
     match tree:
         case Relation(sides, signs):
             return _parts(sides, [f"{sign} " for sign in signs])
-        case Listed(items):
+        case FormulaList(items):
             found = [pieces(item) for item in items]
             return [part for item in found[:-1] for part in (*item[:-1], f"{item[-1]},")] + found[-1]
-        case Addition(terms) if not any(isinstance(term, Marked) for term in terms):
-            bodies = [term.of if place and isinstance(term, Minus) else term for place, term in enumerate(terms)]
+        case Addition(terms) if not any(isinstance(term, Highlight) for term in terms):
+            bodies = [term.term if place and isinstance(term, Minus) else term for place, term in enumerate(terms)]
             return _parts(bodies, ["- " if isinstance(term, Minus) else "+ " for term in terms[1:]])
         case Product((*before, last)):
-            return _after(f"{latex(Product(tuple(before)))} ", pieces(last))
+            return _prefix(f"{latex(Product(tuple(before)))} ", pieces(last))
         case Series(body=body):
-            return _after(text.removesuffix(latex(body)), pieces(body))
+            return _prefix(text.removesuffix(latex(body)), pieces(body))
         case Minus(of):
-            return _after("-", pieces(of))
+            return _prefix("-", pieces(of))
         case Group(_, inner):
             opening, closing = text.split(latex(inner))
-            first, *rest = _after(opening, pieces(inner))
+            first, *rest = _prefix(opening, pieces(inner))
             return [*[first, *rest][:-1], [first, *rest][-1] + closing]
     return [text]
 
 
 def _parts(parts: tuple[Tree, ...] | list[Tree], signs: list[str]) -> list[str]:
-    return [piece for sign, part in zip(["", *signs], parts, strict=True) for piece in _after(sign, pieces(part))]
+    return [piece for sign, part in zip(["", *signs], parts, strict=True) for piece in _prefix(sign, pieces(part))]
 
 
-def _after(first: str, later: list[str]) -> list[str]:
+def _prefix(first: str, later: list[str]) -> list[str]:
     return [first + later[0], *later[1:]]

@@ -49,14 +49,14 @@ class Exact:
         """What a function gains in interval 1, 2, ...; nothing before. KeyError, IndexError beyond the table."""
         return self.responses[source][Function(letter, rod)][interval - 1] if interval > 0 else {}
 
-    def sampled(self, source: str, letter: str, rod: int, instants: Sequence[float], order: int = 1) -> list[float]:
+    def sample(self, source: str, letter: str, rod: int, instants: Sequence[float], order: int = 1) -> list[float]:
         """A function at many z (order 1), or its integral from 0 on (order 0), to the last bit but a few."""
         step, found = self.interval, []
         with ctx.workprec(_SAMPLED_BITS):
             later, pieces = arb_poly([step, 1]), [dict[fmpq, arb_poly]()]
             for gain in self.responses[source][Function(letter, rod)]:
                 piece = {rate: powers(later) * (-rate * arb(step)).exp() for rate, powers in pieces[-1].items()}
-                for rate, powers in (integrated(gain) if order == 0 else gain).items():
+                for rate, powers in (integrate(gain) if order == 0 else gain).items():
                     piece[rate] = piece.get(rate, arb_poly()) + arb_poly(powers)
                 pieces.append(piece)
             for z in instants:
@@ -139,13 +139,13 @@ def _of_unequal_rods(m: Quantity, p: Parameters) -> tuple[Family, ...]:
     """The nodes of a collision between rods that are A_i as stiff, and as heavy, as that of kappa."""
 
     def unequal(family: Family) -> Family:
-        def at(x: Quantity) -> Node:
+        def node_at(x: Quantity) -> Node:
             node = family.at(x)
             left = p.inertia[x] if node.left else 0
             right = p.inertia[x + 1] if node.right else 0
             return replace(node, alpha=node.alpha * left, beta=node.beta * right)
 
-        return replace(family, at=at)
+        return replace(family, at=node_at)
 
     return tuple(map(unequal, COLLISION.families(m, p)))
 
@@ -220,17 +220,17 @@ class LoadedChain:
         """
         z = fmpq(z)
         key = letter, rod, int(z.p), int(z.q), order  # which are hashed faster than z
-        if key not in self.known:
-            self.known[key] = self._computed(letter, rod, z, order)
-        found: Exponentials = self.known[key]
+        if key not in self.memory:
+            self.memory[key] = self._compute_wave(letter, rod, z, order)
+        found: Exponentials = self.memory[key]
         return found
 
     @cached_property
-    def known(self) -> dict[Any, Any]:
+    def memory(self) -> dict[Any, Any]:
         """What was computed, by what it is."""
         return {}
 
-    def _computed(self, letter: str, rod: int, z: fmpq, order: int) -> Exponentials:
+    def _compute_wave(self, letter: str, rod: int, z: fmpq, order: int) -> Exponentials:
         self._check(rod)
         if order > 2:
             raise MeaninglessError(f"there is no derivative of order {order} here")
@@ -242,20 +242,21 @@ class LoadedChain:
                 if since >= step * len(self.exact.responses[source][function]):
                     raise MeaninglessError(f"z = {z} is beyond the tables")
                 for number in range(int(since / step) + 1 if since >= 0 else 0):
-                    terms += _terms(self._ordered(source, function, number, order), since - step * number, piece.weight)
+                    gain = self._derivative_of_order(source, function, number, order)
+                    terms += _terms(gain, since - step * number, piece.weight)
         return Exponentials.total(terms)
 
     def _check(self, rod: int) -> None:
         if not 1 <= rod <= self.exact.m:
             raise MeaninglessError(f"there is no rod {rod}")
 
-    def _ordered(self, source: str, function: Function, number: int, order: int) -> Increment:
+    def _derivative_of_order(self, source: str, function: Function, number: int, order: int) -> Increment:
         """An increment, or its integral or derivative."""
         key = source, *function, number, order
-        if key not in self.known:
+        if key not in self.memory:
             increment = self.exact.responses[source][function][number]
-            self.known[key] = {0: integrate, 1: lambda same: same, 2: _derived}[order](increment)
-        found: Increment = self.known[key]
+            self.memory[key] = {0: integrate, 1: lambda same: same, 2: _differentiate}[order](increment)
+        found: Increment = self.memory[key]
         return found
 
     def waves_at(self, rod: int, x: int, tau: fmpq, order: int = 1) -> tuple[Exponentials, Exponentials]:
@@ -274,7 +275,7 @@ class LoadedChain:
         MeaninglessError where there is no such source, piece or rod, or the interval is beyond the tables.
         """
         key = letter, rod, interval, source, piece, "gain"
-        if key not in self.known:
+        if key not in self.memory:
             sources = ["a", "b"] if source == "ab" else [source]
             if not 1 <= rod <= self.exact.m or not {*sources} <= self.exact.responses.keys():
                 raise MeaninglessError(f"there is no rod {rod}, or no {source}")
@@ -283,8 +284,8 @@ class LoadedChain:
                 parts = [self.exact.increment(name, letter, rod, interval) for name in sources]
             except IndexError:
                 raise MeaninglessError(f"interval {interval} is beyond the tables") from None
-            self.known[key] = combine(zip(weights, parts, strict=True))
-        found: Increment = self.known[key]
+            self.memory[key] = combine(zip(weights, parts, strict=True))
+        found: Increment = self.memory[key]
         return found
 
     def piece(self, source: str, number: int) -> LoadStep:
@@ -312,14 +313,14 @@ class JumpingChain(LoadedChain):
         self._check(rod)
         total = fmpq(0)
         if order != 2:
-            return Exponentials.of(total)
+            return Exponentials.from_number(total)
         for source, pieces in self.loads.items():
             increments = self.exact.responses[source][Function(letter, rod)]
             for piece in pieces:
                 number = (fmpq(z) - piece.time) / self.exact.interval
                 if number >= 0 and number.denom() == 1:
                     total += piece.weight * start(increments[int(number.numer())])
-        return Exponentials.of(total)
+        return Exponentials.from_number(total)
 
     @property
     def fronts(self) -> tuple[fmpq, ...]:
@@ -341,7 +342,7 @@ def _terms(increment: Increment, w: fmpq, weight: fmpq | int = 1) -> Iterator[tu
         yield -rate * w, weight * value
 
 
-def _derived(increment: Increment) -> Increment:
+def _differentiate(increment: Increment) -> Increment:
     return {
         rate: [
             (k + 1) * above - rate * this
@@ -396,15 +397,15 @@ def example(
 
     `outputs` are as in a scene, {"strain": ["1-"]}; `command` has SCENE for the file.
     """
-    return lambda: Reproduction(written(exact.chain, loads, until, outputs), command, look)
+    return lambda: Reproduction(scene_text(exact.chain, loads, until, outputs), command, look)
 
 
-def written(chain: Chain, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]]) -> str:
+def scene_text(chain: Chain, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]]) -> str:
     """A chain under loads as a scene file."""
     kind, given = _SYSTEMS.get(chain.system, ("building", ("kappa",)))
     lines = ['name = "counterexample"', "", "[system]", f'type = "{kind}"', f"m = {chain.m}"]
     values = {name: sorted(getattr(chain.parameters, name).items()) for name in given}
-    lines += [_listed(name, [value for _, value in numbered]) for name, numbered in values.items()]
+    lines += [_toml_list(name, [value for _, value in numbered]) for name, numbered in values.items()]
     if kind == "building":
         base = "ground" if chain.system is BUILDING_GROUND else "force"
         lines.append(f'base = "{base}"')
@@ -412,17 +413,17 @@ def written(chain: Chain, loads: Loads, until: fmpq | int, outputs: Mapping[str,
         times, weights = [piece.time for piece in pieces], [piece.weight for piece in pieces]
         lines += ["", "[[load]]"]
         if kind == "drive":
-            lines += [f"body = {source.removeprefix('M')}", _listed("times", times), _listed("steps", weights)]
+            lines += [f"body = {source.removeprefix('M')}", _toml_list("times", times), _toml_list("steps", weights)]
         else:
             other = "b" if source == "a" else "a"
-            lines += [_listed("times", times), _listed(source, weights), _listed(other, [0] * len(times))]
-    lines += ["", "[output]", f'until = "{until}"', *(_listed(name, places) for name, places in outputs.items())]
+            lines += [_toml_list("times", times), _toml_list(source, weights), _toml_list(other, [0] * len(times))]
+    lines += ["", "[output]", f'until = "{until}"', *(_toml_list(name, places) for name, places in outputs.items())]
     return "\n".join(lines) + "\n"
 
 
 _SYSTEMS = {COLLISION: ("collision", ("kappa", "velocity")), DRIVE: ("drive", ("kappa", "inertia"))}
 
 
-def _listed(name: str, values: Sequence[object]) -> str:
+def _toml_list(name: str, values: Sequence[object]) -> str:
     quoted = (f'"{value}"' for value in values)
     return f"{name} = [{', '.join(quoted)}]"

@@ -47,7 +47,7 @@ def key(symbol: Symbol, scope: Scope) -> Key:
     upper, lower = scope.upper(symbol), scope.indices(symbol)
     if symbol.name not in "fg" or symbol.accent or symbol.primes or len(upper) != 3:
         raise MeaninglessError(f"{latex(symbol)} is no coefficient")
-    if lower not in ((), (0,)) and (len(lower) != 2 or lower[0] not in (1, scope.bound["m"])):
+    if lower not in ((), (0,)) and (len(lower) != 2 or lower[0] not in (1, scope.variables["m"])):
         raise MeaninglessError(f"{latex(symbol)} has no such lower indices")
     return Key(symbol.name, lower, *upper)
 
@@ -126,7 +126,7 @@ class Coefficients(Scope):
     def __init__(self, bound: Mapping[str, int], given: Callable[[Key], Any], opened: bool = False) -> None:
         super().__init__(bound)
         known = truth(bound["m"])
-        self._given, self._opened = given, opened
+        self._coefficient, self._is_open = given, opened
         self.letters = {
             r"\kappa": known.kappa.__getitem__,
             r"\bara": lambda k: known.motion.piece("a", k).weight,
@@ -134,10 +134,10 @@ class Coefficients(Scope):
         }
 
     def symbol(self, symbol: Symbol) -> Any:
-        return self._given(key(symbol, self)) if symbol.above else super().symbol(symbol)
+        return self._coefficient(key(symbol, self)) if symbol.above else super().symbol(symbol)
 
     def step(self, value: Any) -> Any:
-        return 1 if self._opened else super().step(value)
+        return 1 if self._is_open else super().step(value)
 
 
 def gives(line: Reading, m: int, n: int, steps: Iterable[int] = STEPS) -> Iterator[tuple[dict[str, int], Key, Tree]]:
@@ -175,7 +175,7 @@ def coefficient(entry: PaperEntry) -> Test:
         partial(_cases, entry.id),
         conventions={"the functions g of the first interval are 0": partial(_cases, entry.id, rests=True)},
         is_subtracted=True,
-        observed=partial(consequence, entry.id) if entry.slip else None,
+        observation=partial(consequence, entry.id) if entry.slip else None,
     )
 
 
@@ -197,7 +197,11 @@ def _lets_in(place: dict[str, int], key: Key, right: Tree, rests: bool) -> Itera
     """H lets in the coefficients that exist, and no others; none rests on itself."""
     exists = truth(place["m"]).exists
     used, behind = (
-        [one for one in _asked(place, right, opened) if not (rests and one.letter == "g" and one.interval == 1)]
+        [
+            one
+            for one in _requested_keys(place, right, opened)
+            if not (rests and one.letter == "g" and one.interval == 1)
+        ]
         for opened in (False, True)
     )
     if key in used:
@@ -206,7 +210,7 @@ def _lets_in(place: dict[str, int], key: Key, right: Tree, rests: bool) -> Itera
         yield Case({**place, "claim": "H lets in"}, _names(used), _names(filter(exists, behind)))
 
 
-def _asked(place: dict[str, int], right: Tree, opened: bool = False) -> list[Key]:
+def _requested_keys(place: dict[str, int], right: Tree, opened: bool = False) -> list[Key]:
     """The coefficients that a right side asks for, in their order."""
     found = []
 
@@ -220,7 +224,7 @@ def _asked(place: dict[str, int], right: Tree, opened: bool = False) -> list[Key
 
 def _coverage(id: str, line: Reading, m: int, n: int) -> Iterator[Case]:
     """Every coefficient is given by one line, once."""
-    wanted, counts = _wanted(id, m, n), Counter(key for _, key, _ in gives(line, m, n))
+    wanted, counts = _required_keys(id, m, n), Counter(key for _, key, _ in gives(line, m, n))
     if wanted or counts:
         extra = (counts - Counter(wanted)).elements()
         yield Case({"m": m, "n": n, "claim": "given twice, or no coefficient"}, _names(sorted(extra)), (), bool(counts))
@@ -229,10 +233,10 @@ def _coverage(id: str, line: Reading, m: int, n: int) -> Iterator[Case]:
 
 
 @cache
-def _wanted(id: str, m: int, n: int) -> frozenset[Key]:
+def _required_keys(id: str, m: int, n: int) -> frozenset[Key]:
     """The coefficients that no other line gives, of the letter and the family that this line is about."""
-    about = {_family(key) for key in _given(id, m, n) or _given(id, m, n + 1)}
-    others = {key for other in ids("line") if other != id for key in _given(other, m, n)}
+    about = {_family(key) for key in _line_keys(id, m, n) or _line_keys(id, m, n + 1)}
+    others = {key for other in ids("line") if other != id for key in _line_keys(other, m, n)}
     return frozenset(key for key in unknowns(m, n) - others if _family(key) in about)
 
 
@@ -241,7 +245,7 @@ def _family(key: Key) -> tuple[str, tuple[int, ...]]:
 
 
 @cache
-def _given(id: str, m: int, n: int) -> frozenset[Key]:
+def _line_keys(id: str, m: int, n: int) -> frozenset[Key]:
     return frozenset(key for _, key, _ in gives(right_reading(id), m, n))
 
 
@@ -256,7 +260,7 @@ class NotGivenError(MeaninglessError):
     """The list does not give a coefficient that is asked for, or gives it by itself."""
 
 
-class Alone:
+class ListRun:
     """The coefficients of one building, from a list of lines, up to some n."""
 
     def __init__(self, lines: Iterable[Reading], m: int, most_n: int) -> None:
@@ -264,19 +268,19 @@ class Alone:
         for line, n in product(lines, range(most_n + 1)):
             for place, key, right in gives(line, m, n, [STEP]):
                 self._lines.setdefault(key, (place, right))
-        self._known: dict[Key, fmpq | None] = {}
+        self._values: dict[Key, fmpq | None] = {}
 
     def __call__(self, key: Key) -> fmpq:
         """A coefficient; NotGivenError where the list does not give it, or gives it by itself."""
         if key.interval < 1:
             return fmpq(0)  # F' = 0 before the first interval, by (4.12)
-        if key not in self._known:
+        if key not in self._values:
             if key not in self._lines:
                 raise NotGivenError(f"{key} is in no line's range")
             place, right = self._lines[key]
-            self._known[key] = None
-            self._known[key] = Coefficients(place, self).value(right)
-        value = self._known[key]
+            self._values[key] = None
+            self._values[key] = Coefficients(place, self).value(right)
+        value = self._values[key]
         if value is None:
             raise NotGivenError(f"{key} rests on itself")
         return value
@@ -284,7 +288,7 @@ class Alone:
 
 def listed_values(lines: Iterable[Reading], m: int, most_n: int) -> Iterator[tuple[Key, fmpq, fmpq]]:
     """Every coefficient for n = 0 ... most_n: its value by the list, and its true value; NotGivenError."""
-    alone = Alone(lines, m, most_n)
+    alone = ListRun(lines, m, most_n)
     for n in range(most_n + 1):
         for key in sorted(unknowns(m, n)):
             if key.k == STEP:
@@ -293,12 +297,12 @@ def listed_values(lines: Iterable[Reading], m: int, most_n: int) -> Iterator[tup
 
 def right_lines(but: str = "") -> list[Reading]:
     """The list as it should be, but for a line that is as printed."""
-    return [_printed(id) if id == but else right_reading(id) for id in ids("line")]
+    return [_printed_reading(id) if id == but else right_reading(id) for id in ids("line")]
 
 
-def _printed(id: str) -> Reading:
+def _printed_reading(id: str) -> Reading:
     told = transcribed(id)
-    return reading(told.printed, (*told.ranges, *told.inferred))
+    return reading(told.printed, (*told.ranges, *told.inferred_ranges))
 
 
 @cache

@@ -40,7 +40,7 @@ class Conditions(EquationGroup):
         """m, i and x; where no i is given, it is the one that makes the rods right."""
         scope, m = self.scope, self.scope.chain.m
         for i in span(self.ranges["i"], scope) if "i" in self.ranges else (None,):
-            scope.bound |= {} if i is None else {"i": i}
+            scope.variables |= {} if i is None else {"i": i}
             for x in self._nodes():
                 if not 0 <= x <= m:
                     raise MeaninglessError(f"there is no place x = {x}")
@@ -51,13 +51,13 @@ class Conditions(EquationGroup):
 
     def _nodes(self) -> Iterator[int]:
         """The nodes that are meant, or the places that are given, in lengths of rods."""
-        if kind := self.entry.about.get("at"):
+        if kind := self.entry.subject.get("at"):
             yield from (x for x, node in enumerate(self.scope.chain.nodes) if NODES[kind](node))
             return
         place = self.ranges.get("x") or self.ranges.get(r"\bar{x}")
         if place is None:
             raise MeaninglessError("no place is given")
-        for value in place.shown:
+        for value in place.first_values:
             x = self.scope.value(value) / (self.scope.units.l if place.variable == Symbol("x") else fmpq(1))
             if x.denom() != 1:
                 raise MeaninglessError(f"no rod ends at {latex(place)}")
@@ -77,10 +77,10 @@ class Conditions(EquationGroup):
     def key(self, equation: Tree, place: Place) -> Key:
         """It compares velocities, as (2.3) does, or else forces, or how a node moves."""
         found = [part for part in parts_of(equation) if isinstance(part, Derivative)]
-        alike = all(latex(part.by) in ("t", r"\tau") and part.order == 1 for part in found)
+        alike = all(latex(part.variable) in ("t", r"\tau") and part.order == 1 for part in found)
         return ("the rods move together" if alike else "forces are balanced"), place["x"]
 
-    def required(self) -> Iterable[Key] | None:
+    def required_keys(self) -> Iterable[Key] | None:
         m, together, balanced = self.scope.chain.m, "the rods move together", "forces are balanced"
         if self.entry.id.startswith("(2."):  # (2.3) is of all nodes between rods, (2.4) of those that it names
             return [(together, x) for x in range(1, m)] if self.entry.id == "(2.3)" else None
@@ -88,11 +88,11 @@ class Conditions(EquationGroup):
 
     def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
         rods = tuple(sorted(self._rods(equation, place.get("i"))))
-        yield Case({**at, "what": "its rods"}, rods, rods_at(self.scope.chain, place["x"]), telling=False)
+        yield Case({**at, "what": "its rods"}, rods, rods_at(self.scope.chain, place["x"]), is_telling=False)
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
         for tau in instants(5, between=[fmpq(5, 6)]):  # every node has moved, and every load has begun
-            yield {"left less right side at tau": tau}, self.scope.at(place["x"], tau)
+            yield {"left less right side at tau": tau}, self.scope.coordinates(place["x"], tau)
 
 
 class Delays(EquationGroup):
@@ -109,7 +109,7 @@ class Delays(EquationGroup):
         ((name, (rod,)),) = found
         return name, rod
 
-    def required(self) -> Iterable[Key]:
+    def required_keys(self) -> Iterable[Key]:
         return [(name, rod) for name in "fg" for rod in range(1, self.scope.chain.m + 1)]
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
@@ -118,13 +118,13 @@ class Delays(EquationGroup):
 
     def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
         if any(part.primes == 2 for part in parts_of(equation) if isinstance(part, Symbol)):
-            self._across.scope.bound |= place
-            for front in self._across.scope.motion.fronts:  # type: ignore[attr-defined]
+            self._jumps.scope.variables |= place
+            for front in self._jumps.scope.motion.fronts:  # type: ignore[attr-defined]
                 name = "left less right side across a front at z"
-                yield self._across.balance(equation, {**at, name: front}, {"z": front})
+                yield self._jumps.balance(equation, {**at, name: front}, {"z": front})
 
     @cached_property
-    def _across(self) -> _Jumps:
+    def _jumps(self) -> _Jumps:
         return _Jumps(self.entry, self.reading, JumpingChain(self.scope.motion.exact, self.scope.motion.loads))
 
 

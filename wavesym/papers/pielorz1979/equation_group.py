@@ -46,7 +46,7 @@ class EquationGroup(ABC):
     """Equations of a kind, tried on one chain: a record's, and which others there are.
 
     Attributes:
-        against: what they are compared with.
+        reference: what they are compared with.
         letters: what a range may be of.
         sizes: the m of each example.
         units: of the chains, those of every other m.
@@ -55,7 +55,7 @@ class EquationGroup(ABC):
         is_alone: whether the record says by itself all that is required, or beside others of its group.
     """
 
-    against: ClassVar[str] = _MOVING
+    reference: ClassVar[str] = _MOVING
     letters: ClassVar[frozenset[str]] = frozenset({"i", "x_{i}", "v_{0}", "S_{0}"})
     sizes: ClassVar[Mapping[str, Iterable[int]]] = {name: example.sizes for name, example in EXAMPLES.items()}
     units: ClassVar[tuple[Units, Units]] = (SLOW, FAST)
@@ -77,7 +77,7 @@ class EquationGroup(ABC):
     @classmethod
     def compared_with(cls, entry: PaperEntry) -> str:
         """What a record is compared with."""
-        return cls.against
+        return cls.reference
 
     def places(self, equation: Tree) -> Iterator[Place]:
         """Where an equation is said to hold."""
@@ -91,7 +91,7 @@ class EquationGroup(ABC):
         """What an equation says at a place."""
 
     @abstractmethod
-    def required(self) -> Iterable[Key] | None:
+    def required_keys(self) -> Iterable[Key] | None:
         """All that is to be said of the chain, once; None where that is not asked."""
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
@@ -114,13 +114,13 @@ class EquationGroup(ABC):
         said: Counter[Key] = Counter()
         for equation in items(self.reading.formula):
             for place in self.places(equation):
-                self.scope.bound |= place
+                self.scope.variables |= place
                 said[self.key(equation, place)] += 1
                 here = {**at, **{name: place[name] for name in ("i", "x") if name in place}}
                 yield from self.further_cases(equation, place, here)
                 for name, bound in self.instants(place):
                     yield self.balance(equation, {**here, **name}, bound)
-        if (needed := self.required()) is None:
+        if (needed := self.required_keys()) is None:
             return
         beside = Counter[Key]() if self.is_alone else self.said_by_others()
         total, required = said + beside, Counter(needed)
@@ -133,24 +133,24 @@ class EquationGroup(ABC):
     def balance(self, equation: Tree, at: Place, bound: Place) -> Case:
         """An equation at an instant: what is left of it, or its right side where it is a definition."""
         left, right = self.sides(equation)
-        self.scope.seen = self.is_definition
-        with self.scope.binding({**self.scope.bound, **bound}):
+        self.scope.is_seen = self.is_definition
+        with self.scope.bind({**self.scope.variables, **bound}):
             if self.is_definition:
-                found = case(at, lambda: Jet.of(right()).value, Jet.of(left()).value)
+                found = case(at, lambda: Jet.from_number(right()).value, Jet.from_number(left()).value)
             else:
-                found = case(at, lambda: Jet.of(left() - right()).value, 0)
-        return replace(found, telling=self.scope.seen, example=None if found.agrees else self.scene(at, found))
+                found = case(at, lambda: Jet.from_number(left() - right()).value, 0)
+        return replace(found, is_telling=self.scope.is_seen, example=None if found.agrees else self.scene(at, found))
 
     def said_by_others(self) -> Counter[Key]:
         """What the other equations of the group say."""
-        known, key = self.scope.motion.known, ("beside", self.entry.kind, self.entry.id)
+        known, key = self.scope.motion.memory, ("beside", self.entry.kind, self.entry.id)
         if key not in known:
             known[key] = Counter[Key]()
             for reading in others(self.entry.id, self.entry.kind):
                 group = type(self)(self.entry, reading, self.scope.motion)
                 for equation in items(reading.formula):
                     for place in group.places(equation):
-                        group.scope.bound |= place
+                        group.scope.variables |= place
                         known[key][group.key(equation, place)] += 1
         found: Counter[Key] = known[key]
         return found
@@ -159,8 +159,9 @@ class EquationGroup(ABC):
         """How a case is seen: what a scene says at its place, to be put into the equation."""
         if self.scope.chain.system is UNEQUAL_COLLISION:  # no scene has it
             return None
-        where = ", ".join(f"{name} = {format_value(value)}" for name, value in at.items())
+        where = ", ".join(f"{name} = {format_value(bound)}" for name, bound in at.items())
+        value = found.printed_value
         x = min(max(fmpq(at.get("x", at.get("i", 1))), fmpq(0)), fmpq(self.scope.chain.m))
-        look = f"velocity@{x} and what stands beside it in the equation; with {where}, {found.printed} comes of it"
+        look = f"velocity@{x} and what stands beside it in the equation; with {where}, {value} comes of it"
         motion, outputs = self.scope.motion, {"velocity": [str(x)]}
         return example(motion.exact, motion.loads, 8, outputs, "wavesym run SCENE --samples 1001", look)

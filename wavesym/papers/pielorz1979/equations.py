@@ -60,21 +60,21 @@ GROUPS: Mapping[str, type[EquationGroup]] = {
 
 def equation(entry: PaperEntry) -> Test:
     """How an equation is tried, and under what the text may mean beside what it says."""
-    group, base = GROUPS[entry.kind], entry.about.get("base")
-    own = entry.about.get("row" if entry.kind == "cell" else "example")
+    group, base = GROUPS[entry.kind], entry.subject.get("base")
+    own = entry.subject.get("row" if entry.kind == "cell" else "example")
     names = (str(own),) if own else tuple(group.sizes)
 
     def cases(reading: Reading, variant: str | None = base) -> Iterator[Case]:
         for name in names:
             for m in group.sizes[name]:
-                motion = _chain(name, m, variant, "at" in entry.about)
+                motion = _chain(name, m, variant, "at" in entry.subject)
                 yield from group(entry, reading, motion).cases({"m": m} if own else {"example": name, "m": m})
 
     def with_range(more: Tree) -> Callable[[Reading], Iterable[Case]]:
         return lambda reading: cases(_with_range(reading, more))
 
     conventions: dict[str, Callable[[Reading], Iterable[Case]]] = {}
-    if "at" in entry.about:
+    if "at" in entry.subject:
         for place in ("(i-1)l", "il"):
             conventions[f"body i stands at x = {place}"] = with_range(read_range(f"x_i = {place}"))
     if own == "III" and entry.kind in ("condition", "delay") and not base:
@@ -147,9 +147,9 @@ def _solution_cases(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
             group = Definitions(entry, reading, loaded_chain(name, m))
             scope, at = group.scope, {"example": name, "m": m}
             said = Counter(group.key(reading.formula, place) for place in group.places(reading.formula))
-            required = Counter(group.required())
+            required = Counter(group.required_keys())
             for key in sorted(said.keys() | required.keys()):
-                yield Case({**at, "how often it is given": f"rod_{key[1]}"}, said[key], required[key], telling=False)
+                yield Case({**at, "how often it is given": f"rod_{key[1]}"}, said[key], required[key], is_telling=False)
             for tau in (fmpq(2, 3), fmpq(31, 9)):
                 for x in range(m + 1):
                     where = {**at, "t": tau * scope.units.l / scope.units.c_f, "node": x}
@@ -160,19 +160,19 @@ def _solution_cases(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
 
 def _left_over(scope: Motion, formula: Tree, x: int, tau: fmpq) -> tuple[Any, Any]:
     """What the printed displacements leave of the law of a node."""
-    step, force = scope.law(x, tau, partial(_printed, scope, formula))
+    step, force = scope.law(x, tau, partial(_printed_displacement, scope, formula))
     for load in scope.chain.nodes[x].loads:
         for power, coefficient in enumerate(load.coefficients):
             force = force - coefficient * scope.motion.load(load.source, tau, power)
     return step, force
 
 
-def _printed(scope: Motion, formula: Tree, rod: int, x: Jet, tau: Jet) -> Jet:
+def _printed_displacement(scope: Motion, formula: Tree, rod: int, x: Jet, tau: Jet) -> Jet:
     """The displacement of a rod as printed, in units of U_0."""
     left, right = sides(formula)
-    with scope.binding({**scope.bound, "i": rod, **scope.at(x, tau)}):
+    with scope.bind({**scope.variables, "i": rod, **scope.coordinates(x, tau)}):
         match left:
             case Call(Symbol("U", accent, 0, (index,)), (place, time)) if scope.whole(index) == rod:
                 if (latex(place), latex(time)) == ((r"\bar{x}", r"\tau") if accent else ("x", "t")):
-                    return Jet.of(scope.value(right)) / (1 if accent else scope.units.U_0)
+                    return Jet.from_number(scope.value(right)) / (1 if accent else scope.units.U_0)
     raise MeaninglessError(f"{latex(left)} is not the displacement of rod {rod}")

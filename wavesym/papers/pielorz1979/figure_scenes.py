@@ -152,7 +152,7 @@ def _wave(described: FigureScene, source: str, letter: str, rod: int, x: float, 
     exact = _exact_tables(described)
     clock = exact.chain.rod(rod)
     late = float(clock.tau0) + (x - float(clock.x0)) * (1 if letter == "f" else -1)
-    return np.array(exact.sampled(source, letter, rod, (described.instants - late).tolist(), order))
+    return np.array(exact.sample(source, letter, rod, (described.instants - late).tolist(), order))
 
 
 @cache
@@ -193,24 +193,24 @@ def _system(described: FigureScene) -> Mapping[str, object]:
     """The system of a scene. MeaninglessError where quantities are missing, or are too many."""
     values = {(letter, index): value for letter, index, value in described.quantities}
 
-    def taken(letter: str, indices: Iterable[int]) -> list[fmpq]:
+    def take(letter: str, indices: Iterable[int]) -> list[fmpq]:
         if missing := [index for index in indices if (letter, index) not in values]:
             raise MeaninglessError(f"no {letter}_{missing[0]}")
         return [values.pop((letter, index)) for index in indices]
 
-    (size,) = taken("m", (0,))
+    (size,) = take("m", (0,))
     if size.denom() != 1 or size < 1:
         raise MeaninglessError(f"m = {size}")
     m = int(size.numer())
     made: dict[str, object]
     if described.figure == 6:
         bodies = range(1, m, 2)
-        kappa, velocity = taken(r"\kappa", bodies), taken(r"\barv", bodies)
+        kappa, velocity = take(r"\kappa", bodies), take(r"\barv", bodies)
         made = {"type": "collision", "kappa": list(map(str, kappa)), "velocity": list(map(str, velocity))}
     elif described.figure == 7:
-        made = {"type": "drive", **_drive(taken(r"\gamma", range(1, m + 2)))}
+        made = {"type": "drive", **_drive(take(r"\gamma", range(1, m + 2)))}
     else:
-        made = {"type": "building", "kappa": list(map(str, taken(r"\kappa", range(m + 1)))), "base": "force"}
+        made = {"type": "building", "kappa": list(map(str, take(r"\kappa", range(m + 1)))), "base": "force"}
     if values:
         raise MeaninglessError(f"m = {m} has no {', no '.join(f'{letter}_{index}' for letter, index in values)}")
     return {"m": m, **made}

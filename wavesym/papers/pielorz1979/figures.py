@@ -20,7 +20,7 @@ from flint import fmpq
 
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope
-from wavesym.papers.pielorz1979.chains import written
+from wavesym.papers.pielorz1979.chains import scene_text
 from wavesym.papers.pielorz1979.figure_scenes import (
     PLOTTED,
     SAMPLES,
@@ -35,7 +35,7 @@ from wavesym.papers.pielorz1979.figure_scenes import (
 from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding
 from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.reader import UnreadableError, read_formula
-from wavesym.papers.record import Case, Nothing, Reproduction, Sentence, Test, case, format_value
+from wavesym.papers.record import Case, NoValue, Reproduction, Sentence, Test, case, format_value
 from wavesym.papers.sentences import LIST, SentenceReader, read_patterns
 from wavesym.papers.tree import Number, Relation, Tree, latex
 from wavesym.scene import lower
@@ -47,9 +47,9 @@ ONLY = ", of the loads tried under these: "
 _PATTERNS = read_patterns(Path(__file__).with_name("figure_sentences.toml"))
 READERS = {
     number: SentenceReader(
-        replace(pattern, more=ONLY, listed=tuple(load.name for load in loads(number)))
+        replace(pattern, list_opening=ONLY, list_words=tuple(load.name for load in loads(number)))
         for pattern in _PATTERNS
-        if pattern.about["figure"] == number
+        if pattern.data["figure"] == number
     )
     for number in PLOTTED
 }
@@ -58,22 +58,22 @@ READERS = {
 
 def statements(number: int) -> dict[str, Sentence]:
     """What is printed of a figure, by id."""
-    return {entry.id: READERS[number].sentence(entry.statement) for entry in _of(number, "figure")}
+    return {entry.id: READERS[number].sentence(entry.statement) for entry in _figure_entries(number, "figure")}
 
 
-def _known(sentence: Sentence) -> Mapping[str, Any]:
-    return next(pattern.about for pattern in _PATTERNS if pattern.name == sentence.pattern)
+def _pattern_data(sentence: Sentence) -> Mapping[str, Any]:
+    return next(pattern.data for pattern in _PATTERNS if pattern.name == sentence.pattern)
 
 
 def _bound(sentence: Sentence) -> tuple[str, Callable[[float], bool]]:
     """When what is measured is as a sentence says, in words and as a test."""
-    judged = _known(sentence)["bound"]
+    judged = _pattern_data(sentence)["bound"]
     return BOUNDS[sentence.words.get(judged, judged)]
 
 
 def meaning(sentence: Sentence) -> str:
     """What a sentence says of a measure, in words."""
-    words: str = _known(sentence)["meaning"].format(**{**sentence.words, "bound": _bound(sentence)[0]})
+    words: str = _pattern_data(sentence)["meaning"].format(**{**sentence.words, "bound": _bound(sentence)[0]})
     return words
 
 
@@ -86,12 +86,12 @@ def finding(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> Finding:
     """What is measured under a load. MeaninglessError where there is nothing to measure."""
     (drawn,) = (drawn for drawn in loads_tried(scene.figure, sentence) if drawn.name == load.name)
     words = {place: word for place, word in sentence.words.items() if place != "listed"}
-    return _measured(scene, drawn, Sentence(sentence.pattern, words))
+    return _measure(scene, drawn, Sentence(sentence.pattern, words))
 
 
 @cache
-def _measured(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> Finding:
-    return MEASURES[_known(sentence)["measure"]](sentence.words, partial(scene.curve, load))
+def _measure(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> Finding:
+    return MEASURES[_pattern_data(sentence)["measure"]](sentence.words, partial(scene.curve, load))
 
 
 def is_true(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> bool:
@@ -104,21 +104,21 @@ def findings(number: int, sentence: Sentence) -> list[tuple[TriedLoad, Finding]]
     return [(load, finding(figure(number), load, sentence)) for load in loads_tried(number, sentence)]
 
 
-def _of(number: int, kind: str) -> Iterable[PaperEntry]:
-    return (entry for entry in entries().values() if entry.about.get("figure") == number and entry.kind == kind)
+def _figure_entries(number: int, kind: str) -> Iterable[PaperEntry]:
+    return (entry for entry in entries().values() if entry.subject.get("figure") == number and entry.kind == kind)
 
 
 def said_of_figure(entry: PaperEntry) -> Test:
     """A sentence about a figure."""
-    number = entry.about["figure"]
+    number = entry.subject["figure"]
     base = " (the base of (4.5))" if number == 8 else ""
     return Test(
         f"the exact motion of the scene of the caption{base}, at {SAMPLES} instants",
         lambda reading: _cases(figure(number), reading.formula),
         READERS[number].read,
         READERS[number].faults,
-        varied="loads",
-        observed=lambda: _observed(figure(number), entry),
+        variation="loads",
+        observation=lambda: _observation(figure(number), entry),
     )
 
 
@@ -129,18 +129,18 @@ def _cases(scene: FigureScene, sentence: Sentence) -> Iterator[Case]:
         try:
             found, is_so = finding(scene, load, sentence), is_true(scene, load, sentence)
         except MeaninglessError as error:
-            yield Case({"load": load.name}, claimed, Nothing(str(error)))
+            yield Case({"load": load.name}, claimed, NoValue(str(error)))
             continue
         at = {"load": load.name, "measured": found.value, "said": meaning(sentence)}
         yield Case(at, claimed, is_so, example=partial(_example, scene, load, found))
 
 
-def _observed(scene: FigureScene, entry: PaperEntry) -> str:
+def _observation(scene: FigureScene, entry: PaperEntry) -> str:
     """Every load with its outcome."""
     try:
         sentence = READERS[scene.figure].sentence(entry.statement)
     except UnreadableError as error:
-        return f"Nothing was measured: {error}."
+        return f"NoValue was measured: {error}."
     parts = [f"Measured ({meaning(sentence)}): {_outcomes(scene, sentence)}."]
     for sense in SENSES if "sense" in sentence.words else ():
         if sense != sentence.words["sense"]:
@@ -169,20 +169,20 @@ def _example(scene: FigureScene, load: TriedLoad, found: Finding) -> Reproductio
         f" at tau = {scene.instants[point.instant]:.6g}"
         for point in points
     )
-    return _shown(scene, load, outputs or PLOTTED[scene.figure], look or "fewer than three swings")
+    return _reproduction(scene, load, outputs or PLOTTED[scene.figure], look or "fewer than three swings")
 
 
-def _shown(scene: FigureScene, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Reproduction:
+def _reproduction(scene: FigureScene, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Reproduction:
     described = scene.scene(load)
     chain = named_chain(described)
     assert chain is not None  # as the paper has it
-    text = written(chain, dict(load.pieces), lower(described).until, outputs)
+    text = scene_text(chain, dict(load.pieces), lower(described).until, outputs)
     return Reproduction(text, f"wavesym run SCENE --samples {SAMPLES}", look)
 
 
 def caption_of_figure(entry: PaperEntry) -> Test:
     """The quantities of a figure: what is said of it must be true of the scene that they describe."""
-    number = entry.about["figure"]
+    number = entry.subject["figure"]
     return Test(
         "what section 5 says of the figure, under some load, on the exact motion of the scene described here",
         lambda reading: _described_cases(number, reading.formula),
@@ -193,7 +193,7 @@ def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
     """Each sentence, as printed, under some load at least: the load curves are not in the text."""
     scene = read_caption(number, formula)
 
-    def near(read_off: float) -> bool:
+    def is_near(read_off: float) -> bool:
         return abs(float(contact_end(scene)) - read_off) <= NEAR * read_off
 
     def under_some_load(printed: str) -> bool:
@@ -203,9 +203,9 @@ def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
             raise MeaninglessError(str(error)) from None
         return any(is_true(scene, load, sentence) for load in loads_tried(number, sentence))
 
-    for entry in _of(number, "contact"):
-        yield case({"said": entry.printed, "allowed": f"{NEAR:.0%}"}, partial(near, printed_end(entry)), True)
-    for entry in _of(number, "figure"):
+    for entry in _figure_entries(number, "contact"):
+        yield case({"said": entry.printed, "allowed": f"{NEAR:.0%}"}, partial(is_near, printed_end(entry)), True)
+    for entry in _figure_entries(number, "figure"):
         yield case({"said": entry.statement}, partial(under_some_load, entry.statement), True)
 
 
@@ -242,4 +242,4 @@ def _opening(read_off: float) -> Reproduction:
     k = min(int(np.searchsorted(scene.instants, read_off)), SAMPLES - 1)
     then, last = (f"{scene.instants[at]:.6g}" for at in (k, -1))
     look = f"strain@2 = {scene.curve(load, 'strain', '2')[k]:.4g} at tau = {then}; it is 0 again at {last}, not before"
-    return _shown(scene, load, {"strain": ("2",)}, look)
+    return _reproduction(scene, load, {"strain": ("2",)}, look)

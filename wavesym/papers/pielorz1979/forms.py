@@ -33,7 +33,7 @@ HALVES = ("even", "odd")
 """The halves of Table 3, in the order of their intervals."""
 ALPHA = r"\alpha"
 
-Changed = Mapping[str, Reading]
+Changes = Mapping[str, Reading]
 """Records that are taken otherwise than they are right, by id."""
 Function = tuple[str, int]
 """f or g, and the number of its rod."""
@@ -50,23 +50,23 @@ def form_chain(name: str, m: int) -> LoadedChain:
 # the tables as they should be
 
 
-def reading_of(id: str, changed: Changed) -> Reading:
-    """A record as it is changed, or as it is right; KeyError, MeaninglessError."""
-    return changed[id] if id in changed else right_reading(id)
+def reading_of(id: str, changes: Changes) -> Reading:
+    """A record as it is changes, or as it is right; KeyError, MeaninglessError."""
+    return changes[id] if id in changes else right_reading(id)
 
 
-def rows(group: str, m: int, changed: Changed) -> dict[str, list[Function]]:
+def rows(group: str, m: int, changes: Changes) -> dict[str, list[Function]]:
     """The functions that rows or columns of a table are for, by the ids of their heads."""
     found: dict[str, list[Function]] = {}
     for id in ids("function", group):
-        head, block, scope = reading_of(id, changed), id.rpartition(".")[0], Scope({"m": m})
+        head, block, scope = reading_of(id, changes), id.rpartition(".")[0], Scope({"m": m})
         function = head.formula
         if not isinstance(function, Symbol) or len(function.below) != 1:
             raise MeaninglessError(f"{latex(function)} is no function")
-        sizes = (reading_of(block, changed).formula,) if block in entries() else ()
+        sizes = (reading_of(block, changes).formula,) if block in entries() else ()
         found[id] = []
         for place in places((*sizes, *head.ranges), scope):
-            with scope.binding(place):
+            with scope.bind(place):
                 found[id].append((function.name, *scope.indices(function)))  # type: ignore[arg-type]
     return found
 
@@ -120,25 +120,25 @@ def _part(id: str) -> tuple[str, ...]:
 
 
 @cache
-def _concerned(id: str) -> frozenset[str]:
+def _dependencies(id: str) -> frozenset[str]:
     """The records on which the value of a cell may depend."""
     return frozenset((*_DEFINED.values(), *_part(id)))
 
 
-def _limit(id: str, scope: Scope, changed: Changed) -> Tree:
+def _limit(id: str, scope: Scope, changes: Changes) -> Tree:
     """A cell where its ranges hold; where not, no power. A dash is an empty range."""
     if id in _DEFINED.values():
-        left, right = sides(reading_of(id, changed).formula)
+        left, right = sides(reading_of(id, changes).formula)
         if latex(left).translate(_WITHOUT_BRACES) != id.rpartition(".")[2]:
             raise KeyError(id)
         return right
-    cell = reading_of(id, changed)
+    cell = reading_of(id, changes)
     formula: Tree = cell.formula
-    if len({isinstance(reading_of(one, changed).formula, Blank) for one in _part(id)}) > 1:
+    if len({isinstance(reading_of(one, changes).formula, Blank) for one in _part(id)}) > 1:
         raise MeaninglessError("a part is given whole or not at all")
     if not all(holds(range_, scope) for range_ in cell.ranges if isinstance(range_, Progression)):
         if ".K_" not in id:
-            raise MeaninglessError(f"{id} is not given for n = {scope.bound.get('n')}")
+            raise MeaninglessError(f"{id} is not given for n = {scope.variables.get('n')}")
         return Minus(Number("1"))
     if isinstance(formula, Blank):
         return Number("1" if ".j_0," in id else "0")
@@ -185,7 +185,7 @@ class Form:
     """What is known of it, by m, the most n and a rod: with everything else as it is right."""
 
     @classmethod
-    def of(cls, name: str, reading: Reading) -> Form:
+    def from_reading(cls, name: str, reading: Reading) -> Form:
         """MeaninglessError where it is none."""
         found = items(reading.formula)
         if len(found) != 2:
@@ -196,7 +196,7 @@ class Form:
 @cache
 def right_form(name: str) -> Form:
     """The form of an example's solutions as corrected."""
-    return Form.of(name, right_reading(FORMS[name]))
+    return Form.from_reading(name, right_reading(FORMS[name]))
 
 
 class FormScope(Scope):
@@ -206,17 +206,17 @@ class FormScope(Scope):
     """
 
     def __init__(
-        self, form: Form, motion: LoadedChain, letter: str, changed: Changed | None = None, most_n: int | None = None
+        self, form: Form, motion: LoadedChain, letter: str, changes: Changes | None = None, most_n: int | None = None
     ) -> None:
         super().__init__({"m": motion.exact.m})
-        self._form, self._motion, self._letter, self._changed = form, motion, letter, changed or {}
+        self._form, self._motion, self._letter, self._changes = form, motion, letter, changes or {}
         self._most_n = INTERVALS[form.name] if most_n is None else most_n
-        self._stated: dict[int, list[Statement]] = {}
+        self._known_statements: dict[int, list[Statement]] = {}
         self._totals: dict[tuple[int, int, int, int], Any] = {}
         self._limits: dict[tuple[Any, ...], Tree] = {}
         self._values: dict[tuple[Any, ...], Any] = {}
         self._right_values = _right_values(form.name, motion.exact.m, letter)
-        self._changed_letters = {letter for id in self._changed for letter in _letters(id)}
+        self._changed_letters = {letter for id in self._changes for letter in _letters(id)}
         is_drive = form.name == "II"
         rates = motion.exact.rates if is_drive else motion.exact.chain.parameters.kappa
         self._rates = motion.exact.rates
@@ -238,18 +238,18 @@ class FormScope(Scope):
         return self._totals[key]
 
     def _total(self, rod: int, number: int, z: fmpq) -> Any:
-        if rod not in self._stated:
-            self._stated[rod] = self._statements(rod)
+        if rod not in self._known_statements:
+            self._known_statements[rod] = self._statements(rod)
         found = []
-        for indices, argument, right, place in self._stated[rod]:
+        for indices, argument, right, place in self._known_statements[rod]:
             if indices == (rod, number):
-                with self.binding({**place, "z": z}):
+                with self.bind({**place, "z": z}):
                     if self.value(argument) == z:
-                        found.append((right, self.bound))
+                        found.append((right, self.variables))
         if len(found) != 1:
             raise MeaninglessError(f"F'_{{{rod}, {number}}} is given {len(found)} times")
         ((right, bound),) = found
-        with self.binding(bound):
+        with self.bind(bound):
             return self.value(right)
 
     def _statements(self, rod: int) -> list[Statement]:
@@ -260,11 +260,11 @@ class FormScope(Scope):
             numbers = places([self._form.numbers], self, self._most_n)
             steps = [(self._form.step, {**place, "half": half}) for place in numbers for half in halves]
             known[key] = []
-            for equation, place in ((self._form.start, self.bound), *steps):
+            for equation, place in ((self._form.start, self.variables), *steps):
                 left, right = sides(equation)
-                with self.binding({**place, "i": rod}):
+                with self.bind({**place, "i": rod}):
                     function = derivative(left)
-                    known[key].append((self.indices(function.function), function.arguments[0], right, self.bound))
+                    known[key].append((self.indices(function.function), function.arguments[0], right, self.variables))
         return known[key]
 
     def call(self, call: Call) -> Any:
@@ -281,7 +281,7 @@ class FormScope(Scope):
             return super().symbol(symbol)
         indices = self.indices(symbol)
         values = self._values if name in self._changed_letters else self._right_values
-        place = name, indices, *map(self.bound.get, _LETTERS)
+        place = name, indices, *map(self.variables.get, _LETTERS)
         if place not in values:
             limit = self._limit_of(name, indices)
             if name == "w":  # depends on loads
@@ -291,13 +291,13 @@ class FormScope(Scope):
 
     def _limit_of(self, name: str, indices: Indices) -> Tree:
         """The right side of a definition, or a cell, that a letter is at this place; MeaninglessError."""
-        bound, m = self.bound, self._motion.exact.m
+        bound, m = self.variables, self._motion.exact.m
         key = name, indices, *map(bound.get, ("n", "half", "i", ALPHA))
         if key not in self._limits:
             id = _DEFINED.get((name, indices)) or _cell(self._form.name, m, self._letter, name, indices, bound)
             try:
-                if not self._changed.keys().isdisjoint(_concerned(id)):
-                    self._limits[key] = _limit(id, self, self._changed)
+                if not self._changes.keys().isdisjoint(_dependencies(id)):
+                    self._limits[key] = _limit(id, self, self._changes)
                 else:
                     self._limits[key] = _right_limit(id, m, bound.get("i", 0), bound.get("n", 0))
             except KeyError:
@@ -310,7 +310,7 @@ class FormScope(Scope):
 
     def coefficient(self, lower: Indices, upper: Indices) -> Any:
         """The coefficient with these indices; MeaninglessError where there is none."""
-        increment = self._motion.gain(self._letter, *self._where(upper))
+        increment = self._motion.gain(self._letter, *self._coefficient_place(upper))
         if len(lower) < 2:  # of the family with rate 0, where 0 is as good as none
             power = look_up({(): 0, (0,): 1}, lower, "F")
             powers = increment.get(fmpq(0), [])
@@ -321,7 +321,7 @@ class FormScope(Scope):
             raise MeaninglessError(f"there is no coefficient of power {power} at the rate of body {body}")
         return powers[power]
 
-    def _where(self, upper: Indices) -> tuple[int, int, str, int | None]:
+    def _coefficient_place(self, upper: Indices) -> tuple[int, int, str, int | None]:
         """Rod, interval, source and piece by upper indices."""
         match self._form.name, upper:
             case "I", (rod, interval):
@@ -356,7 +356,7 @@ def single_range(letters: str, ranges: Sequence[Tree]) -> Progression:
 
 
 def form_cases(
-    form: Form, changed: Changed | None = None, scope: type[FormScope] = FormScope, chains: int = 3
+    form: Form, changes: Changes | None = None, scope: type[FormScope] = FormScope, chains: int = 3
 ) -> Iterator[Case]:
     """All functions of the form's table at the starts of the first intervals and inside, then in the last interval.
 
@@ -368,7 +368,7 @@ def form_cases(
     for m, n in by_size((m, n) for m in SIZES[form.name][:chains] for n in (0, 1, most)):
         motion = form_chain(form.name, m)
         for letter, rod in functions(form.name, m):
-            own = scopes.setdefault((m, letter), scope(form, motion, letter, changed))
+            own = scopes.setdefault((m, letter), scope(form, motion, letter, changes))
             for number in numbers(form.name, n)[-1 if n == most else 0 :]:
                 for part in WITHIN if n < most else WITHIN[1:]:
                     yield compare_at(own, motion, (letter, rod), number, motion.exact.interval * (number - 1 + part))

@@ -131,7 +131,7 @@ class Motion(Scope):
         velocities: str = "body",
     ) -> None:
         self.units = units = units or ONES
-        self.motion, self.chain, self.seen, self._most = motion, motion.exact.chain, False, 2
+        self.motion, self.chain, self.is_seen, self._most = motion, motion.exact.chain, False, 2
         self.material = material = Material(self.chain, units)
         super().__init__({"m": motion.exact.m, "l": units.l, **material.plain}, constants)
         parameters, late = self.chain.parameters, units.l / units.c_f
@@ -148,19 +148,19 @@ class Motion(Scope):
             "m": lambda i: len(motion.loads[self._source(i)]) - 1,
             r"\tau": self.start,
             "t": lambda *index: self.start(*index) * late,
-            r"\barx": lambda *index: self.first(*index).x0 if index else self.bound[r"\bar{x}"],
+            r"\barx": lambda *index: self.first(*index).x0 if index else self.variables[r"\bar{x}"],
             "x": lambda *index: self.first(*index).x0 * units.l,
             "S": {0: material.moment if units.S_0 is None and self.is_drive else units.S_0}.__getitem__,
-            "U": lambda i: self._displaced(i, self.bound["x"], self.bound["t"]) if i else units.U_0,
-            r"\barU": lambda i: self._moved(i, self.bound[r"\bar{x}"], self.bound[r"\tau"]),
+            "U": lambda i: self._physical_displacement(i, self.variables["x"], self.variables["t"]) if i else units.U_0,
+            r"\barU": lambda i: self._plain_displacement(i, self.variables[r"\bar{x}"], self.variables[r"\tau"]),
             r"\ddoty": self._ground,
             r"\barM": lambda i, k: self._weight(f"M{i}", k),
         }
         self.functions = {
-            **dict.fromkeys((r"\barM", r"\barS"), self._applied),
-            "S": lambda i, t: self._applied(self.own_number(i), t / late) * self.unit_of_load,
-            "U": self._displaced,
-            **dict.fromkeys((r"\barU", DISPLACEMENTS[material.example]), self._moved),
+            **dict.fromkeys((r"\barM", r"\barS"), self._applied_load),
+            "S": lambda i, t: self._applied_load(self.own_number(i), t / late) * self.unit_of_load,
+            "U": self._physical_displacement,
+            **dict.fromkeys((r"\barU", DISPLACEMENTS[material.example]), self._plain_displacement),
         }
         if self.is_drive:
             self.letters["M"] = lambda i, k: self._weight(f"M{i}", k) * material.moment
@@ -174,8 +174,8 @@ class Motion(Scope):
         for wave in "fg":
             physical = rf"\mathcal{wave.upper()}"
             self.letters[physical] = partial(self._in_physical_units, wave)
-            self.letters[wave] = lambda rod, wave=wave: self._along(wave, rod, self.bound["z"])
-            self.functions |= {wave: partial(self._along, wave), physical: partial(self._in_physical_units, wave)}
+            self.letters[wave] = lambda rod, wave=wave: self._wave_jet(wave, rod, self.variables["z"])
+            self.functions |= {wave: partial(self._wave_jet, wave), physical: partial(self._in_physical_units, wave)}
             self.functions |= {wave + "'" * order: partial(self.wave, wave, order) for order in (1, 2, 3)}
 
     @property
@@ -187,18 +187,18 @@ class Motion(Scope):
         return self.units.c_f if symbol == _C_F else super().symbol(symbol)
 
     def derivative(self, derivative: Derivative) -> Any:
-        by = latex(derivative.by)
-        if by not in self.bound or derivative.order > 2:
+        by = latex(derivative.variable)
+        if by not in self.variables or derivative.order > 2:
             raise MeaninglessError(f"{latex(derivative)} is not defined")
         self._most = derivative.order
         try:
-            with self.binding({by: Jet(self.bound[by], 1)}):
-                found = Jet.of(self.value(derivative.of))
+            with self.bind({by: Jet(self.variables[by], 1)}):
+                found = Jet.from_number(self.value(derivative.function))
         finally:
             self._most = 2
         return found.first if derivative.order == 1 else found.second
 
-    def at(self, x: Any, tau: Any) -> Mapping[str, Any]:
+    def coordinates(self, x: Any, tau: Any) -> Mapping[str, Any]:
         """A place and an instant, in both units."""
         units = self.units
         return {"x": x * units.l, "t": tau * (units.l / units.c_f), r"\bar{x}": x, r"\tau": tau}
@@ -206,16 +206,19 @@ class Motion(Scope):
     def wave(self, name: str, order: int, rod: int, z: Any) -> Any:
         """f or g, or a derivative; MeaninglessError."""
         value = self.motion.wave(name, rod, z, order)
-        self.seen = self.seen or (order > 0 and value != 0)
+        self.is_seen = self.is_seen or (order > 0 and value != 0)
         return value
 
-    def _along(self, name: str, rod: int, z: Any) -> Jet:
-        at = Jet.of(z)
-        return at.of_function(lambda order: self.wave(name, order, rod, at.value), self._most)
+    def _wave_jet(self, name: str, rod: int, z: Any) -> Jet:
+        at = Jet.from_number(z)
+        return at.apply(lambda order: self.wave(name, order, rod, at.value), self._most)
 
     def _in_physical_units(self, name: str, rod: int, z: Any = None) -> Jet:
         """F or G; where no argument is printed, of z."""
-        return self._along(name, rod, self.bound["z"] if z is None else Jet.of(z) / self.units.l) * self.units.U_0
+        return (
+            self._wave_jet(name, rod, self.variables["z"] if z is None else Jet.from_number(z) / self.units.l)
+            * self.units.U_0
+        )
 
     def displacement(self, rod: int, x: Jet, tau: Jet) -> Jet:
         """The motion of a rod, without dimensions; MeaninglessError outside the rod and before the start."""
@@ -225,24 +228,24 @@ class Motion(Scope):
             raise MeaninglessError("the motion begins at t = 0")
         numbers = (fmpq(n) for at in (x, tau) for n in (at.value, at.first, at.second))
         key = ("displacement", rod, self._most, *((int(n.p), int(n.q)) for n in numbers))
-        if key not in self.motion.known:
+        if key not in self.motion.memory:
             clock = self.chain.rod(rod)
-            f = self._along("f", rod, tau - x + (clock.x0 - clock.tau0))
-            g = self._along("g", rod, tau + x - (clock.x0 + clock.tau0))
+            f = self._wave_jet("f", rod, tau - x + (clock.x0 - clock.tau0))
+            g = self._wave_jet("g", rod, tau + x - (clock.x0 + clock.tau0))
             changes = any(part != 0 for part in (f.first, f.second, g.first, g.second))
-            self.motion.known[key] = f + g + tau * clock.velocity, changes
+            self.motion.memory[key] = f + g + tau * clock.velocity, changes
         moved: Jet
-        moved, changes = self.motion.known[key]
-        self.seen = self.seen or changes
+        moved, changes = self.motion.memory[key]
+        self.is_seen = self.is_seen or changes
         return moved
 
-    def _moved(self, rod: int, x: Any, tau: Any) -> Jet:
-        return self.displacement(rod, Jet.of(x), Jet.of(tau))
+    def _plain_displacement(self, rod: int, x: Any, tau: Any) -> Jet:
+        return self.displacement(rod, Jet.from_number(x), Jet.from_number(tau))
 
-    def _displaced(self, *at: Any) -> Jet:
+    def _physical_displacement(self, *at: Any) -> Jet:
         """In physical units; without a number, of the rod that is there."""
         *rod, x, t = at
-        place, tau = Jet.of(x) / self.units.l, Jet.of(t) * (self.units.c_f / self.units.l)
+        place, tau = Jet.from_number(x) / self.units.l, Jet.from_number(t) * (self.units.c_f / self.units.l)
         number = rod[0] if rod else -int((-place.value).floor())
         return self.displacement(number, place, tau) * self.units.U_0
 
@@ -268,7 +271,7 @@ class Motion(Scope):
         _, force = self.law(x, tau, self.displacement)
         return force / self.chain.nodes[x].loads[0].coefficients[0]
 
-    def _applied(self, body: int, tau: Any) -> Any:
+    def _applied_load(self, body: int, tau: Any) -> Any:
         """The load that is put on a body, without dimension; 0 where there is none. LookupError."""
         x = body - 1 if self.is_drive else body
         _check_index(0 <= x <= self.chain.m and bool(self.chain.nodes[x].inertia or self.chain.nodes[x].loads))
@@ -284,7 +287,7 @@ class Motion(Scope):
         place = self.constants.get(_X_I)
         if place is None:
             return number
-        with self.binding({"i": number}):
+        with self.bind({"i": number}):
             x = self.value(place) / self.units.l
         if x.denom() != 1:
             raise MeaninglessError(f"no body stands at {x} l")
@@ -309,7 +312,7 @@ class Motion(Scope):
         """The acceleration of the ground, y_0 with two dots. LookupError."""
         if zero != 0:
             raise LookupError(zero)
-        return self.load(0, self.bound["t"])
+        return self.load(0, self.variables["t"])
 
     def _weight(self, source: str, k: int) -> fmpq:
         return self.motion.piece(source, k).weight

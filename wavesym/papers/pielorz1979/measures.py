@@ -64,7 +64,7 @@ Curve = Callable[[str, str], Array]
 """The curve of a quantity at a place."""
 
 
-def _named(words: Words) -> tuple[str, list[str]]:
+def _quantity_and_places(words: Words) -> tuple[str, list[str]]:
     """The quantity and the places that a sentence names. MeaninglessError where a place is compared with itself."""
     plurals = {"strains": "strain", "displacements": "displacement", "velocities": "velocity"}
     places = words["places"].split("; ") if "places" in words else [words["place"], words["other"]]
@@ -75,16 +75,16 @@ def _named(words: Words) -> tuple[str, list[str]]:
 
 def _distance(words: Words, curve: Curve) -> Finding:
     """The largest distance of curves, in their largest value; at the end, in that there."""
-    quantity, places = _named(words)
+    quantity, places = _quantity_and_places(words)
     curves = np.array([curve(quantity, place) for place in places])
     start = curves.shape[1] - 1 if words.get("when", "").startswith("at the end") else 0
     apart = np.ptp(curves[:, start:], axis=0)
     k = int(np.argmax(apart))
     largest = np.max(np.abs(curves[:, start:]))
-    return Finding(float(apart[k] / largest), (_across(quantity, places, start + k, curve),))
+    return Finding(float(apart[k] / largest), (_extreme_points(quantity, places, start + k, curve),))
 
 
-def _across(quantity: str, places: Sequence[str], k: int, curve: Curve) -> tuple[MeasuredPoint, ...]:
+def _extreme_points(quantity: str, places: Sequence[str], k: int, curve: Curve) -> tuple[MeasuredPoint, ...]:
     """The lowest and the highest of curves at an instant."""
     low, *_, high = sorted(places, key=lambda place: float(curve(quantity, place)[k]))
     return MeasuredPoint(quantity, low, k), MeasuredPoint(quantity, high, k)
@@ -92,19 +92,19 @@ def _across(quantity: str, places: Sequence[str], k: int, curve: Curve) -> tuple
 
 def _turn(words: Words, curve: Curve) -> Finding:
     """How far curves go one way first and back later, the smaller of both in their largest value."""
-    quantity, places = _named(words)
+    quantity, places = _quantity_and_places(words)
     found = []
     for place in places:
         values = curve(quantity, place) * (1 if words["way"].startswith("rise") else -1)
         top = int(np.argmax(values))
         way = min(values[top] - values[0], values[top] - values[-1]) / np.max(np.abs(values))
         found.append(Finding(float(way), ((MeasuredPoint(quantity, place, top),),)))
-    return _together(found, min)
+    return _combine(found, min)
 
 
-def _outside(words: Words, curve: Curve) -> Finding:
+def _excursion(words: Words, curve: Curve) -> Finding:
     """How far curves leave the band of two others, in the largest value of these; where they do not, the band."""
-    quantity, places = _named(words)
+    quantity, places = _quantity_and_places(words)
     ends = words["one"], words["other"]
     low, high = (way([curve(quantity, end) for end in ends], axis=0) for way in (np.min, np.max))
     found = []
@@ -114,14 +114,14 @@ def _outside(words: Words, curve: Curve) -> Finding:
         worst = int(np.argmax(beyond))
         spot: tuple[MeasuredPoint, ...] = (MeasuredPoint(quantity, place, worst),)
         if beyond[worst] <= 0:
-            spot = _across(quantity, ends, int(np.argmax(high - low)), curve)
+            spot = _extreme_points(quantity, ends, int(np.argmax(high - low)), curve)
         found.append(Finding(float(beyond[worst] / np.max(np.abs([low, high]))), (spot,)))
-    return _together(found, max)
+    return _combine(found, max)
 
 
 def _peaks(words: Words, curve: Curve) -> Finding:
     """The largest absolute value of one curve over that of the other."""
-    quantity, places = _named(words)
+    quantity, places = _quantity_and_places(words)
     tops = [MeasuredPoint(quantity, place, int(np.argmax(np.abs(curve(quantity, place))))) for place in places]
     high, low = (abs(curve(quantity, top.place)[top.instant]) for top in tops)
     return Finding(float(high / low), tuple((top,) for top in tops))
@@ -129,7 +129,7 @@ def _peaks(words: Words, curve: Curve) -> Finding:
 
 def _unevenness(words: Words, curve: Curve) -> Finding:
     """The largest swing between successive turning points over the smallest; 0 where there are fewer than three."""
-    quantity, places = _named(words)
+    quantity, places = _quantity_and_places(words)
     found = []
     for place in places:
         values = curve(quantity, place)
@@ -141,7 +141,7 @@ def _unevenness(words: Words, curve: Curve) -> Finding:
         large, small = (abs(values[b] - values[a]) for a, b in (swings[-1], swings[0]))
         spots = (tuple(MeasuredPoint(quantity, place, k) for k in ends) for ends in (swings[-1], swings[0]))
         found.append(Finding(float(large / small), tuple(spots)))
-    return _together(found, min)
+    return _combine(found, min)
 
 
 def _turns(curve: Sequence[float], least: float) -> list[int]:
@@ -159,7 +159,7 @@ def _turns(curve: Sequence[float], least: float) -> list[int]:
     return turns
 
 
-def _together(found: Sequence[Finding], worst: Callable[[Iterable[float]], float]) -> Finding:
+def _combine(found: Sequence[Finding], worst: Callable[[Iterable[float]], float]) -> Finding:
     """The worst of several findings, and where each of them is."""
     spots = dict.fromkeys(spot for finding in found for spot in finding.spots)
     return Finding(worst(finding.value for finding in found), tuple(spots))
@@ -168,7 +168,7 @@ def _together(found: Sequence[Finding], worst: Callable[[Iterable[float]], float
 MEASURES: Mapping[str, Callable[[Words, Curve], Finding]] = {
     "distance": _distance,
     "turn": _turn,
-    "outside": _outside,
+    "outside": _excursion,
     "peaks": _peaks,
     "unevenness": _unevenness,
 }

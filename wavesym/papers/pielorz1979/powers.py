@@ -18,7 +18,7 @@ from wavesym.papers.pielorz1979.forms import (
     EXACT,
     HALVES,
     TABLE,
-    Changed,
+    Changes,
     FormScope,
     Function,
     Indices,
@@ -26,7 +26,7 @@ from wavesym.papers.pielorz1979.forms import (
     right_form,
     right_rows,
 )
-from wavesym.papers.record import Case, Nothing, Reproduction, by_size, case
+from wavesym.papers.record import Case, NoValue, Reproduction, by_size, case
 from wavesym.papers.tree import Call, Power, Series
 
 PAIRS = {
@@ -44,9 +44,9 @@ class RequestScope(FormScope):
     """
 
     def __init__(
-        self, name: str, motion: LoadedChain, letter: str, changed: Changed | None = None, part: int | None = None
+        self, name: str, motion: LoadedChain, letter: str, changes: Changes | None = None, part: int | None = None
     ) -> None:
-        super().__init__(right_form(name), motion, letter, changed, max(n for _, n in PAIRS[name]))
+        super().__init__(right_form(name), motion, letter, changes, max(n for _, n in PAIRS[name]))
         self.letters |= dict.fromkeys((r"\barM", r"\tau"), lambda *index: 1)
         self._part = part
         self._requests: list[tuple[Indices, Indices]] = []
@@ -58,14 +58,14 @@ class RequestScope(FormScope):
         return self._requests
 
     def coefficient(self, lower: Indices, upper: Indices) -> Any:
-        self._where(upper)  # as many as the form's coefficients have
+        self._coefficient_place(upper)  # as many as the form's coefficients have
         self._requests.append((lower, upper))
         return 0
 
     def series(self, series: Series) -> Any:
         if series.variable.name != ALPHA or self._part is None:
             return super().series(series)
-        with self.binding({ALPHA: self._part}):
+        with self.bind({ALPHA: self._part}):
             return self.value(series.body)
 
     def call(self, call: Call) -> Any:
@@ -74,7 +74,7 @@ class RequestScope(FormScope):
     def step(self, value: Any) -> Any:
         return 1
 
-    def raised(self, power: Power) -> Any:
+    def power(self, power: Power) -> Any:
         return 1
 
     def last(self, source: str) -> int:
@@ -135,7 +135,7 @@ class HighestPowers:
         try:
             requests = scope.requests(rod, number)
         except MeaninglessError as error:
-            yield Case(at, Nothing(str(error)), {" ".join(key).strip(): power for key, power in true.items()})
+            yield Case(at, NoValue(str(error)), {" ".join(key).strip(): power for key, power in true.items()})
             return
         stated, sources = (
             self.powers_requested(requests),
@@ -166,7 +166,7 @@ def highest_powers(name: str, m: int) -> HighestPowers:
 
 
 def power_cases(
-    name: str, changed: Changed, heads: Iterable[str], most_n: int | None = None, part: int | None = None
+    name: str, changes: Changes, heads: Iterable[str], most_n: int | None = None, part: int | None = None
 ) -> Iterator[Case]:
     """The functions of some rows or columns: in example II their moments, and in all their highest powers.
 
@@ -177,7 +177,7 @@ def power_cases(
         powers, table = highest_powers(name, m), right_rows(f"{TABLE[name]}.", m)
         for head, function in ((id, function) for id, row in table.items() for function in row if id in heads):
             letter, rod = function
-            scope = scopes.setdefault((m, letter), RequestScope(name, powers.motion, letter, changed, part))
+            scope = scopes.setdefault((m, letter), RequestScope(name, powers.motion, letter, changes, part))
             half = head.split(".")[1]
             number = numbers(name, n)[half == "odd"]
             if name == "II" and n == 0 and part is None:

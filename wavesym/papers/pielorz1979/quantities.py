@@ -46,20 +46,20 @@ class OfRods(EquationGroup):
     def key(self, equation: Tree, place: Place) -> Key:
         return "rod", place["i"]
 
-    def required(self) -> Iterable[Key]:
+    def required_keys(self) -> Iterable[Key]:
         return [("rod", rod) for rod in range(1, self.scope.chain.m + 1)] * len(items(self.reading.formula))
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
         """Somewhere in the rod."""
         for part, tau in ((fmpq(2, 3), fmpq(31, 9)), (fmpq(1, 6), fmpq(2, 3))):
-            bound = {**self.scope.at(place["i"] - part, tau), "z": tau}
+            bound = {**self.scope.coordinates(place["i"] - part, tau), "z": tau}
             yield {"x": bound["x"], "t": bound["t"]}, bound
 
 
 class Interior(OfRods):
     """(2.1), (2.2), (4.1): equations inside the rods, from the start on or at the start."""
 
-    against = "the exact motion of chains under loads, inside every rod; c_f and l are varied"
+    reference = "the exact motion of chains under loads, inside every rod; c_f and l are varied"
 
     def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
         """The places that are said to be inside."""
@@ -67,21 +67,21 @@ class Interior(OfRods):
         if where is None:
             raise MeaninglessError("x has no range")
         for x in (fmpq(sixth, 6) for sixth in range(6 * self.scope.chain.m + 1)):
-            with self.scope.binding({**self.scope.bound, **self.scope.at(x, fmpq(1))}):
+            with self.scope.bind({**self.scope.variables, **self.scope.coordinates(x, fmpq(1))}):
                 inside = place["i"] - 1 < x < place["i"]
-                yield Case({**at, "x": x, "within": latex(where)}, holds(where, self.scope), inside, telling=False)
+                yield Case({**at, "x": x, "within": latex(where)}, holds(where, self.scope), inside, is_telling=False)
 
 
 class Definitions(OfRods):
     """The quantities without dimensions: the same motion in both kinds of units."""
 
-    against = "the exact motion of chains under loads, with and without dimensions; c_f, l and U_0 are varied"
+    reference = "the exact motion of chains under loads, with and without dimensions; c_f, l and U_0 are varied"
 
 
 class Loads(EquationGroup):
     """(3.1), (3.2): the loads of bodies."""
 
-    against = "what acts on the body by its exact motion, under loads with several pieces, just after any jump"
+    reference = "what acts on the body by its exact motion, under loads with several pieces, just after any jump"
     sizes: ClassVar[Mapping[str, Iterable[int]]] = {"II": (1, 2, 3), "III": (2,)}
     units = (ONES, ONES)
     is_definition = True
@@ -93,7 +93,7 @@ class Loads(EquationGroup):
             raise MeaninglessError(f"{latex(left)} is no load")
         return letter_name(function), *self.scope.indices(function)
 
-    def required(self) -> Iterable[Key]:
+    def required_keys(self) -> Iterable[Key]:
         return [("M", body) for body in range(1, self.scope.chain.m + 2)] if self.scope.is_drive else [(r"\ddoty", 0)]
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
@@ -103,17 +103,17 @@ class Loads(EquationGroup):
 class Constants(Loads):
     """kappa, A and loads without dimensions, in terms of materials."""
 
-    against = "chains of bodies and rods in physical units whose nodes have the laws of the derivation"
+    reference = "chains of bodies and rods in physical units whose nodes have the laws of the derivation"
     sizes: ClassVar[Mapping[str, Iterable[int]]] = {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3, 4)}
     units = (replace(SLOW, S_0=fmpq(7, 3)), replace(FAST, S_0=fmpq(2, 5)))
 
-    def required(self) -> Iterable[Key]:
-        name = letter_name(self._defined())
+    def required_keys(self) -> Iterable[Key]:
+        name = letter_name(self._defined_symbol())
         if name == r"\kappa":
             return [(name, i) for i in self.scope.chain.system.indices(self.scope.chain.m)["kappa"]]
         return [(name, body) for body in range(1, self.scope.chain.m + 2)]
 
-    def _defined(self) -> Symbol:
+    def _defined_symbol(self) -> Symbol:
         left = sides(self.reading.formula)[0]
         function = left.function if isinstance(left, Call) else left
         if not isinstance(function, Symbol) or len(function.below) != 1:
@@ -121,21 +121,21 @@ class Constants(Loads):
         return function
 
     def key(self, equation: Tree, place: Place) -> Key:
-        self.scope.indices(self._defined())
+        self.scope.indices(self._defined_symbol())
         return super().key(equation, place)
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
-        yield {}, self.scope.at(0, fmpq(5, 4))
+        yield {}, self.scope.coordinates(0, fmpq(5, 4))
 
 
 class Rates(Constants):
     """(4.11): gamma, which both its lines together give once."""
 
-    against = "the rates of the discs by their derived node laws, m = 1 ... 5"
+    reference = "the rates of the discs by their derived node laws, m = 1 ... 5"
     sizes: ClassVar[Mapping[str, Iterable[int]]] = {"II": range(1, 6)}
     is_alone = False
 
-    def _defined(self) -> Symbol:
+    def _defined_symbol(self) -> Symbol:
         return Symbol(r"\gamma", below=(Symbol("i"),))
 
     def key(self, equation: Tree, place: Place) -> Key:
@@ -161,35 +161,35 @@ class Table1(OfRods):
 
     @classmethod
     def compared_with(cls, entry: PaperEntry) -> str:
-        return cls._AGAINST[entry.about["column"]]
+        return cls._AGAINST[entry.subject["column"]]
 
     def numbers(self, equation: Tree) -> Iterable[int]:
         if isinstance(equation, Cases):
             return [i for _, where in equation.branches for i in span(where, self.scope)]
         return span(self.ranges.get("i", ROD_NUMBERS), self.scope)
 
-    def required(self) -> Iterable[Key]:
+    def required_keys(self) -> Iterable[Key]:
         """The rods; of the loads the bodies that have one, too."""
         numbers = {*range(1, self.scope.chain.m + 1)}
-        if self.entry.about["column"] == "S":
+        if self.entry.subject["column"] == "S":
             numbers |= {int(source[1:]) for source in self.scope.chain.sources if source[0] == "M"}
         return [("rod", number) for number in numbers]
 
     def instants(self, place: Place) -> Iterator[tuple[Place, Place]]:
-        yield {}, self.scope.at(0, fmpq(place["i"], 2))
+        yield {}, self.scope.coordinates(0, fmpq(place["i"], 2))
 
     def sides(self, equation: Tree) -> tuple[Callable[[], Any], Callable[[], Any]]:
-        scope, i = self.scope, self.scope.bound["i"]
-        if self.entry.about["column"] == "c_f^2":
+        scope, i = self.scope, self.scope.variables["i"]
+        if self.entry.subject["column"] == "c_f^2":
             value, root = sides(equation)
             return lambda: (scope.units.c_f**2,) * 2, lambda: (scope.value(value), scope.value(root))
         means: Mapping[str, Callable[[], Any]] = {
             "x_0": lambda: scope.first(0, i).x0,
             "tau_0": lambda: scope.first(0, i).tau0,
             "v": lambda: body_velocity(scope.chain, i),
-            "S": lambda: scope.functions["S"](i, scope.bound["t"]) if self._is_body(i) else 0,
+            "S": lambda: scope.functions["S"](i, scope.variables["t"]) if self._is_body(i) else 0,
         }
-        return means[self.entry.about["column"]], partial(scope.value, equation)
+        return means[self.entry.subject["column"]], partial(scope.value, equation)
 
     def _is_body(self, i: int) -> bool:
         x = i - 1 if self.scope.is_drive else i
@@ -197,7 +197,7 @@ class Table1(OfRods):
 
     def further_cases(self, equation: Tree, place: Place, at: Place) -> Iterator[Case]:
         """The first disturbance itself."""
-        column, rod = self.entry.about["column"], place["i"]
+        column, rod = self.entry.subject["column"], place["i"]
         if column in ("x_0", "tau_0") and 1 <= rod <= self.scope.chain.m:
             time, ends = arrival(self.scope.chain, rod)
             value = partial(self.scope.value, equation)

@@ -159,7 +159,7 @@ def _said_roles(words: Words, scope: FormScope, lower: Indices, upper: Indices, 
         if letters.setdefault(name, number) != number:
             raise MeaninglessError(f"{name} is both {letters[name]} and {number}")
     last = len(motion.loads[f"M{upper[1]}"]) - 1 if "moment" in words else 0
-    with scope.binding({"k": last, **letters, "z": AT}):
+    with scope.bind({"k": last, **letters, "z": AT}):
         found = {
             role: scope.value(read_formula(word)) for role, word in words.items() if role not in ("symbol", "term")
         }
@@ -320,14 +320,14 @@ def series(words: Words) -> Iterator[Case]:
         for n in (0, 1, 2):
             scope = FormScope(right_form(example), motion, "f")
             time = motion.loads[{"II": "M2", "III": "a"}[example]][1].time if example != "I" else 0
-            with scope.binding({"n": n, "d": 2 * n + 1, "half": "even", "z": AT, "k": 1, "s": 2, "i": 1}):
+            with scope.bind({"n": n, "d": 2 * n + 1, "half": "even", "z": AT, "k": 1, "s": 2, "i": 1}):
                 said, at = read_formula(words[example]), {"form": form, "n": n}
                 yield case(at, lambda: scope.value(said), AT - 2 * n - time)  # noqa: B023
 
 
 def meetings(words: Words) -> Iterator[Case]:
     """Highest powers by what waves have met."""
-    for at, count, true, told in _counted(reflected_only=words["met"] == "reflected"):
+    for at, count, true, told in _meeting_counts(reflected_only=words["met"] == "reflected"):
         said = count - {"one less than": 1, "": 0}[words["less"]]
         yield Case(at, max(said, -1), true, true >= 0, told)
 
@@ -335,12 +335,14 @@ def meetings(words: Words) -> Iterator[Case]:
 def connection(words: Words) -> Iterator[Case]:
     """Whether places with the same number have the same highest power, in each example."""
     powers: dict[tuple[object, int], int] = {}
-    for at, count, true, told in _counted(reflected_only=words["met"] == "reflected from"):
+    for at, count, true, told in _meeting_counts(reflected_only=words["met"] == "reflected from"):
         said = powers.setdefault((at["example"], max(count, 0)), true)
         yield Case(at, said, true, true >= 0, told)
 
 
-def _counted(*, reflected_only: bool) -> Iterator[tuple[dict[str, object], int, int, Callable[[], Reproduction]]]:
+def _meeting_counts(
+    *, reflected_only: bool
+) -> Iterator[tuple[dict[str, object], int, int, Callable[[], Reproduction]]]:
     """Where, the most times that a wave has met the body, and the highest power at its rate."""
     for example, sizes in (("I", (4, 6)), ("II", (1, 2, 3)), ("III", (2, 3))):
         for m in sizes:
@@ -401,11 +403,11 @@ def parts(words: Words) -> Iterator[Case]:
     """(4.10) with as many terms in its sums over alpha and beta as said."""
     counts = {ALPHA: Number(words["parts"]), r"\beta": Number(words["terms"])}
 
-    class Limited(FormScope):
+    class LimitedScope(FormScope):
         def series(self, series: Series) -> Any:
             return super().series(replace(series, last=counts.get(series.variable.name, series.last)))
 
-    yield from form_cases(right_form("II"), scope=Limited)
+    yield from form_cases(right_form("II"), scope=LimitedScope)
 
 
 def slopes(words: Words) -> Iterator[Case]:
@@ -417,7 +419,7 @@ def slopes(words: Words) -> Iterator[Case]:
         for half, (letter, i) in ((h, f) for h in HALVES for f in functions("II", m)):
             scope = FormScope(right_form("II"), form_chain("II", m), letter)
             for r, s in moments(scope, half, i, alpha):
-                with scope.binding({"n": 0, "half": half, "i": i, "r": r, ALPHA: alpha}):
+                with scope.bind({"n": 0, "half": half, "i": i, "r": r, ALPHA: alpha}):
                     ends = [0, *(scope.whole(read_formula(f"L_{beta}")) for beta in (1, 2, 3))]
                 for n in range(4):
                     d = 2 * n + 1 + HALVES.index(half)
@@ -469,7 +471,7 @@ def most_meetings(exact: Exact, source: str, body: int, *, reflected_only: bool)
     starts = [unit for unit in units(exact.chain) if source in (unit.name, "impact")]
 
     @cache
-    def sent(x: int, right: bool, tau: int) -> int:
+    def most_sent(x: int, right: bool, tau: int) -> int:
         """The most of those that leave a node to one side at tau."""
         node = nodes[x]
         if tau < 0 or (node.right if right else node.left) is None:
@@ -486,13 +488,13 @@ def most_meetings(exact: Exact, source: str, body: int, *, reflected_only: bool)
             thrown_back = from_left != right
             if not node.inertia and thrown_back == bool(node.left and node.right):
                 continue  # without a body a wave passes between rods, and is thrown back from an end
-            before = sent(x - 1, True, tau - 1) if from_left else sent(x + 1, False, tau - 1)
+            before = most_sent(x - 1, True, tau - 1) if from_left else most_sent(x + 1, False, tau - 1)
             found.append(before + here * (thrown_back or not reflected_only))
         return max(found, default=NEVER)
 
     def count(letter: str, rod: int, interval: int) -> int:
         tau = exact.chain.leaves(letter, rod, exact.interval * (interval - 1))
-        return sent(rod - 1, True, tau) if letter == "f" else sent(rod, False, tau)
+        return most_sent(rod - 1, True, tau) if letter == "f" else most_sent(rod, False, tau)
 
     return count
 

@@ -125,7 +125,7 @@ def _arrives(words: Words) -> Iterator[Case]:
 
 
 def _zero(words: Words) -> Iterator[Case]:
-    """Nothing before z = 0: no equation takes anything from a later z. After it all functions change at some time."""
+    """NoValue before z = 0: no equation takes anything from a later z. After it all functions change at some time."""
     for name, known in EXAMPLES.items():
         for equation in delay_equations(known.system):
             lags = [*(wave.lag for wave in equation.right.waves), *(load.lag for load in equation.right.loads)]
@@ -141,7 +141,7 @@ def _orders(words: Words) -> Iterator[Case]:
         yield Case({"example": name, "orders": "of the equations"}, said, true)
 
 
-def _given(words: Words) -> Iterator[Case]:
+def _list_sizes(words: Words) -> Iterator[Case]:
     numbers = words["sizes"].removeprefix(", where m = ").split(", ") if words["sizes"] else ("2", "4")
     first, second, *_ = map(int, numbers[:2])
     for m in range(2, 12, 2):
@@ -209,6 +209,6 @@ STATEMENTS: Mapping[str, Callable[[Words], Iterator[Case]]] = {
     "orders": _orders,
     "follows": _follows,
     "while": _follows,
-    "given": _given,
+    "given": _list_sizes,
 }
 """What is tried for the words of a sentence, by its pattern."""

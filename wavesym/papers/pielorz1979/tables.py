@@ -62,10 +62,10 @@ _REST = 4
 
 def form(entry: PaperEntry) -> Test:
     """A form whole, for all functions of its table."""
-    name = entry.about["example"]
+    name = entry.subject["example"]
 
     def cases(reading: Reading) -> Iterator[Case]:
-        read = Form.of(name, reading)
+        read = Form.from_reading(name, reading)
         yield from right_form_cases(name) if read == right_form(name) else form_cases(read)
 
     return Test(
@@ -80,7 +80,7 @@ def part_of_form(entry: PaperEntry) -> Test:
 
     H has the H(0) of its range; 0 and 1 where there is none.
     """
-    name = entry.about["example"]
+    name = entry.subject["example"]
     is_step = name == "III"
 
     def cases(reading: Reading, at_0: Iterable[int] = (0, 1) if is_step else (1,)) -> Iterator[Case]:
@@ -94,7 +94,7 @@ def part_of_form(entry: PaperEntry) -> Test:
         for value in said or at_0:
             scope = type("At0", (FormScope,), {"heaviside_at_0": value})
             for found in form_cases(tried, scope=scope, chains=2):
-                yield replace(found, at={"H(0)": value, **found.at}) if is_step else found
+                yield replace(found, place={"H(0)": value, **found.place}) if is_step else found
 
     return Test(
         f"the motion, by {FORMS[name]} with it",
@@ -116,7 +116,7 @@ def _is_exponential(part: Tree) -> bool:
 
 def cell(entry: PaperEntry) -> Test:
     """A cell of Tables 2 to 4."""
-    name, row = EXAMPLE[entry.id[:2]], entry.about["row"]
+    name, row = EXAMPLE[entry.id[:2]], entry.subject["row"]
     faults = partial(_faults, entry)
     if row in "dw":
         return Test("the motion under delayed moments, by (4.10)", partial(_in_motion, entry.id), faults=faults)
@@ -134,7 +134,7 @@ def _in_motion(id: str, reading: Reading) -> Iterable[Case]:
 
 
 def _cell_cases(entry: PaperEntry, name: str, reading: Reading) -> Iterable[Case]:
-    row = entry.about["row"]  # "alpha2.K_1", of the second part
+    row = entry.subject["row"]  # "alpha2.K_1", of the second part
     part = int(row[5]) if name == "II" and row[7] in "KL" else None
     if reading == right_reading(entry.id):
         return right_power_cases(name, entry.heads, part)
@@ -144,7 +144,7 @@ def _cell_cases(entry: PaperEntry, name: str, reading: Reading) -> Iterable[Case
 def _while_moving(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
     """Without those of n = 0 of the functions g, which rest then: text.8."""
     for tried in _cell_cases(entry, "III", reading):
-        if tried.at["n"] or not str(tried.at["function"]).startswith("g"):
+        if tried.place["n"] or not str(tried.place["function"]).startswith("g"):
             yield tried
 
 
@@ -191,7 +191,7 @@ def cells_in_text(entry: PaperEntry) -> Test:
                     {**at, "claim": "r"}, span(single_range("r", reading.ranges), scope), tuple(range(first, last + 1))
                 )
             for r, s in moments(scope, "even", i, 1) if left.name == "K" else ():
-                with scope.binding({"r": r}):
+                with scope.bind({"r": r}):
                     (beta,) = scope.indices(left)
                     first, last = (scope.whole(read_formula(f"L_{number}")) for number in (beta - 1, beta))
                     own = span(single_range("l", reading.ranges), scope)
@@ -207,17 +207,17 @@ def first_columns() -> Iterator[tuple[int, int, FormScope]]:
     for m in range(1, 6):
         for i in range(1, m + 1):
             scope = FormScope(right_form("II"), form_chain("II", m), "f")
-            with scope.binding({"i": i, "n": 0, "half": "even", ALPHA: 1}):
+            with scope.bind({"i": i, "n": 0, "half": "even", ALPHA: 1}):
                 yield m, i, scope
 
 
 def moments(scope: FormScope, half: str, rod: int, alpha: int) -> list[tuple[int, int]]:
     """The r and s that Table 3 has in a part of a half."""
     found = []
-    with scope.binding({"n": 0, "half": half, "i": rod, ALPHA: alpha}):
+    with scope.bind({"n": 0, "half": half, "i": rod, ALPHA: alpha}):
         first, last = (scope.whole(read_formula(rf"{end}_\alpha")) for end in "sR")
         for r in range(first, last + 1):
-            with scope.binding({"r": r}):
+            with scope.bind({"r": r}):
                 found.append((r, scope.whole(read_formula("s"))))
     return found
 
@@ -265,7 +265,7 @@ def _are_alike(name: str, m: int, one: Function, other: Function) -> bool:
 
 def range_of_table(entry: PaperEntry) -> Test:
     """A range in the head of a table: instants z and numbers n, or sizes m."""
-    if entry.about.get("of") == "m":
+    if entry.subject.get("of") == "m":
         return function(entry)
     name = EXAMPLE[entry.id[:2]]
     heads = [id for id in ids("range", entry.id[:2]) if id.endswith("range")]
@@ -277,7 +277,7 @@ def range_of_table(entry: PaperEntry) -> Test:
 
 def interval(entry: PaperEntry) -> Test:
     """Where z lies when a form is said to hold."""
-    name = entry.about["example"]
+    name = entry.subject["example"]
 
     def read(text: str, ranges: Iterable[str]) -> Reading:
         return Reading(read_range(text), tuple(map(read_range, ranges)))
@@ -299,7 +299,7 @@ def _interval_cases(name: str, heads: list[Reading], ends_too: bool) -> Iterator
     """Every z is in one interval, for which the form gives the motion."""
     m = SIZES[name][1]
     for z in (start + part for start in range(6) for part in WITHIN):
-        inside = [number for half, head in enumerate(heads) for number in _inside(name, head, half, z)]
+        inside = [number for half, head in enumerate(heads) for number in _intervals_at(name, head, half, z)]
         if ends_too or z.denom() != 1:
             yield Case({"z": z, "claim": "in one interval"}, len(inside), 1)
         for (letter, rod), number in product(functions(name, m), inside):
@@ -311,7 +311,7 @@ def _right_scope(name: str, letter: str) -> FormScope:
     return FormScope(right_form(name), form_chain(name, SIZES[name][1]), letter)
 
 
-def _inside(name: str, head: Reading, half: int, z: Any) -> list[int]:
+def _intervals_at(name: str, head: Reading, half: int, z: Any) -> list[int]:
     """The numbers 1, 2, ... of the intervals in which z lies."""
     found = []
     for place in places(head.ranges, Scope(), 6 if name == "II" else 4):
@@ -334,7 +334,7 @@ def rest(entry: PaperEntry) -> Test:
             for j in range(1, _REST + 1):
                 scope = Scope({"m": m, "j": j, "n": j - 1, "z": 1})
                 for place in places([single_range("i", reading.ranges)], scope):
-                    with scope.binding(place):
+                    with scope.bind(place):
                         if scope.value(left.arguments[0]) == 1:
                             stated.add((*scope.indices(left.function), scope.value(right)))
             listed = [rod for letter, rod in functions("III", m) if letter == "g"]

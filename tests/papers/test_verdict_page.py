@@ -4,7 +4,7 @@ import pytest
 
 from tests.papers.small import entry
 from wavesym.errors import WavesymError
-from wavesym.papers.published import requested_entries
+from wavesym.papers.verdict_page import requested_entries
 
 IDS = {
     "(2.4).5": "section 2, (2.4)",

@@ -28,7 +28,7 @@ def requested_entries(entries: Sequence[PaperEntry], names: Iterable[str]) -> tu
     for name in names:
         found = {entry.id for entry in entries if _means(name, entry)}
         if not found:
-            near = get_close_matches(_bare(name), sorted(_known(entries)), n=MOST_MEANT)
+            near = get_close_matches(_bare(name), sorted(_typed_names(entries)), n=MOST_MEANT)
             meant = f". Did you mean {' or '.join(near)}?" if near else ""
             raise WavesymError(f"{name}: no such record, formula or group in the paper{meant}")
         wanted |= found
@@ -50,7 +50,7 @@ def _bare(name: str) -> str:
     return re.sub(r"[()]", "", name.strip().replace(")_", ")."))
 
 
-def _known(entries: Iterable[PaperEntry]) -> set[str]:
+def _typed_names(entries: Iterable[PaperEntry]) -> set[str]:
     """The ids and their beginnings, as they are typed."""
     known = set()
     for entry in entries:
@@ -59,7 +59,7 @@ def _known(entries: Iterable[PaperEntry]) -> set[str]:
     return known
 
 
-def published_report(
+def verdict_page(
     names: Sequence[str],
     format: str,
     reproduce: bool = False,
@@ -83,4 +83,4 @@ def published_report(
     data = paper.paper()
     wanted = requested_entries(tuple(data.entries.values()), names) if names else None
     findings = Findings(data, paper.records(wanted, watch), not (names or only), reproduce, only)
-    return FORMATS[format](findings), findings.passed
+    return FORMATS[format](findings), findings.all_tested
