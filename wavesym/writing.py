@@ -42,13 +42,13 @@ def write_whole(files: Mapping[Path, Content]) -> None:
     drafts: dict[Path, Path] = {}
     with ExitStack() as alone:
         for place, path in sorted(asked.items()):  # in one order, so that no two wait for each other
-            with _named(path), suppress(FileExistsError):  # no folder: that is said where the draft is made
+            with _name_errors(path), suppress(FileExistsError):  # no folder: that is said where the draft is made
                 place.parent.mkdir(parents=True, exist_ok=True)
             alone.enter_context(_alone(place))
         try:
             for place, path in asked.items():
                 drafts[place] = place.with_name(f".{place.name}.{secrets.token_hex(8)}.part")
-                with _named(path):
+                with _name_errors(path):
                     _draft(drafts[place], place, files[path])
             _put(drafts, asked)
         finally:
@@ -56,7 +56,7 @@ def write_whole(files: Mapping[Path, Content]) -> None:
                 with suppress(OSError):  # in place by now, or never made
                     draft.unlink()
     for path in special:
-        with _named(path), path.open("wb") as file:
+        with _name_errors(path), path.open("wb") as file:
             _fill(file, files[path])
 
 
@@ -93,7 +93,7 @@ def _alone(place: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _named(path: Path) -> Iterator[None]:
+def _name_errors(path: Path) -> Iterator[None]:
     """Errors name the path that was asked for, whatever was done for it."""
     try:
         yield
@@ -137,7 +137,7 @@ def _put(drafts: Mapping[Path, Path], asked: Mapping[Path, Path]) -> None:
                 if there:
                     os.link(place, old)
                     kept[place] = old
-            with _named(asked[place]):
+            with _name_errors(asked[place]):
                 os.replace(draft, place)
             if not there:
                 new.append(place)

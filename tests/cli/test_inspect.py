@@ -320,9 +320,9 @@ def test_contacts_that_are_not_known_in_time(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_what_takes_long_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     tried = []
-    attempt: Callable[..., choice.Tried] = choice.attempt
+    attempt: Callable[..., choice.Attempt] = choice.attempt
 
-    def counted(model: object, kind: str, precision: str = "double", **more: Any) -> choice.Tried:
+    def counted(model: object, kind: str, precision: str = "double", **more: Any) -> choice.Attempt:
         tried.append((kind, precision))
         return attempt(model, kind, precision, **more)  # type: ignore[arg-type]
 

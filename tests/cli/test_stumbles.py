@@ -92,7 +92,7 @@ def test_files_of_others_are_replaced_by_force_only(capsys: pytest.CaptureFixtur
 def test_what_takes_long_first_asks_where_it_may_write(
     command: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for work in ("lab.chart.measure.measure", "lab.stability.atlas", "pictures.figures.published"):
+    for work in ("lab.chart.measure.measure", "lab.stability.atlas", "pictures.figures.write_figure"):
         monkeypatch.setattr(f"wavesym.{work}", lambda *_: pytest.fail("worked before it asked"))
     assert refused(capsys, *command, "mine.toml/deeper/out.svg").endswith(": Not a directory")
 

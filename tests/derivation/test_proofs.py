@@ -8,7 +8,7 @@ from sympy import Integer, Symbol
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Line, Operator, Wave
 from wavesym.derivation.recurrence import coefficient_law, recurrence
-from wavesym.documents.derivation.families import solved
+from wavesym.documents.derivation.families import solve_at_rates
 from wavesym.documents.derivation.patterns import patterns, rates
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
@@ -74,14 +74,14 @@ def theorem():
 
 def test_the_theorem_of_the_recurrences():
     e = theorem()
-    lines = solved(coefficient_law(e, 2), None)
+    lines = solve_at_rates(coefficient_law(e, 2), None)
     assert [residual == 0 for residual in residuals(e, lines, 2)] == [True] * 3
 
 
 @pytest.mark.parametrize("line", range(3))
 def test_a_changed_line_breaks_the_theorem(line):
     e = theorem()
-    lines = list(solved(coefficient_law(e, 2), None))
+    lines = list(solve_at_rates(coefficient_law(e, 2), None))
     for part in range(len(lines[line].parts)):
         parts = list(lines[line].parts)
         parts[part] = (parts[part][0] + 1, parts[part][1])
@@ -97,7 +97,7 @@ def test_what_is_printed_solves_the_delay_equations(system, pattern):
     laws = recurrence(system, pattern.parameters)
     for found in (None, rates(laws.laws)):
         for e, law in zip(delay_equations(system, pattern.parameters), laws.laws, strict=True):
-            left = list(residuals(e, solved(law, found), laws.interval))
+            left = list(residuals(e, solve_at_rates(law, found), laws.interval))
             assert left, law
             assert all(residual == 0 for residual in left), law
 
@@ -107,5 +107,5 @@ def test_a_lost_load_is_seen(system):
     laws = recurrence(system)
     for e, law in zip(delay_equations(system), laws.laws, strict=True):
         if law.loads:
-            lines = [replace(line, loads=line.loads[1:]) for line in solved(law, None)]
+            lines = [replace(line, loads=line.loads[1:]) for line in solve_at_rates(law, None)]
             assert any(residual != 0 for residual in residuals(e, lines, laws.interval))

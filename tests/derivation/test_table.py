@@ -6,7 +6,7 @@ from flint import fmpq
 from sympy import Integer
 
 from wavesym.derivation import recurrence as derivation
-from wavesym.derivation.table import Function, Rules, full_table, needed, unit_response
+from wavesym.derivation.table import Function, Rules, full_table, required_intervals, unit_response
 from wavesym.documents.derivation.document import derivation as written
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
@@ -49,6 +49,6 @@ def test_first_increments_by_hand():
 
 def test_only_the_light_cone_is_run():
     chain = drive([1] * 40, [1] * 41)
-    cone = needed(Rules(chain), {Function("f", 20): 3})
+    cone = required_intervals(Rules(chain), {Function("f", 20): 3})
     assert {function.rod for function in cone} <= set(range(17, 24))
     assert cone[Function("f", 20)] == 3

@@ -14,7 +14,7 @@ from wavesym.derivation.recurrence import RATE
 from wavesym.derivation.table import full_table
 from wavesym.documents.derivation.chain_laws import meanings, own_laws
 from wavesym.documents.derivation.document import derivation
-from wavesym.documents.derivation.families import integral, own_rate, solved
+from wavesym.documents.derivation.families import integral, own_rate, solve_at_rates
 from wavesym.documents.derivation.patterns import GENERIC, pattern_laws, patterns, rates
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
@@ -39,7 +39,7 @@ class Run:
         self.lines = {}
         self.own = {}
         for law in laws:
-            q, lines = own_rate(law), solved(law, found)
+            q, lines = own_rate(law), solve_at_rates(law, found)
             for rod in range(self.place(law.first, 0, m), self.place(law.last, 0, m) + 1, law.step):
                 self.lines[law.function, rod] = lines
                 self.own[law.function, rod] = None if q is None else value(q, {"i": rod, "m": m})
@@ -192,8 +192,8 @@ def test_the_lists_are_what_is_printed(monkeypatch):
     ) in text
     assert "/(2 kappa_1 - kappa_m)\n" in text  # of III.21
     monkeypatch.setattr(
-        "wavesym.documents.derivation.writer.solved",
-        lambda law, found: tuple(wrong(line) for line in solved(law, found)),
+        "wavesym.documents.derivation.writer.solve_at_rates",
+        lambda law, found: tuple(wrong(line) for line in solve_at_rates(law, found)),
     )
     assert derivation("building", None, "text") != text
 

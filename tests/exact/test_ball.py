@@ -206,6 +206,6 @@ def test_values_at_the_smallest_times_are_right():
 
 
 def test_a_wrong_rounding_is_caught(monkeypatch):
-    monkeypatch.setattr(room, "rounded", lambda ball: float(ball.mid()))
+    monkeypatch.setattr(room, "rounded_ball", lambda ball: float(ball.mid()))
     with pytest.raises(AssertionError):
         test_a_ball_across_the_middle_of_two_doubles_takes_more_bits()

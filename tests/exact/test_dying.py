@@ -13,14 +13,14 @@ from scipy.linalg import eig
 from tests.exact.test_modes import COT, CSC, W, by_the_law
 from tests.support.modal import by_elements, chain
 from wavesym.exact.modes import dying as found
-from wavesym.exact.modes.dying import DyingSpectrum, sought, undamped
+from wavesym.exact.modes.dying import DampedSpectrum, sought, undamped
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Bar, Network, Point
 from wavesym.mechanics.node import Node, Rod
 
 
 def complex_frequencies(model, count):
-    return np.array([complex(mode.frequency) for mode in DyingSpectrum(model.network).first(count)])
+    return np.array([complex(mode.frequency) for mode in DampedSpectrum(model.network).first(count)])
 
 
 @pytest.mark.parametrize("resisting", [True, False])

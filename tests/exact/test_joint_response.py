@@ -16,8 +16,8 @@ from wavesym.exact.tables.joint_response import (
     joint_polynomial,
     joint_response,
     partial_fractions,
+    polynomial_text,
     rates,
-    written,
 )
 
 Q = fmpq
@@ -89,7 +89,7 @@ def test_rates_are_those_of_the_motion() -> None:
 
 def test_what_does_not_split_has_no_answer() -> None:
     made = law([1], [[1]], [[1]], [None])
-    assert written(joint_polynomial(made)) == "s^2 + s + 1"
+    assert polynomial_text(joint_polynomial(made)) == "s^2 + s + 1"
     with pytest.raises(ValueError, match="does not split"):
         joint_response(made)
 
@@ -125,4 +125,4 @@ def test_partial_fractions_add_up(roots: list[fmpq], above: list[object], leadin
     ],
 )
 def test_polynomials_are_written(coefficients: list[object], text: str) -> None:
-    assert written(fmpq_poly(coefficients), most=2) == text
+    assert polynomial_text(fmpq_poly(coefficients), most=2) == text

@@ -26,7 +26,7 @@ from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.tables.ball import Balls, segments
 from wavesym.exact.tables.network_joints import NetworkJoints
 from wavesym.exact.tables.network_table import NetworkTable, RuledNetwork, network_table
-from wavesym.exact.tables.signal import Signal, observed, signals
+from wavesym.exact.tables.signal import Signal, signals, signals_at
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
@@ -237,7 +237,7 @@ def faulty(table: dict[str, Any], fault: Mapping[int, Mapping[str, Any]]) -> boo
     model = lower(Scene(**table))
     bars = tuple(replace(bar, **fault.get(k, {})) for k, bar in enumerate(model.network.bars))
     wrong = RuledNetwork(replace(model.network, bars=bars))
-    found = observed(wrong, model.probes, model.loads, model.until)
+    found = signals_at(wrong, model.probes, model.loads, model.until)
     return any(difference(signal, table, Fraction(str(model.until))) for signal in found)
 
 

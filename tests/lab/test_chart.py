@@ -13,7 +13,7 @@ import pytest
 from wavesym.api import evaluator
 from wavesym.cli import main
 from wavesym.lab.chart import subjects as listed
-from wavesym.lab.chart.measure import ChartRow, Measured, _Judge, measure, to_csv
+from wavesym.lab.chart.measure import ChartRow, Measurements, _Judge, measure, to_csv
 from wavesym.lab.chart.subjects import Subject, other_method, spacing, subjects, taus
 from wavesym.lab.floor import floor
 from wavesym.lab.timing import medians
@@ -162,7 +162,7 @@ def row(name, k, kind="other", **changes):
     return replace(made, **changes)
 
 
-MEASURED = Measured(
+MEASURED = Measurements(
     (
         *(row("closed", k, "wavesym", proved_bound=1e-3) for k in (1,)),
         *(row("pieces", k, "wavesym", ns_per_value=0.3 * k, proved_bound=1e-9) for k in (4, 8, 12)),

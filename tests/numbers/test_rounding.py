@@ -21,7 +21,7 @@ from wavesym.numbers.doubles import (
     nearest,
     not_below,
     rational,
-    rounded,
+    rounded_ball,
 )
 from wavesym.numbers.reals import DOUBLE, SINGLE
 
@@ -137,36 +137,36 @@ def test_nothing_and_infinity_are_printed_as_they_are():
 def test_a_ball_is_rounded_where_all_of_it_rounds_to_one():
     third = fmpq(1, 3)
     with ctx.workprec(200):
-        assert rounded(arb(third)) == 1 / 3
-        assert rounded(arb(1, 2.0**-60)) == 1.0
-        assert rounded(arb(1, 2.0**-52)) is None
+        assert rounded_ball(arb(third)) == 1 / 3
+        assert rounded_ball(arb(1, 2.0**-60)) == 1.0
+        assert rounded_ball(arb(1, 2.0**-52)) is None
         # the middle between 1 and the next double
         tie = arb(1) + arb(2) ** -53
-        assert rounded(tie) == 1.0
-        assert rounded(arb(tie, arb(2) ** -100)) is None
-        assert rounded(arb("nan")) is None
-        assert rounded(arb(0, 1e-320)) is None
-        assert rounded(arb(0, arb(2) ** -1076)) == 0.0
+        assert rounded_ball(tie) == 1.0
+        assert rounded_ball(arb(tie, arb(2) ** -100)) is None
+        assert rounded_ball(arb("nan")) is None
+        assert rounded_ball(arb(0, 1e-320)) is None
+        assert rounded_ball(arb(0, arb(2) ** -1076)) == 0.0
 
 
 def test_what_is_far_beyond_all_doubles_costs_no_memory():
     with ctx.workprec(64):
         gone = arb(2) ** -(10**12)
-        assert rounded(gone) == midpoint(gone) == 0.0
+        assert rounded_ball(gone) == midpoint(gone) == 0.0
         assert above(gone) == 5e-324
         assert above(-gone) == 0.0
         for far in (arb(2) ** 10**6, -(arb(2) ** 10**6), arb(2) ** 1024):
             with pytest.raises(RangeError):
-                rounded(far)
+                rounded_ball(far)
 
 
 def test_a_ball_may_lie_on_both_sides_of_the_largest_double():
     with ctx.workprec(64):
-        assert rounded(arb(2**1024 - 2**971)) == float(LARGEST[DOUBLE])
+        assert rounded_ball(arb(2**1024 - 2**971)) == float(LARGEST[DOUBLE])
         with pytest.raises(RangeError):
-            rounded(arb(2**1024 - 2**970))
+            rounded_ball(arb(2**1024 - 2**970))
         for width in (0.1, 0.5):
-            assert rounded(arb(2) ** 1024 * arb(1, width)) is None
+            assert rounded_ball(arb(2) ** 1024 * arb(1, width)) is None
 
 
 @given(st.fractions())

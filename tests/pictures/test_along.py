@@ -17,7 +17,7 @@ from wavesym.pictures.along import Along, Band, Spot, along, cells, limit
 from wavesym.pictures.envelope_values import envelope, extremes
 from wavesym.pictures.loads import load_histories, stretches
 from wavesym.pictures.page.png import SHADES, shaded
-from wavesym.pictures.reduction import reduced
+from wavesym.pictures.reduction import reduce_vertices
 from wavesym.scene import Scene, lower
 
 GROUND = Scene(
@@ -116,7 +116,7 @@ def test_what_is_formal_has_no_cells_and_no_extremes() -> None:
 @given(st.integers(2, 400), st.integers(1, 30), st.integers(0, 2**32))
 def test_reduced_curves_keep_the_extremes_of_every_column(count: int, columns: int, seed: int) -> None:
     points = np.column_stack([np.linspace(0, 3, count), np.random.default_rng(seed).integers(-4, 5, count)])
-    kept = reduced(points, 3.0, columns)
+    kept = reduce_vertices(points, 3.0, columns)
     assert set(map(tuple, kept)) <= set(map(tuple, points))
     assert np.all(np.diff(kept[:, 0]) > 0)
     assert tuple(kept[0]) == tuple(points[0])
@@ -135,7 +135,7 @@ def test_reduced_curves_keep_the_extremes_of_every_column(count: int, columns: i
 def test_a_spike_is_kept_wherever_it_is(place: int) -> None:
     points = np.column_stack([np.linspace(0, 3, 174), np.zeros(174)])
     points[place, 1] = -1
-    assert reduced(points, 3.0, 11)[:, 1].min() == -1
+    assert reduce_vertices(points, 3.0, 11)[:, 1].min() == -1
 
 
 def test_loads_are_the_sums_that_scenes_state() -> None:

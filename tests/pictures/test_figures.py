@@ -60,7 +60,7 @@ def mark_differences(figure: Figure) -> set[str]:
 
 def measured(number: int, statement: Sentence) -> Finding:
     """What is measured under the load drawn."""
-    return section_5.finding(figure(number), figures.drawn(number), statement)
+    return section_5.finding(figure(number), figures.best_load(number), statement)
 
 
 def missing(found: Mapping[int, Figure], records: Mapping[str, Record]) -> set[str]:
@@ -129,13 +129,13 @@ def test_the_loads_drawn_bear_most_out() -> None:
             load.name: sum(section_5.is_true(figure(number), load, statement) for statement in said)
             for load in loads(number)
         }
-        assert true[figures.drawn(number).name] == max(true.values())
+        assert true[figures.best_load(number).name] == max(true.values())
 
 
 @pytest.mark.parametrize("number", figures.FIGURES)
 def test_marks_lie_on_the_curves_as_drawn(number: int) -> None:
     """The curves come from generated code, the marks from the exact motion: both sides of a jump are on the curve."""
-    load = figures.drawn(number)
+    load = figures.best_load(number)
     made = histories(lower(figure(number).scene(load)))
     curves = {history.name: history for history in made.outputs}
     count = 0
@@ -176,7 +176,7 @@ def test_a_distance_is_marked_where_it_is_largest(
 
 
 def _curve(number: int, output: str) -> Array:
-    return figure(number).curve(figures.drawn(number), *output.split("@"))
+    return figure(number).curve(figures.best_load(number), *output.split("@"))
 
 
 def test_swings_are_marked_between_turning_points() -> None:
@@ -206,7 +206,7 @@ def test_the_load_is_drawn_above(drawn: dict[int, Figure]) -> None:
     axes = drawn[8].axes[0]
     assert axes.get_ylabel().startswith("load (3.2)")
     lines = [np.column_stack(line.get_data()).tolist() for line in axes.lines]
-    assert figures.drawn(8).name == "step"
+    assert figures.best_load(8).name == "step"
     assert [[0, 1], [20, 1]] in lines
     assert [text.get_text() for text in drawn[7].axes[0].texts] == ["M1 = M2"]
 
@@ -214,7 +214,7 @@ def test_the_load_is_drawn_above(drawn: dict[int, Figure]) -> None:
 @pytest.mark.slow
 def test_published(tmp_path: Path) -> None:
     """All of them, written twice: the same bytes, and nothing covers a number or a name."""
-    first, second = ([p for n in figures.FIGURES for p in figures.published(tmp_path / name, n)] for name in "ab")
+    first, second = ([p for n in figures.FIGURES for p in figures.write_figure(tmp_path / name, n)] for name in "ab")
     assert [path.name for path in first] == [f"figure_{n}.{kind}" for n in (6, 7, 8) for kind in ("svg", "png")]
     for one, other in zip(first, second, strict=True):
         assert one.read_bytes() == other.read_bytes()

@@ -31,7 +31,7 @@ pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure
 
 from wavesym.pictures import panels
-from wavesym.pictures.panels import PlotPanel, apart, draw, jumps, notes, stacked, thinned
+from wavesym.pictures.panels import PlotPanel, draw, isolated_vertices, jumps, notes, stacked, thinned
 from wavesym.pictures.saving import save
 
 THIRDS = Scene(
@@ -257,9 +257,9 @@ def test_a_thinned_polyline_keeps_its_corners() -> None:
 
 def test_names_hang_where_a_curve_is_alone() -> None:
     one, other = np.array([(k, max(0.0, k - 3.0)) for k in range(9)]), np.array([(k, 0.0) for k in range(9)])
-    assert apart(one, [other], 0.5)[:, 0].tolist() == [4, 5, 6, 7, 8]
-    assert len(apart(one, [one], 0.5)) == 9
-    assert len(apart(one, [], 0.5)) == 9
+    assert isolated_vertices(one, [other], 0.5)[:, 0].tolist() == [4, 5, 6, 7, 8]
+    assert len(isolated_vertices(one, [one], 0.5)) == 9
+    assert len(isolated_vertices(one, [], 0.5)) == 9
 
 
 def test_history_of_a_load_needs_no_scene() -> None:

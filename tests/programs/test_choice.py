@@ -11,7 +11,7 @@ import wavesym
 from wavesym.errors import CostError, RangeError, ToleranceError
 from wavesym.numbers.reals import REALS
 from wavesym.programs import choice
-from wavesym.programs.choice import Tried, attempts, choose
+from wavesym.programs.choice import Attempt, attempts, choose
 from wavesym.scene import lower
 
 
@@ -169,7 +169,7 @@ def test_what_was_tried(makers):
     closed, pieces = attempts(lower(scene()))
     assert (closed.form, closed.refusal) == (None, "output.until: 9 coins, at most 5 expected (saving helps)")
     assert isinstance(closed.error, CostError)
-    assert pieces == Tried("pieces", made.pieces)
+    assert pieces == Attempt("pieces", made.pieces)
     assert made.march.asked == []
     makers(closed=beyond, march=Made("march", 1))
     closed, _, march = attempts(lower(scene()), "single", "size")

@@ -20,7 +20,7 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.evaluator import modal_system
 from wavesym.programs.modes.loads import Roughness, roughness
 from wavesym.programs.modes.modal_system import scheme_tables
-from wavesym.programs.modes.rounding import rounded
+from wavesym.programs.modes.rounding import rounding_errors
 from wavesym.programs.modes.truncation import ModalModes
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.programs.schemes.modes import ModesScheme
@@ -82,7 +82,7 @@ def values(model, made, taus):
 
 
 def rounding(model, made):
-    return rounded(made.system, made.loads, scheme(model, made), model.horizon(), DOUBLE).errors
+    return rounding_errors(made.system, made.loads, scheme(model, made), model.horizon(), DOUBLE).errors
 
 
 def with_modes(model, count):

@@ -144,7 +144,7 @@ def test_what_rounded_times_do_is_bounded(turn, damping, count, fast):
     )
     rows = [(fmpq(0),), *[(fmpq(1),), (fmpq(-1),)] * (count // 2)]
     loads = LinearLoads(tuple(spacing * k for k in range(count + 1)), tuple(rows), (fmpq(0),))
-    (bound,) = rounding.rounded(system, loads, made, until, SINGLE).errors
+    (bound,) = rounding.rounding_errors(system, loads, made, until, SINGLE).errors
     assert wrong <= bound <= 15 * wrong
 
 

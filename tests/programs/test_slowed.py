@@ -12,7 +12,7 @@ from tests.programs.test_modal_systems import PUSH, SYMMETRIC, both, rounding, v
 from tests.support.drives import exact
 from tests.support.modal import chain
 from wavesym.errors import ToleranceError, UnservedError
-from wavesym.exact.modes.dying import DyingSpectrum
+from wavesym.exact.modes.dying import DampedSpectrum
 from wavesym.programs.making import make
 from wavesym.programs.modes import complex_modes
 from wavesym.programs.modes.complex_modes import ComplexModes
@@ -126,12 +126,12 @@ def test_a_mode_that_is_missed_makes_the_bound_worse_not_wrong(monkeypatch):
     model = LOSING["held"]
     taus = np.linspace(0, model.horizon(), 61)
     right, whole = exact(model, taus), with_modes(model, 30)
-    every = DyingSpectrum.first
+    every = DampedSpectrum.first
 
     def but_one(spectrum, count):
         return [mode for k, mode in enumerate(every(spectrum, count)) if k != 4]
 
-    monkeypatch.setattr(DyingSpectrum, "first", but_one)
+    monkeypatch.setattr(DampedSpectrum, "first", but_one)
     made = with_modes(model, 29)
     error = np.abs(values(model, made, taus) - right).max(axis=1)
     assert np.all(error <= made.errors)

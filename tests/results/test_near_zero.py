@@ -61,7 +61,7 @@ def test_an_opening_contact(at_samples, monkeypatch):
 
     scene = chain([{"mass": 1, "velocity": 1}, "contact", {"rod": 1}, "fixed"], 4, force=["0+"])
     (event,) = wavesym.evaluator(scene).events
-    right = summary.sampled
+    right = summary.sample_program
 
     def noisy(model, program, step):
         taus, values = right(model, program, step)
@@ -69,7 +69,7 @@ def test_an_opening_contact(at_samples, monkeypatch):
         return taus, values
 
     monkeypatch.setattr(summary, "extremes_and_averages", refused)
-    monkeypatch.setattr(summary, "sampled", noisy)
+    monkeypatch.setattr(summary, "sample_program", noisy)
     found = wavesym.summary(scene, at_samples=at_samples).outputs[0]
     assert found.max.value == 0.0
     assert found.max.at.tau == pytest.approx(event.double, rel=1e-2)

@@ -8,7 +8,7 @@ from wavesym.cli import main
 from wavesym.derivation import table as tables
 from wavesym.derivation.delay import delay_equations
 from wavesym.systems.drive import DRIVE
-from wavesym.verification import derivation_report as module
+from wavesym.verification import derived as module
 from wavesym.verification.derived import derivation_report
 
 THEOREMS = (

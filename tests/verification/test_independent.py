@@ -198,7 +198,7 @@ def put_in(fault: str, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     exec(compile(text.replace(right, wrong), str(module.__file__), "exec"), vars(changed))  # the project's own text
     match module.__name__.rpartition(".")[2]:
         case "drawing":
-            monkeypatch.setattr(explicit, "drawn", changed.drawn)
+            monkeypatch.setattr(explicit, "draw_parts", changed.draw_parts)
         case "chain_places":
             monkeypatch.setattr(explicit, "place", changed.place)
         case kind:

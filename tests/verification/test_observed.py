@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from flint import fmpq
 
-from wavesym.mechanics.gauge import Sum, Weighted, readings
+from wavesym.mechanics.gauge import ReadingTerm, Sum, readings
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
@@ -78,7 +78,7 @@ def test_a_term_that_is_a_little_wrong_is_seen(
 
     def wrong(network: Network, probe: Probe) -> Sum:
         *terms, (weight, gauge) = readings(network, probe)
-        return (*terms, Weighted(weight * fmpq(1001, 1000), gauge))
+        return (*terms, ReadingTerm(weight * fmpq(1001, 1000), gauge))
 
     for module in ("mechanics.model", "exact.tables.signal"):
         monkeypatch.setattr(f"wavesym.{module}.readings", wrong)

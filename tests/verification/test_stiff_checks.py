@@ -10,10 +10,10 @@ from wavesym.verification import integrations
 from wavesym.verification import invariants as balances
 from wavesym.verification.checks import invariants
 from wavesym.verification.integrations import collocation, differences
-from wavesym.verification.reference import Known, known_outputs
+from wavesym.verification.reference import ReferenceOutputs, known_outputs
 
 
-def made(stiffness: int) -> Known:
+def made(stiffness: int) -> ReferenceOutputs:
     parts = ["fixed", {"rod": 1}, {"mass": 1, "spring": stiffness, "name": "body"}, {"rod": 1}]
     load = [{"at": "body", "times": [0], "steps": [1]}]
     output = {"until": 2, "tolerance": 1e-9, "velocity": ["body"]}

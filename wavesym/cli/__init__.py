@@ -100,7 +100,7 @@ def cli(context: click.Context) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and give its exit status; what goes wrong for a user is one line on standard error."""
     if sys.stdout is None:
-        return _refused("wavesym: standard output is closed; open it, or write a file with -o", WRONG_REQUEST)
+        return _print_refusal("wavesym: standard output is closed; open it, or write a file with -o", WRONG_REQUEST)
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="surrogateescape")  # the name of a file may be no UTF-8
     gc.set_threshold(*_SELDOM)
@@ -110,22 +110,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return status if isinstance(status, int) else DONE
     except click.UsageError as error:
         command = error.ctx.command_path if error.ctx else "wavesym"
-        return _refused(f"{command}: {error.format_message()} (see {command} --help)", WRONG_REQUEST)
+        return _print_refusal(f"{command}: {error.format_message()} (see {command} --help)", WRONG_REQUEST)
     except click.ClickException as error:
-        return _refused(f"wavesym: {error.format_message()}", WRONG_REQUEST)
+        return _print_refusal(f"wavesym: {error.format_message()}", WRONG_REQUEST)
     except WavesymError as error:
         for line in error.lines:
-            _refused(line, error.status)
+            _print_refusal(line, error.status)
         return error.status
     except BrokenPipeError:
         return _unread()
     except OSError as error:
-        return _refused(f"{error.filename or 'wavesym'}: {error.strerror or error}", WRONG_REQUEST)
+        return _print_refusal(f"{error.filename or 'wavesym'}: {error.strerror or error}", WRONG_REQUEST)
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED
 
 
-def _refused(line: str, status: int) -> int:
+def _print_refusal(line: str, status: int) -> int:
     click.echo(printable(" ".join(line.split())), err=True)  # names of files may be commands to a terminal
     return status
 

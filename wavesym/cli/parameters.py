@@ -47,7 +47,7 @@ class SceneParameter(click.ParamType[Any]):
         file = "<stdin>" if value == "-" else value
         if ctx is not None and param is not None and param.nargs == 1:
             ctx.meta[_ARGUMENT] = value
-            ctx.with_resource(_blamed(scene, file))
+            ctx.with_resource(_blame_scene(scene, file))
         elif ctx is not None:
             ctx.meta.setdefault(_FILES, []).append(file)
         return scene
@@ -64,7 +64,7 @@ class SceneParameter(click.ParamType[Any]):
 
 
 @contextmanager
-def _blamed(scene: Scene, file: str) -> Iterator[None]:
+def _blame_scene(scene: Scene, file: str) -> Iterator[None]:
     """What is wrong with a scene names its file, and says in the scene's own unit, too, when that is."""
     try:
         yield
@@ -101,11 +101,11 @@ def refuse_unwritable(out: Path, *, folder: bool = False) -> None:
         raise PermissionError(13, "Permission denied", str(out))
 
 
-def each_blamed(scenes: Iterable[Scene], stack: ExitStack) -> Iterator[Scene]:
+def blame_each(scenes: Iterable[Scene], stack: ExitStack) -> Iterator[Scene]:
     """The scenes that a command was given; what is found wrong in `stack` with the one just taken names its file."""
     for scene, file in zip(scenes, click.get_current_context().meta[_FILES], strict=True):
         stack.pop_all()
-        stack.enter_context(_blamed(scene, file))
+        stack.enter_context(_blame_scene(scene, file))
         yield scene
 
 

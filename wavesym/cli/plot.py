@@ -60,7 +60,7 @@ def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
             from wavesym.pictures import figures
         for number in figures.FIGURES:
             with progress(f"plot --published: figure {number}"):
-                paths = figures.published(out, number)
+                paths = figures.write_figure(out, number)
             for path in paths:
                 click.echo(path)
     else:

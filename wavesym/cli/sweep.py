@@ -62,14 +62,14 @@ def sweep(
     with progress(f"sweep {source}") as line:
 
         def watch(cases: int, done: int, before: int) -> None:
-            line.tell(_told(cases, done, before, monotonic() - start))
+            line.tell(_progress_text(cases, done, before, monotonic() - start))
 
         failed = api.run_sweep(source, out, workers, scheduler, retry_failed, watch)
     click.echo(f"{out}: {api.sweep_status(out).line}", err=True)
     return 1 if failed else 0
 
 
-def _told(cases: int, done: int, before: int, seconds: float) -> str:
+def _progress_text(cases: int, done: int, before: int, seconds: float) -> str:
     """How far it is, how fast, and how long it will take."""
     told = f"{done} of {cases} cases"
     if done == before:

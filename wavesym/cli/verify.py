@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import NAMES, OUT, SceneParameter, deliver, each_blamed, refuse_unwritable
+from wavesym.cli.parameters import NAMES, OUT, SceneParameter, blame_each, deliver, refuse_unwritable
 from wavesym.cli.progress import progress
 from wavesym.programs.request import EVALUATORS, PRECISIONS
 
@@ -95,7 +95,7 @@ def verify(
             scenes = [scene for scene in asked if isinstance(scene, Scene)]
             told = line.each(scenes or [Scene.from_toml(name) for name in builtin_names()], attrgetter("name"))
             with ExitStack() as blame:
-                seen = each_blamed(told, blame) if scenes else told
+                seen = blame_each(told, blame) if scenes else told
                 text, passed = api.verify(seen, evaluator, precision, runtime or (), stream=stream)
     deliver(text, out)
     return 0 if passed else 1

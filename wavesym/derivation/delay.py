@@ -65,7 +65,7 @@ def side(rod: Rod, number: Expr, x: Expr, outgoing: str) -> Side:
     )
 
 
-def _solved(equation: Line, unknown: Wave) -> tuple[Operator, Line]:
+def _solve_for(equation: Line, unknown: Wave) -> tuple[Operator, Line]:
     """`equation` = 0 as (own operator) unknown = right, on the clock of the unknown, own operator D + b or 1."""
     a, b = equation.waves[unknown]
     factor = a if a != 0 else b
@@ -119,14 +119,14 @@ def _at_node(node: Node, x: Expr) -> list[tuple[Wave, Operator, Line]]:
     if left is None or right is None:
         end = left or right
         assert end is not None  # a node has a rod
-        return [(end.outgoing, *_solved(_lawful(node, left, right, end), end.outgoing))]
+        return [(end.outgoing, *_solve_for(_lawful(node, left, right, end), end.outgoing))]
     # Continuity must look back in time, so it gives the wave that is ahead on its clock; on a tie, the right one.
     later = exact(right.outgoing.lag - left.outgoing.lag)
     if later.is_nonpositive is None:
         raise ValueError(f"which wave is ahead at x = {x} is not decided: {later} may have either sign")
     ahead, other = (right, left) if later.is_nonpositive else (left, right)
-    _, continuous = _solved(ahead.velocity - other.velocity, ahead.outgoing)
-    own, rest = _solved(_lawful(node, left, right, other), other.outgoing)
+    _, continuous = _solve_for(ahead.velocity - other.velocity, ahead.outgoing)
+    own, rest = _solve_for(_lawful(node, left, right, other), other.outgoing)
     if own.a == 0:
         continuous = continuous.substituted(other.outgoing.function, other.rod, rest)
     return [(ahead.outgoing, Operator(Integer(0), Integer(1)), continuous), (other.outgoing, own, rest)]

@@ -58,7 +58,7 @@ def equations(systems: Iterable[System]) -> tuple[Equations, ...]:
 
 def _delay(e: DelayEquation) -> Relation:
     right = sum((_moving(w.function, w.rod, w.lag, operator) for w, operator in e.right.waves.items()), Z * 0)
-    right += sum((value * _acting(source) for source, value in e.right.loads.items()), Z * 0)
+    right += sum((value * _load_power(source) for source, value in e.right.loads.items()), Z * 0)
     return Relation(Eq(_moving(e.function, e.rod, Z * 0, e.own), right, evaluate=False), e.first, e.last, e.step)
 
 
@@ -68,7 +68,7 @@ def _moving(function: str, rod: Expr, lag: Expr, operator: Operator) -> Expr:
     return operator.a * Derivative(wave, Z, 2) + operator.b * Derivative(wave, Z)
 
 
-def _acting(source: Source) -> Expr:
+def _load_power(source: Source) -> Expr:
     """tau^power from the lag on, for a unit of a load."""
     return _unit(source.kind, source.number) * (Z - source.lag) ** source.power * Heaviside(Z - source.lag, 1)
 
@@ -78,14 +78,14 @@ def _unit(kind: str, number: Expr | None) -> Expr:
 
 
 def _recurrence(law: CoefficientLaw) -> Relation:
-    right = sum((_weighted(t.function, t.rod, INTERVAL - t.back, t.weights) for t in law.terms), Z * 0)
+    right = sum((_weighted_sum(t.function, t.rod, INTERVAL - t.back, t.weights) for t in law.terms), Z * 0)
     for load in law.loads:
         here = KroneckerDelta(INTERVAL, 1 + load.back) * KroneckerDelta(RATE, 0) * KroneckerDelta(POWER, load.power)
         right += load.value * _unit(load.kind, load.number) * here
-    left = _weighted(law.function, law.rod, INTERVAL, law.own)
+    left = _weighted_sum(law.function, law.rod, INTERVAL, law.own)
     return Relation(Eq(left, right, evaluate=False), law.first, law.last, law.step)
 
 
-def _weighted(function: str, rod: Expr, interval: Expr, w: SymbolicWeights) -> Expr:
+def _weighted_sum(function: str, rod: Expr, interval: Expr, w: SymbolicWeights) -> Expr:
     coefficient = COEFFICIENTS[function]
     return w.same * coefficient[rod, interval, RATE, POWER] + w.raised * coefficient[rod, interval, RATE, POWER + 1]

@@ -34,10 +34,10 @@ def rod_kinds(system: System) -> tuple[RodKind, ...]:
             number = exact(x + 1)
             kinds.append(RodKind(number, rod, exact(family.first + 1), exact(family.last + 1), family.step))
     some = 2 * system.smallest  # an m for which every kind has a rod
-    return tuple(sorted(_joined(kinds), key=lambda kind: int(kind.first.subs(COUNT, some))))
+    return tuple(sorted(_join_range(kinds), key=lambda kind: int(kind.first.subs(COUNT, some))))
 
 
-def _joined(kinds: list[RodKind]) -> list[RodKind]:
+def _join_range(kinds: list[RodKind]) -> list[RodKind]:
     """A rod that is described alone, but as the others of a range next to it, belongs to them."""
     for alone in kinds:
         for many in kinds:
@@ -46,7 +46,7 @@ def _joined(kinds: list[RodKind]) -> list[RodKind]:
                 first = alone.first if exact(many.first - alone.last) == many.step else many.first
                 last = alone.last if exact(alone.first - many.last) == many.step else many.last
                 rest = [kind for kind in kinds if kind is not alone]
-                return _joined([replace(k, first=first, last=last) if k is many else k for k in rest])
+                return _join_range([replace(k, first=first, last=last) if k is many else k for k in rest])
     return kinds
 
 

@@ -103,7 +103,7 @@ def table_rows(
                             yield Row(function.function, rod(function), source, interval, rate, power, value)
 
 
-def needed(rules: Rules, wanted: Mapping[Function, int]) -> dict[Function, int]:
+def required_intervals(rules: Rules, wanted: Mapping[Function, int]) -> dict[Function, int]:
     """How many intervals of which functions the `wanted` ones rest on (their light cone), they themselves included."""
     intervals: dict[Function, int] = {}
     ends = [(-count, function) for function, count in wanted.items() if count > 0]
@@ -123,9 +123,9 @@ def unit_response(rules: Rules, source: str, wanted: Mapping[Function, int]) -> 
 
     Functions that these rest on are included, as far as they are needed.
     """
-    intervals = needed(rules, wanted)
+    intervals = required_intervals(rules, wanted)
     order = _order(rules, intervals)
-    first = _reached(rules, source, intervals)
+    first = _first_arrivals(rules, source, intervals)
     response: dict[Function, list[Increment]] = {
         function: [{}] * min(first.get(function, count), count) for function, count in intervals.items()
     }
@@ -136,7 +136,7 @@ def unit_response(rules: Rules, source: str, wanted: Mapping[Function, int]) -> 
     return response
 
 
-def _reached(rules: Rules, source: str, functions: Iterable[Function]) -> dict[Function, int]:
+def _first_arrivals(rules: Rules, source: str, functions: Iterable[Function]) -> dict[Function, int]:
     """How many intervals pass at every function before a source can reach it; without those that it never reaches."""
     users: dict[Function, list[tuple[Function, int]]] = defaultdict(list)
     coming = []
@@ -179,7 +179,9 @@ def _increment(rule: Rule, source: str, response: Mapping[Function, list[Increme
     return solve(rule.own, right, jump)
 
 
-def served(chain: Chain, interval: int, intervals: int | None, until: fmpq, most: float = inf) -> dict[Function, int]:
+def interval_counts(
+    chain: Chain, interval: int, intervals: int | None, until: fmpq, most: float = inf
+) -> dict[Function, int]:
     """How many intervals of each function a table has; CostError as of `full_table`."""
     wanted = {}
     for rod in range(1, chain.m + 1):
@@ -200,7 +202,7 @@ def full_table(chain: Chain, intervals: int | None, until: fmpq, most: float = i
     chain's kind: exact, or symbolic (`symbolic`).
     """
     rules = Rules(chain)
-    wanted = served(chain, rules.interval, intervals, until, most)
+    wanted = interval_counts(chain, rules.interval, intervals, until, most)
     responses = {}
     for source in chain.sources:
         response = unit_response(rules, source, wanted)

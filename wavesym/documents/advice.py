@@ -94,7 +94,7 @@ class Advice:
         yield f"  {'output':{width}}  {'largest':>12}{heads}"
         for k, (name, unit, value) in enumerate(self.outputs):
             found = (each.differences[k] for each in compared)
-            cells = "".join(f"  {_shown(each.history):>12} {_shown(each.peak):>8}" for each in found)
+            cells = "".join(f"  {_number_text(each.history):>12} {_number_text(each.peak):>8}" for each in found)
             yield f"  {name:{width}}  {value:>12.6g}{cells}  {unit}".rstrip()
 
 
@@ -102,5 +102,5 @@ def _finite(value: float) -> float | None:
     return value if isfinite(value) else None
 
 
-def _shown(value: float) -> str:
+def _number_text(value: float) -> str:
     return f"{value:.1e}" if isfinite(value) else "-"

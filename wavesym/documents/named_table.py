@@ -8,7 +8,7 @@ from flint import fmpq
 
 from wavesym.derivation.increments import Increment
 from wavesym.derivation.recurrence import recurrence
-from wavesym.derivation.table import Table, served
+from wavesym.derivation.table import Table, interval_counts
 from wavesym.exact.tables.network_joints import START
 from wavesym.exact.tables.network_table import RuledNetwork, Timed
 from wavesym.mechanics.chain import Chain
@@ -35,7 +35,7 @@ def named_table(chain: Chain, network: Network, intervals: int | None, until: fm
         CostError: beyond about `most` coefficients, or what half a minute makes.
     """
     interval = recurrence(chain.system).interval
-    counts = served(chain, interval, intervals, until, most)
+    counts = interval_counts(chain, interval, intervals, until, most)
     starts = {function: chain.leaves(*function, 0) for function in counts}
     ruled = RuledNetwork(network)
     reach = {function: fmpq(starts[function] + interval * (count - 1)) for function, count in counts.items() if count}
@@ -43,13 +43,13 @@ def named_table(chain: Chain, network: Network, intervals: int | None, until: fm
     for source in chain.sources:
         gained = ruled.responses(START if source == IMPACT else source, reach, None)
         responses[source] = {
-            function: _numbered(gained.get(function, ()), starts[function], interval, count)
+            function: _by_interval(gained.get(function, ()), starts[function], interval, count)
             for function, count in counts.items()
         }
     return Table(interval, responses)
 
 
-def _numbered(gained: Timed, start: int, interval: int, count: int) -> list[Increment]:
+def _by_interval(gained: Timed, start: int, interval: int, count: int) -> list[Increment]:
     """The increments of intervals 1 ... count, empty where nothing is gained."""
     increments: list[Increment] = [{} for _ in range(count)]
     for time, increment in gained:

@@ -17,9 +17,9 @@ from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.joints.enclosed import STILL, Enclosed, shift, weighted_sum
 from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.joints.jumps import refuse_jumps
-from wavesym.exact.joints.network_waves import Acting, NetworkWaves, Waves
+from wavesym.exact.joints.network_waves import LoadPolynomial, NetworkWaves, Waves
 from wavesym.exact.tables.ball import Segment
-from wavesym.mechanics.gauge import Weighted
+from wavesym.mechanics.gauge import ReadingTerm
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
@@ -251,7 +251,7 @@ def _segments(
         for below in (False, True)
     )
     loads = [
-        (weight, Acting(model.network, reading.point, model.loads))
+        (weight, LoadPolynomial(model.network, reading.point, model.loads))
         for weight, reading in terms
         if reading.quantity == "load" and reading.point is not None
     ]
@@ -284,7 +284,7 @@ def _sum(parts: Iterable[tuple[fmpq, Enclosed]]) -> Enclosed:
     return total
 
 
-def _values(waves: Waves, terms: Iterable[Weighted], start: fmpq) -> Iterator[tuple[fmpq, Enclosed]]:
+def _values(waves: Waves, terms: Iterable[ReadingTerm], start: fmpq) -> Iterator[tuple[fmpq, Enclosed]]:
     """What sums of strains, velocities and accelerations are made of from tau = `start` on, with factors.
 
     That is the left-going wave of a rod less, or plus, the right-going one.

@@ -84,7 +84,7 @@ def _rayleigh(table: Mapping[Any, object]) -> Damping:
     return Damping((rational(damping_ratio(table["ratio"], "ratio")),), (first, second))
 
 
-def _written(damping: Damping | None) -> object:
+def _serialise(damping: Damping | None) -> object:
     if damping is None:
         return None
     ratios = [_written_ratio(fraction(ratio)) for ratio in damping.ratios]
@@ -97,7 +97,7 @@ def _written_ratio(ratio: Fraction) -> str:
     return _percent_text(ratio) if ratio > 1 else str(ratio)
 
 
-ModalDamping = Annotated[Damping | None, PlainValidator(_damping), PlainSerializer(_written)]
+ModalDamping = Annotated[Damping | None, PlainValidator(_damping), PlainSerializer(_serialise)]
 
 
 def without_damping(said: dict[str, Any]) -> dict[str, Any]:

@@ -132,7 +132,7 @@ def _meaning(text: str, value: str, *, gravity: bool) -> _Meaning:
         power = int(written or 1) * (-1 if sign == "/" else 1)
         if name in _AMBIGUOUS:
             raise refusal(f"{show(value)}: {show(name)} is two units; write {_AMBIGUOUS[name]}")
-        one = _named("standard_gravity" if gravity and name == "g" else name)
+        one = _unit_meaning("standard_gravity" if gravity and name == "g" else name)
         if one is None:
             meant = did_you_mean(name, _names())
             known = "one of length, mass, time or angle, or made of these"
@@ -154,7 +154,7 @@ _BASES = {"meter": "m", "gram": "kg", "second": "s", "radian": "rad"}
 
 
 @cache
-def _named(name: str) -> _Meaning | None:
+def _unit_meaning(name: str) -> _Meaning | None:
     """What a name means; None of what is no unit of length, mass, time or angle, or made of these."""
     from pint.errors import PintError
 

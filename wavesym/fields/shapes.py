@@ -140,7 +140,7 @@ class ShapedLoad(Load):
             )
         size = rational(self.amplitude)
         with ctx.workprec(_BITS):
-            values = [size * _rounded(self._value(arb(fmpq(k, self._parts)))) for k in range(count)]
+            values = [size * _round(self._value(arb(fmpq(k, self._parts)))) for k in range(count)]
         if self.shape == "ricker":
             values[0] = fmpq(0)  # no jump
         return tuple(values)
@@ -178,6 +178,6 @@ class ShapedLoad(Load):
         return f"as {len(self.samples)} samples, within {float(self.error):.1e} of its amplitude"
 
 
-def _rounded(value: arb) -> fmpq:
+def _round(value: arb) -> fmpq:
     """The nearest fraction of so many binary digits."""
     return fmpq(int((value.mid() * 2**_DIGITS + fmpq(1, 2)).floor().unique_fmpz()), 2**_DIGITS)

@@ -55,14 +55,14 @@ class Gauge:
         return order_of(self.quantity)
 
 
-class Weighted(NamedTuple):
+class ReadingTerm(NamedTuple):
     """So many times a reading."""
 
     weight: fmpq
     reading: Gauge
 
 
-Sum = tuple[Weighted, ...]
+Sum = tuple[ReadingTerm, ...]
 """A sum of readings, none of them twice or with weight 0; empty for what is 0 whatever moves."""
 
 
@@ -71,10 +71,10 @@ def readings(network: Network, probe: Probe) -> Sum:
     weights: dict[Gauge, fmpq] = {}
     for weight, reading in _parts(network, probe):
         weights[reading] = weights.get(reading, _ZERO) + probe.factor * weight
-    return tuple(Weighted(weight, reading) for reading, weight in weights.items() if weight != 0)
+    return tuple(ReadingTerm(weight, reading) for reading, weight in weights.items() if weight != 0)
 
 
-def _parts(network: Network, probe: Probe) -> Iterator[Weighted]:
+def _parts(network: Network, probe: Probe) -> Iterator[ReadingTerm]:
     here = Gauge(probe.quantity, probe.rod, probe.place, probe.point)
     match probe.quantity:
         case "acceleration":
@@ -83,20 +83,20 @@ def _parts(network: Network, probe: Probe) -> Iterator[Weighted]:
                 end = End(probe.rod - 1, int(probe.place))
                 point, ratio = network.point_at(end), network.bars[end.bar].ratios[end.side]
             if network.points[point].mass != 0 and (probe.point is not None or probe.place in (0, 1)):
-                yield from _times(ratio / network.points[point].mass, _acting(network, point))
+                yield from _times(ratio / network.points[point].mass, _forces_on(network, point))
             else:
-                yield Weighted(_ONE, here)
+                yield ReadingTerm(_ONE, here)
         case "force":
             bar = network.bars[probe.rod - 1]
-            yield Weighted(bar.impedance * bar.speed, Gauge("strain", probe.rod, probe.place))
+            yield ReadingTerm(bar.impedance * bar.speed, Gauge("strain", probe.rod, probe.place))
         case "drift":
-            yield Weighted(_ONE, Gauge("displacement", probe.rod, _ONE))
-            yield Weighted(-_ONE, Gauge("displacement", probe.rod, _ZERO))
+            yield ReadingTerm(_ONE, Gauge("displacement", probe.rod, _ONE))
+            yield ReadingTerm(-_ONE, Gauge("displacement", probe.rod, _ZERO))
         case "relative":
-            yield Weighted(_ONE, Gauge("displacement", probe.rod, probe.place, probe.point))
-            yield Weighted(-_ONE, _at_point("displacement", network, ground(network)))
+            yield ReadingTerm(_ONE, Gauge("displacement", probe.rod, probe.place, probe.point))
+            yield ReadingTerm(-_ONE, _at_point("displacement", network, ground(network)))
         case _:
-            yield Weighted(_ONE, here)
+            yield ReadingTerm(_ONE, here)
 
 
 def ground(network: Network) -> int:
@@ -105,15 +105,15 @@ def ground(network: Network) -> int:
     return told[0] if len(told) == 1 else 0
 
 
-def _acting(network: Network, point: int, before: int | None = None) -> Iterator[Weighted]:
+def _forces_on(network: Network, point: int, before: int | None = None) -> Iterator[ReadingTerm]:
     """All that acts on a point, and on what touches it; contacts `before` are followed already."""
     for number, side in network.ends_at.get(point, ()):
         bar = network.bars[number]
         pull = (1, -1)[side] * bar.ratios[side] * bar.impedance * bar.speed
-        yield Weighted(pull, Gauge("strain", number + 1, fmpq(side)))
+        yield ReadingTerm(pull, Gauge("strain", number + 1, fmpq(side)))
     body = network.points[point]
-    yield Weighted(-body.damping, _at_point("velocity", network, point))
-    yield Weighted(-body.stiffness, _at_point("displacement", network, point))
+    yield ReadingTerm(-body.damping, _at_point("velocity", network, point))
+    yield ReadingTerm(-body.stiffness, _at_point("displacement", network, point))
     for number, link in enumerate(network.links):
         if point not in (link.left, link.right) or number == before:
             continue
@@ -124,14 +124,14 @@ def _acting(network: Network, point: int, before: int | None = None) -> Iterator
             )
         if link.contact:
             other, share = (link.right, link.ratio) if point == link.left else (link.left, 1 / link.ratio)
-            yield from _times(share, _acting(network, other, number))
+            yield from _times(share, _forces_on(network, other, number))
             continue
         pull = link.ratio if point == link.left else -_ONE
         for factor, quantity in ((link.damping, "velocity"), (link.stiffness, "displacement")):
-            yield Weighted(pull * factor, _at_point(quantity, network, link.right))
-            yield Weighted(-pull * factor * link.ratio, _at_point(quantity, network, link.left))
+            yield ReadingTerm(pull * factor, _at_point(quantity, network, link.right))
+            yield ReadingTerm(-pull * factor * link.ratio, _at_point(quantity, network, link.left))
     if body.loads:
-        yield Weighted(_ONE, Gauge("load", 0, _ZERO, point))
+        yield ReadingTerm(_ONE, Gauge("load", 0, _ZERO, point))
 
 
 def _at_point(quantity: str, network: Network, point: int) -> Gauge:
@@ -142,5 +142,5 @@ def _at_point(quantity: str, network: Network, point: int) -> Gauge:
     return Gauge(quantity, 0, _ZERO, point)
 
 
-def _times(factor: fmpq, parts: Iterable[Weighted]) -> Iterator[Weighted]:
-    return (Weighted(factor * weight, reading) for weight, reading in parts)
+def _times(factor: fmpq, parts: Iterable[ReadingTerm]) -> Iterator[ReadingTerm]:
+    return (ReadingTerm(factor * weight, reading) for weight, reading in parts)

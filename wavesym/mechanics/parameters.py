@@ -110,7 +110,7 @@ class SystemParameters:
         used: dict[str, dict[int, fmpq]] = {}
         own = self.chain.parameters
         lists = {field.name: getattr(own, field.name) for field in fields(own)}
-        recorded = Parameters(**{k: of and _Recorded(of, used.setdefault(k, {})) for k, of in lists.items()})
+        recorded = Parameters(**{k: of and _ReadLog(of, used.setdefault(k, {})) for k, of in lists.items()})
         for family in self.chain.system.families(self.chain.m, recorded):
             for x in filter(matters, range(family.first, family.last + 1, family.step)):
                 family.at(x)
@@ -128,7 +128,7 @@ class SystemParameters:
         )
 
 
-class _Recorded(dict[int, fmpq]):
+class _ReadLog(dict[int, fmpq]):
     """Numbers that note which of them were read."""
 
     def __init__(self, numbers: Mapping[int, fmpq], read: dict[int, fmpq]) -> None:

@@ -17,7 +17,7 @@ from flint import fmpq, fmpq_mpoly
 from wavesym.errors import SceneError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters, Quantity, System
-from wavesym.numbers.factored import written
+from wavesym.numbers.factored import polynomial_text
 from wavesym.numbers.ratio import Ratio, Ring
 
 
@@ -33,7 +33,7 @@ class SymbolicChain:
 
 def symbolic(chain: Chain) -> SymbolicChain:
     """The chain of a scene with its pattern of equal parameters and rates. SceneError where symbols cannot have it."""
-    given = _named(chain.parameters)
+    given = _parameter_names(chain.parameters)
     values: dict[str, fmpq] = {}
     same: dict[str, str] = {}
     for name, value in given.items():
@@ -65,7 +65,7 @@ _DIFFERENT: Mapping[str, Callable[[int], fmpq]] = {
 _TRIVIAL = {"r": fmpq(1), "u": fmpq(0), "b": fmpq(0)}
 
 
-def _named(p: Parameters) -> dict[str, fmpq]:
+def _parameter_names(p: Parameters) -> dict[str, fmpq]:
     """The independent parameters of a system by the names of their symbols."""
     named = {f"kappa_{i}": value for i, value in p.kappa.items()}
     if p.inertia:
@@ -113,8 +113,8 @@ def _images(ring: Ring, chain: Chain, values: Mapping[str, fmpq]) -> list[Ratio]
         place = _place(ring, relation, values)
         if place is None:
             raise SceneError(
-                f"the rates of the bodies at x = {x} and {y} meet where {written(relation)} = 0, which no symbol can "
-                "be told from by the others; there is no symbolic table for that",
+                f"the rates of the bodies at x = {x} and {y} meet where {polynomial_text(relation)} = 0, which no "
+                "symbol can be told from by the others; there is no symbolic table for that",
                 "system",
             )
         told = list(ring.symbols().values())

@@ -39,8 +39,8 @@ def gauss(points: int) -> Gauss:
         # P_j integrated from -1 on is (P_(j+1) - P_(j-1))/(2 j + 1)
         integrals = [[1 + p[1], *((p[j + 1] - p[j - 1]) / (2 * j + 1) for j in range(1, points))] for p in values]
         until = arb_mat(integrals) * arb_mat(series)
-        on_unit = _rounded(arb_mat([[(x + 1) / 2 for x in nodes], [w / 2 for w in weights]]))
-    return Gauss(on_unit[0], on_unit[1], _rounded(until) / 2, _rounded(arb_mat(series)))
+        on_unit = _round(arb_mat([[(x + 1) / 2 for x in nodes], [w / 2 for w in weights]]))
+    return Gauss(on_unit[0], on_unit[1], _round(until) / 2, _round(arb_mat(series)))
 
 
 def _legendre(x: arb, degree: int) -> list[arb]:
@@ -51,7 +51,7 @@ def _legendre(x: arb, degree: int) -> list[arb]:
     return values
 
 
-def _rounded(matrix: arb_mat) -> Array:
+def _round(matrix: arb_mat) -> Array:
     return np.array([[float(value.mid()) for value in row] for row in matrix.tolist()])
 
 

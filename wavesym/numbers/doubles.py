@@ -83,7 +83,7 @@ def relative(error: float, size: float) -> float:
     return bound(arb(error) / arb(size)) if size else math.inf
 
 
-def rounded(ball: arb) -> float | None:
+def rounded_ball(ball: arb) -> float | None:
     """The double that everything in the ball rounds to, None where there is not one.
 
     RangeError where all of it is beyond the largest double.

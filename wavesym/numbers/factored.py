@@ -130,8 +130,8 @@ def irreducible(polynomial: fmpq_mpoly) -> bool:
 def _product(number: int, factors: Sequence[Factor]) -> str:
     """A product as text. A lone factor needs no brackets, unless something is to be divided by it (see `__str__`)."""
     if number == 1 and len(factors) == 1 and factors[0][1] == 1:
-        return written(factors[0][0])
-    placed = sorted((_place(factor), written(factor), power) for factor, power in factors)
+        return polynomial_text(factors[0][0])
+    placed = sorted((_place(factor), polynomial_text(factor), power) for factor, power in factors)
     parts = [
         (f"({text})" if terms > 1 else text) + (f"**{power}" if power > 1 else "") for (terms, _), text, power in placed
     ]
@@ -145,6 +145,6 @@ def _place(factor: fmpq_mpoly) -> tuple[int, list[int]]:
     return len(factor), [-int(power) for power in factor.degrees()]
 
 
-def written(polynomial: fmpq_mpoly) -> str:
+def polynomial_text(polynomial: fmpq_mpoly) -> str:
     """A polynomial as text."""
     return str(polynomial).replace("^", "**")

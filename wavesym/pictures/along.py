@@ -81,12 +81,12 @@ def along(scene: Scene, model: Model, program: Program | None = None) -> tuple[A
         CostError, ToleranceError: as for such outputs.
     """
     places = {quantity: _places(scene, quantity) for quantity in _quantities(scene)}
-    made = histories(observed(scene, model), program=program)
+    made = histories(chain_outputs(scene, model), program=program)
     length = _length(scene)
     return tuple(replace(_of(made, quantity, lines), length=length) for quantity, lines in places.items())
 
 
-def observed(scene: Scene, model: Model) -> Model:
+def chain_outputs(scene: Scene, model: Model) -> Model:
     """The model of a scene with the outputs that tell what happens along its chain."""
     written = {
         quantity: [spot.position for _, spots in _places(scene, quantity) for spot in spots]

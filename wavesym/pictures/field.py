@@ -35,7 +35,7 @@ class Field:
         self._network = model.network
         self.events = events(everywhere)
         motion = Motion(everywhere, model.until)
-        self._waves = {end: _SampledWave(wave) for end, wave in _seen(motion).sent.items()}
+        self._waves = {end: _SampledWave(wave) for end, wave in _visible_waves(motion).sent.items()}
 
     def at(self, bar: int, part: Array, tau: Array) -> tuple[Array, Array]:
         """Velocity and force of a bar at parts of its length from the left end; all of one shape."""
@@ -55,7 +55,7 @@ class Field:
         return left, right
 
 
-def _seen(motion: Motion) -> Waves:
+def _visible_waves(motion: Motion) -> Waves:
     """The waves, with as many bits as a picture needs: the first ones do not always bear what springs swing."""
     for more in _MORE:
         waves = motion.waves(more * motion.first_bits)

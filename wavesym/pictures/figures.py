@@ -46,7 +46,7 @@ FIGURES: Mapping[int, tuple[str, ...]] = {
 _INDENT = " " * 4
 
 
-def published(directory: Path, number: int) -> list[Path]:
+def write_figure(directory: Path, number: int) -> list[Path]:
     """Write the figure `number` into `directory`, as .svg and .png; the paths written. OSError."""
     made = redrawn(number, judged(number))
     paths = [directory / f"figure_{number}.{suffix}" for suffix in ("svg", "png")]
@@ -63,7 +63,7 @@ def judged(number: int) -> dict[str, Record]:
 
 def redrawn(number: int, verdicts: Mapping[str, Record]) -> Figure:
     """A figure of the paper under the load of `drawn`, with the verdicts on its statements."""
-    load = drawn(number)
+    load = best_load(number)
     made = histories(lower(figure(number).scene(load)))
     panels = [_panel(made, number, quantity, load) for quantity in FIGURES[number]]
     if made.model.labels.loads:
@@ -78,7 +78,7 @@ def redrawn(number: int, verdicts: Mapping[str, Record]) -> Figure:
     )
 
 
-def drawn(number: int) -> TriedLoad:
+def best_load(number: int) -> TriedLoad:
     """The load that a figure is drawn with: the first of those under which most of its statements are true."""
     said = statements(number).values()
     return max(loads(number), key=lambda load: sum(is_true(figure(number), load, statement) for statement in said))

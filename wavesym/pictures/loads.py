@@ -30,7 +30,7 @@ def load_histories(model: Model, scale: Scale | None = None) -> tuple[History, .
     for point in model.network.points:
         powers = {unit.source: _power(unit, point) for unit in point.loads}
         if acting := [(load, powers[load.source]) for load in model.loads if load.source in powers]:
-            kind, name = _named(model, point, scale)
+            kind, name = _load_name(model, point, scale)
             factor = fmpq(1) if scale is None else rational(scale.factor(kind, 1))
             probe = Probe(name, "load", 1, fmpq(0), factor=factor, unit=scale.unit(kind) if scale else "")
             told = [(replace(load, weight=factor * load.weight), power) for load, power in acting]
@@ -64,7 +64,7 @@ def _power(unit: UnitLoad, point: Point) -> int:
     return len(unit.coefficients) - min(len(other.coefficients) for other in point.loads)
 
 
-def _named(model: Model, point: Point, scale: Scale | None) -> tuple[str, str]:
+def _load_name(model: Model, point: Point, scale: Scale | None) -> tuple[str, str]:
     """What kind of quantity acts on a point, and what its scene calls that."""
     kind, usual = _usual_name(model, point, scale)
     titles = dict.fromkeys(title for unit in point.loads if (title := model.labels.titles.get(unit.source)))

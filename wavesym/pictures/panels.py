@@ -19,7 +19,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.pictures.groups import PlotPanel, load_panel, notes, panels, restless
 from wavesym.pictures.histories import Histories, History, Points
 from wavesym.pictures.labels import Curve, label
-from wavesym.pictures.reduction import reduced
+from wavesym.pictures.reduction import reduce_vertices
 from wavesym.pictures.style import FONT, HALO, WIDTH, draw_grid, new_figure, styled
 from wavesym.pictures.timescale import Timescale, timescale
 
@@ -143,7 +143,7 @@ def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     if panel.limits:
         _strip(axes, panel)
         return
-    names = _named(axes, panel, instants)
+    names = _labels(axes, panel, instants)
     if names:
         label(axes, names, FONT)
     for text in axes.texts:  # legible even where curves leave no room
@@ -162,14 +162,14 @@ def _strip(axes: Axes, panel: PlotPanel) -> None:
     axes.text(0.004, 0.95, panel.summary, transform=axes.transAxes, va="top", path_effects=HALO)
 
 
-def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Curve]:
+def _labels(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Curve]:
     """What is to be labelled: curves, where they run apart from the others; marks; instants."""
     low, high = axes.get_ylim()
     curves = []
     for history, (_, color) in zip(panel.histories, _STYLES, strict=False):
         others = [other.points for other in panel.histories if other is not history]
         shape = thinned(history.points, _VERTICES)
-        places = apart(shape, others, _NEAR * (high - low))
+        places = isolated_vertices(shape, others, _NEAR * (high - low))
         if len(places) == len(shape):
             curves.append(Curve(history.name, shape, color, "bold"))
         else:  # no name can hang on the rest of the curve, yet none may cover it
@@ -185,7 +185,7 @@ def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Cu
 def _curve(axes: Axes, history: History, dashes: _Dashes, color: str) -> None:
     """A curve between its fronts, thin upright lines where it jumps; thin and light where it is formal."""
     until, thick = float(history.points[-1, 0]), 0.9 if restless(history) else 1.4
-    for stretch in (reduced(each, until, _COLUMNS) for each in history.stretches):
+    for stretch in (reduce_vertices(each, until, _COLUMNS) for each in history.stretches):
         tau = stretch[:, 0]
         for formal, width in ((False, thick), (True, 0.7)):
             part = stretch[tau >= history.formal if formal else tau <= history.formal]
@@ -214,7 +214,7 @@ def thinned(points: Points, count: int) -> Points:
     return points[sorted(set(kept))]
 
 
-def apart(places: Points, others: Sequence[Points], near: float) -> Points:
+def isolated_vertices(places: Points, others: Sequence[Points], near: float) -> Points:
     """Those vertices of a curve that are not near another curve; all where there are hardly any."""
     distances = [np.abs(places[:, 1] - np.interp(places[:, 0], *other.T)) for other in others]
     alone = places[np.min(distances, axis=0) > near] if distances else places

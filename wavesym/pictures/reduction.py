@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from wavesym.pictures.histories import Points
 
 
-def reduced(points: Points, until: float, columns: int) -> Points:
+def reduce_vertices(points: Points, until: float, columns: int) -> Points:
     """The vertices that show in so many columns of [0, until]: in each the first, the least and the greatest of them.
 
     One that a column ends with goes where the next one goes on in its direction; the very last vertex stays. `points`

@@ -109,7 +109,7 @@ def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> F
         place = figure.add_axes(((left + 0.08) / WIDTH, (top - _PANEL) / height, 0.14 / WIDTH, _PANEL / height))
         bar = figure.colorbar(ScalarMappable(norm, shades), cax=place)
         bar.ax.locator_params(nbins=7)
-        words = _named(quantity, units)
+        words = _quantity_title(quantity, units)
         figure.text(_LEFT / WIDTH, (top + _LINE * (names + 0.35)) / height, words, weight="bold", va="bottom")
     return figure
 
@@ -127,7 +127,7 @@ def _draw_fronts(axes: Axes, field: Field, stations: Sequence[Station], until: f
         axes.add_collection(LineCollection(paths, colors="0.15", linewidths=0.5), autolim=False)
 
 
-def _named(quantity: str, units: Scale | None) -> str:
+def _quantity_title(quantity: str, units: Scale | None) -> str:
     """A quantity in its unit; only along a rod is one sign a pull."""
     if units is None:
         return quantity.capitalize() if quantity == "velocity" else f"Force (impedance \u00d7 strain){_SENSE[quantity]}"

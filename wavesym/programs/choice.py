@@ -33,7 +33,7 @@ _OF_MANY = 3
 
 
 @dataclass(frozen=True)
-class Tried:
+class Attempt:
     """What came of trying one kind of program: its `form`, where it could be made, and the `refusal`, a sentence.
 
     The sentence is empty where the form meets the tolerance. `error` is for whoever requested this kind by its name.
@@ -91,7 +91,7 @@ def choose(
     return best(model, (only,), optimize)
 
 
-def attempts(model: Model, precision: str = "double", optimize: str | None = None) -> tuple[Tried, ...]:
+def attempts(model: Model, precision: str = "double", optimize: str | None = None) -> tuple[Attempt, ...]:
     """All evaluators tried for a model; modes, and then a march, only where no other meets the tolerance.
 
     (A single value of these takes as long as all steps or windows before it, and so does trying one.) With damping
@@ -100,7 +100,7 @@ def attempts(model: Model, precision: str = "double", optimize: str | None = Non
     Args:
         model, precision, optimize: as of `choose`.
     """
-    tried: list[Tried] = []
+    tried: list[Attempt] = []
     for kind in ("modes",) if model.damping else MAKERS:
         served = any(not one.refusal for one in tried)
         if kind in _LAST and served:
@@ -117,7 +117,7 @@ def attempt(
     *,
     asked: bool = False,
     served: bool = False,
-) -> Tried:
+) -> Attempt:
     """One evaluator tried; what it is refused for is part of the answer.
 
     Args:
@@ -129,18 +129,18 @@ def attempt(
     try:
         form = MAKERS[kind](model, REALS[precision], asked, optimize or _USUAL_TABLES[precision], served)
     except (CostError, UnservedError) as refusal:
-        return Tried(kind, None, str(refusal), refusal)
+        return Attempt(kind, None, str(refusal), refusal)
     except ToleranceError as refusal:
-        return Tried(kind, None, str(refusal).partition(f"{kind}: ")[2], refusal)
+        return Attempt(kind, None, str(refusal).partition(f"{kind}: ")[2], refusal)
     except OverflowError:
         beyond = f"numbers beyond the range of {precision} precision"
-        return Tried(kind, None, beyond, RangeError(f"output: {kind} needs {beyond}"))
+        return Attempt(kind, None, beyond, RangeError(f"output: {kind} needs {beyond}"))
     if rational(min(form.error_bound, 2.0)) <= model.tolerance:
-        return Tried(kind, form)
-    return Tried(kind, form, form.shortfall(model.tolerance).removeprefix(f"{kind}: "))
+        return Attempt(kind, form)
+    return Attempt(kind, form, form.shortfall(model.tolerance).removeprefix(f"{kind}: "))
 
 
-def best(model: Model, tried: Sequence[Tried], optimize: str | None = None) -> Choice:
+def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) -> Choice:
     """The best of what was tried and meets the tolerance, and why. ToleranceError where nothing does."""
     found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
     # where modes are for something else altogether that is no news, but of a record that nothing serves
@@ -156,7 +156,7 @@ def best(model: Model, tried: Sequence[Tried], optimize: str | None = None) -> C
     return Choice(name, chosen, "; ".join([*refused, *dearer, chosen.summary]))
 
 
-def _unserved(one: Tried) -> bool:
+def _unserved(one: Attempt) -> bool:
     return isinstance(one.error, UnservedError)
 
 

@@ -186,7 +186,7 @@ def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]
                 sizes.append(arb_poly())
                 weights.append(arb_poly())
             sizes[place] += polynomial
-            weights[place] += _weighted(rate, polynomial)
+            weights[place] += _weigh(rate, polynomial)
             farthest = arb(until - last).max(arb(1))
             representable &= bool(polynomial(farthest) < largest_power)
             underflow += arb(real.smallest) * _underflows(polynomial, farthest)
@@ -209,7 +209,7 @@ def _underflows(polynomial: arb_poly, farthest: arb) -> arb:
     return (farthest * terms(farthest)).upper()
 
 
-def _weighted(rate: fmpq, polynomial: arb_poly) -> arb_poly:
+def _weigh(rate: fmpq, polynomial: arb_poly) -> arb_poly:
     """Every term times its factor of u in the module's table: 7 + 4 k + 4 g w."""
     powers = [(7 + 4 * k) * c for k, c in enumerate(polynomial.coeffs())]
     return arb_poly(powers) + arb_poly([arb(0), 4 * arb(rate)]) * polynomial

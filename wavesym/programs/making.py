@@ -30,15 +30,15 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked
     _, form, why = choose(model, request.evaluator, request.precision, request.optimize, asked=asked)
     happening = events(model, form.real) if model.network.contacts else None
     provenance = Provenance(model, why, request.options, contact_ends(model, form.real), happening)
-    return _made(model, form, provenance, tested)
+    return _finish(model, form, provenance, tested)
 
 
 def program(model: Model, form: Made, *, tested: bool = False) -> Program:
     """The program of an evaluator that there is already, whatever its bound."""
-    return _made(model, form, Provenance(model, form.summary), tested)
+    return _finish(model, form, Provenance(model, form.summary), tested)
 
 
-def _made(model: Model, form: Made, provenance: Provenance, tested: bool) -> Program:
+def _finish(model: Model, form: Made, provenance: Provenance, tested: bool) -> Program:
     made = form.program(provenance)
     if not tested:
         return made

@@ -31,7 +31,7 @@ def is_at2(lines: Sequence[str]) -> bool:
 
 def at2(file: str, lines: Sequence[str]) -> RecordFile:
     """The samples of an AT2 file. SceneError, which names the line."""
-    count, step = _counted(file, lines)
+    count, step = _read_counts(file, lines)
     written: list[str] = []
     samples: list[Fraction] = []
     places: list[int] = []
@@ -59,7 +59,7 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
     )
 
 
-def _counted(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:
+def _read_counts(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:
     """How many samples, and how far apart."""
     expected = "no NPTS and DT; write them as in NPTS=  1559, DT=   .0200 SEC"
     if len(lines) < _HEADER:

@@ -50,7 +50,7 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
     clock = next((column for column in named if column.name.casefold() in _TIMES), None)
     below = _cells(file, *top[1], mark) if len(top) > 1 else []
     numeric = any(decimal(cell.replace(",", ".")) is not None for cell in below)
-    column = _chosen(file, at, named, clock, wanted, numeric=numeric)
+    column = _choose(file, at, named, clock, wanted, numeric=numeric)
     decimals = _Decimals(file, mark is not None and mark != ",", named if numeric else ())
     times: list[Fraction] = []
     samples: list[Fraction] = []
@@ -140,7 +140,7 @@ def _column(place: int, header: str) -> _Column:
     return _Column(place, header, header, "")
 
 
-def _chosen(
+def _choose(
     file: str, at: int, named: Sequence[_Column], clock: _Column | None, wanted: str | None, *, numeric: bool
 ) -> _Column:
     """The column of the samples; messages name those of a `numeric` table, in which numbers follow the header."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.modes.cuts import Cut
-from wavesym.exact.modes.dying import DyingSpectrum
+from wavesym.exact.modes.dying import DampedSpectrum
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.mechanics.model import Model
@@ -234,7 +234,7 @@ def modes(
         raise CostError(f"--count: {count} modes, the limit is {_MOST} (fewer modes help)")
     model.network.refuse_loss()
     damped = is_damped(model.network)
-    spectrum = DyingSpectrum(model.network) if damped else Spectrum(model.network)
+    spectrum = DampedSpectrum(model.network) if damped else Spectrum(model.network)
     found = list(spectrum.first(count if below is None else _FIRST_GUESS))
     per_tau = 1.0 if model.clock is None else nearest(model.clock.seconds)
     if below is not None:

@@ -25,10 +25,10 @@ def csv_lines(response: Response, samples: int, at: Sequence[float] | None) -> I
     """
     blocks = iter(partial(_rows, response, instants(response.model, samples, at)), [])
     first = next(blocks, [])
-    return _joined(_columns(response.model), first, blocks)
+    return _join(_columns(response.model), first, blocks)
 
 
-def _joined(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
+def _join(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
     yield ",".join(names) + "\n"
     yield from first
     for block in blocks:

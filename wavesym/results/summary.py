@@ -171,9 +171,11 @@ def summary_and_program(
     known = {probe.rod for probe in model.probes if probe.quantity == "drift"}
     others = [probe for probe in drifts if probe.rod not in known]
     models = [model.watching([*model.probes, *others]), model] if others else [model]
-    solved, found = _found(models, samples)
+    solved, found = _solve_extremes(models, samples)
     outputs = _outputs(solved, found)
-    every = [*zip(solved.probes, outputs, strict=True), *_apart(model, solved, others, samples)] if drifts else []
+    every = (
+        [*zip(solved.probes, outputs, strict=True), *_drift_groups(model, solved, others, samples)] if drifts else []
+    )
     summary = Summary(
         model.name,
         outputs[: len(model.probes)],
@@ -186,17 +188,17 @@ def summary_and_program(
     return summary, found.program
 
 
-def _apart(
+def _drift_groups(
     model: Model, solved: Model, others: Sequence[Probe], samples: Sequence[float] | None
 ) -> Iterator[tuple[Probe, OutputSummary]]:
     """Drifts that cost too much beside the outputs, by themselves; none where they cannot be had."""
     if others and solved is model:
         with suppress(WavesymError):
-            alone, found = _found([model.watching(others)], samples)
+            alone, found = _solve_extremes([model.watching(others)], samples)
             yield from zip(others, _outputs(alone, found), strict=True)
 
 
-class _Found(NamedTuple):
+class _Extremes(NamedTuple):
     ranges: list[Range]
     averages: list[tuple[float, float, float]]
     bound: float
@@ -209,9 +211,9 @@ class _Found(NamedTuple):
         return self.program is not None and self.program.has_equal_steps
 
 
-def _found(models: Sequence[Model], samples: Sequence[float] | None) -> tuple[Model, _Found]:
+def _solve_extremes(models: Sequence[Model], samples: Sequence[float] | None) -> tuple[Model, _Extremes]:
     """The extremes of the first of some models that can be solved, exactly rather than by a program, and that model."""
-    methods = [_exact, _searched] if samples is None else [lambda model: _at(model, np.asarray(samples))]
+    methods = [_exact, _searched] if samples is None else [lambda model: _extremes_at(model, np.asarray(samples))]
     *attempts, last = [(method, model) for method in methods for model in models]
     for method, model in attempts:
         with suppress(CostError, UnservedError, ToleranceError):
@@ -220,7 +222,7 @@ def _found(models: Sequence[Model], samples: Sequence[float] | None) -> tuple[Mo
     return model, method(model)
 
 
-def _exact(model: Model) -> _Found:
+def _exact(model: Model) -> _Extremes:
     found = extremes_and_averages(model)
     averaged = []
     for ends, each in found:
@@ -229,10 +231,10 @@ def _exact(model: Model) -> _Found:
             0.0 if abs(middle) <= least else middle for middle in map(midpoint, (each.mean, each.rms, each.residual))
         )
         averaged.append((mean, rms, residual))
-    return _Found([extreme for extreme, _ in found], averaged, BOUND, True, "true extremes")
+    return _Extremes([extreme for extreme, _ in found], averaged, BOUND, True, "true extremes")
 
 
-def _outputs(model: Model, found: _Found) -> tuple[OutputSummary, ...]:
+def _outputs(model: Model, found: _Extremes) -> tuple[OutputSummary, ...]:
     arrivals = light_arrivals(model) if found.modal else first_arrivals(model)
     return tuple(
         OutputSummary(
@@ -268,7 +270,7 @@ def instant(model: Model, tau: float, exact: fmpq | None = None) -> When:
     return When(tau, nearest((rational(tau) if exact is None else exact) * model.clock.per_tau))
 
 
-def _at(model: Model, taus: Numbers) -> _Found:
+def _extremes_at(model: Model, taus: Numbers) -> _Extremes:
     """The extremes of values at these tau, as `run` has them."""
     response = Response(model)
     values = response(taus)
@@ -276,10 +278,10 @@ def _at(model: Model, taus: Numbers) -> _Found:
     made = response.program
     how = f"the values{f' of {made.evaluator}' if made else ''} at {taus.size} samples"
     averaged = _averaged(values, np.ones(taus.size))
-    return _Found(ranges, averaged, response.error_bound, made is None or made.proved, how, made)
+    return _Extremes(ranges, averaged, response.error_bound, made is None or made.proved, how, made)
 
 
-def _searched(model: Model) -> _Found:
+def _searched(model: Model) -> _Extremes:
     """The extremes of the program that `auto` takes, looked for between many samples."""
     program = make(model)
     step = spacing(model)
@@ -292,7 +294,7 @@ def _searched(model: Model) -> _Found:
     taus, values = sample_program(model, program, step)
     ranges = _ranges(*sampled_extremes(taus, values, program.each, program.error_bound))
     how = f"{program.evaluator} at {taus.size} samples, {describe_step(model, step)}, then refined"
-    return _Found(ranges, _averaged(values, _trapezoids(taus)), program.error_bound, False, how, program)
+    return _Extremes(ranges, _averaged(values, _trapezoids(taus)), program.error_bound, False, how, program)
 
 
 def _trapezoids(taus: Numbers) -> Numbers:

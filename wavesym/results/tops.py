@@ -30,7 +30,7 @@ class Closely:
 
 def tops(response: RecordResponse, steps: Closely, points: int) -> tuple[Numbers, Numbers]:
     """Of each group, in order, the greatest value times its sign, as it is, and when, since records begin."""
-    values = _seen(response, steps, points)
+    values = _signed_values(response, steps, points)
     before, here, after = values[:, :-2], values[:, 1:-1], values[:, 2:]
     bend = 2 * here - before - after
     top = (bend > 0) & (np.abs(after - before) <= 2 * bend)  # within a point of the middle one
@@ -59,7 +59,7 @@ def tops(response: RecordResponse, steps: Closely, points: int) -> tuple[Numbers
     return sign * value, steps.step[row] * response.spacing + s
 
 
-def _seen(response: RecordResponse, steps: Closely, points: int) -> Numbers:
+def _signed_values(response: RecordResponse, steps: Closely, points: int) -> Numbers:
     """Values times their sign at equally spaced instants of each step, its ends included: (steps, points)."""
     made = np.empty((len(steps.step), points))
     for length in np.unique(steps.length).tolist():

@@ -60,7 +60,7 @@ def fmu(program: Program, version: str) -> bytes:
             library = f"{name}{machine.suffix}"
             built_by.run([*_FLAGS, *flags, f"fmi{version[-1]}.c", f"{name}.c", "-o", library], folder)
             content[f"binaries/{machine.folder(version)}/{library}"] = (folder / library).read_bytes()
-    return _packed(content)
+    return _pack(content)
 
 
 def describe_fmu(path: Path) -> list[str]:
@@ -91,7 +91,7 @@ def _host() -> Machine:
     return known.get(f"{name}-{system}", other)
 
 
-def _packed(content: Mapping[str, bytes]) -> bytes:
+def _pack(content: Mapping[str, bytes]) -> bytes:
     """As a zip file. The description comes first and as it stands: by its first lines it is known who made the file."""
     file = io.BytesIO()
     with ZipFile(file, "w") as archive:

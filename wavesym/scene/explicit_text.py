@@ -69,7 +69,7 @@ def _lines(scene: Scene) -> Iterator[str]:
                     'output.relative: base = "force" has no foundation that moves; write base = "ground"'
                 )
             places = [position.written if quantity == "drift" else numbers.position(position) for position in positions]
-            yield f"{quantity} = {_listed(map(_place, places, positions))}"
+            yield f"{quantity} = {_list_text(map(_place, places, positions))}"
 
 
 def _parts(parts: Sequence[ChainPart | str], numbers: Dimensionless) -> Iterator[str]:
@@ -107,11 +107,11 @@ def _load(load: Load, network: Network, numbers: Dimensionless) -> Iterator[str]
             terms[k] += applied.weight * c
     times = sorted(sums)
     yield f"at = {numbers.place(place)}"
-    yield f"times = {_listed(map(numbers.time, times))}"
+    yield f"times = {_list_text(map(numbers.time, times))}"
     moved = network.points[place].motion is not None
     for k, name in enumerate(("steps", "ramps")):
         if not k or any(sums[time][k] for time in times):
-            yield f"{name} = {_listed(numbers.load(sums[time][k], k, moved) for time in times)}"
+            yield f"{name} = {_list_text(numbers.load(sums[time][k], k, moved) for time in times)}"
 
 
 def _place(written: str, position: Position) -> str:
@@ -134,5 +134,5 @@ def _moving(velocity: Fraction, numbers: Dimensionless) -> dict[str, str]:
     return {"velocity": numbers.velocity(velocity)} if velocity else {}
 
 
-def _listed(values: Iterable[str]) -> str:
+def _list_text(values: Iterable[str]) -> str:
     return f"[{', '.join(values)}]"

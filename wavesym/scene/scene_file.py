@@ -34,7 +34,7 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, str, dict[str, Any]]:
     `source` is a path, `-` for standard input, or the name of a built-in scene. Raises SceneError.
     """
     file, text = toml_text(source)
-    return file, text, _beside(os.path.dirname(os.fspath(source)), parsed(file, text))
+    return file, text, _absolute_records(os.path.dirname(os.fspath(source)), parsed(file, text))
 
 
 def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
@@ -49,7 +49,7 @@ def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
         raise SceneError(f"{error.what}{meant and f'. {meant}'}", error.path, error.file) from None
 
 
-def _beside(folder: str, fields: dict[str, Any]) -> dict[str, Any]:
+def _absolute_records(folder: str, fields: dict[str, Any]) -> dict[str, Any]:
     """A scene's table with paths of records that count from the scene's folder."""
     loads = fields.get("load")
     if not isinstance(loads, list):

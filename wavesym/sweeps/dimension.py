@@ -100,7 +100,7 @@ def spread(values: Span | tuple[object, ...]) -> Sequence[object]:
     else:
         inner = [first + (last - first) * Fraction(k, steps) for k in range(1, steps)]
     numbers = [first, *inner, *([last] if steps else [])]
-    return [_written(number, unit) for number in numbers]
+    return [_labels(number, unit) for number in numbers]
 
 
 def _between(first: Fraction, last: Fraction, part: Fraction) -> Fraction:
@@ -110,7 +110,7 @@ def _between(first: Fraction, last: Fraction, part: Fraction) -> Fraction:
         return exact(midpoint(ratio * arb(rational(first))))
 
 
-def _written(number: Fraction, unit: str) -> object:
+def _labels(number: Fraction, unit: str) -> object:
     if unit:
         return f"{number} {unit}"
     return int(number) if number.denominator == 1 else str(number)

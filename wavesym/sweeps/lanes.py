@@ -41,13 +41,13 @@ def lane(plan: SweepPlan, column: Column) -> Lane | None:
         name = "load"
     else:
         return None
-    return _found(plan, column.path, name)
+    return _varied_number(plan, column.path, name)
 
 
 _LANES: dict[tuple[str, str], Lane | None] = {}
 
 
-def _found(plan: SweepPlan, path: str, name: str) -> Lane | None:
+def _varied_number(plan: SweepPlan, path: str, name: str) -> Lane | None:
     """Which number of a field changes with a path, and as it does."""
     key = plan.sha256, path
     if key not in _LANES:

@@ -15,7 +15,7 @@ from wavesym.sweeps.marks import FOLDER
 from wavesym.sweeps.plan import MOST, OUTPUT, SAMPLE, SCHEMA, SweepPlan
 from wavesym.sweeps.request import MOST_SAMPLES
 from wavesym.sweeps.sealed import DamagedError, SealedFile, Sha256, StrictTable, file_bytes
-from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, inside, lay_out
+from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, folder_content, lay_out
 from wavesym.sweeps.values import kept_arrays
 
 FILE = "manifest.json"
@@ -113,7 +113,7 @@ def settle(folder: Path, plan: SweepPlan, batches: Batches) -> Store:
         raise WavesymError(f"{folder}: has a {NAME} that is not of this sweep; write a new folder")
     manifest = _manifest(plan, batches, lay_out(folder, plan, batches))
     (folder / FOLDER).mkdir(exist_ok=True)
-    inside(folder / FOLDER)
+    folder_content(folder / FOLDER)
     if there != manifest:
         manifest.put(folder / FILE)
     return manifest.store(folder)

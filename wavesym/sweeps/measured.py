@@ -26,7 +26,7 @@ class Unreadable:
     reason: str
 
 
-def found(patterns: Sequence[str], folder: str) -> list[str]:
+def match_files(patterns: Sequence[str], folder: str) -> list[str]:
     """The files that patterns name, each once, in order. SceneError for a pattern that names none."""
     every: list[str] = []
     for k, pattern in enumerate(patterns):

@@ -51,7 +51,7 @@ def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool])
     if (made := _program(plan, topology, joined)) is None:
         return
     own, model = made
-    served, given = _given(plan, places, joined, own, model)
+    served, given = _numbers(plan, places, joined, own, model)
     if not served:
         return
     rows, of_all = output_rows(plan, own.model), of_model(plan, own.model)
@@ -69,7 +69,7 @@ def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool])
         yield served[k], CaseValues({**of_all, **arrays, "bound": float(peaks.checks.estimate[k])}, _HOW)
 
 
-def _given(
+def _numbers(
     plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool], own: RuntimeCase, model: RuntimeModel
 ) -> tuple[list[Place], dict[str, Numbers]]:
     """The cases that the program is for, and their numbers by field, (cases, numbers)."""
@@ -91,17 +91,17 @@ def _given(
     return served, {field.name: np.array([each[k] for each in numbers]) for k, field in enumerate(own.fields)}
 
 
-class _Made(NamedTuple):
+class _TopologyProgram(NamedTuple):
     """A case of a topology, and the program of all of them."""
 
     case: RuntimeCase
     model: RuntimeModel
 
 
-_PROGRAMS: dict[tuple[str, Place], _Made | None] = {}
+_PROGRAMS: dict[tuple[str, Place], _TopologyProgram | None] = {}
 
 
-def _program(plan: SweepPlan, topology: Place, joined: Sequence[bool]) -> _Made | None:
+def _program(plan: SweepPlan, topology: Place, joined: Sequence[bool]) -> _TopologyProgram | None:
     """That of the first case of a topology; None where there is none. The last one is kept."""
     key = plan.sha256, topology
     if key not in _PROGRAMS:
@@ -110,7 +110,7 @@ def _program(plan: SweepPlan, topology: Place, joined: Sequence[bool]) -> _Made 
         with suppress(WavesymError):
             scene, names = plan.scene(topology), _names(plan, joined)
             case, given = RuntimeCase.of(scene, names), amplitudes(scene) if "load" in names else ()
-            _PROGRAMS[key] = _Made(case, RuntimeModel(sets_program(case.model, names, given)))
+            _PROGRAMS[key] = _TopologyProgram(case, RuntimeModel(sets_program(case.model, names, given)))
     return _PROGRAMS[key]
 
 
@@ -139,11 +139,11 @@ def _varied(plan: SweepPlan, axis: int) -> tuple[str, ...]:
         elif all(lanes):
             _VARIED[key] = tuple(each.field for each in lanes if each)
         else:
-            _VARIED[key] = _seen(_probes(plan, axis))
+            _VARIED[key] = _differing_fields(_probes(plan, axis))
     return _VARIED[key]
 
 
-def _seen(probes: Sequence[Scene]) -> tuple[str, ...]:
+def _differing_fields(probes: Sequence[Scene]) -> tuple[str, ...]:
     """The fields in which scenes differ, where that is all."""
     names = tuple(dict.fromkeys(name for other in probes[1:] for name in differing(probes[0], other)))
     if not names:

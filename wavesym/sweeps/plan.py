@@ -21,7 +21,7 @@ from wavesym.scene.paths import changed, steps
 from wavesym.scene.physical.scene import acts
 from wavesym.scene.scene import Scene
 from wavesym.sweeps.dimension import Column, SweepAxis, count_of, spread
-from wavesym.sweeps.measured import Unreadable, found, record_column
+from wavesym.sweeps.measured import Unreadable, match_files, record_column
 from wavesym.sweeps.request import SweepRequest
 
 SCHEMA = 2
@@ -138,7 +138,7 @@ def plan(request: SweepRequest, file: str) -> SweepPlan:
 
 
 def _planned(request: SweepRequest) -> SweepPlan:
-    files = found(request.records, request.folder)
+    files = match_files(request.records, request.folder)
     _refuse_many(request, max(len(files), 1))
     base = request.base()
     fields = json.loads(json.dumps(base.model_dump(), default=str))
@@ -192,7 +192,7 @@ def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: st
         if len(way) == 1:
             raise SceneError('a whole table; write a field in it, such as "output.until"')
         if way[:1] == ["load"] and way[2:] == ["record"] and all(isinstance(value, str) for value in values):
-            files = [each for value in values for each in found([str(value)], request.folder)]
+            files = [each for value in values for each in match_files([str(value)], request.folder)]
             return record_column(
                 path, files, request.folder, fields["load"][way[1]], acts(fields) if base.scale else None
             )

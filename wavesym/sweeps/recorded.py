@@ -44,7 +44,7 @@ def serves(plan: SweepPlan) -> bool:
     )
 
 
-def recorded(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[Place, CaseValues]]:
+def record_cases(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[Place, CaseValues]]:
     """The cases of one structure, as far as modes serve them to the scene's tolerance; the others are left out."""
     values = plan.records.values  # type: ignore[union-attr]
     alike: dict[tuple[bool, str], list[Place]] = {}

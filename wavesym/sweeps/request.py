@@ -56,7 +56,7 @@ def _values(value: object) -> Span | tuple[object, ...]:
 Values = Annotated[Span | tuple[object, ...], PlainValidator(_values)]
 
 
-class Kept(SceneTable):
+class KeepTable(SceneTable):
     """What is kept of each case: extremes of its outputs, and their values at so many equally spaced times."""
 
     summary: tuple[str, ...] = RUNTIME_ARRAYS
@@ -111,7 +111,7 @@ class SweepRequest(SceneTable):
     records: Annotated[tuple[str, ...], PlainValidator(_texts)] = ()
     zip: bool = False
     vary: dict[str, Values] = Field(default_factory=dict)
-    keep: Kept = Kept()
+    keep: KeepTable = KeepTable()
 
     _folder: str = PrivateAttr(default="")
 

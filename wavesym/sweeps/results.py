@@ -23,7 +23,7 @@ from wavesym.sweeps.manifest import Manifest
 from wavesym.sweeps.marks import BatchMark
 from wavesym.sweeps.sealed import DamagedError, StrictTable
 from wavesym.sweeps.status import SweepStatus, damage, marks_of, status_of
-from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, file_hash, inside
+from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, file_hash, folder_content
 from wavesym.sweeps.values import Numbers
 
 _DTYPE = re.compile("<f8|<U[1-9][0-9]{0,4}")
@@ -145,7 +145,7 @@ def _within(part: Sequence[slice], whole: Sequence[slice]) -> tuple[slice, ...]:
     return tuple(slice(a.start - b.start, a.stop - b.start) for a, b in zip(part, whole, strict=True))
 
 
-class _Said(StrictTable):
+class _CoordinateLabels(StrictTable):
     """What the store says of a coordinate."""
 
     dimensions: list[str] = Field(alias="_ARRAY_DIMENSIONS", min_length=1, max_length=1)
@@ -161,7 +161,7 @@ def results(folder: Path) -> SweepResults:
     store, marks = manifest.store(folder), marks_of(folder, manifest)
     if not store.path.exists():
         raise WavesymError(f"{folder}: no {NAME} in it; write the folder of a sweep")
-    there = inside(store.path)
+    there = folder_content(store.path)
     damaged = [
         each for each, known in manifest.files.items() if each not in there or file_hash(store.path / each) != known
     ]
@@ -182,7 +182,7 @@ def _dimensions(store: Store, manifest: Manifest) -> tuple[StoredAxis, ...]:
     for each in manifest.files:
         name, _, last = each.rpartition("/")
         if last == ATTRIBUTES and "path" in (fields := json.loads((store.path / each).read_bytes())):
-            said = _Said.model_validate(fields)
+            said = _CoordinateLabels.model_validate(fields)
             column = StoredColumn(said.path, tuple(said.written), _coordinate(store.path / name), said.units)
             own[said.dimensions[0]].append((said.number, column))
     made = tuple(StoredAxis(name, _in_order(columns)) for name, columns in own.items())

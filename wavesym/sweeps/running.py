@@ -60,7 +60,7 @@ def run(
     place = Path(folder)
     with _alone(place):
         store, marks = settle(place, planned, parts), Marks(place)
-        todo = _left(planned, store, marks, retry_failed)
+        todo = _remaining_batches(planned, store, marks, retry_failed)
         before = done = planned.cases - sum(len(places) if places else parts.count(batch) for batch, places in todo)
         watch(planned.cases, done, before)
         for batch, values in _computed(planned, parts, todo, engine):
@@ -70,7 +70,7 @@ def run(
         return status(place).failed
 
 
-def _left(planned: SweepPlan, store: Store, marks: Marks, retry_failed: bool) -> list[Task]:
+def _remaining_batches(planned: SweepPlan, store: Store, marks: Marks, retry_failed: bool) -> list[Task]:
     """The batches that have no mark, and what is left of those that are done in part. A mark whose chunks are not what
     it says is removed."""
     left: list[Task] = []
@@ -93,7 +93,7 @@ def keep(planned: SweepPlan, store: Store, marks: Marks, batch: int, values: Bat
     parts, name = store.batches, store.batches.mark(planned.sha256, batch)
     left: set[Place] = set()
     if len(values.places) < parts.count(batch):
-        values, left = _joined(planned, store, marks.get(name, parts, batch), batch, values)
+        values, left = _join_marks(planned, store, marks.get(name, parts, batch), batch, values)
     mark = BatchMark(
         batch=batch,
         cases=parts.count(batch),
@@ -108,7 +108,7 @@ def keep(planned: SweepPlan, store: Store, marks: Marks, batch: int, values: Bat
     marks.put(name, mark)
 
 
-def _joined(
+def _join_marks(
     planned: SweepPlan, store: Store, mark: BatchMark | None, batch: int, values: BatchValues
 ) -> tuple[BatchValues, set[Place]]:
     """A batch with what its mark has and what is new, and what is left of it."""

@@ -115,7 +115,7 @@ def file_hash(path: Path) -> str | None:
         return ""
 
 
-def inside(path: Path) -> set[str]:
+def folder_content(path: Path) -> set[str]:
     """What is in a folder, folders in it too. DamagedError for links, and what else could lead to elsewhere."""
     found = [path, *(Path(parent, each) for parent, folders, files in os.walk(path) for each in (*folders, *files))]
     for each in found:
@@ -134,12 +134,12 @@ def lay_out(folder: Path, plan: SweepPlan, batches: Batches) -> dict[str, str]:
         draft.unlink()
     shutil.rmtree(draft, ignore_errors=True)
     _make(draft, plan, batches)
-    files = {each: file_hash(draft / each) or "" for each in sorted(inside(draft)) if (draft / each).is_file()}
+    files = {each: file_hash(draft / each) or "" for each in sorted(folder_content(draft)) if (draft / each).is_file()}
     if not path.exists() and not path.is_symlink():
         os.replace(draft, path)
         return files
     names = {Path(each).parent.as_posix() for each in files}
-    for each in sorted(inside(path)):
+    for each in sorted(folder_content(path)):
         parent, _, name = each.rpartition("/")
         if each not in files and each not in names and not (parent in names and parent and _CHUNK.fullmatch(name)):
             raise WavesymError(f"{path / each}: not of this sweep; move it elsewhere")

@@ -12,7 +12,7 @@ from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches, Place
 from wavesym.sweeps.parameters import parameters
 from wavesym.sweeps.plan import SweepPlan
-from wavesym.sweeps.recorded import recorded
+from wavesym.sweeps.recorded import record_cases
 from wavesym.sweeps.single import single
 from wavesym.sweeps.values import BatchValues, CaseValues
 
@@ -40,7 +40,7 @@ def _shared(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict[Place
     """The cases of a group that can share work, as far as that serves them."""
     try:
         if batches.kind == "recorded":
-            return dict(recorded(plan, group))
+            return dict(record_cases(plan, group))
         if batches.kind == "parameters":
             return dict(parameters(plan, group, batches.together))
         return {}

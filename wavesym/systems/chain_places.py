@@ -20,7 +20,7 @@ def node(drawing: Drawing, at: str) -> int:
     text = show(position.written)
     if position.x is None and position.name in drawing.names:
         return drawing.names[position.name]
-    _, station, _ = _found(drawing, position, text)
+    _, station, _ = _locate(drawing, position, text)
     if station is None:
         raise MisplacedError(f"{text} is not a node; write the name or place of one")
     if len(station.points) > 1 and not position.side:
@@ -33,7 +33,7 @@ def place(drawing: Drawing, position: Position, quantity: str, loaded: Collectio
     text = show(WrittenDecimal(position.written))
     if position.x is None and position.name in drawing.names:
         return _at_node(drawing, drawing.names[position.name], position.side, quantity, text, loaded)
-    line, station, before = _found(drawing, position, text)
+    line, station, before = _locate(drawing, position, text)
     x = position.x
     assert x is not None  # a line has places
     if station is not None:
@@ -43,7 +43,7 @@ def place(drawing: Drawing, position: Position, quantity: str, loaded: Collectio
     return Place(x, 0, line, rod + 1, (x - drawing.lines[line][before].x) / drawing.length(rod))
 
 
-def _found(drawing: Drawing, position: Position, text: str) -> tuple[str, Station | None, int]:
+def _locate(drawing: Drawing, position: Position, text: str) -> tuple[str, Station | None, int]:
     """The line of a position, its station if it is at one, and the number of the last station up to it."""
     line, x = position.name, position.x
     if line not in drawing.lines or x is None:
@@ -85,7 +85,7 @@ def _at_station(
     rods = [(rod, way, end) for rod, way, end in ((station.left, -1, 1), (station.right, 1, 0)) if rod is not None]
     if not rods:
         raise MisplacedError(f"{text} is not at a rod; write a place that is")
-    divided = len(rods) > 1 and (_divided if quantity == "strain" else _held)(drawing, station, loaded)
+    divided = len(rods) > 1 and (_has_two_strains if quantity == "strain" else _has_forces)(drawing, station, loaded)
     if divided and not side:
         raise _one_sided(text)
     rod, way, end = next((each for each in rods if each[1] == side), rods[0])
@@ -96,20 +96,20 @@ def _one_sided(text: str) -> MisplacedError:
     return MisplacedError(f'{text} has two sides; write "{text}-" or "{text}+"')
 
 
-def _divided(drawing: Drawing, station: Station, loaded: Collection[int]) -> bool:
+def _has_two_strains(drawing: Drawing, station: Station, loaded: Collection[int]) -> bool:
     """Whether the strains on both sides of a joint may differ; of what parts two points, a contact takes no force."""
     assert station.left is not None
     assert station.right is not None
     left, right = drawing.bars[station.left], drawing.bars[station.right]
     links = [link for link in drawing.links if {link.left, link.right} & {*station.points}]
     return (
-        _held(drawing, station, loaded)
+        _has_forces(drawing, station, loaded)
         or (left.impedance, left.speed) != (right.impedance, right.speed)
         or not all(link.contact for link in links)
     )
 
 
-def _held(drawing: Drawing, station: Station, loaded: Collection[int]) -> bool:
+def _has_forces(drawing: Drawing, station: Station, loaded: Collection[int]) -> bool:
     """Whether the forces on both sides of a joint may differ: a link between them passes all that it takes."""
     links = [link for link in drawing.links if {link.left, link.right} & {*station.points}]
     return (

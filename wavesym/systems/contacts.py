@@ -63,7 +63,7 @@ def _damps_massless(points: Sequence[Point], links: Iterable[Link], number: int)
     return any(points[other].mass == 0 and points[other].motion is None for other in beside)
 
 
-def told_apart(links: Sequence[Link]) -> list[Link]:
+def name_contacts(links: Sequence[Link]) -> list[Link]:
     """The same; contacts at one place are called by its sides."""
     count = Counter(link.place for link in links if link.contact)
     met: Counter[str] = Counter()

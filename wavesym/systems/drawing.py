@@ -13,7 +13,7 @@ from wavesym.mechanics.length import LengthUnit, place_text
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
-from wavesym.systems.contacts import refuse_impacts, refuse_joined_friction, told_apart
+from wavesym.systems.contacts import name_contacts, refuse_impacts, refuse_joined_friction
 from wavesym.systems.lines import Keys, PlacedBetween, PlacedNode, alternating
 from wavesym.systems.parts import Branch, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart
 from wavesym.systems.station import MAIN, Lines, Station
@@ -57,7 +57,7 @@ class Drawing:
         )
         called = {k: place_text(x, line, "", length) for k, (line, x) in self.contacts.items()}
         links = (replace(link, place=called.get(k, "")) for k, link in enumerate(self.links))
-        return Network(tuple(points), self.bars, tuple(told_apart([*links])))
+        return Network(tuple(points), self.bars, tuple(name_contacts([*links])))
 
     def _places(self, length: LengthUnit | None) -> Mapping[int, str]:
         """Where each point is: its line and how far along it, with a side where more than one is there."""

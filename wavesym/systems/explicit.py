@@ -77,10 +77,8 @@ class ExplicitChain(SceneTable):
         except MisplacedError as error:
             return str(error), "at"
         if self.drawing.points[point].motion == "fixed":
-            return (
-                (f'{show(position_of(_at(load)).written)} is a "fixed" end, which cannot move; write a node that can'),
-                "at",
-            )
+            place = show(position_of(_load_place(load)).written)
+            return f'{place} is a "fixed" end, which cannot move; write a node that can', "at"
         return None
 
     def named_chain(self, loads: Sequence[Load]) -> None:
@@ -91,12 +89,12 @@ class ExplicitChain(SceneTable):
         units: dict[int, dict[str, UnitLoad]] = {}
         for load in loads:
             for kind, coefficients in (("step", (fmpq(1),)), ("ramp", (fmpq(0), fmpq(1)))):
-                unit = UnitLoad(f"{_at(load)}:{kind}", None, coefficients)
+                unit = UnitLoad(f"{_load_place(load)}:{kind}", None, coefficients)
                 units.setdefault(self._point(load), {})[unit.source] = unit
         return self.drawing.network({point: tuple(each.values()) for point, each in units.items()}, length)
 
     def _point(self, load: Load) -> int:
-        return node(self.drawing, _at(load))
+        return node(self.drawing, _load_place(load))
 
 
 def _damper(network: Network) -> str:
@@ -112,5 +110,5 @@ def _damper(network: Network) -> str:
     return ""
 
 
-def _at(load: Load) -> str:
+def _load_place(load: Load) -> str:
     return cast(OnNode, load).at

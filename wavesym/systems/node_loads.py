@@ -14,7 +14,7 @@ from wavesym.records.load import RecordedLoad
 from wavesym.systems.place import PlaceInUnits, position_of
 
 
-def _at(value: object) -> str:
+def _read_place(value: object) -> str:
     text = number_text(value)
     if text is None:
         text = str(exact(value))
@@ -24,7 +24,7 @@ def _at(value: object) -> str:
     return value if isinstance(value, PlaceInUnits) else str(text)
 
 
-At = Annotated[str, PlainValidator(_at)]
+At = Annotated[str, PlainValidator(_read_place)]
 
 
 class OnNode(Load):

@@ -37,7 +37,7 @@ def _true(value: object) -> bool:
     return True
 
 
-def _moved(value: object) -> Literal["velocity", "acceleration"]:
+def _read_motion(value: object) -> Literal["velocity", "acceleration"]:
     if value == "velocity":
         return "velocity"
     if value == "acceleration":
@@ -116,7 +116,7 @@ class MotionPart(ChainPart):
 
     key: ClassVar[str] = "motion"
 
-    motion: Annotated[Literal["velocity", "acceleration"], PlainValidator(_moved)] = Field(
+    motion: Annotated[Literal["velocity", "acceleration"], PlainValidator(_read_motion)] = Field(
         description='"velocity" or "acceleration"'
     )
     velocity: Exact = Fraction(0)
@@ -177,24 +177,24 @@ def read_parts(value: object) -> tuple[ChainPart | str, ...]:
     return tuple(found)
 
 
-def _written(parts: tuple[ChainPart | str, ...]) -> list[Any]:
+def _serialise(parts: tuple[ChainPart | str, ...]) -> list[Any]:
     return [part if isinstance(part, str) else part.model_dump(exclude_defaults=True) for part in parts]
 
 
 def describe_parts(parts: tuple[ChainPart | str, ...]) -> str:
     """Parts in a line; of a long one the first."""
-    words = [part if isinstance(part, str) else _told(part) for part in parts[:_MOST_TOLD]]
+    words = [part if isinstance(part, str) else _describe_part(part) for part in parts[:_MOST_TOLD]]
     more = [f"... and {len(parts) - _MOST_TOLD} more"] if len(parts) > _MOST_TOLD else []
     return " | ".join([*words, *more])
 
 
-def _told(part: ChainPart) -> str:
+def _describe_part(part: ChainPart) -> str:
     given = part.model_dump(exclude_defaults=True)
     keys = sorted(given, key=lambda key: (key == "name", key != part.key))
     return ", ".join(key if given[key] is True else f"{key} {given[key]}" for key in keys)
 
 
-Parts = Annotated[tuple[Any, ...], PlainValidator(read_parts), PlainSerializer(_written, return_type=list[Any])]
+Parts = Annotated[tuple[Any, ...], PlainValidator(read_parts), PlainSerializer(_serialise, return_type=list[Any])]
 
 
 class Branch(SceneTable):

@@ -18,7 +18,7 @@ from wavesym.programs.making import make
 from wavesym.verification.integrations import collocation, collocation_beyond, contact_changes, differences, elements
 from wavesym.verification.invariants import Balance, Balancing
 from wavesym.verification.outcome import FINE, REFUSED, Check, Outcome, format_error, refused_outcomes, too_coarse
-from wavesym.verification.reference import Known
+from wavesym.verification.reference import ReferenceOutputs
 
 # balances are struck as long as that takes no more values
 _MOST_VALUES = 30_000
@@ -27,7 +27,7 @@ _MOST_VALUES = 30_000
 _ROUNDED = 2.0**-51
 
 
-def invariants(known: Known) -> list[Outcome]:
+def invariants(known: ReferenceOutputs) -> list[Outcome]:
     """The balances of momentum and energy, in the reference itself and in the program, which generated NumPy is."""
     name = known.model.name
 
@@ -60,7 +60,7 @@ def invariants(known: Known) -> list[Outcome]:
     return outcomes
 
 
-def peaks(known: Known) -> list[Outcome]:
+def peaks(known: ReferenceOutputs) -> list[Outcome]:
     """How far values lie beyond proved extremes, and how far each extreme is from the value at its instant.
 
     The instant is given as a double, which lies beside it: the change of values between two doubles is allowed.

@@ -11,7 +11,7 @@ from flint import fmpq
 from wavesym.derivation.delay import delay_equations
 from wavesym.derivation.recurrence import recurrence
 from wavesym.derivation.table import full_table
-from wavesym.documents.derivation.families import solved
+from wavesym.documents.derivation.families import solve_at_rates
 from wavesym.documents.derivation.highest_powers import POWERS as FAMILIES
 from wavesym.documents.derivation.patterns import patterns, rates
 from wavesym.mechanics.chain import Chain
@@ -104,7 +104,7 @@ def _proofs(system: System) -> Iterator[Proof]:
             (e, residual)
             for found in (None, known)
             for e, law in zip(delay_equations(system, pattern.parameters), laws.laws, strict=True)
-            for residual in residuals(e, solved(law, found), laws.interval)
+            for residual in residuals(e, solve_at_rates(law, found), laws.interval)
         ]
         unsolved = tuple(f"the equation of {e.function} of rod {e.rod} leaves {rest}" for e, rest in left if rest != 0)
         yield Proof(RECURRENCES, f"{system.name}, {pattern.name}", rates_met(laws, known), len(left), unsolved)

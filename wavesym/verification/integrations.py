@@ -25,7 +25,7 @@ from wavesym.verification.collocation import Motion, Undecided, integrate
 from wavesym.verification.differences import LATE, SpaceTimeGrid, coarsest_grid
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
 from wavesym.verification.problem import Change, KnownChanges, match_changes, problem_of
-from wavesym.verification.reference import Known, sample_evenly, spread_taus
+from wavesym.verification.reference import ReferenceOutputs, sample_evenly, spread_taus
 
 # Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them
 _POINTS, _POINTS_OF_CONTACTS = 6, (8, 12)
@@ -58,7 +58,7 @@ _NO_GRID = "on no grid that is not too fine the same happens at contacts"
 # collocation
 
 
-def collocation(known: Known) -> list[Outcome]:
+def collocation(known: ReferenceOutputs) -> list[Outcome]:
     """Collocation between fronts on what is known exactly; N is doubled until errors are bounded well.
 
     With contacts N is one with which the same happens at them with 2N and 4N.
@@ -73,7 +73,7 @@ def collocation(known: Known) -> list[Outcome]:
     return method.outcomes(known.whole.name, known.names, truths, {})
 
 
-def collocation_beyond(known: Known) -> list[Outcome]:
+def collocation_beyond(known: ReferenceOutputs) -> list[Outcome]:
     """Collocation on the whole horizon, where exact values are known of its beginning only."""
     if not known.outputs or known.model.until == known.whole.until:
         return []
@@ -86,11 +86,11 @@ def collocation_beyond(known: Known) -> list[Outcome]:
 
 def collocation_method(model: Model, until: float, taus: Sequence[float]) -> Method | str:
     """Collocation of a model without contacts at the same instants for every output, or why there is none."""
-    solved = _solved(model, until)
+    solved = _solve(model, until)
     return solved if isinstance(solved, str) else solved.method([taus] * len(model.probes))
 
 
-class _Solved:
+class _Solutions:
     """The motions of a model, with ever more points a panel."""
 
     def __init__(self, model: Model, until: float) -> None:
@@ -145,22 +145,22 @@ class _Solved:
         return Method("integration", self.points, solve, is_affordable, "plain", instants)
 
 
-def _solved(model: Model, until: float) -> _Solved | str:
+def _solve(model: Model, until: float) -> _Solutions | str:
     try:
-        return _Solved(model, until)
+        return _Solutions(model, until)
     except Undecided as undecided:
         return f"no integration between fronts, as {undecided}"
 
 
 @lru_cache(maxsize=1)
-def _solved_once(known: Known) -> _Solved | str:
-    return _solved(known.integrated, known.until)
+def _solved_once(known: ReferenceOutputs) -> _Solutions | str:
+    return _solve(known.integrated, known.until)
 
 
 # central differences
 
 
-def differences(known: Known) -> list[Outcome]:
+def differences(known: ReferenceOutputs) -> list[Outcome]:
     """Central differences with N, 2N and 4N cells a rod, at instants away from fronts.
 
     As far as they can be had; where they stay coarse that is said, but no failure: what they allow is in the table.
@@ -214,7 +214,7 @@ def _grid(model: Model) -> SpaceTimeGrid:
 # finite elements
 
 
-def elements(known: Known) -> list[Outcome]:
+def elements(known: ReferenceOutputs) -> list[Outcome]:
     """Finite elements of consistent mass, damped by the same ratios, where modes are damped; nothing else knows these.
 
     Their error is a series in the square of their length. There is no truth to compare them with.
@@ -249,7 +249,7 @@ def elements(known: Known) -> list[Outcome]:
 # contacts
 
 
-def contact_changes(known: Known) -> list[Outcome]:
+def contact_changes(known: ReferenceOutputs) -> list[Outcome]:
     """When contacts open and close, against collocation between fronts and central differences."""
     model, judged = known.model, known.integrated
     if not judged.network.contacts:

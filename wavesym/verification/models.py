@@ -18,7 +18,7 @@ from wavesym.exact.extremes import extremes
 from wavesym.methods.problem import Array
 from wavesym.running.compiled import Compiled, CompiledModel
 from wavesym.verification.outcome import Integrals, IntegratedOutput, ProgramValues
-from wavesym.verification.reference import Known, even_taus, sample_evenly
+from wavesym.verification.reference import ReferenceOutputs, even_taus, sample_evenly
 
 _ROUNDING = 2.0**-44
 """Sums and instants are rounded by less, relative to the largest value."""
@@ -28,7 +28,7 @@ _MOST_DERIVATIVES = 6
 
 
 @dataclass(frozen=True)
-class Given:
+class ParameterSet:
     """Numbers of all parameters in the order of the struct, the largest values `sizes` that outputs have with them, and
     what integrations have of these; `exact` is what is known, of the scene's own numbers alone.
     """
@@ -36,10 +36,10 @@ class Given:
     numbers: Sequence[float]
     sizes: Sequence[float]
     integrals: Integrals
-    exact: Known | None = None
+    exact: ReferenceOutputs | None = None
 
 
-def model_values(built: Compiled, name: str, given: Given, taus: Array, until: float) -> Iterator[ProgramValues]:
+def model_values(built: Compiled, name: str, given: ParameterSet, taus: Array, until: float) -> Iterator[ProgramValues]:
     """Values at `taus` of [0, until], samples and peaks of a model."""
     model = built.model(given.numbers)
     bounds = [model.estimate] * built.outputs
@@ -59,7 +59,7 @@ def model_values(built: Compiled, name: str, given: Given, taus: Array, until: f
 
 
 def functions_of_parameters(
-    built: Compiled, name: str, own: Given, other: Sequence[float], taus: Array, until: float
+    built: Compiled, name: str, own: ParameterSet, other: Sequence[float], taus: Array, until: float
 ) -> Iterator[ProgramValues]:
     """The model of `error_bound`, that of a batch with `other` numbers beside it, its misfit, and derivatives."""
     model, bounds = built.bounded_model(own.numbers)
@@ -83,7 +83,7 @@ def _computed(name: str, values: Array, due: Array, allowed: Sequence[float]) ->
     return ProgramValues(name, places, values, [1.0] * len(values), nothing, integrals=integrals)
 
 
-def _peaks(model: CompiledModel, name: str, given: Given) -> ProgramValues:
+def _peaks(model: CompiledModel, name: str, given: ParameterSet) -> ProgramValues:
     """Peaks and values where they are said to be, against true extremes; where these are not known, against all values
     that are.
     """
@@ -106,7 +106,7 @@ def _peaks(model: CompiledModel, name: str, given: Given) -> ProgramValues:
     return _computed(name, np.array(values), np.array(due), allowed)
 
 
-def _true_extremes(known: Known | None) -> list[tuple[float, float]] | None:
+def _true_extremes(known: ReferenceOutputs | None) -> list[tuple[float, float]] | None:
     """The least and the greatest value of each output, where they are known on the whole horizon."""
     if known is None or known.model.until != known.whole.until:
         return None
@@ -123,7 +123,7 @@ def _nearest_value(model: CompiledModel, output: int, value: float, tau: float) 
     return float(there[np.nanargmin(np.abs(there - value))]) if not np.all(np.isnan(there)) else np.nan
 
 
-def _derivatives(built: Compiled, name: str, own: Given, estimate: float, instants: Array) -> ProgramValues:
+def _derivatives(built: Compiled, name: str, own: ParameterSet, estimate: float, instants: Array) -> ProgramValues:
     """Derivatives by some parameters, against differences of models, extrapolated: relative to the largest of each."""
     count, dtau = len(instants), instants[1]
     lanes = built.tangent(own.numbers, 0.0, dtau, count)

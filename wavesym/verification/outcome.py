@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from wavesym.methods.problem import Array
-from wavesym.verification.reference import Known
+from wavesym.verification.reference import ReferenceOutputs
 
 FINE = 1e-6
 """Integrations are refined until their own bound is as small as this, as long as that does not take too long."""
@@ -94,7 +94,7 @@ class Check:
     """A check, and what stands over the table of its outcomes."""
 
     title: str
-    run: Callable[[Known], Sequence[Outcome]]
+    run: Callable[[ReferenceOutputs], Sequence[Outcome]]
 
 
 @dataclass(frozen=True)
@@ -216,7 +216,7 @@ class Method:
         return outcomes
 
 
-def refused_outcomes(known: Known, column: str, why: str) -> list[Outcome]:
+def refused_outcomes(known: ReferenceOutputs, column: str, why: str) -> list[Outcome]:
     """A row for each output that says that it was not tried, and why."""
     return [Outcome(probe.name, {column: REFUSED}, True, f"{known.whole.name}: {why}") for probe in known.whole.probes]
 

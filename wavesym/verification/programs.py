@@ -34,10 +34,10 @@ from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes, sources
 from wavesym.targets.files import files
 from wavesym.verification.integrations import collocation_method
-from wavesym.verification.models import Given, functions_of_parameters, model_values
+from wavesym.verification.models import ParameterSet, functions_of_parameters, model_values
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
 from wavesym.verification.outcome import Integrals, IntegratedOutput, Outcome, ProgramValues, format_error
-from wavesym.verification.reference import Known, even_taus, sample_evenly
+from wavesym.verification.reference import ReferenceOutputs, even_taus, sample_evenly
 from wavesym.verification.streams import step_modes, step_stream
 
 FLAGS = ("-std=c99", "-O1")
@@ -62,7 +62,7 @@ def all_requests(scene: Scene, model: Model) -> Iterator[Request]:
 
 
 def compare_programs(
-    scene: Scene, known: Known, integrals: Integrals, requests: Sequence[Request] | None = None
+    scene: Scene, known: ReferenceOutputs, integrals: Integrals, requests: Sequence[Request] | None = None
 ) -> list[Outcome]:
     """A row for each program in each language: the output in which it is worst.
 
@@ -79,7 +79,7 @@ def compare_programs(
             continue
         name = _name(request)
         try:
-            program = _made(scene, model, request, is_required=requests is not None)
+            program = _build(scene, model, request, is_required=requests is not None)
         except (CostError, UnservedError, ToleranceError, RangeError) as error:
             refused.add(request.evaluator)
             reasons.setdefault(str(error), []).append(name)
@@ -114,7 +114,7 @@ def _name(request: Request) -> str:
     return ", ".join(filter(None, (kind, "stream" if request.stream else "", runtime, precision)))
 
 
-def _made(scene: Scene, model: Model, request: Request, *, is_required: bool) -> Program:
+def _build(scene: Scene, model: Model, request: Request, *, is_required: bool) -> Program:
     """The program; in single precision for a larger tolerance, where it has to be."""
     if request.stream and request.evaluator != "modes":
         endless = replace(model, endless=True)
@@ -135,7 +135,7 @@ def _made(scene: Scene, model: Model, request: Request, *, is_required: bool) ->
 # running
 
 
-def _run(known: Known, integrals: Integrals) -> ProgramValues:
+def _run(known: ReferenceOutputs, integrals: Integrals) -> ProgramValues:
     """What `run` gives: the exact values, and more of them where integrations ask for them."""
     others = sorted({tau for each in integrals if each and each.clear for tau in each.taus} - {*known.taus})
     exact = np.array([each.values for each in known.outputs])
@@ -146,7 +146,7 @@ def _run(known: Known, integrals: Integrals) -> ProgramValues:
     return ProgramValues("run", taus[order], exact[:, order], sizes, [_ROUNDED] * len(sizes))
 
 
-def _run_numpy(known: Known, integrals: Integrals, program: Program, name: str) -> Iterator[ProgramValues]:
+def _run_numpy(known: ReferenceOutputs, integrals: Integrals, program: Program, name: str) -> Iterator[ProgramValues]:
     if program.evaluator in ("runtime", "stream"):
         return
     module = imported(files(program, "numpy")[f"{known.whole.name}.py"], known.whole.name)
@@ -155,7 +155,9 @@ def _run_numpy(known: Known, integrals: Integrals, program: Program, name: str) 
     yield ProgramValues(f"{name}, NumPy", taus, values, _sizes(known, integrals, program), _bounds(program), late)
 
 
-def _run_c(scene: Scene, known: Known, integrals: Integrals, program: Program, name: str) -> Iterator[ProgramValues]:
+def _run_c(
+    scene: Scene, known: ReferenceOutputs, integrals: Integrals, program: Program, name: str
+) -> Iterator[ProgramValues]:
     model, sizes, bounds = known.whole, _sizes(known, integrals, program), _bounds(program)
     real = np.float32 if program.real.bytes == 4 else np.float64
     taus, given, late = _instants(known, integrals, program)
@@ -181,13 +183,13 @@ def _run_c(scene: Scene, known: Known, integrals: Integrals, program: Program, n
 
 
 def _with_parameters(
-    scene: Scene, known: Known, integrals: Integrals, program: Program, built: Compiled, name: str
+    scene: Scene, known: ReferenceOutputs, integrals: Integrals, program: Program, built: Compiled, name: str
 ) -> Iterator[ProgramValues]:
     """With the scene's own parameters, and with others, of which only integrations know anything."""
     assert program.laws is not None
     _, taus, _ = _instants(known, integrals, program)
     numbers = [nearest(value) for field in program.laws.fields for value in field.values]
-    own = Given(numbers, _sizes(known, integrals, program), integrals, known if known.outputs else None)
+    own = ParameterSet(numbers, _sizes(known, integrals, program), integrals, known if known.outputs else None)
     others, changed = draw_parameters(scene, known.whole, program.laws.fields)
     yield from model_values(built, f"{name}, C", own, taus, known.until)
     yield from functions_of_parameters(built, f"{name}, C", own, others, taus, known.until)
@@ -199,10 +201,10 @@ def _with_parameters(
     _, refined = method.refine([None] * len(program.outputs))
     sizes = [float(np.max(np.abs(each.values))) for each in refined]
     judges = [IntegratedOutput(instants.tolist(), each.values, each.allowed * each.scale) for each in refined]
-    yield from model_values(built, f"{name}, C, others", Given(others, sizes, judges), instants, known.until)
+    yield from model_values(built, f"{name}, C, others", ParameterSet(others, sizes, judges), instants, known.until)
 
 
-def _instants(known: Known, integrals: Integrals, program: Program) -> tuple[Array, Array, float]:
+def _instants(known: ReferenceOutputs, integrals: Integrals, program: Program) -> tuple[Array, Array, float]:
     """Where values are compared, these as numbers of the program's type, and how far they are from that at most.
 
     A front may pass between an instant and the number of single precision that is nearest to it: such instants are
@@ -217,7 +219,7 @@ def _instants(known: Known, integrals: Integrals, program: Program) -> tuple[Arr
     return taus, given, float(np.max(np.abs(given - taus), initial=0.0))
 
 
-def _sizes(known: Known, integrals: Integrals, program: Program) -> list[float]:
+def _sizes(known: ReferenceOutputs, integrals: Integrals, program: Program) -> list[float]:
     """The largest value of each output on the whole horizon, as far as it is known."""
     found = []
     for k, output in enumerate(program.outputs):
@@ -236,7 +238,7 @@ def _bounds(program: Program) -> list[float]:
 # judging
 
 
-def _compare(known: Known, integrals: Integrals, found: ProgramValues) -> Outcome:
+def _compare(known: ReferenceOutputs, integrals: Integrals, found: ProgramValues) -> Outcome:
     """The row of a program: of the output in which it comes closest to what it may be wrong by, or is wrong."""
     worst, row = -1.0, {"of": "-"}
     exact = _exact(known, found)
@@ -266,7 +268,7 @@ class _ExactValues(NamedTuple):
     values: Sequence[Array]
 
 
-def _exact(known: Known, found: ProgramValues) -> _ExactValues | None:
+def _exact(known: ReferenceOutputs, found: ProgramValues) -> _ExactValues | None:
     if found.integrals or not known.outputs or not len(found.taus):
         return None
     if len(pairs := _pairs(found.taus, np.array(known.taus))):

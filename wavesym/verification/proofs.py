@@ -52,7 +52,7 @@ def node_law(system: System, equations: Iterable[DelayEquation]) -> Iterator[Out
     given = list(equations)
     for law in _laws(system):
         own = [_image(*wave) for wave in law.outgoing]
-        derived = [_image_of(_found(given, law.family, *wave)).subs(law.known) for wave in law.outgoing]
+        derived = [_image_of(_wave_equation(given, law.family, *wave)).subs(law.known) for wave in law.outgoing]
         solution, determinant = _solution(derived, own)
         for wave, one, other in zip(law.outgoing, solution, law.solution, strict=True):
             yield Outgoing(*wave, cancel(together(one - other)), (determinant, law.determinant))
@@ -160,7 +160,7 @@ def _echo(family: Family) -> tuple[Expr, Expr]:
     return own, cancel(solution)
 
 
-def _found(equations: Iterable[DelayEquation], family: Family, function: str, rod: Expr) -> DelayEquation:
+def _wave_equation(equations: Iterable[DelayEquation], family: Family, function: str, rod: Expr) -> DelayEquation:
     """The equation of a wave that leaves the nodes of a family, with i the place of the node."""
     shift = 1 if function == "f" else 0
     found = [

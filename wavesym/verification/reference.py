@@ -45,7 +45,7 @@ class KnownOutput:
 
 
 @dataclass(frozen=True, eq=False)
-class Known:
+class ReferenceOutputs:
     """The outputs of a model at `taus`, doubles in [0, until]; it is the `whole` one, or its beginning.
 
     `starts` are those of the taus from which on an output may be something else than before. `independent` is the model
@@ -80,7 +80,7 @@ class Known:
         return [f"{self.whole.name}: compared to tau = {self.until:g}; exact values of all of it would take too long"]
 
 
-def known_outputs(model: Model, independent: Model | None = None) -> Known:
+def known_outputs(model: Model, independent: Model | None = None) -> ReferenceOutputs:
     """A model's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after.
 
     Of a long horizon the beginning, as far as it can be known in moderate time. `independent`: see `Known`.
@@ -91,12 +91,14 @@ def known_outputs(model: Model, independent: Model | None = None) -> Known:
     outputs = (
         KnownOutput(probe, np.array(values)) for probe, values in zip(model.probes, exact.values(taus), strict=True)
     )
-    return Known(model, exact.model, exact.tau_max, taus, tuple(outputs), frozenset(starts), independent, exact)
+    return ReferenceOutputs(
+        model, exact.model, exact.tau_max, taus, tuple(outputs), frozenset(starts), independent, exact
+    )
 
 
-def unknown_outputs(model: Model, independent: Model | None = None) -> Known:
+def unknown_outputs(model: Model, independent: Model | None = None) -> ReferenceOutputs:
     """A model whose modes are damped, which balls know nothing of."""
-    return Known(model, model, model.horizon(), (), (), independent=independent)
+    return ReferenceOutputs(model, model, model.horizon(), (), (), independent=independent)
 
 
 def spread_taus(until: float) -> list[float]:

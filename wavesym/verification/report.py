@@ -13,7 +13,7 @@ from wavesym.verification.independent import independent_model
 from wavesym.verification.integrations import elements
 from wavesym.verification.outcome import REFUSED, IntegratedOutput, Outcome, Row, table
 from wavesym.verification.programs import compare_programs
-from wavesym.verification.reference import Known, known_outputs, unknown_outputs
+from wavesym.verification.reference import ReferenceOutputs, known_outputs, unknown_outputs
 
 _LATE = 0.05  # parts of the horizon that an integration may leave out at its end
 _LEGEND = "Errors are relative to the output's largest value."
@@ -66,7 +66,7 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
     return "\n".join(lines[:-1]) + "\n", passed
 
 
-def _judges(integral: IntegratedOutput, truth: Known) -> bool:
+def _judges(integral: IntegratedOutput, truth: ReferenceOutputs) -> bool:
     """Whether it can tell what is wrong from what is right: of what is still 0 only at the end of the horizon."""
     moves = integral.size > integral.allowed
     return integral.judges and (moves or integral.taus[-1] >= truth.whole.horizon() * (1 - _LATE))

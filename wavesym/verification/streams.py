@@ -15,7 +15,7 @@ from wavesym.programs.program import Program
 from wavesym.running.compiled import Compiled, CompiledStream
 from wavesym.scene import Scene
 from wavesym.verification.independent import changes
-from wavesym.verification.reference import Known, sample_evenly
+from wavesym.verification.reference import ReferenceOutputs, sample_evenly
 
 _CLEAR = 1e-6  # outputs are looked at so far from fronts and from changes of loads, and no closer together
 _MOST_LOOKED = 300
@@ -25,7 +25,7 @@ FedLoads = tuple[Fraction, list[float], bool]
 
 
 def step_stream(
-    scene: Scene, known: Known, program: Program, built: Compiled, taus: Array
+    scene: Scene, known: ReferenceOutputs, program: Program, built: Compiled, taus: Array
 ) -> tuple[Array, Array, CompiledStream]:
     """A stream of waves: some of the taus, the outputs there, and it as it is after them.
 
@@ -47,7 +47,7 @@ def step_stream(
     return chosen, np.array(columns).T, stream
 
 
-def step_modes(scene: Scene, known: Known, program: Program, built: Compiled) -> tuple[Array, Array]:
+def step_modes(scene: Scene, known: ReferenceOutputs, program: Program, built: Compiled) -> tuple[Array, Array]:
     """A stream of modes: some multiples of its spacing after the first change of a load, and the outputs there."""
     feed = LoadFeed(scene, known.whole, program.sources)
     step = Fraction(program.constants["spacing"])

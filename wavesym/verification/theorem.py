@@ -14,7 +14,7 @@ from sympy import DiracDelta, Dummy, Expr, Function, Heaviside, Integer, Symbol,
 from wavesym.derivation.delay import DelayEquation
 from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.recurrence import POWER, RATE
-from wavesym.documents.derivation.families import Coefficient, Solved
+from wavesym.documents.derivation.families import Coefficient, Recursion
 
 A, B, W = Dummy("a"), Dummy("b"), Symbol("w", positive=True)
 
@@ -51,16 +51,16 @@ def _at(operator: Operator, value: Callable[[Expr], Expr], rate: Expr) -> Expr:
     return image.subs({above: value(POWER + 1), same: value(POWER)})
 
 
-def _named(c: Coefficient) -> Symbol:
+def _coefficient_symbol(c: Coefficient) -> Symbol:
     """A coefficient as a symbol of its own."""
     return Symbol(f"{c.function}({c.rod})^{c.back}[{c.over}{c.rate},{c.power}]")
 
 
 def _symbol(place: tuple[str, Expr, int, Expr], power: Expr) -> Symbol:
-    return _named(Coefficient(*place, power))
+    return _coefficient_symbol(Coefficient(*place, power))
 
 
-def residuals(e: DelayEquation, lines: Sequence[Solved], interval: int) -> Iterator[Expr]:
+def residuals(e: DelayEquation, lines: Sequence[Recursion], interval: int) -> Iterator[Expr]:
     """What a delay equation leaves at every rate and power of its solved `lines`, at its loads, and at the front.
 
     All of them are 0 where the lines solve it. A function whose equation has no D has no front to look at.
@@ -75,16 +75,16 @@ def residuals(e: DelayEquation, lines: Sequence[Solved], interval: int) -> Itera
         yield cancel(together(e.own.b * total - given.get(place, Integer(0))))  # a load is at rate 0
 
 
-def _right(line: Solved) -> Expr:
-    return sum((factor * _named(c) for factor, c in line.parts), Integer(0)) / line.divisor
+def _right(line: Recursion) -> Expr:
+    return sum((factor * _coefficient_symbol(c) for factor, c in line.parts), Integer(0)) / line.divisor
 
 
-def _inside(e: DelayEquation, line: Solved, interval: int) -> Expr:
+def _inside(e: DelayEquation, line: Recursion, interval: int) -> Expr:
     """At the line's rate and power k, with the line for the coefficient that it gives."""
     rate = line.left.rate
 
     def own(power: Expr) -> Expr:
-        plain = _named(line.left._replace(power=power))
+        plain = _coefficient_symbol(line.left._replace(power=power))
         return _shifted(line, power) if power == POWER + line.least else plain
 
     left = _at(e.own, own, rate)
@@ -94,13 +94,13 @@ def _inside(e: DelayEquation, line: Solved, interval: int) -> Expr:
     return cancel(together(left))
 
 
-def _shifted(line: Solved, power: Expr) -> Expr:
+def _shifted(line: Recursion, power: Expr) -> Expr:
     """What the line gives at another power than k."""
 
     def at(expression: Expr) -> Expr:
         return expression.subs(POWER, power)
 
-    moved = Solved(
+    moved = Recursion(
         line.left,
         tuple((at(factor), c._replace(power=at(c.power))) for factor, c in line.parts),
         at(line.divisor),
@@ -108,14 +108,16 @@ def _shifted(line: Solved, power: Expr) -> Expr:
     return _right(moved)
 
 
-def _front(e: DelayEquation, line: Solved, interval: int, rates: Sequence[Expr]) -> Expr:
+def _front(e: DelayEquation, line: Recursion, interval: int, rates: Sequence[Expr]) -> Expr:
     """The delta function at w = 0, with the line for [q,0]; a function starts there with sum_g F[g,0]."""
 
     def start(function: str, rod: Expr, back: int, but: Expr | None = None) -> Expr:
         if RATE in rates:  # any rate: the sum itself is a symbol
             over = "all" if but is None else "other"
-            return _named(Coefficient(function, rod, back, RATE, Integer(0), over))
-        at_zero = (_named(Coefficient(function, rod, back, rate, Integer(0))) for rate in rates if rate != but)
+            return _coefficient_symbol(Coefficient(function, rod, back, RATE, Integer(0), over))
+        at_zero = (
+            _coefficient_symbol(Coefficient(function, rod, back, rate, Integer(0))) for rate in rates if rate != but
+        )
         return sum(at_zero, Integer(0))
 
     def delta(operator: Operator, phi: Expr) -> Expr:

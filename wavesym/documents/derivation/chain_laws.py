@@ -14,7 +14,7 @@ from wavesym.derivation.delay_terms import exact
 from wavesym.derivation.numbers import expression, number, symbol
 from wavesym.derivation.recurrence import POWER, RATE, CoefficientLaw, SymbolicWeights, recurrence
 from wavesym.derivation.rules import Linear, Rule, Weights
-from wavesym.documents.derivation.families import placed
+from wavesym.documents.derivation.families import substitute
 from wavesym.mechanics.chain import Chain
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def meanings(symbols: SymbolicChain) -> tuple[Meaning, ...]:
     return tuple(_meaning(name, value) for name, value in symbols.values.items() if symbol(name) in used)
 
 
-def merged(symbols: SymbolicChain) -> tuple[Meaning, ...]:
+def merged_parameters(symbols: SymbolicChain) -> tuple[Meaning, ...]:
     """The parameters that are told by the symbols that are left."""
     told = (_meaning(name, ratio) for name, ratio in symbols.meaning.items())
     return tuple(meaning for meaning in told if meaning.value != meaning.symbol)
@@ -74,7 +74,7 @@ def own_laws(chain: Chain) -> tuple[CoefficientLaw, ...]:
                 alike[-1] = replace(own, first=alike[-1].first)
             else:
                 alike.append(own)
-        laws += [placed(own, partial(_at, own.first)) if own.first == own.last else own for own in alike]
+        laws += [substitute(own, partial(_at, own.first)) if own.first == own.last else own for own in alike]
     return tuple(laws)
 
 

@@ -25,12 +25,12 @@ class DerivationDocument:
 
 def derivation(name: str, m: int | None, format: str) -> str:
     """The derivation of a system as "text", "latex" or "json"."""
-    return _written(statements(name, m, _notation(format)), format)
+    return _write(statements(name, m, _notation(format)), format)
 
 
 def scene_derivation(name: str, symbols: SymbolicChain, format: str) -> str:
     """The derivation of the system of a scene, with the families of its own parameters."""
-    return _written((scene_statement(name, symbols, _notation(format)),), format)
+    return _write((scene_statement(name, symbols, _notation(format)),), format)
 
 
 def network_derivation(model: Model, format: str) -> str:
@@ -45,7 +45,7 @@ def _notation(format: str) -> Text:
     return Latex() if format == "latex" else Text()
 
 
-def _written(made: tuple[Statement, ...], format: str) -> str:
+def _write(made: tuple[Statement, ...], format: str) -> str:
     if format == "json":
         return json.dumps([asdict(statement) for statement in made], indent=2) + "\n"
     return render(

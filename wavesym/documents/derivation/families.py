@@ -40,7 +40,7 @@ class Coefficient(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Solved:
+class Recursion:
     """left = (sum of factor * coefficient) / divisor + loads, for powers k = least, ... where `left` has a k.
 
     A load adds its `value` to the left side itself, at its own power and at rate 0. Powers go down at every rate but
@@ -61,7 +61,7 @@ def own_rate(law: CoefficientLaw) -> Expr | None:
     return exact(-law.own.same.subs(RATE, 0) / law.own.same.expand().coeff(RATE))
 
 
-def placed(law: CoefficientLaw, at: Callable[[Expr], Expr]) -> CoefficientLaw:
+def substitute(law: CoefficientLaw, at: Callable[[Expr], Expr]) -> CoefficientLaw:
     """A law with `at` of every expression in it; of a law that stands for several, the one that `at` is for."""
 
     def there(w: SymbolicWeights) -> SymbolicWeights:
@@ -82,7 +82,7 @@ def placed(law: CoefficientLaw, at: Callable[[Expr], Expr]) -> CoefficientLaw:
     )
 
 
-def solved(law: CoefficientLaw, rates: Sequence[Expr] | None) -> tuple[Solved, ...]:
+def solve_at_rates(law: CoefficientLaw, rates: Sequence[Expr] | None) -> tuple[Recursion, ...]:
     """A law at every one of `rates`, which are all there are; None: at q, and at any other rate g, as a symbol."""
     q = own_rate(law)
     if q is None:
@@ -91,7 +91,7 @@ def solved(law: CoefficientLaw, rates: Sequence[Expr] | None) -> tuple[Solved, .
     return (*(_foreign(law, rate) for rate in others), _own(law, q), _closure(law, q, rates))
 
 
-def _weighted(
+def _operator_value(
     w: SymbolicWeights, function: str, rod: Expr, back: int, rate: Expr, power: Expr
 ) -> Iterator[tuple[Expr, Coefficient]]:
     """What an operator gives at [rate, power]."""
@@ -101,27 +101,27 @@ def _weighted(
 
 def _right(law: CoefficientLaw, rate: Expr, power: Expr) -> Iterator[tuple[Expr, Coefficient]]:
     for term in law.terms:
-        yield from _weighted(term.weights, term.function, term.rod, term.back, rate, power)
+        yield from _operator_value(term.weights, term.function, term.rod, term.back, rate, power)
 
 
-def _foreign(law: CoefficientLaw, rate: Expr) -> Solved:
-    (divisor, left), (above, following) = _weighted(law.own, law.function, law.rod, 0, rate, POWER)
+def _foreign(law: CoefficientLaw, rate: Expr) -> Recursion:
+    (divisor, left), (above, following) = _operator_value(law.own, law.function, law.rod, 0, rate, POWER)
     parts = [*_right(law, rate, POWER), (-above, following)]
     constant = law.own.same.subs(RATE, 0)  # loads are at rate 0
     at_zero = rate in (0, RATE)
     loads = (replace(x, value=cancel(x.value / constant)) for x in law.loads) if at_zero else ()
-    return Solved(left, tuple((f, c) for f, c in parts if f != 0), divisor, tuple(loads))
+    return Recursion(left, tuple((f, c) for f, c in parts if f != 0), divisor, tuple(loads))
 
 
-def _own(law: CoefficientLaw, q: Expr) -> Solved:
+def _own(law: CoefficientLaw, q: Expr) -> Recursion:
     assert not law.loads or q != 0  # a load at its own rate would raise its power: no body has rate 0
     before = POWER - 1
-    _, (divisor, left) = _weighted(law.own, law.function, law.rod, 0, q, before)
+    _, (divisor, left) = _operator_value(law.own, law.function, law.rod, 0, q, before)
     parts = tuple((exact(f), c) for f, c in _right(law, q, before) if f != 0)
-    return Solved(left, parts, exact(divisor), (), 1)
+    return Recursion(left, parts, exact(divisor), (), 1)
 
 
-def _closure(law: CoefficientLaw, q: Expr, rates: Sequence[Expr] | None) -> Solved:
+def _closure(law: CoefficientLaw, q: Expr, rates: Sequence[Expr] | None) -> Recursion:
     zero = Integer(0)
 
     def jump(of: CoefficientLaw | SymbolicTerm, back: int, rate: Expr, over: str = "") -> Coefficient:
@@ -135,7 +135,7 @@ def _closure(law: CoefficientLaw, q: Expr, rates: Sequence[Expr] | None) -> Solv
         parts = [(t.weights.jump, jump(t, t.back, rate)) for t in jumping for rate in rates]
         others = (rate for rate in rates if cancel(rate - q) != 0)
         parts += [(-law.own.jump, jump(law, 0, rate)) for rate in others]
-    return Solved(jump(law, 0, q), tuple(parts), law.own.jump)
+    return Recursion(jump(law, 0, q), tuple(parts), law.own.jump)
 
 
 def integral(function: str, name: str) -> CoefficientLaw:

@@ -59,10 +59,10 @@ def alone(network: Network, number: int) -> LoneJoint:
         for link in network.links
         if link.left in place
     ]
-    return _written([network.points[point] for point in joint.points], bars, links)
+    return _write([network.points[point] for point in joint.points], bars, links)
 
 
-def _written(points: list[Point], bars: list[Bar], links: list[Link]) -> LoneJoint:
+def _write(points: list[Point], bars: list[Bar], links: list[Link]) -> LoneJoint:
     network = Network((*points, Point(_NONE)), tuple(bars), tuple(links))
     ends = tuple(end for end in network.joints[-1].ends)
     near = Joint(tuple(range(len(points))), tuple((network.beyond(end), _near(bars[end.bar])) for end, _ in ends))
@@ -121,10 +121,10 @@ def _symbolic(joint: LoneJoint) -> LoneJoint:
         Link(link.left, link.right, of(f"k_{n}"), of(f"d_{n}"), of(f"r_{n}", _ONE), link.contact)
         for n, link in enumerate(joint.network.links, 1)
     ]
-    return _written(points, bars, links)
+    return _write(points, bars, links)
 
 
-def told(joint: LoneJoint) -> Iterator[str]:
+def describe_joint(joint: LoneJoint) -> Iterator[str]:
     """What a kind of joint consists of, in words, point by point."""
     network = joint.network
     for i, point in enumerate(network.points[:-1], 1):

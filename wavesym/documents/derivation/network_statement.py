@@ -13,7 +13,7 @@ from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.numbers import expression
 from wavesym.derivation.recurrence import POWER, RATE, joint_rule, weights
-from wavesym.documents.derivation.joint_kinds import Kind, LoneJoint, alone, kinds, told, values
+from wavesym.documents.derivation.joint_kinds import Kind, LoneJoint, alone, describe_joint, kinds, values
 from wavesym.documents.derivation.notation import Text
 from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, rates
 from wavesym.exact.tables.network_joints import MOST_POINTS
@@ -130,7 +130,7 @@ class _Author:
     def kind(self, kind: Kind) -> JointKind:
         joints = (self._joint(number) for number in kind.numbers)
         made = kind.symbols
-        words = self.n.word(" | ".join(told(made)))
+        words = self.n.word(" | ".join(describe_joint(made)))
         laws, sent, polynomial = (tuple(write(made)) for write in (self._laws, self._sent, self._symbolic))
         return JointKind(JointLaws(words, (), laws, sent, polynomial, ()), tuple(joints))
 

@@ -12,9 +12,9 @@ from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, delay_equations
 from wavesym.derivation.delay_terms import exact
 from wavesym.derivation.recurrence import CoefficientLaw, recurrence
 from wavesym.derivation.rods import rod_kinds
-from wavesym.documents.derivation.chain_laws import Meaning, meanings, merged, own_laws
+from wavesym.documents.derivation.chain_laws import Meaning, meanings, merged_parameters, own_laws
 from wavesym.documents.derivation.dimensions import LENGTH, SPEED, Dimensions, dimensions
-from wavesym.documents.derivation.families import integral, own_rate, placed
+from wavesym.documents.derivation.families import integral, own_rate, substitute
 from wavesym.documents.derivation.highest_powers import POWERS, PowerFamily
 from wavesym.documents.derivation.notation import Text
 from wavesym.documents.derivation.patterns import Pattern, pattern_laws, patterns, rates
@@ -228,7 +228,7 @@ class _Author:
         different: dict[tuple[CoefficientLaw, ...], Pattern] = {}
         for pattern in patterns(system):
             laws = pattern_laws(system, pattern)
-            here = (placed(law, at) for law in laws for at in self.w.places(law.first, law.last, law.step))
+            here = (substitute(law, at) for law in laws for at in self.w.places(law.first, law.last, law.step))
             different[tuple(here)] = pattern
         for laws, pattern in different.items():
             yield self._families(
@@ -245,7 +245,7 @@ class _Author:
             f"m = {symbols.chain.m}",
             own_laws(symbols.chain),
             symbols=tuple(map(self._meaning, meanings(symbols))),
-            given=tuple(map(self._meaning, merged(symbols))),
+            given=tuple(map(self._meaning, merged_parameters(symbols))),
         )
 
     def _meaning(self, meaning: Meaning) -> str:

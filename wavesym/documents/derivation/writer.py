@@ -12,7 +12,7 @@ from wavesym.derivation.delay_terms import Line, Source, exact
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.recurrence import POWER, RATE, CoefficientLaw, SymbolicLoad, SymbolicWeights, stretch_law
 from wavesym.derivation.rods import RodKind
-from wavesym.documents.derivation.families import Coefficient, Solved, own_rate, solved
+from wavesym.documents.derivation.families import Coefficient, Recursion, own_rate, solve_at_rates
 from wavesym.documents.derivation.highest_powers import PowerFamily, PowerRow, plain
 from wavesym.documents.derivation.notation import Text
 from wavesym.documents.derivation.patterns import Equal
@@ -177,11 +177,11 @@ class Writer:
         if rates is None and own is not None and own != 0:
             yield f"{self.n.expression(OWN)} = {self.n.expression(own)}"
             names = {own: OWN}
-        for line in solved(law, rates):
+        for line in solve_at_rates(law, rates):
             yield self._solved(line, own, names)
             yield from self._gains(line.loads, exact)
 
-    def _solved(self, line: Solved, own: Expr | None, names: Mapping[Expr, Expr]) -> str:
+    def _solved(self, line: Recursion, own: Expr | None, names: Mapping[Expr, Expr]) -> str:
         def named(rate: Expr) -> Expr:
             return names.get(rate, rate)
 

@@ -13,7 +13,7 @@ from wavesym.documents.inspection.section import Display, Facts, Listing, Plain,
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.joints.joint import JointLaw
-from wavesym.exact.tables.joint_response import joint_polynomial, rates, written
+from wavesym.exact.tables.joint_response import joint_polynomial, polynomial_text, rates
 from wavesym.exact.tables.network_joints import MOST_POINTS
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
@@ -63,7 +63,7 @@ def joints(model: Model) -> Listing:
     rows = []
     for number in model.reached(rational(model.horizon())):
         joint = model.network.joints[number]
-        points = Display([_named(model, point) for point in joint.points], _pointed(model, joint))
+        points = Display([_point_name(model, point) for point in joint.points], _point_names(model, joint))
         law = _polynomial(JointLaw.of(model.network, joint))
         rows.append({"joint": number, "points": points, "ends": len(joint.ends), "law": law})
     return Listing("joints", "Joints in the light cone: the points and ends of rods that move together", rows, ("law",))
@@ -86,7 +86,7 @@ def joint_laws(model: Model) -> Listing:
         rows.append(
             {
                 "joint": number,
-                "points": Display([_named(model, point) for point in joint.points], _pointed(model, joint)),
+                "points": Display([_point_name(model, point) for point in joint.points], _point_names(model, joint)),
                 "ends": len(joint.ends),
                 "knots": knots.get(number),
                 "M": _matrix("M", mass),
@@ -109,23 +109,23 @@ def _polynomial(law: JointLaw) -> Display:
     """Of a joint that is not large: its polynomial, and the rates where it splits."""
     if len(law.mass) > MOST_POINTS:
         return Display(None, f"more than {MOST_POINTS} points: no polynomial is made")
-    found, shown = rates(law), written(joint_polynomial(law))
+    found, shown = rates(law), polynomial_text(joint_polynomial(law))
     if found is None:
-        return Display({"coefficients": _listed(law), "rates": None}, f"polynomial {shown}, which does not split")
+        return Display({"coefficients": _coefficients(law), "rates": None}, f"polynomial {shown}, which does not split")
     words = f", rates {', '.join(map(str, found))}" if found else ""
-    return Display({"coefficients": _listed(law), "rates": list(map(str, found))}, f"polynomial {shown}{words}")
+    return Display({"coefficients": _coefficients(law), "rates": list(map(str, found))}, f"polynomial {shown}{words}")
 
 
-def _listed(law: JointLaw) -> list[str]:
+def _coefficients(law: JointLaw) -> list[str]:
     return list(map(str, joint_polynomial(law).coeffs()))
 
 
-def _named(model: Model, point: int) -> Plain:
+def _point_name(model: Model, point: int) -> Plain:
     return model.network.points[point].name or point
 
 
-def _pointed(model: Model, joint: Joint) -> str:
-    return ", ".join(str(_named(model, point)) for point in joint.points)
+def _point_names(model: Model, joint: Joint) -> str:
+    return ", ".join(str(_point_name(model, point)) for point in joint.points)
 
 
 def _matrix(name: str, rows: Sequence[Sequence[fmpq]]) -> Display:

@@ -11,7 +11,7 @@ from wavesym.errors import CostError, ToleranceError, WavesymError
 from wavesym.exact.contacts.events import contact_ends, events
 from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.mechanics.model import Model
-from wavesym.programs.choice import MAKERS, Made, Tried, attempt, attempts, best
+from wavesym.programs.choice import MAKERS, Attempt, Made, attempt, attempts, best
 from wavesym.programs.closed import ClosedForm
 from wavesym.programs.hats.evaluator import HatMarch
 from wavesym.programs.march.evaluator import March
@@ -58,7 +58,7 @@ def _numbers(made: Program) -> Iterator[Section]:
     )
 
 
-def choice(model: Model, tried: Sequence[Tried]) -> Facts:
+def choice(model: Model, tried: Sequence[Attempt]) -> Facts:
     """What `auto` takes of what was tried."""
     try:
         found = best(model, tried)
@@ -133,7 +133,7 @@ def stream(model: Model, sources: Sequence[str]) -> Facts:
     )
 
 
-def variants(model: Model, tried: Sequence[Tried]) -> Listing:
+def variants(model: Model, tried: Sequence[Attempt]) -> Listing:
     """What was `tried`, and its variants."""
     return Listing(
         "tried",
@@ -143,17 +143,17 @@ def variants(model: Model, tried: Sequence[Tried]) -> Listing:
     )
 
 
-def _rows(model: Model, tried: Sequence[Tried]) -> Iterator[dict[str, Plain]]:
+def _rows(model: Model, tried: Sequence[Attempt]) -> Iterator[dict[str, Plain]]:
     done = {one.kind: one for one in tried}
     for kind in MAKERS:
         if kind not in done:
-            yield _row(Tried(kind, None, _DAMPED if model.damping else _NOT_TRIED[kind]), "double", "speed")
+            yield _row(Attempt(kind, None, _DAMPED if model.damping else _NOT_TRIED[kind]), "double", "speed")
             continue
         yield _row(first := done[kind], "double", "speed")
         if first.form is None:
             continue
         if dear := _dear(first.form):
-            yield _row(Tried(kind, None, dear), "single", "speed")
+            yield _row(Attempt(kind, None, dear), "single", "speed")
             continue
         yield from _smaller(model, first, "double")
         single = attempt(model, kind, "single", optimize="speed")
@@ -161,7 +161,7 @@ def _rows(model: Model, tried: Sequence[Tried]) -> Iterator[dict[str, Plain]]:
         yield from _smaller(model, single, "single")
 
 
-def _smaller(model: Model, usual: Tried, precision: str) -> Iterator[dict[str, Plain]]:
+def _smaller(model: Model, usual: Attempt, precision: str) -> Iterator[dict[str, Plain]]:
     """The program for the aim "size", where it is another one; only pieces have any."""
     if isinstance(usual.form, Pieces) and not usual.refusal:
         small = attempt(model, usual.kind, precision, optimize="size")
@@ -193,7 +193,7 @@ def _degrees(form: Made) -> Display | None:
             return Display([form.degree, form.degree], str(form.degree))
 
 
-def _row(one: Tried, precision: str, optimize: str) -> dict[str, Plain]:
+def _row(one: Attempt, precision: str, optimize: str) -> dict[str, Plain]:
     form = one.form
     return {
         "program": one.kind,

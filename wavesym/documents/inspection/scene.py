@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from wavesym.documents.inspection.section import Display, Facts, Listing, Section
-from wavesym.documents.inspection.text import shown
+from wavesym.documents.inspection.text import value_text
 from wavesym.scene import Scene
 
 
@@ -17,6 +17,6 @@ def scene_sections(scene: Scene) -> Iterator[Section]:
     yield Facts("system", "The chain, as it was said", fields["system"])
     loads = fields.get("load", [])
     names = tuple(dict.fromkeys(name for load in loads for name in load))
-    rows = [{name: Display(value, f"{name} = {shown(value)}") for name, value in load.items()} for load in loads]
+    rows = [{name: Display(value, f"{name} = {value_text(value)}") for name, value in load.items()} for load in loads]
     yield Listing("load", "Its loads", rows, names)
     yield Facts("output", "What is wanted", fields["output"])

@@ -23,7 +23,7 @@ def section_lines(section: Section) -> Iterator[str]:
 def _facts(section: Facts) -> Iterator[str]:
     width = max(map(len, section.values), default=0)
     for name, value in section.values.items():
-        first, *more = wrap(shown(value), _WIDTH - width - 4) or [""]
+        first, *more = wrap(value_text(value), _WIDTH - width - 4) or [""]
         yield f"  {name:{width}}  {first}".rstrip()
         yield from (f"  {'':{width}}  {line}" for line in more)
     if not section.values:
@@ -50,14 +50,14 @@ def _rows(section: Listing) -> Iterator[str]:
 
 
 def _shown_row(row: Mapping[str, Plain | Display]) -> dict[str, str]:
-    return {name: shown(value) for name, value in row.items()}
+    return {name: value_text(value) for name, value in row.items()}
 
 
 def _line(row: Mapping[str, str], widths: Mapping[str, int]) -> str:
     return "  " + "  ".join(f"{row[name]:{width}}" for name, width in widths.items()).rstrip()
 
 
-def shown(value: Plain | Display) -> str:
+def value_text(value: Plain | Display) -> str:
     """A value for a person."""
     match value:
         case Display():
@@ -69,12 +69,14 @@ def shown(value: Plain | Display) -> str:
         case float():
             return f"{value:.9g}"
         case dict():
-            return _listed([f"{name}: {shown(each)}" for name, each in islice(value.items(), MOST_ITEMS)], len(value))
+            return _list_text(
+                [f"{name}: {value_text(each)}" for name, each in islice(value.items(), MOST_ITEMS)], len(value)
+            )
         case list() | tuple():
-            return _listed([shown(each) for each in islice(value, MOST_ITEMS)], len(value))
+            return _list_text([value_text(each) for each in islice(value, MOST_ITEMS)], len(value))
     return str(value)
 
 
-def _listed(items: list[str], count: int) -> str:
+def _list_text(items: list[str], count: int) -> str:
     more = [f"... and {count - len(items)} more"] if count > len(items) else []
     return ", ".join([*items, *more]) or "none"

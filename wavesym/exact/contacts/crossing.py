@@ -28,9 +28,9 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
         half = (b - a) / 2
         if b - a > high * _CLOSE:
             with ctx.workprec(_COARSE):
-                positive, way = _told(rough.polynomial, rough.error, a + half, half)
+                positive, way = _sign_on(rough.polynomial, rough.error, a + half, half)
         if b - a <= high * _CLOSE or (b - a <= high * _NEAR and not positive and not way):
-            positive, way = _told(p, error, a + half, half)
+            positive, way = _sign_on(p, error, a + half, half)
         if positive:
             continue
         if way:  # the least value is at an end
@@ -45,7 +45,7 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
     return None
 
 
-def _told(p: arb_poly, error: arb, centre: fmpq, half: fmpq) -> tuple[bool, int]:
+def _sign_on(p: arb_poly, error: arb, centre: fmpq, half: fmpq) -> tuple[bool, int]:
     """Whether p > error on an interval, and which way it goes there: 1 up, -1 down, 0 where that is not certain."""
     local = p(arb_poly([arb(centre), arb(half)])).coeffs() or [arb(0)]
     sizes = [abs(c).upper() for c in local[1:]]

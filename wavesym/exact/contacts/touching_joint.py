@@ -34,7 +34,7 @@ from wavesym.exact.joints.enclosed import (
 )
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
 from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
-from wavesym.exact.joints.network_waves import Acting
+from wavesym.exact.joints.network_waves import LoadPolynomial
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 
@@ -114,7 +114,7 @@ class TouchingJoint:
             if link.has_corner and link.left in place
         }
         self._clusters: dict[tuple[Closed, Closed], list[Cluster]] = {}
-        self._loads = [Acting(network, point, loads) for point in joint.points]
+        self._loads = [LoadPolynomial(network, point, loads) for point in joint.points]
         self._ends = joint_ends(network, joint)
         touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
         self._bare = {n for n, end in enumerate(self._ends) if end.place in touched and self.law.mass[end.place] == 0}

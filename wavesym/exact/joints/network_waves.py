@@ -173,7 +173,7 @@ class _MovingJoint:
             [arb(network.points[point].velocity) for point in joint.points],
             [arb(0)] * len(joint.points),
         )
-        self._loads = [Acting(network, point, loads) for point in joint.points]
+        self._loads = [LoadPolynomial(network, point, loads) for point in joint.points]
         law = self._motion.law
         self._scatters = not (law.heavy or law.springs) and len(law.light) == len(joint.points)
 
@@ -225,7 +225,7 @@ def _derivative(known: Enclosed) -> Enclosed:
     return Enclosed(known.polynomial.derivative(), arb(0), None if exact is None else exact.derivative())
 
 
-class Acting:
+class LoadPolynomial:
     """What acts on a point (or prescribes its velocity), as an exact polynomial in the time since some instant."""
 
     def __init__(self, network: Network, point: int, loads: Sequence[Applied]) -> None:

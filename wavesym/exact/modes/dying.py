@@ -54,7 +54,7 @@ def undamped(network: Network) -> Network:
     )
 
 
-class DyingSpectrum:
+class DampedSpectrum:
     """The modes of a network with dashpots that is cut at places (bar, part of it)."""
 
     def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
@@ -85,7 +85,7 @@ class DyingSpectrum:
                     f"system: two frequencies meet near {abs(guesses[k]):.6g}, which modes with dashpots cannot "
                     "tell apart (take pieces or march)"
                 )
-        return _apart([mode for mode in found if mode])
+        return _distinct([mode for mode in found if mode])
 
 
 def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
@@ -207,7 +207,7 @@ def _proved(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -
     return Mode(stiffness, inside, points)
 
 
-def _apart(modes: Sequence[Mode]) -> list[Mode]:
+def _distinct(modes: Sequence[Mode]) -> list[Mode]:
     """Each mode once, in their order."""
     sizes = np.array([abs(complex(mode.frequency)) for mode in modes])
     kept: list[int] = []

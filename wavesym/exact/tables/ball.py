@@ -14,7 +14,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.balls import FIRST_BITS, precise
-from wavesym.numbers.doubles import midpoint, rational, rounded
+from wavesym.numbers.doubles import midpoint, rational, rounded_ball
 
 # a quarter of the smallest double
 NEGLIGIBLE = arb(2) ** -1076
@@ -136,7 +136,7 @@ def values(
         results = []
         for tau in exact:
             value = balls.at(tau)
-            double = rounded(value)
+            double = rounded_ball(value)
             if double is None:
                 if not value.rad() < negligible:
                     return None

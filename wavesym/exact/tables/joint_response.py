@@ -179,7 +179,7 @@ def _divided(above: fmpq_poly, below: fmpq_poly) -> fmpq_poly:
     return divmod(above, below)[0]
 
 
-def written(polynomial: fmpq_poly, most: int = 6) -> str:
+def polynomial_text(polynomial: fmpq_poly, most: int = 6) -> str:
     """A polynomial in s, its highest powers first; of a long one not all, of a long number the first digits."""
     terms: Sequence[tuple[int, fmpq]] = [(k, c) for k, c in enumerate(polynomial.coeffs()) if c != 0][::-1]
     shown = ""

@@ -9,7 +9,7 @@ from flint import fmpq
 from wavesym.derivation.increments import Increment, add
 from wavesym.errors import UnservedError
 from wavesym.exact.joints.joint import JointEnd, JointLaw, joint_ends
-from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, rates, written
+from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, polynomial_text, rates
 from wavesym.mechanics.network import Network, Point
 
 START = "start"
@@ -56,7 +56,7 @@ class NetworkJoints:
         if rates(law) is None:
             raise UnservedError(
                 f"system: the joint at {self.describe(number)} has the polynomial "
-                f"{written(joint_polynomial(law))}, and exact tables support only those with factors s + g, g "
+                f"{polynomial_text(joint_polynomial(law))}, and exact tables support only those with factors s + g, g "
                 "rational (take pieces, march or `run`)"
             )
         return joint_response(law)

@@ -52,7 +52,7 @@ def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signa
     model.refuse_damping()
     until = rational(model.horizon(real))
     refuse_jumps(model, until)
-    return observed(RuledNetwork(model.network), model.probes, model.loads, until, most)
+    return signals_at(RuledNetwork(model.network), model.probes, model.loads, until, most)
 
 
 def refuse_many(model: Model, most: float) -> None:
@@ -67,7 +67,7 @@ def refuse_many(model: Model, most: float) -> None:
         )
 
 
-def observed(
+def signals_at(
     ruled: RuledNetwork,
     probes: Sequence[Probe],
     loads: Sequence[Applied],

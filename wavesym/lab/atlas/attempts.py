@@ -80,7 +80,7 @@ def attempt(known: Truth, name: str) -> Attempt:
         return Attempt(name, taus, None, nothing, str(error))
     met = rational(min(form.error_bound, 2.0)) <= model.tolerance
     refused = "" if met else form.shortfall(model.tolerance)
-    bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
+    bounds = _bounds_by_horizon(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
     with np.errstate(over="ignore", invalid="ignore"):
         found = program(model, form).evaluate(taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
@@ -88,7 +88,7 @@ def attempt(known: Truth, name: str) -> Attempt:
     return Attempt(name, taus, errors, bounds, refused)
 
 
-def _reached(form: ClosedForm, taus: Array) -> Array:
+def _bounds_by_horizon(form: ClosedForm, taus: Array) -> Array:
     """The proved bound of the closed form up to each tau."""
     bounds = np.zeros(len(taus))
     for output in form.outputs:

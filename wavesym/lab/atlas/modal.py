@@ -71,7 +71,7 @@ def mode_counts(
         known = truth(shaken(spacing, SAMPLES, Fraction(1), **OUTPUTS), per_unit=4)
         for number in range(len(known.model.probes)):
             progress(f"modes, samples {float(spacing):g} apart, {known.model.probes[number].name}")
-            points += _counted(known, number, f"samples {float(spacing):g} apart", digits)
+            points += _one_output(known, number, f"samples {float(spacing):g} apart", digits)
     return CurveFamily(
         "modes",
         "Error against the number of modes: forces and accelerations need many, motion few",
@@ -82,7 +82,7 @@ def mode_counts(
     )
 
 
-def _counted(known: Truth, number: int, panel: str, digits: Sequence[int]) -> Iterator[AtlasPoint]:
+def _one_output(known: Truth, number: int, panel: str, digits: Sequence[int]) -> Iterator[AtlasPoint]:
     """One output alone."""
     probe, counts = known.model.probes[number], set[int]()
     model = known.model.watching((probe,))

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from wavesym.lab.chart.measure import NEAR, ChartRow, Measured
+from wavesym.lab.chart.measure import NEAR, ChartRow, Measurements
 from wavesym.pictures.labels import Curve, label
 from wavesym.scene import Scene
 from wavesym.systems import Preset, SystemTable
@@ -56,7 +56,7 @@ class _Style:
         return "black" if self.ours else "0.42"
 
 
-def draw(scene: Scene, measured: Measured) -> Figure:
+def draw(scene: Scene, measured: Measurements) -> Figure:
     """The chart of a scene's measurements; the same bytes from the same numbers when it is written by `save`."""
     with mpl.rc_context({"font.size": _FONT, "font.family": "DejaVu Sans"}):
         figure = Figure(figsize=_SIZE, dpi=100)
@@ -79,7 +79,7 @@ def draw(scene: Scene, measured: Measured) -> Figure:
     return figure
 
 
-def _title(scene: Scene, measured: Measured) -> str:
+def _title(scene: Scene, measured: Measurements) -> str:
     parts = scene.system
     outputs = len(scene.outputs)
     known = f" Errors are known to {measured.known:.0e}, which is in them." if measured.known else ""
@@ -111,7 +111,7 @@ def _curves(rows: Sequence[ChartRow]) -> list[tuple[_Style, list[ChartRow]]]:
 
 
 def _panel(
-    axes: Axes, title: str, curves: Sequence[tuple[_Style, list[ChartRow]]], measured: Measured, error: str
+    axes: Axes, title: str, curves: Sequence[tuple[_Style, list[ChartRow]]], measured: Measurements, error: str
 ) -> None:
     axes.set(xscale="log", yscale="log", xlim=(_LEAST_ERROR / 2, _LARGEST_ERROR * 3))
     times = [row.ns_per_value for row in measured.rows]

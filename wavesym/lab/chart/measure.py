@@ -56,7 +56,7 @@ class ChartRow:
 
 
 @dataclass(frozen=True)
-class Measured:
+class Measurements:
     """A scene's chart in numbers: its points, and the nanoseconds that writing a double takes.
 
     All errors have `known` in them, what the values that they are measured from may be wrong by. `new_parameters` is
@@ -70,7 +70,7 @@ class Measured:
     new_parameters: float | None = None
 
 
-def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None] = lambda _: None) -> Measured:
+def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None] = lambda _: None) -> Measurements:
     """All evaluators, and other methods, of a scene. CompilerError where there is no C compiler, CostError."""
     judge = _Judge(scene)
     found: list[tuple[Subject, tuple[float, float]]] = []
@@ -98,7 +98,9 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
         )
         for (subject, (away, fronts)), seconds in zip(found, times, strict=True)
     )
-    return Measured(tuple(rows), line / (_LINES * samples * outputs) * 1e9, samples, judge.known.bound, new_parameters)
+    return Measurements(
+        tuple(rows), line / (_LINES * samples * outputs) * 1e9, samples, judge.known.bound, new_parameters
+    )
 
 
 def _again(scene: Scene, samples: int) -> list[Callable[[], object]]:
@@ -111,7 +113,7 @@ def _again(scene: Scene, samples: int) -> list[Callable[[], object]]:
     return [partial(model.run, taus(model.tau_max, samples, "double"), kappa=model.parameters["kappa"])]
 
 
-def to_csv(measured: Measured) -> str:
+def to_csv(measured: Measurements) -> str:
     """All numbers, with the floor as a row of its own."""
     text = StringIO()
     writer = csv.DictWriter(text, [field.name for field in fields(ChartRow)], lineterminator="\n")

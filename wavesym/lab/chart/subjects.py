@@ -86,7 +86,7 @@ def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
             seen: set[str] = set()
             for tolerance in TOLERANCES:
                 start = perf_counter()
-                made = _made(scene, evaluator, precision, tolerance)
+                made = _build(scene, evaluator, precision, tolerance)
                 if made is None or made.c[f"{scene.name}.c"] in seen:  # refused, or the same as for a larger tolerance
                     continue
                 seen.add(made.c[f"{scene.name}.c"])
@@ -168,13 +168,13 @@ def other_method(method: Method, resolution: float, problem: Problem, at: Values
     )
 
 
-class _Made(NamedTuple):
+class _Build(NamedTuple):
     form: Made
     program: Program
     c: dict[str, str]
 
 
-def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> _Made | None:
+def _build(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> _Build | None:
     """A program and its C by file name, None where it cannot meet the tolerance or would cost too much."""
     model = lower(scene).tolerating(rational(tolerance))
     try:
@@ -182,13 +182,13 @@ def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> 
     except WavesymError:
         return None
     made = program(model, form)
-    return _Made(form, made, sources(made, "c"))
+    return _Build(form, made, sources(made, "c"))
 
 
 Loaded = tuple[Values, Callable[[], Values], Callable[[Values], Values] | None]
 
 
-def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
+def _c(scene: Scene, made: _Build, samples: int, precision: str) -> Loaded:
     name, outputs = scene.name, len(scene.outputs)
     number, dtype = (ctypes.c_float, np.float32) if precision == "single" else (ctypes.c_double, np.float64)
     compiled = library(made.c[f"{name}.c"], header=(f"{name}.h", made.c[f"{name}.h"]))
@@ -213,14 +213,14 @@ def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
     return taus(until, samples, precision), sample, at
 
 
-def _stream(scene: Scene, made: _Made, *_: object) -> Loaded:
+def _stream(scene: Scene, made: _Build, *_: object) -> Loaded:
     """It goes from sample to sample of the scene's loads, and says nothing of what is between."""
     assert isinstance(made.form, ModesEvaluator)
     instants, samples = own_samples(made.form)
     return instants, stream(scene.name, made.c, samples, len(scene.outputs)), None
 
 
-def _numpy(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
+def _numpy(scene: Scene, made: _Build, samples: int, precision: str) -> Loaded:
     evaluate = made.program.evaluate
     instants = taus(lower(scene).horizon(), samples, precision)
     return instants, partial(evaluate, instants), evaluate

@@ -19,7 +19,7 @@ from wavesym.pictures.field import Field
 from wavesym.pictures.histories import Points
 from wavesym.pictures.page.frame import Frame, PlotAxis
 from wavesym.pictures.page.places import colour_bar
-from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture
 from wavesym.pictures.page.png import address, shaded
 from wavesym.pictures.page.svg import Svg, box, element, line, together
 from wavesym.pictures.stations import Opened, open_times, standing
@@ -34,7 +34,7 @@ _TALL = 380.0
 _QUANTITIES = {"velocity": 0, "force": 1}
 
 
-def crossings(model: Model, lines: Lines, units: Scale | None) -> list[Shown]:
+def crossings(model: Model, lines: Lines, units: Scale | None) -> list[PagePicture]:
     """Velocity and force of the main line; nothing where waves cross too often, or it would cost too much."""
     shortest = model.network.shortest
     if model.until > _MOST * shortest:
@@ -46,7 +46,7 @@ def crossings(model: Model, lines: Lines, units: Scale | None) -> list[Shown]:
     return [_drawn(model, lines, field, name, units) for name in _QUANTITIES]
 
 
-def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | None) -> Shown:
+def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | None) -> PagePicture:
     stations, scale = lines[""], timescale(model)
     until, long = nearest(model.until), float(stations[-1].x)
     factor = nearest(rational(units.factor(name, 1))) if units else 1.0
@@ -76,7 +76,9 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
     height = TOP + _TALL + BELOW + 34
     size = float(model.length.size) if model.length else 1.0
     frame = Frame(replace(x, high=size * long), y, axis_text("", model.length), scale.title).drawn()
-    return Shown(title, picture(f"xt-{name}", title, told, height, frame, cells, formal, nodes, bar, class_="plot"))
+    return PagePicture(
+        title, picture(f"xt-{name}", title, told, height, frame, cells, formal, nodes, bar, class_="plot")
+    )
 
 
 def _formal(end: ContactEnd, x: PlotAxis, y: PlotAxis, until: float, long: float, per_tau: float) -> Svg:

@@ -15,7 +15,7 @@ import numpy as np
 
 from wavesym.pictures.histories import History, Points
 from wavesym.pictures.page.svg import Svg, element
-from wavesym.pictures.reduction import columns_of, reduced
+from wavesym.pictures.reduction import columns_of, reduce_vertices
 
 HEIGHT = 1000
 _PER_FRONT = 4  # columns
@@ -42,7 +42,7 @@ class Grid:
         return "".join("".join(self._drawn(stretch)) for stretch in stretches)
 
     def _drawn(self, stretch: Points) -> Iterator[str]:
-        points = reduced(stretch, self.until, self.columns)
+        points = reduce_vertices(stretch, self.until, self.columns)
         x = columns_of(points[:, 0], self.until, self.columns)
         y = np.rint((self.high - points[:, 1]) / (self.high - self.low) * HEIGHT).astype(int)
         yield f"M{x[0]} {y[0]}"
@@ -59,7 +59,7 @@ class Grid:
             command = needed
 
 
-def drawn(history: History, grid: Grid, look: int) -> Svg:
+def curve(history: History, grid: Grid, look: int) -> Svg:
     """A curve: between its fronts, upright where it jumps, and light where it is the formal continuation."""
     real, formal, jumps = [], [], []
     # fronts that lie closer are not told apart, and one line shows as much

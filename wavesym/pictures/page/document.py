@@ -11,7 +11,7 @@ from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.pictures.along import Along, along, observed
+from wavesym.pictures.along import Along, along, chain_outputs
 from wavesym.pictures.groups import load_panel, notes, panels
 from wavesym.pictures.histories import Histories, History, drawable, histories
 from wavesym.pictures.loads import load_histories
@@ -20,7 +20,7 @@ from wavesym.pictures.page.crossings import crossings
 from wavesym.pictures.page.headline import Figure, headline, neglected, storeys
 from wavesym.pictures.page.motion import Motion, motion
 from wavesym.pictures.page.places import along_pictures, maps
-from wavesym.pictures.page.plots import Shown, panel, picture
+from wavesym.pictures.page.plots import PagePicture, panel, picture
 from wavesym.pictures.page.said import SaidTable, advice_told, extremes_told
 from wavesym.pictures.page.small import first_rows, first_text, fitting
 from wavesym.pictures.page.structure import structure
@@ -48,17 +48,17 @@ class Report:
     storeys: SaidTable
     neglected: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
-    structure: Shown
+    structure: PagePicture
     motion: Motion | None
-    histories: tuple[Shown, ...]
+    histories: tuple[PagePicture, ...]
     notes: tuple[str, ...]
     until: str
     time: str
     columns: int
     extremes: SaidTable
     advice: SaidTable
-    maps: tuple[Shown, ...]
-    along: tuple[Shown, ...]
+    maps: tuple[PagePicture, ...]
+    along: tuple[PagePicture, ...]
     refused: str
     scene: str
     command: str
@@ -88,7 +88,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     """All of it, computed once, whose curves may be drawn with fewer columns than `most`."""
     scale, until = timescale(model), nearest(model.until)
     summary, searched = _summary(model, with_titles(model.watching(drifts(scene))).probes)
-    drawn_by = searched or _program_of_all(drawn, observed(scene, model))
+    drawn_by = searched or _program_of_all(drawn, chain_outputs(scene, model))
     made = histories(drawn, most, drawn_by)
     loads = load_histories(model, scene.scale)[:_LOADS]
     stack = [load_panel(loads, 1.0)] if loads else []
@@ -106,7 +106,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         storeys=storeys(scene, found, scale),
         neglected=tuple(filter(None, neglected(model))),
         facts=tuple(_facts(model, made, found, loads, scale)),
-        structure=Shown(
+        structure=PagePicture(
             title,
             picture("structure", title, structured.description, structured.height, structured.drawn, class_="plot"),
         ),

@@ -39,10 +39,10 @@ class PlotAxis:
         coarse = 10.0 ** floor(log10(size / most))
         step = next(nice * coarse for nice in _NICE if size / (nice * coarse) <= most)
         first, last = ceil(self.low / step - 1e-9), floor(self.high / step + 1e-9)
-        return [(k * step, written(k * step / 10.0**power, step / 10.0**power)) for k in range(first, last + 1)]
+        return [(k * step, tick_text(k * step / 10.0**power, step / 10.0**power)) for k in range(first, last + 1)]
 
 
-def written(value: float, step: float) -> str:
+def tick_text(value: float, step: float) -> str:
     """A number to the last digit that steps of such a size change."""
     if abs(step) >= 1e5 or abs(step) < 1e-4:
         digits = max(0, floor(log10(abs(value))) - floor(log10(step)) + 1) if value else 0

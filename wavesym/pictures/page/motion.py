@@ -16,7 +16,7 @@ from wavesym.mechanics.model import Model
 from wavesym.pictures.along import Along
 from wavesym.pictures.groups import axis_title
 from wavesym.pictures.histories import Points
-from wavesym.pictures.page.plots import WIDTH, Shown, picture
+from wavesym.pictures.page.plots import WIDTH, PagePicture, picture
 from wavesym.pictures.page.svg import Svg, box, element, line, text
 from wavesym.pictures.timescale import Timescale
 
@@ -29,7 +29,7 @@ _ROD, _LEFT = 44.0, 60.0
 class Motion:
     """The picture, and its frames: `values[place * count + frame]` in two digits each."""
 
-    shown: Shown
+    shown: PagePicture
     values: str
     count: int
     sways: bool
@@ -62,7 +62,7 @@ def motion(model: Model, found: Sequence[Along], scale: Timescale) -> Motion | N
     told = f"Drawn at {scale.format(float(instants[still]))}; the largest {name} is {largest:.4g}."
     content, height = (_building if sways else _chain)(frames[:, still], quantity)
     drawn = picture("motion", title, told, height, *content, class_="plot moving")
-    return Motion(Shown(title, drawn), "".join(f"{each:02x}" for each in bytes_.ravel().tolist()), count, sways)
+    return Motion(PagePicture(title, drawn), "".join(f"{each:02x}" for each in bytes_.ravel().tolist()), count, sways)
 
 
 def _building(frame: Points, quantity: Along) -> tuple[list[Svg], float]:

@@ -13,7 +13,7 @@ from wavesym.pictures.envelope_values import BandExtreme, envelope, extremes
 from wavesym.pictures.groups import axis_title
 from wavesym.pictures.histories import Points
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
-from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture, spot
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture, spot
 from wavesym.pictures.page.png import address, colours, shaded
 from wavesym.pictures.page.svg import Svg, box, element, line, polyline, text, together
 from wavesym.pictures.timescale import Timescale
@@ -23,7 +23,7 @@ _COLUMNS = 600  # of a map
 _NUMBERED = 12  # storeys with a number
 
 
-def along_pictures(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Shown]:
+def along_pictures(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[PagePicture]:
     """The least and the greatest of each quantity along each line."""
     upright = model.labels.system["type"] == "building"
     for k, quantity in enumerate(found):
@@ -37,7 +37,7 @@ def along_pictures(model: Model, found: Sequence[Along], scale: Timescale) -> It
             )
             make = _over_height if upright else _along_line
             content, height = make(model, quantity, band, scale)
-            yield Shown(title, picture(f"along-{k}-{j}", title, told, height, content, class_="plot"))
+            yield PagePicture(title, picture(f"along-{k}-{j}", title, told, height, content, class_="plot"))
 
 
 def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) -> tuple[Svg, float]:
@@ -63,7 +63,7 @@ def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) ->
         parts.append(polyline([(a, at) for at, a, _ in ends], "least"))
         parts.append(polyline([(b, at) for at, _, b in ends], "greatest"))
     parts += [
-        _named(x.at(each.value), y.at(each.x), each, scale, below=k > 0)
+        _labelled_spot(x.at(each.value), y.at(each.x), each, scale, below=k > 0)
         for k, each in enumerate(extremes(quantity, band))
         if each.value
     ]
@@ -83,14 +83,14 @@ def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> 
         polyline([(at, b) for at, _, b in ends], "greatest"),
     ]
     parts += [
-        _named(x.at(each.x), y.at(each.value), each, scale, below=k > 0)
+        _labelled_spot(x.at(each.x), y.at(each.value), each, scale, below=k > 0)
         for k, each in enumerate(extremes(quantity, band))
         if each.value
     ]
     return together(*parts), TOP + _ALONG + BELOW
 
 
-def _named(x: float, y: float, extreme: BandExtreme, scale: Timescale, *, below: bool) -> Svg:
+def _labelled_spot(x: float, y: float, extreme: BandExtreme, scale: Timescale, *, below: bool) -> Svg:
     """A spot and what it is, written towards the middle, above or below it."""
     right, down = x < (LEFT + WIDTH - RIGHT) / 2, 15 if below else -7
     return together(
@@ -99,7 +99,7 @@ def _named(x: float, y: float, extreme: BandExtreme, scale: Timescale, *, below:
     )
 
 
-def maps(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Shown]:
+def maps(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[PagePicture]:
     """Place x time as colours."""
     for k, quantity in enumerate(found):
         values = [cells(quantity, band, _COLUMNS) for band in quantity.bands]
@@ -112,7 +112,7 @@ def maps(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Sho
                 for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
             )
             content, height = _map(model, quantity, band, own, largest, scale)
-            yield Shown(title, picture(f"map-{k}-{j}", title, told, height, content, class_="plot"))
+            yield PagePicture(title, picture(f"map-{k}-{j}", title, told, height, content, class_="plot"))
 
 
 def _map(

@@ -9,10 +9,10 @@ import numpy as np
 
 from wavesym.pictures.groups import PlotPanel
 from wavesym.pictures.histories import History
-from wavesym.pictures.page.curves import HEIGHT, Grid, drawn
+from wavesym.pictures.page.curves import HEIGHT, Grid, curve
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.svg import Svg, element, line, text
-from wavesym.pictures.reduction import reduced
+from wavesym.pictures.reduction import reduce_vertices
 from wavesym.pictures.timescale import Timescale
 
 WIDTH, LEFT, RIGHT, TOP, BELOW = 900.0, 84.0, 12.0, 10.0, 44.0
@@ -22,7 +22,7 @@ _PER_ROW = 12  # columns of a picture that have three rows of a CSV
 
 
 @dataclass(frozen=True)
-class Shown:
+class PagePicture:
     """A picture: what it is called, its markup, and its curves: their look, their name, and their values as CSV."""
 
     title: str
@@ -45,14 +45,14 @@ def picture(number: str, title: str, told: str, height: float, *content: Svg, **
     )
 
 
-def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Timescale, *, last: bool) -> Shown:
+def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Timescale, *, last: bool) -> PagePicture:
     """The curves of a panel over time."""
     height, (low, high) = _size(given)
     grid = Grid.of(columns, until, low, high)
     x = PlotAxis(0.0, until * scale.per_tau, LEFT, WIDTH - RIGHT)
     y = PlotAxis(grid.low, grid.high, TOP + height, TOP)
     frame = Frame(x, y, scale.title, given.title)
-    curves = (drawn(history, grid, look) for look, history in enumerate(given.histories))
+    curves = (curve(history, grid, look) for look, history in enumerate(given.histories))
     placed = element(
         "g",
         *curves,
@@ -63,8 +63,8 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
     if given.limits:
         marks.append(text(LEFT + 4, TOP + 11, given.summary, "start", class_="halo"))
     else:
-        marks += [_beside(at, y.at(value), words, above) for (value, at, words), above in _ends(spots)]
-    told = " ".join(_told(history, scale) for history in given.histories)
+        marks += [_label_near(at, y.at(value), words, above) for (value, at, words), above in _ends(spots)]
+    told = " ".join(_describe(history, scale) for history in given.histories)
     quantity = given.histories[0].name if given.limits else given.title.split("\n")[0]
     title = f"{quantity} over time".capitalize()
     svg = picture(
@@ -83,7 +83,7 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
         data_low=repr(grid.low),
         data_high=repr(grid.high),
     )
-    return Shown(
+    return PagePicture(
         title,
         svg,
         strip=given.limits is not None,
@@ -99,7 +99,7 @@ def _csv_link(history: History, columns: int, until: float, scale: Timescale) ->
     time = f"t in {scale.unit}" if scale.unit else "tau"
     name = f"{history.name} in {history.output.unit}" if history.output.unit else history.name
     lines = [f'{time},"{name.replace(chr(34), chr(39))}"']
-    for tau, value in reduced(history.points, until, columns // _PER_ROW).tolist():
+    for tau, value in reduce_vertices(history.points, until, columns // _PER_ROW).tolist():
         lines.append(f"{tau * scale.per_tau:.6g},{value:.6g}")
     return "data:text/csv;charset=utf-8," + quote("\n".join(lines) + "\n", safe=",.+-")
 
@@ -115,7 +115,7 @@ def _size(given: PlotPanel) -> tuple[float, tuple[float, float]]:
     return _LOAD, spread(min(0.0, float(np.min(values))), max(0.0, float(np.max(values))), 0.08)
 
 
-def _told(history: History, scale: Timescale) -> str:
+def _describe(history: History, scale: Timescale) -> str:
     points = history.real
     least, greatest = points[int(np.argmin(points[:, 1]))], points[int(np.argmax(points[:, 1]))]
     unit = f" {history.output.unit}".rstrip()
@@ -130,7 +130,7 @@ def _ends(spots: list[tuple[float, float, str]]) -> list[tuple[tuple[float, floa
     return [(spots[0], False), (spots[-1], True)] if len(spots) > 1 else [(spot, True) for spot in spots]
 
 
-def _beside(x: float, y: float, words: str, above: bool) -> Svg:
+def _label_near(x: float, y: float, words: str, above: bool) -> Svg:
     """Words above or below a spot, inside of the panel."""
     half = LETTER * len(words) / 2
     return text(min(max(x, LEFT + half), WIDTH - RIGHT - half), y - 7 if above else y + 16, words, class_="halo")

@@ -84,7 +84,7 @@ def _building(model: Model) -> Picture:
         parts.append(box(middle - half - 15, base - 7, _FLOOR + 30, 14, "mass"))
     acting = bool(load_histories(model))
     if acting:
-        parts.append(symbols.moved(middle, base + 26, "acceleration of the base"))
+        parts.append(symbols.motion_arrow(middle, base + 26, "acceleration of the base"))
     parts += [
         polyline([(middle - half - 26, y - 4), (middle - half - 18, y), (middle - half - 26, y + 4)], "place")
         for y in sorted({base - nearest(probe.rod - 1 + probe.place) * storey for probe in model.probes})
@@ -241,7 +241,7 @@ class _Pen:
                     symbols.wall(x, y, side) if point.motion == "fixed" else line(x, y - 20, x, y + 20, "face")
                 )
             if point.motion and point.motion != "fixed":
-                self.parts.append(symbols.moved(edge, y - 26, ""))
+                self.parts.append(symbols.motion_arrow(edge, y - 26, ""))
             if point.stiffness or point.damping:
                 below = y + 62
                 self.parts.append(line(x, y + 6, x, below, "thin"))
@@ -253,7 +253,7 @@ class _Pen:
             if not self.network.points[number].motion and acting & {
                 u.source for u in self.network.points[number].loads
             }:
-                self.parts.append(symbols.pushed(x - _MASS / 2 - 1, y - 24))
+                self.parts.append(symbols.load_arrow(x - _MASS / 2 - 1, y - 24))
                 self.parts.append(line(x - _MASS / 2, y - 30, x - _MASS / 2, y - 16, "act"))
 
     def _places(self, model: Model) -> None:

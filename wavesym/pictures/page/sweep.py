@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from wavesym.errors import printable
-from wavesym.pictures.page.plots import Shown
+from wavesym.pictures.page.plots import PagePicture
 from wavesym.pictures.page.said import SaidTable
 from wavesym.pictures.page.svg import element
 from wavesym.pictures.page.sweep_pictures import SweepOutput, output_picture, outputs_of
@@ -40,7 +40,7 @@ class SweepPage:
     name: str
     facts: tuple[tuple[str, str], ...]
     worst: SaidTable
-    pictures: tuple[Shown, ...]
+    pictures: tuple[PagePicture, ...]
     notes: tuple[str, ...]
     cases: SaidTable
     failed: SaidTable

@@ -9,10 +9,10 @@ import numpy as np
 from wavesym.pictures.histories import Points
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.places import colour_bar
-from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture, spot
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture, spot
 from wavesym.pictures.page.png import address, shaded
 from wavesym.pictures.page.svg import Svg, element, polyline, text, upright
-from wavesym.pictures.reduction import reduced
+from wavesym.pictures.reduction import reduce_vertices
 from wavesym.sweeps.results import StoredAxis, SweepResults
 
 _TALL, _MAP = 230.0, 360.0  # pixels high
@@ -56,7 +56,7 @@ def axes_of(found: SweepResults) -> list[int]:
     return sorted(sorted(free, key=lambda k: found.dimensions[k].name == "record")[:2])
 
 
-def output_picture(number: str, output: SweepOutput, found: SweepResults) -> Shown | None:
+def output_picture(number: str, output: SweepOutput, found: SweepResults) -> PagePicture | None:
     """Over what was varied; None where no case is done, or nothing was varied."""
     own = axes_of(found)
     if not own or not np.isfinite(output.size).any():
@@ -69,7 +69,7 @@ def output_picture(number: str, output: SweepOutput, found: SweepResults) -> Sho
     return _map(number, output, np.fmax.reduce(output.size, axis=rest), axes, beyond)
 
 
-def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> Shown:
+def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
     """Least and greatest over numbers; over anything else from the case of the largest size to that of the smallest."""
     least, greatest = output.least.ravel(), output.greatest.ravel()
     done = np.flatnonzero(np.isfinite(output.size.ravel()))
@@ -88,22 +88,22 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> Shown:
     worst = int(np.nanargmax(output.size.ravel()))
     value = float(greatest[worst] if greatest[worst] >= -least[worst] else least[worst])
     title = f"{output.name} over {axis.name}"
-    told = f"Largest: {_told(value, output.unit)} where {_where(axis, worst)}."
+    told = f"Largest: {_value_text(value, output.unit)} where {_where(axis, worst)}."
     parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).drawn()]
     for values, class_, sign in ((least, "least", -1.0), (greatest, "greatest", 1.0)):
         points = np.column_stack([along[done] - x.low, values[done]])
         if ordered:
-            points = reduced(points, x.high - x.low, _COLUMNS)
+            points = reduce_vertices(points, x.high - x.low, _COLUMNS)
         elif len(done) > _COLUMNS:  # of some the longest
             starts = np.arange(_COLUMNS) * len(done) // _COLUMNS
             points = np.column_stack([points[starts, 0], sign * np.maximum.reduceat(sign * points[:, 1], starts)])
         places = [(x.at(at + x.low), y.at(value)) for at, value in points.tolist()]
         parts.append(polyline(places, class_) if ordered else upright(places, y.at(0.0), class_))
-    parts += _named(x.at(float(along[worst])), y.at(value), _where(axis, worst), above=value > 0)
-    return Shown(title, picture(number, title, told, TOP + _TALL + BELOW, *parts, class_="plot"))
+    parts += _labelled_spot(x.at(float(along[worst])), y.at(value), _where(axis, worst), above=value > 0)
+    return PagePicture(title, picture(number, title, told, TOP + _TALL + BELOW, *parts, class_="plot"))
 
 
-def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis], beyond: list[str]) -> Shown:
+def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis], beyond: list[str]) -> PagePicture:
     """The size as colours, the first dimension to the right, the second upward, each value as wide as the next."""
     across, upward = axes
     low, high = float(np.nanmin(size)), float(np.nanmax(size))
@@ -128,10 +128,12 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     name = f"size of {output.title}" + f", the greatest over {' and '.join(beyond)}" * bool(beyond)
     bar = colour_bar(name, (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW)
     title = f"{output.name} over {across.name} and {upward.name}"
-    ends = f"from {_told(low, output.unit)} to {_told(high, output.unit)}"
+    ends = f"from {_value_text(low, output.unit)} to {_value_text(high, output.unit)}"
     told = f"Colours show the size, {ends}, the largest where {where}."
-    marks = _named(x.at(float(worst[0] + 1)), y.at(float(worst[1] + 1)), where, above=y.at(worst[1] + 1.0) > TOP + 30)
-    return Shown(
+    marks = _labelled_spot(
+        x.at(float(worst[0] + 1)), y.at(float(worst[1] + 1)), where, above=y.at(worst[1] + 1.0) > TOP + 30
+    )
+    return PagePicture(
         title, picture(number, title, told, TOP + _MAP + BELOW + 34, frame.drawn(), image, *marks, bar, class_="plot")
     )
 
@@ -163,11 +165,11 @@ def _where(axis: StoredAxis, k: int) -> str:
     return ", ".join(f"{column.path} = {column.format(k)}" for column in axis.columns)
 
 
-def _told(value: float, unit: str) -> str:
+def _value_text(value: float, unit: str) -> str:
     return f"{value:.5g} {unit}".rstrip()
 
 
-def _named(x: float, y: float, words: str, *, above: bool) -> list[Svg]:
+def _labelled_spot(x: float, y: float, words: str, *, above: bool) -> list[Svg]:
     """A spot and what it is, written towards the middle."""
     right = x < (LEFT + WIDTH - RIGHT) / 2
     short = _short(words)

@@ -65,14 +65,14 @@ def grounded(x: float, y: float, *, elastic: bool, damped: bool) -> Svg:
     return together(element("g", inner, transform=f"translate({x:.1f} {y:.1f}) rotate(90)"), ground(x, y + 36))
 
 
-def moved(x: float, y: float, words: str) -> Svg:
+def motion_arrow(x: float, y: float, words: str) -> Svg:
     """An arrow both ways: what moves as it is told."""
     arrow = polyline([(x - 12, y - 3), (x - 17, y), (x - 12, y + 3)], "act")
     other = polyline([(x + 12, y - 3), (x + 17, y), (x + 12, y + 3)], "act")
     return together(line(x - 17, y, x + 17, y, "act"), arrow, other, text(x, y + 16, words, class_="act"))
 
 
-def pushed(x: float, y: float) -> Svg:
+def load_arrow(x: float, y: float) -> Svg:
     """An arrow to the right that ends at a place: a load."""
     head = polyline([(x - 6, y - 4), (x, y), (x - 6, y + 4)], "act")
     return together(line(x - 26, y, x, y, "act"), head)

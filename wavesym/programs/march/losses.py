@@ -58,7 +58,7 @@ class Losses:
         for number, group in enumerate(scheme.groups):
             for place, panel in enumerate(plan.panels):
                 if isinstance(group, Blocks):
-                    self._missed[number, place] = made.missed(first[number], panel.length)
+                    self._missed[number, place] = made.truncation_errors(first[number], panel.length)
                 if isinstance(group, Bodies):
                     self._bodies[number, place] = self._body_losses(plan, made, group, panel)
         delays = nearest(plan.step) * scheme.steps
@@ -141,8 +141,8 @@ class Losses:
         """The same."""
         loaded, largest = (np.zeros((*a.shape[:2], group.points.shape[1], group.size)) for _ in range(2))
         loaded[..., :3], largest[..., :3] = acting, size
-        given = _joined(group.collect @ a + loaded, x)
-        sizes = _joined(np.abs(group.collect) @ np.abs(a) + largest, np.abs(x))
+        given = _block_matrix(group.collect @ a + loaded, x)
+        sizes = _block_matrix(np.abs(group.collect) @ np.abs(a) + largest, np.abs(x))
         turned = self._norms[number] * self._lengths[panel]
         missed = self._truncated(self._missed[number, panel], turned, given, sizes)
         wrong, ends = self._answered(group, panel, sizes)
@@ -201,6 +201,6 @@ def _square(wrong: Array) -> Array:
     return np.asarray(np.sum(wrong**2, axis=-1) + wrong[..., 0] ** 2)
 
 
-def _joined(acting: Array, x: Array) -> Array:
+def _block_matrix(acting: Array, x: Array) -> Array:
     """What the matrix of a block is multiplied with, (windows, joints, columns)."""
     return np.concatenate([acting.reshape(*acting.shape[:2], -1), x], axis=2)

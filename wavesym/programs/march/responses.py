@@ -208,7 +208,7 @@ def _response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse | N
     rates, pushed = arb_mat(space.rates), arb_mat(space.pushed)
     unit = arb_mat(states, states, [arb(a == b) for a in range(states) for b in range(states)])
     # of coefficient k of `pushed s`, from the columns of the answer
-    given = [_placed(pushed, columns, [p * size + k for p in range(points)]) for k in range(size)]
+    given = [_columns_at(pushed, columns, [p * size + k for p in range(points)]) for k in range(size)]
     nothing = arb_mat(states, columns)
     y = [nothing] * (size + 2)
     e = [arb_mat(states, states)] * (size + 2)
@@ -231,13 +231,13 @@ def _response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse | N
         sign = arb((-1) ** k)
         turned, straight = turned + sign * follows[k], straight + follows[k]
         first, last = first + sign * known[k], last + known[k]
-    start = _placed(unit, columns, range(points * size, columns))
+    start = _columns_at(unit, columns, range(points * size, columns))
     twice = turned.inv(nonstop=True) * (start - first)
     series = [half * twice, *(known[k] + follows[k] * twice for k in range(1, size))]
     shown, passed = arb_mat(space.shown), arb_mat(space.passed)
     rows = []
     velocities = [
-        shown * series[k] + _placed(passed, columns, [p * size + k for p in range(points)]) for k in range(size)
+        shown * series[k] + _columns_at(passed, columns, [p * size + k for p in range(points)]) for k in range(size)
     ]
     for p in range(points):
         rows += [[velocities[k][p, c] for c in range(columns)] for k in range(size)]
@@ -245,7 +245,7 @@ def _response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse | N
     rows += [[gained[a, c] for c in range(columns)] for a in range(states)]
     left = arb(length / (4 * size)) * (rates * series[degree] + given[degree])
     missed = [[arb(space.weights[a]).sqrt() * left[a, c] for c in range(columns)] for a in range(states)]
-    matrix = _rounded(rows)
+    matrix = _round(rows)
     return (
         None
         if matrix is None
@@ -253,7 +253,7 @@ def _response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse | N
     )
 
 
-def _placed(block: arb_mat, columns: int, at: list[int] | range) -> arb_mat:
+def _columns_at(block: arb_mat, columns: int, at: list[int] | range) -> arb_mat:
     """The columns of a block at these places of a wider matrix."""
     wide = arb_mat(block.nrows(), columns)
     for n, column in enumerate(at):
@@ -262,7 +262,7 @@ def _placed(block: arb_mat, columns: int, at: list[int] | range) -> arb_mat:
     return wide
 
 
-def _rounded(rows: list[list[arb]]) -> Array | None:
+def _round(rows: list[list[arb]]) -> Array | None:
     """The middles, where they are known well enough; what is negligible is 0."""
     if not all(value.is_finite() for row in rows for value in row):
         return None

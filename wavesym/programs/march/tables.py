@@ -43,7 +43,7 @@ class MarchTables:
         assert isinstance(found, BodyOperator)
         return found
 
-    def missed(self, joint: MarchedJoint, length: fmpq) -> NDArray[np.float64]:
+    def truncation_errors(self, joint: MarchedJoint, length: fmpq) -> NDArray[np.float64]:
         """What the polynomials of a block miss; of a joint without state nothing."""
         if not joint.space.states:
             return np.zeros((0, 0))

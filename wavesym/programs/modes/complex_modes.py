@@ -12,7 +12,7 @@ from flint import acb, arb, ctx, fmpq, fmpq_mat
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut
-from wavesym.exact.modes.dying import DyingSpectrum
+from wavesym.exact.modes.dying import DampedSpectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
@@ -69,9 +69,9 @@ class ComplexModes(ModalModel[ComplexProjection]):
         return 1
 
     @cached_property
-    def spectrum(self) -> DyingSpectrum:
+    def spectrum(self) -> DampedSpectrum:
         """Its modes."""
-        return DyingSpectrum(self.model.network, places(self.model))
+        return DampedSpectrum(self.model.network, places(self.model))
 
     @property
     def cut(self) -> Cut:

@@ -159,9 +159,9 @@ class Dissipation:
     def _energy(self, rate: acb, fast: Sequence[acb]) -> arb:
         if not rate.real < 0:
             return 2 * abs(rate) ** 2  # that of a mass of 1
-        return arb(-self._taken(fast, fast).real / rate.real)
+        return arb(-self._dissipated(fast, fast).real / rate.real)
 
-    def _taken(self, one: Sequence[Quantity], other: Sequence[Quantity]) -> Quantity:
+    def _dissipated(self, one: Sequence[Quantity], other: Sequence[Quantity]) -> Quantity:
         """What dashpots take of two states."""
         return sum((c * a * b.conjugate() for c, a, b in zip(self._sizes, one, other, strict=True)), acb(0))
 
@@ -172,7 +172,7 @@ class Dissipation:
         rate, fast = self.rates[k], self._fast[k]
         if conjugate:
             rate, fast = rate.conjugate(), [v.conjugate() for v in fast]
-        return acb(-2 * self._taken(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
+        return acb(-2 * self._dissipated(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
 
     def _response(self, port: SlowPort, shares: Sequence[acb]) -> BallResponse:
         moved = [[acb(_sum(dashpot, [q[k] for q in port.moved])) for dashpot in self._dashpots] for k in range(TERMS)]
@@ -186,20 +186,20 @@ class Dissipation:
         energies = []
         for q in range(POWERS):
             if port.order:
-                energy = port.reads[2 * q + 2] - 2 * self._taken(moved[0], moved[2 * q + 1]).real
+                energy = port.reads[2 * q + 2] - 2 * self._dissipated(moved[0], moved[2 * q + 1]).real
             else:
                 energy = -port.reads[2 * q - 2] if q else port.impulse_energy
             for j in range(q - 1, -1, -1):
-                energy = -2 * self._taken(fast(q + j + 1), fast(q - j)).real - energy
+                energy = -2 * self._dissipated(fast(q + j + 1), fast(q - j)).real - energy
             energies.append(energy)
         known = [(rate * b).conjugate() for rate, b in zip(self.rates, shares, strict=True)]
         if port.order:
-            known = [h + 2 * self._taken(moved[0], e) for h, e in zip(known, self._extended, strict=True)]
+            known = [h + 2 * self._dissipated(moved[0], e) for h, e in zip(known, self._extended, strict=True)]
         rows = [known]
         for q in range(1, POWERS):
             acting = fast(q)
             pairs = zip(known, self._fast, self.rates, strict=True)
-            known = [-(h + 2 * self._taken(acting, v)) / rate.conjugate() for h, v, rate in pairs]
+            known = [-(h + 2 * self._dissipated(acting, v)) / rate.conjugate() for h, v, rate in pairs]
             rows.append(known)
         return BallResponse(shares, energies, rows, port.least)
 

@@ -15,7 +15,7 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.modes.complex_modes import ComplexModes
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem, Stepper, padded, scheme_tables, stream_tables
-from wavesym.programs.modes.rounding import Rounded, rounded
+from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncated
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance, StreamedValues
@@ -51,9 +51,9 @@ class ModesEvaluator(Bounded):
         return ModesScheme(tables, self.constants, self.tau_max, np.dtype(f"f{self.real.bytes}").type)
 
     @cached_property
-    def rounding(self) -> Rounded:
+    def rounding(self) -> RoundingErrors:
         """What rounding does to the values, and how large they are."""
-        return rounded(self.system, self.loads, self.scheme, self.tau_max, self.real)
+        return rounding_errors(self.system, self.loads, self.scheme, self.tau_max, self.real)
 
     @cached_property
     def _stepper(self) -> Stepper:

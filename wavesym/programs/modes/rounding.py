@@ -24,14 +24,16 @@ _STEP = 16
 _MORE = 1.01  # for the roundings of this file
 
 
-class Rounded(NamedTuple):
+class RoundingErrors(NamedTuple):
     """Of each output: how wrong rounding can make it on the horizon, and a value that it is not below somewhere."""
 
     errors: Numbers
     largest: Numbers
 
 
-def rounded(system: ModalSystem, loads: LinearLoads, scheme: ModesScheme, tau_max: float, real: Real) -> Rounded:
+def rounding_errors(
+    system: ModalSystem, loads: LinearLoads, scheme: ModesScheme, tau_max: float, real: Real
+) -> RoundingErrors:
     """The errors of a scheme in `real` numbers that steps a system under loads, all of which begin by tau_max."""
     unit, w = nearest(real.roundoff), system.frequency
     times = [*map(nearest, loads.times), tau_max]
@@ -48,7 +50,7 @@ def rounded(system: ModalSystem, loads: LinearLoads, scheme: ModesScheme, tau_ma
     errors = weight @ (2 * made + unit * (len(w) + 20) * size)
     errors += np.einsum("ojk,jk->o", np.abs(system.direct), _integrals(scheme, slopes, lengths, unit))
     at_times = np.abs(scheme.evaluate([tau for tau in times if tau <= tau_max])).max(axis=1, initial=0.0)
-    return Rounded(_MORE * errors, np.maximum(at_times - _MORE * errors, 0.0))
+    return RoundingErrors(_MORE * errors, np.maximum(at_times - _MORE * errors, 0.0))
 
 
 def _summed(system: ModalSystem, lengths: Numbers, swift: Numbers, tau_max: float) -> Numbers:

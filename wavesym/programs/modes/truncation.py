@@ -22,7 +22,7 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.loads import LinearLoads, Numbers, Roughness, linear_loads, roughness
 from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
 from wavesym.programs.modes.projection import Driver, ModalOutput, drivers_of, modal_output
-from wavesym.programs.modes.rounding import rounded
+from wavesym.programs.modes.rounding import rounding_errors
 from wavesym.programs.modes.zero_outputs import zero_outputs
 from wavesym.programs.schemes.modes import ModesScheme
 
@@ -147,7 +147,7 @@ class ModalModel(ABC, Generic[K]):
         """What each output reaches, but for what is left out."""
         system, until = self.system(known, count), self.model.horizon()
         scheme = ModesScheme(scheme_tables(system, self.loads, DOUBLE), {"loads": len(self.drivers)}, until, np.float64)
-        return rounded(system, self.loads, scheme, until, DOUBLE).largest
+        return rounding_errors(system, self.loads, scheme, until, DOUBLE).largest
 
 
 _REASONABLE = 0.1  # error relative to what a bound of the largest value may be read from

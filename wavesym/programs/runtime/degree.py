@@ -73,23 +73,23 @@ def degrees(made: RuntimePlan, share: float, tolerance: fmpq, kappa_max: fmpq | 
         return DegreeRange(first, max(ceil(1.5 * _front(own, rate)) + 24, first))
     started = any(field.name == "velocity" for field in made.free.fields)
     degree = LEAST
-    for usual in _begun(own, anew=started):
+    for usual in _initial_state(own, anew=started):
         degree = _enough(usual, degree, share)
     first = max(LEAST, 4 * degree // 5)
     for quick in () if kappa_max is None else _light(made, kappa_max):
-        for light in _begun(quick, anew=started):
+        for light in _initial_state(quick, anew=started):
             degree = _enough(light, degree, share, f" for kappa up to {nearest(kappa_max or fmpq(0)):g}")
     return DegreeRange(first, degree)
 
 
-def _begun(plan: MarchPlan, *, anew: bool) -> Iterator[MarchPlan]:
+def _initial_state(plan: MarchPlan, *, anew: bool) -> Iterator[MarchPlan]:
     """As the scene begins, and, where that is given `anew`, with bodies that do not move together."""
     yield plan
     if anew:
-        yield replace(plan, joints=tuple(_apart(number, joint) for number, joint in enumerate(plan.joints)))
+        yield replace(plan, joints=tuple(_differing(number, joint) for number, joint in enumerate(plan.joints)))
 
 
-def _apart(number: int, joint: MarchedJoint) -> MarchedJoint:
+def _differing(number: int, joint: MarchedJoint) -> MarchedJoint:
     space = joint.space
     return replace(joint, space=replace(space, begun=tuple(value - 1 - number for value in space.begun)))
 

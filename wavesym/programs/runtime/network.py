@@ -98,7 +98,8 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
         fields.append(field_of("load", [(about, load.weight, unit_of_load(model, load)) for about, load in amplitudes]))
     ring = Ring(tuple(sizes))
     free, some = (
-        {label: values[label] / size for label, size in sizes.items()} for values in (ring.symbols(), drawn(fields))
+        {label: values[label] / size for label, size in sizes.items()}
+        for values in (ring.symbols(), draw_numbers(fields))
     )
     return FreeNetwork(
         tuple(fields),
@@ -132,7 +133,7 @@ def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
     return ParameterUnit(size / model.clock.per_tau, f"{text}/{model.clock.unit}")
 
 
-def drawn(fields: Sequence[RuntimeField]) -> Mapping[str, fmpq]:
+def draw_numbers(fields: Sequence[RuntimeField]) -> Mapping[str, fmpq]:
     """A number for each parameter: what is 0 with them is 0 with all of them, but for a chance of one in 2**60."""
     return {label: drawn_number(label) for field in fields for label in field.labels}
 

@@ -200,7 +200,7 @@ class StreamTables:
         rows = (
             np.array([self._march.body(joint, panel).leak * sqrt(nearest(joint.space.weights[0]))])
             if joint.space.law == BODY
-            else self._march.missed(joint, panel).ravel()
+            else self._march.truncation_errors(joint, panel).ravel()
         )
         rows = 2 * (sqrt(turned) + (1 + turned) / sqrt(2)) * rows
         return [float(f"{value * 1.01:.3g}") for value in rows.tolist()]
@@ -246,7 +246,7 @@ def _weight_at(joint: MarchedJoint, point: int) -> tuple[float, float]:
     ]
     if carried := max(at_hand, default=0.0):
         return carried, 0.0
-    moved = 1.4143 * sum(_moved(joint, point))
+    moved = 1.4143 * sum(_motion_tables(joint, point))
     passing = sum(
         abs(nearest(space.passed[point, port.point] * port.push)) / root
         for port, root in zip(space.ports, roots, strict=True)
@@ -255,7 +255,7 @@ def _weight_at(joint: MarchedJoint, point: int) -> tuple[float, float]:
     return 1 / (passing + (moved or 1.0)), moved
 
 
-def _moved(joint: MarchedJoint, point: int) -> Iterator[float]:
+def _motion_tables(joint: MarchedJoint, point: int) -> Iterator[float]:
     for a, weight in enumerate(joint.space.weights):
         yield abs(nearest(joint.space.shown[point, a])) / sqrt(nearest(weight))
 

@@ -50,7 +50,7 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
             elif key not in said:
                 table[new] = value
     if "record" in load:
-        table |= _recorded(load, acting, seconds)
+        table |= _read_record(load, acting, seconds)
     elif "samples" in load:
         table["samples"] = _samples(load, acting)
     elif "unit" in load:
@@ -111,13 +111,15 @@ def read(load: object, acts: Acts) -> object:
             spacing = read_quantity(load["spacing"], "time", 1)
     with key_context("record"):
         try:
-            recording = read_recording(path, load.get("column"), lambda said: _told(said, dimension, spacing))
+            recording = read_recording(
+                path, load.get("column"), lambda said: _spacing_in_file(said, dimension, spacing)
+            )
         except SceneError as error:
             raise refusal(str(error)) from None
     return {**load, "record": recording}
 
 
-def _told(said: RecordFile, dimension: str, spacing: Fraction | None) -> Fraction | None:
+def _spacing_in_file(said: RecordFile, dimension: str, spacing: Fraction | None) -> Fraction | None:
     """A spacing in the file's unit of time. SceneError where its units are none of a time and of what it acts as."""
     try:
         if said.unit:
@@ -128,7 +130,7 @@ def _told(said: RecordFile, dimension: str, spacing: Fraction | None) -> Fractio
     return spacing and spacing / clock
 
 
-def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
+def _read_record(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
     """A record without units. What its file says may be said again, but not otherwise."""
     with key_context("record"):
         if not isinstance(load["record"], Recording | Mapping):

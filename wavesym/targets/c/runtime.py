@@ -170,7 +170,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     header = CRuntimeHeader(
         scene=scene,
         parts=program.parts,
-        memory=tuple(_kept(scene, program.parts, memory, inside)),
+        memory=tuple(_struct_sizes(scene, program.parts, memory, inside)),
         stack=tuple(_stacked(scene, program.parts, memory, inside, texts)),
         structs=declared,
     )
@@ -219,7 +219,7 @@ def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRunt
     )
 
 
-def _kept(scene: Description, parts: Sequence[str], memory: Memory, inside: bool) -> Iterator[tuple[str, str]]:
+def _struct_sizes(scene: Description, parts: Sequence[str], memory: Memory, inside: bool) -> Iterator[tuple[str, str]]:
     """The size of each struct, and what it is."""
     where = "kept in a model: it is too much for a stack" if inside else "`build` has it on its stack"
     for struct, part, told in (
@@ -272,12 +272,12 @@ def parameter_fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
             constant=field.name.upper(),
             count=str(len(field.values)),
             check="positive_number" if field.positive else "finite_number",
-            labels=tuple(map(_told, field.captions, field.units)),
+            labels=tuple(map(_describe, field.captions, field.units)),
             values=c_literals(map(real.nearest, field.values), real),
         )
 
 
-def _told(label: str, unit: ParameterUnit) -> str:
+def _describe(label: str, unit: ParameterUnit) -> str:
     return f"{label} [{unit.text}]" if unit.text else label
 
 

@@ -35,12 +35,10 @@ def tables_text(file: str, values: Mapping[str, Lines], words: Mapping[str, str]
 
     In comments `words` are replaced.
     """
-    return ["\n".join(_written(items, values, words or {})) for items in declared(file)]
+    return ["\n".join(_write(items, values, words or {})) for items in declared(file)]
 
 
-def _written(
-    items: list[str | tuple[str, str]], values: Mapping[str, Lines], words: Mapping[str, str]
-) -> Iterator[str]:
+def _write(items: list[str | tuple[str, str]], values: Mapping[str, Lines], words: Mapping[str, str]) -> Iterator[str]:
     comment = ""
     for item in items:
         if isinstance(item, str):
