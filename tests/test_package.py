@@ -227,3 +227,29 @@ def test_the_version_is_the_same_wherever_it_stands() -> None:
     )[0]
     cited = re.findall(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE)
     assert [first, *cited] == [wavesym.__version__] * 2
+
+
+def interpreter(version: str) -> str:
+    """A Python of this version on this machine: on the path, or one that pyenv or uv installed. Skipped without."""
+    homes = (Path.home() / ".pyenv/versions", Path.home() / ".local/share/uv/python")
+    installed = [path for home in homes for path in sorted(home.glob(f"*{version}*/bin/python{version}"))]
+    for found in (shutil.which(f"python{version}"), *map(str, installed)):
+        works = "import sys, venv; sys.exit(sys.version_info < (3, 11))"
+        if found and subprocess.run([found, "-c", works], capture_output=True, check=False).returncode == 0:
+            return found
+    pytest.skip(f"no Python {version} here")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("version", ["3.11", "3.12", "3.13"])
+def test_the_wheel_works_in_a_bare_python(version: str, checkout: Path, here: dict[str, str], tmp_path: Path) -> None:
+    program = interpreter(version)
+    bare: Any = {"cwd": tmp_path, "program": str(tmp_path / "bare" / "bin" / "python"), "path": ()}
+    python("-m", "venv", "bare", cwd=tmp_path, program=program, path=())
+    python("-m", "pip", "install", "--quiet", str(wheel(checkout, tmp_path)), **bare)
+    found = python("-c", "import sys, wavesym; print(sys.version, wavesym.__file__)", **bare)
+    assert found.startswith(f"{version}.")
+    assert str(tmp_path / "bare") in found
+    assert generated(tmp_path / "out", program=bare["program"], path=()) == here
+    (tmp_path / "frame.toml").write_text(python("-m", "wavesym", "init", "frame", **bare))
+    assert "largest drift" in python("-m", "wavesym", "summary", "frame.toml", **bare)

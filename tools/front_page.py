@@ -1,7 +1,8 @@
-"""python -m tools.front_page: draw the picture of README.md, and write the numbers that bench/ measured into it.
+"""python -m tools.front_page: draw the pictures of README.md, and write the numbers that bench/ measured into it.
 
-The picture is of two joined bars under a pulse: where its waves are, and the force at one place, beside what a common
-integrator gives (linear finite elements, stepped by Newmark's method with the mean acceleration).
+The first picture is of two joined bars under a pulse: where its waves are, and the force at one place, beside what a
+common integrator gives (linear finite elements, stepped by Newmark's method with the mean acceleration). The second one
+is of bench/b.csv: error against time a value, of wavesym and of four other methods.
 """
 
 from __future__ import annotations
@@ -12,15 +13,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import wavesym
 from wavesym.pictures.saving import save
+from wavesym.pictures.style import colours, draw_grid, new_figure, set_title, styled
 
 ROOT = Path(__file__).parents[1]
 PICTURE = ROOT / "docs" / "waves.svg"
+CHART = ROOT / "docs" / "speed.svg"
 _NEW_SET = "| building, m = 2, to 20 | wavesym, C, `-O3 -march=native"
 BEGIN, END = "<!-- measured by make bench -->", "<!-- end -->"
 
@@ -29,6 +31,13 @@ _ELEMENTS = 100  # of each bar
 _PLACE = 0.5
 _COLUMNS, _ROWS = 160, 401
 _GREY, _BLUE = "0.62", "#1b5e9e"
+_METHODS = {  # of the chart: language, label, colour, marker, and where its label stands beside its best point
+    "pieces": ("C", "wavesym, generated C", _BLUE, "o", (10, -6)),
+    "characteristics, order 4": ("C", "characteristics, C", "#8c5a00", "s", (10, 2)),
+    "central differences": ("NumPy", "central differences", "#3f6f3a", "^", (-6, -20)),
+    "finite elements, Newmark": ("SciPy", "finite elements", "#7a3b8f", "D", (-88, 10)),
+    "Laplace inversion": ("SciPy", "Laplace inversion", "#8a2f2f", "v", (-62, -22)),
+}
 
 Numbers = NDArray[np.float64]
 
@@ -68,6 +77,7 @@ def finite_elements(times: Numbers) -> Numbers:
     return np.array(found)
 
 
+@styled
 def picture() -> Figure:
     """Place by time on the left, the force at one place on the right."""
     places = [round((k + 0.5) / (_COLUMNS / 2), 6) for k in range(_COLUMNS)]
@@ -75,32 +85,63 @@ def picture() -> Figure:
     field = wavesym.run(scene(places), times).values
     fine = np.linspace(0, _UNTIL, 8 * _ELEMENTS + 1)
     exact = wavesym.run(scene([_PLACE]), fine).values[0]
-    figure = Figure(figsize=(9, 3.4), layout="constrained")
-    FigureCanvasAgg(figure)
-    waves, history = figure.subplots(1, 2, width_ratios=[1, 1.5])
+    figure = new_figure(3.6)
+    waves, history = figure.subplots(1, 2, width_ratios=[1, 1.6])
     largest = float(np.abs(field).max())
     extent = (0.0, 2.0, 0.0, _UNTIL)
-    waves.imshow(field.T, origin="lower", aspect="auto", extent=extent, cmap="RdBu", vmin=-largest, vmax=largest)
+    waves.imshow(
+        field.T, origin="lower", aspect="auto", extent=extent, cmap=colours(signed=True), vmin=-largest, vmax=largest
+    )
     waves.axvline(1, color="0.3", linewidth=0.8)
     waves.axvline(_PLACE, color="0.3", linewidth=0.8, linestyle=":")
-    waves.set_xlabel("place along two joined bars")
+    waves.set_xlabel("place")
     waves.set_ylabel("time")
-    waves.set_title("a pulse is split where the bars meet", fontsize="medium", loc="left")
+    waves.set_xticks([0, 1, 2])
+    waves.set_yticks(range(5))
+    waves.set_title("A pulse in two bars", loc="left")
     label = f"{2 * _ELEMENTS} finite elements, Newmark"
     history.plot(fine, finite_elements(fine), color=_GREY, linewidth=1.0, label=label)
     history.plot(fine, exact, color=_BLUE, linewidth=1.6, label="wavesym")
     history.set_xlabel("time")
     history.set_xlim(0, _UNTIL)
-    history.set_title("the force at the dotted line", fontsize="medium", loc="left")
-    history.grid(color="0.92", linewidth=0.6)
-    history.legend(fontsize="small", frameon=False, loc="upper left")
+    history.set_xticks(range(5))
+    history.set_title("Force at the dotted line", loc="left")
+    draw_grid(history)
+    history.set_ylim(top=float(exact.max()) + 1.1)
+    history.legend(frameon=False, loc="upper left", borderaxespad=0.2)
     return figure
+
+
+@styled
+def chart() -> Figure:
+    """Error against time a value, in one panel."""
+    figure = new_figure(4.4)
+    axes = figure.subplots()
+    for name, (language, label, colour, marker, beside) in _METHODS.items():
+        rows = [row for row in bench_rows() if row["name"] == name and row["language"] == language]
+        points = sorted(
+            (float(row["error_away"]), float(row["ns_per_value"])) for row in rows if row["precision"] == "double"
+        )
+        errors, times = zip(*points, strict=True)
+        axes.loglog(times, errors, color=colour, marker=marker, markersize=5, linewidth=1.4)
+        axes.annotate(label, (times[0], errors[0]), beside, textcoords="offset points", color=colour)
+    draw_grid(axes, zero=False)
+    axes.set_xlabel("time a value [ns], left is faster")
+    axes.set_ylabel("largest error, low is better")
+    axes.set_xlim(0.1, 1e5)
+    set_title(figure, "More digits in less time: a building, one core")
+    return figure
+
+
+def bench_rows() -> list[Mapping[str, str]]:
+    """What `make bench` measured of the building B."""
+    with (ROOT / "bench" / "b.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def measured() -> list[str]:
     """The lines of a table: what `make bench` measured of the building B, and of a new set of its parameters."""
-    with (ROOT / "bench" / "b.csv").open(encoding="utf-8", newline="") as file:
-        rows: list[Mapping[str, str]] = list(csv.DictReader(file))
+    rows = bench_rows()
     page = (ROOT / "bench" / "README.md").read_text(encoding="utf-8")
     (_, _, built, sampled, *_), *_ = (
         [cell.strip() for cell in line.strip("|").split("|")] for line in page.splitlines() if line.startswith(_NEW_SET)
@@ -126,8 +167,9 @@ def measured() -> list[str]:
 
 
 def main() -> None:
-    """Write both."""
+    """Draw both, and write the numbers."""
     save(picture(), PICTURE)
+    save(chart(), CHART)
     lines = measured()
     page = ROOT / "README.md"
     text = page.read_text(encoding="utf-8")

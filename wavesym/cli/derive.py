@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.shell_completion import CompletionItem
 
-from wavesym.cli.parameters import OUT, SCENE, deliver, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, refuse_out
 from wavesym.cli.progress import progress
 from wavesym.errors import SceneError
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 WALKED = 4  # intervals, unless more are asked for
 
 
-class _Source(click.ParamType[Any]):
+class _Source(ParameterType):
     """The name of a system, or a scene."""
 
     name = "source"

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, deliver, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
 
-class TimeParameter(click.ParamType[Any]):
+class TimeParameter(ParameterType):
     """A time, exact: a decimal or a ratio."""
 
     name = "time"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import NAMES, PATH, SCENE, put, scene_argument
+from wavesym.cli.parameters import NAMES, PATH, SCENE, ParameterType, put, scene_argument
 from wavesym.cli.progress import progress
 from wavesym.programs.request import AIMS, EVALUATORS, LANGUAGES, PRECISIONS, SIMULATORS, Request
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tolerances at run time
 
 
-class PositiveParameter(click.ParamType[Fraction]):
+class PositiveParameter(ParameterType):
     """A positive number, exact: a decimal, or p/q; `form` says so, with an example."""
 
     name = "number"

@@ -21,12 +21,16 @@ from wavesym.errors import SceneError, WavesymError
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
+    ParameterType = click.ParamType[Any]
+else:
+    ParameterType = click.ParamType  # click before 8.4 takes no types there
+
 
 _ARGUMENT = "wavesym.scene"
 _FILES = "wavesym.scenes"
 
 
-class SceneParameter(click.ParamType[Any]):
+class SceneParameter(ParameterType):
     """A path, `-` for standard input, or the name of a built-in scene."""
 
     name = "scene"
@@ -123,7 +127,7 @@ def is_drawn(out: Path | None, texts: Sequence[str]) -> bool:
     return suffix in PICTURES
 
 
-class RatioParameter(click.ParamType[Any]):
+class RatioParameter(ParameterType):
     """A ratio from 0 to below 1, as a number or in percent: 0.05 or "5 %"."""
 
     name = "ratio"
@@ -142,7 +146,7 @@ class RatioParameter(click.ParamType[Any]):
         return ratio
 
 
-class NamesParameter(click.ParamType[Any]):
+class NamesParameter(ParameterType):
     """Names with commas between."""
 
     name = "list"

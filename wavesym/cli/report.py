@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SCENE, ParameterType, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
 
-class _Source(click.ParamType[Any]):
+class _Source(ParameterType):
     """A scene, or the folder of a sweep."""
 
     name = "scene"

@@ -10,7 +10,8 @@ from fractions import Fraction
 from numbers import Number
 from typing import Any, NamedTuple, Self
 
-from pydantic import BaseModel, ConfigDict, ModelWrapValidatorHandler, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError, did_you_mean

@@ -39,10 +39,8 @@ class _Place:
 
 def label(axes: Axes, curves: Sequence[Curve], fontsize: float) -> None:
     """Write the curves' names into axes whose limits and size are final."""
-    figure = axes.get_figure(root=True)
-    assert figure is not None
     texts = [axes.text(0, 0, curve.text, fontsize=fontsize, color=curve.color, weight=curve.weight) for curve in curves]
-    renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
+    renderer = axes.figure.canvas.get_renderer()  # type: ignore[attr-defined]
     sizes = [text.get_window_extent(renderer) for text in texts]
     inside = axes.get_window_extent(renderer)
     pixels = [np.asarray(axes.transData.transform(curve.points)) for curve in curves]
