@@ -47,7 +47,7 @@ demo: install
 	@echo '== Its figures 6, 7 and 8, with what it says of them judged: half a minute'
 	@$(TOLD) $(BIN)/wavesym plot --published -o build/demo > /dev/null
 	@echo '== Done. In build/demo are now'
-	@echo '   figure_6.svg, figure_7.svg, figure_8.svg (and .png)    pictures to look at first'
+	@echo '   figures.html              to look at first: figures 6, 7 and 8 of the paper, beside what it says of them'
 	@echo '   NAME/ for each example    C, NumPy, a self-test, a manifest, and verify.txt: all that was compared'
 	@echo '== What to do next'
 	@echo '   $(BIN)/wavesym init frame > mine.toml          a scene of your own to start from, with comments'

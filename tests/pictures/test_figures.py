@@ -35,21 +35,21 @@ def _in_place(axes: Axes, curves: list[Curve], size: float) -> None:
         axes.text(*curve.points[0], curve.text)
 
 
-def redrawn(records: Mapping[str, Record]) -> dict[int, Figure]:
+def redrawn() -> dict[int, Figure]:
     """The figures, with names written on what they name: where they are put is tested elsewhere, and takes long."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(panels, "label", _in_place)
-        return {number: figures.redrawn(number, records) for number in figures.FIGURES}
+        return {number: figures.redrawn(number) for number in figures.FIGURES}
 
 
 @pytest.fixture(scope="module")
-def drawn(records: Mapping[str, Record]) -> dict[int, Figure]:
-    return redrawn(records)
+def drawn() -> dict[int, Figure]:
+    return redrawn()
 
 
-def listed(figure: Figure) -> set[str]:
-    """The numbers of the statements below the panels."""
-    return {words[0] for text in figure.texts if (words := text.get_text().split("  ")) and words[0].isdigit()}
+def listed(number: int) -> set[str]:
+    """The numbers of the statements beside a figure."""
+    return {statement.number for statement in figures.judged_figure(number).statements}
 
 
 def mark_differences(figure: Figure) -> set[str]:
@@ -70,7 +70,7 @@ def missing(found: Mapping[int, Figure], records: Mapping[str, Record]) -> set[s
         number = record.entry.subject["figure"]
         said = section_5.statements(number).get(id)
         nowhere = said is not None and not measured(number, said).spots
-        if id.removeprefix("text.") not in listed(found[number]) & (
+        if id.removeprefix("text.") not in listed(number) & (
             mark_differences(found[number]) | ({id[5:]} if nowhere else set())
         ):
             absent.add(id)
@@ -87,31 +87,28 @@ def test_a_statement_left_out_is_missed(monkeypatch: pytest.MonkeyPatch, records
         return {id: statement for id, statement in section_5.statements(number).items() if id != "text.27"}
 
     monkeypatch.setattr(figures, "statements", all_but_one)
-    assert missing(redrawn(records), records) == {"text.27"}
+    assert missing(redrawn(), records) == {"text.27"}
 
 
-def listing(drawn: dict[int, Figure], number: int) -> str:
-    """The lines below the panels, one after another."""
-    return " ".join(line.get_text().strip() for line in reversed(drawn[number].texts))
+def listing(number: int) -> str:
+    """What stands beside a figure, one after another."""
+    statements = figures.judged_figure(number).statements
+    return " ".join(" ".join((f"{each.text}: {each.verdict}", "; ".join(each.details))) for each in statements)
 
 
-def test_each_statement_is_listed_with_its_verdict_and_its_numbers(
-    drawn: dict[int, Figure], records: Mapping[str, Record]
-) -> None:
+def test_each_statement_is_listed_with_its_verdict_and_its_numbers(records: Mapping[str, Record]) -> None:
     for number in figures.FIGURES:
-        text = listing(drawn, number)
+        text = listing(number)
         for id, statement in section_5.statements(number).items():
             assert f"{records[id].entry.statement}: {records[id].verdict}" in text
             value = measured(number, statement).value
             assert f"{section_5.meaning(statement)}; measured: {value:.4g}" in text
 
 
-def test_each_load_is_said_to_bear_a_statement_out_or_not(
-    drawn: dict[int, Figure], records: Mapping[str, Record]
-) -> None:
+def test_each_load_is_said_to_bear_a_statement_out_or_not(records: Mapping[str, Record]) -> None:
     """As the record says, which was judged apart."""
     for number in (7, 8):
-        text = listing(drawn, number)
+        text = listing(number)
         for id, statement in section_5.statements(number).items():
             own = text.partition(records[id].entry.statement)[2].partition("false for ")
             false = own[2].partition("  ")[0]
@@ -218,12 +215,16 @@ def test_published(tmp_path: Path) -> None:
     assert [path.name for path in first] == [f"figure_{n}.{kind}" for n in (6, 7, 8) for kind in ("svg", "png")]
     for one, other in zip(first, second, strict=True):
         assert one.read_bytes() == other.read_bytes()
+    page = figures.write_page(tmp_path / "a").read_text(encoding="utf-8")
+    for number in figures.FIGURES:
+        assert f'src="figure_{number}.svg"' in page
+        assert all(f"<strong>{each}</strong>" in page for each in listed(number))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", figures.FIGURES)
-def test_names_and_numbers_keep_clear_of_each_other(number: int, records: Mapping[str, Record]) -> None:
-    figure = figures.redrawn(number, records)
+def test_names_and_numbers_keep_clear_of_each_other(number: int) -> None:
+    figure = figures.redrawn(number)
     assert texts_keep_clear(figure)
     renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
     page = figure.bbox

@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("scene", type=SCENE, required=False)
-@click.option("--published", is_flag=True, help="Figs. 6, 7 and 8 of the paper instead, as .svg and .png into DIR.")
+@click.option(
+    "--published",
+    is_flag=True,
+    help="Figs. 6, 7 and 8 of the paper instead, into DIR, and a page of verdicts.",
+)
 @click.option(
     "--kind",
     type=click.Choice(["history", "xt", "envelope", "map"]),
@@ -63,5 +67,8 @@ def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
                 paths = figures.write_figure(out, number)
             for path in paths:
                 click.echo(path)
+        with progress("plot --published: page"):
+            page = figures.write_page(out)
+        click.echo(page)
     else:
         raise click.MissingParameter(ctx=context, param_hint="'SCENE'", param_type="argument")

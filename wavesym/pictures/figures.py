@@ -1,19 +1,21 @@
 """`wavesym plot --published`: Figs. 6, 7 and 8 of the paper, redrawn, with what section 5 says of them marked.
 
 A number in a panel is that of a statement, text.N in `wavesym verify --published`; it stands at the points that were
-measured for it. Below the panels is what was found. All of it comes from `papers.pielorz1979.figures` and its data.
+measured for it. What was found stands beside the picture, on a page. All of it comes from
+`papers.pielorz1979.figures` and its data.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
-from textwrap import wrap
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from wavesym import __version__
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads
@@ -32,9 +34,11 @@ from wavesym.papers.record import Record, Sentence, format_value
 from wavesym.pictures.groups import Mark, PlotPanel, axis_title
 from wavesym.pictures.histories import Histories, histories
 from wavesym.pictures.loads import load_histories
-from wavesym.pictures.panels import CHARACTERS, Instant, stacked
+from wavesym.pictures.panels import Instant, stacked
 from wavesym.pictures.saving import save
+from wavesym.rendering import render
 from wavesym.scene import lower
+from wavesym.writing import write_whole
 
 FIGURES: Mapping[int, tuple[str, ...]] = {
     6: ("strain", "displacement"),
@@ -43,39 +47,79 @@ FIGURES: Mapping[int, tuple[str, ...]] = {
 }
 """The quantities of each figure, from top to bottom."""
 
-_INDENT = " " * 4
+PAGE = "figures.html"
+
+
+@dataclass(frozen=True)
+class JudgedStatement:
+    """What the paper says of a figure, by its number in the picture, the verdict, and what was measured."""
+
+    number: str
+    text: str
+    verdict: str
+    details: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class JudgedFigure:
+    """A figure on the page: its number, how it is drawn, and the verdicts beside it."""
+
+    number: int
+    title: str
+    notes: tuple[str, ...]
+    statements: tuple[JudgedStatement, ...]
+
+
+@dataclass(frozen=True)
+class _Page:
+    version: str
+    figures: tuple[JudgedFigure, ...]
 
 
 def write_figure(directory: Path, number: int) -> list[Path]:
     """Write the figure `number` into `directory`, as .svg and .png; the paths written. OSError."""
-    made = redrawn(number, judged(number))
+    made = redrawn(number)
     paths = [directory / f"figure_{number}.{suffix}" for suffix in ("svg", "png")]
     for path in paths:
         save(made, path)
     return paths
 
 
-def judged(number: int) -> dict[str, Record]:
+def write_page(directory: Path) -> Path:
+    """Write the page on which the figures in `directory` stand beside their verdicts; its path. OSError."""
+    page = _Page(__version__, tuple(map(judged_figure, FIGURES)))
+    path = directory / PAGE
+    write_whole({path: render("html/figures.html.j2", page)})
+    return path
+
+
+@cache
+def judged(number: int) -> Mapping[str, Record]:
     """The verdicts on what the paper says of a figure."""
     said = [e for e in entries().values() if e.subject.get("figure") == number and e.kind != "caption"]
     return {record.id: record for record in records(said)}
 
 
-def redrawn(number: int, verdicts: Mapping[str, Record]) -> Figure:
-    """A figure of the paper under the load of `drawn`, with the verdicts on its statements."""
+def judged_figure(number: int) -> JudgedFigure:
+    """What stands beside a figure."""
+    load = best_load(number)
+    model = lower(figure(number).scene(load))
+    title, *notes = _title(number, model, load)
+    ends = (_judged_end(record) for record in judged(number).values() if _is_end(record, number))
+    return JudgedFigure(number, title, tuple(notes), (*_judged_statements(number, load), *ends))
+
+
+def redrawn(number: int) -> Figure:
+    """A figure of the paper under the load of `best_load`, with the numbers of its statements."""
     load = best_load(number)
     made = histories(lower(figure(number).scene(load)))
     panels = [_panel(made, number, quantity, load) for quantity in FIGURES[number]]
     if made.model.labels.loads:
         panels.insert(0, _load(made.model))
-    ends = [r for r in verdicts.values() if r.entry.kind == "contact" and r.entry.subject["figure"] == number]
-    return stacked(
-        panels,
-        nearest(made.model.until),
-        list(_title(number, made.model, load)),
-        [*_list(number, load, verdicts), *(line for record in ends for line in _end(record))],
-        [instant for record in ends for instant in _ends(record)],
-    )
+    ends = [record for record in judged(number).values() if _is_end(record, number)]
+    title = [f"Fig. {number} of the paper, redrawn", f"Numbers: what section 5 says; verdicts in {PAGE}"]
+    instants = [instant for record in ends for instant in _ends(record)]
+    return stacked(panels, nearest(made.model.until), title, instants=instants)
 
 
 def best_load(number: int) -> TriedLoad:
@@ -133,11 +177,13 @@ def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:
     yield "Numbers stand where a statement of section 5 was measured; jumps are thin and upright."
 
 
-def _list(number: int, load: TriedLoad, verdicts: Mapping[str, Record]) -> Iterator[str]:
+def _judged_statements(number: int, load: TriedLoad) -> Iterator[JudgedStatement]:
     """The statements, what each was taken to mean, and for which loads it is true."""
+    verdicts = judged(number)
     for id, statement in statements(number).items():
-        yield f"{id.removeprefix('text.')}  {verdicts[id].entry.statement}: {verdicts[id].verdict}"
-        yield from _indented("; ".join(_measured(number, load, statement)))
+        record = verdicts[id]
+        text = record.entry.statement
+        yield JudgedStatement(id.removeprefix("text."), text, record.verdict, tuple(_measured(number, load, statement)))
 
 
 def _measured(number: int, load: TriedLoad, statement: Sentence) -> Iterator[str]:
@@ -153,12 +199,10 @@ def _measured(number: int, load: TriedLoad, statement: Sentence) -> Iterator[str
             yield f"{'true' if truth else 'false'} for {', '.join(those) or 'none of the loads tried'}"
 
 
-def _end(record: Record) -> Iterator[str]:
-    yield (
-        f"{record.id.removeprefix('text.')}  the collision ends at tau = {printed_end(record.entry)}: {record.verdict}"
-    )
-    yield from _indented(" ".join(record.evidence))
+def _is_end(record: Record, number: int) -> bool:
+    return record.entry.kind == "contact" and record.entry.subject["figure"] == number
 
 
-def _indented(text: str) -> list[str]:
-    return wrap(text, CHARACTERS, initial_indent=_INDENT, subsequent_indent=_INDENT)
+def _judged_end(record: Record) -> JudgedStatement:
+    text = f"the collision ends at tau = {printed_end(record.entry)}"
+    return JudgedStatement(record.id.removeprefix("text."), text, record.verdict, tuple(record.evidence))

@@ -76,24 +76,21 @@ def stacked(
     panels: Sequence[PlotPanel],
     until: float,
     title: Sequence[str],
-    below: Sequence[str] = (),
     instants: Sequence[Instant] = (),
     scale: Timescale = Timescale(),  # noqa: B008  (frozen)
 ) -> Figure:
-    """Panels one under the other, lines of text above and below them; all in tau, drawn in the time of `scale`."""
-    title, below = ([part for line in lines for part in _lines(line)] for lines in (title, below))
+    """Panels one under the other, lines of text above them; all in tau, drawn in the time of `scale`."""
+    title = [part for line in title for part in wrap(line, CHARACTERS)]
     panels, until = [_clocked(panel, scale) for panel in panels], until * scale.per_tau
     instants = [replace(instant, tau=instant.tau * scale.per_tau) for instant in instants]
     gaps = [0.0 if panel.goes_on(before) else _GAP for before, panel in pairwise(panels)]
     gaps = [_GAP, *gaps]
-    above, under = (len(title) + 0.9) * _LINE - _GAP, _AXIS + (len(below) + 0.6) * _LINE * bool(below)
-    height = above + sum(gaps) + sum(panel.height for panel in panels) + under
+    above = (len(title) + 0.9) * _LINE - _GAP
+    height = above + sum(gaps) + sum(panel.height for panel in panels) + _AXIS
     figure = new_figure(height, constrained=False)
     for k, line in enumerate(title):
         y = 1 - (k + 0.4) * _LINE / height
         figure.text(0.1 / WIDTH, y, line, va="top", weight="bold" if k == 0 else "normal")
-    for k, line in enumerate(reversed(below)):
-        figure.text(0.1 / WIDTH, (k + 0.6) * _LINE / height, line, va="baseline")
     top = height - above
     for k, (panel, gap) in enumerate(zip(panels, gaps, strict=True)):
         top -= gap + panel.height
@@ -105,11 +102,6 @@ def stacked(
         _fill(axes, panel, instants)
     axes.set_xlabel(scale.title)
     return figure
-
-
-def _lines(text: str) -> list[str]:
-    """A text in lines that fit across a figure, all with the blanks that it begins with."""
-    return wrap(text, CHARACTERS, subsequent_indent=text[: len(text) - len(text.lstrip())])
 
 
 def _clocked(panel: PlotPanel, scale: Timescale) -> PlotPanel:
