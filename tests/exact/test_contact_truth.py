@@ -10,8 +10,9 @@ import pytest
 from flint import arb, ctx
 from hypothesis import given, reject, settings
 
+from tests.support.piecewise import PiecewiseChain
+from tests.support.series import Unclear
 from tests.support.striking import seeded, striking
-from tests.support.unilateral import Unclear, Unilateral
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.events import events
 from wavesym.exact.reference import Reference
@@ -30,7 +31,7 @@ def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None) ->
     """What is not as the truth has it; `claimed` is another scene to take the package's word for."""
     model = lower(Scene(**(claimed or table)))
     until = Fraction(model.horizon())
-    made = Unilateral(table, until)
+    made = PiecewiseChain(table, until)
     found, reference = events(model), Reference(model)
     with ctx.workprec(BITS):
         faults = []
@@ -54,7 +55,7 @@ def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None) ->
     return faults
 
 
-def instants(made: Unilateral, until: Fraction) -> list[float]:
+def instants(made: PiecewiseChain, until: Fraction) -> list[float]:
     """Some in the horizon, and soon after what happened."""
     after = [int(event.tau.p) / int(event.tau.q) + 1e-9 for event in made.events[:4]]
     return sorted(

@@ -1,4 +1,4 @@
-"""The text of a chain read part by part into M, C, K, rods and contacts: what the truths in these tests start from.
+"""The text of a chain read part by part into M, C, K, rods and corners: what the truths in these tests start from.
 
 Nothing of the package is used.
 """
@@ -12,6 +12,8 @@ from itertools import pairwise
 from typing import Any
 
 from flint import fmpq
+
+from tests.support.laws import Corner, Law, Rubbing, Sided, Touching, Yielding
 
 _ONE = fmpq(1)
 
@@ -39,17 +41,6 @@ class Rod:
 
 
 @dataclass
-class Contact:
-    """Two points that push each other and never pull; at first so far apart."""
-
-    place: str
-    left: int
-    right: int
-    ratio: fmpq
-    gap: fmpq
-
-
-@dataclass
 class Assembly:
     """M, C, K of a chain, as they are read part by part; C has the impedances of the rods in it."""
 
@@ -59,7 +50,7 @@ class Assembly:
     stiffness: dict[tuple[int, int], fmpq] = field(default_factory=dict)
     motion: dict[int, str] = field(default_factory=dict)
     rods: list[Rod] = field(default_factory=list)
-    contacts: list[Contact] = field(default_factory=list)
+    corners: list[Corner] = field(default_factory=list)
     names: dict[str, int] = field(default_factory=dict)
     lines: dict[str, list[tuple[Fraction, int]]] = field(default_factory=dict)
     """The points of each line with their places; those that a spring, dashpot or contact joins have the same place."""
@@ -73,8 +64,9 @@ class Assembly:
         made.line("", scene["system"]["parts"])
         for branch in scene["system"].get("branch", ()):
             made.line(branch["name"], branch["parts"], made.names[branch["from"]], exact(branch.get("ratio", 1)))
-        for place in {contact.place for contact in made.contacts}:
-            same = [contact for contact in made.contacts if contact.place == place]
+        contacts = [corner for corner in made.corners if corner.subject == "contact"]
+        for place in {contact.place for contact in contacts}:
+            same = [contact for contact in contacts if contact.place == place]
             for contact, side in zip(same, ["-", *[""] * (len(same) - 2), "+"] if len(same) > 1 else [""], strict=True):
                 contact.place += side
         return made
@@ -91,35 +83,46 @@ class Assembly:
                 for j, right in stretch.items():
                     matrix[i, j] = matrix.get((i, j), fmpq(0)) + size * left * right
 
+    def bound(self, table: Mapping[str, Any], stretch: Mapping[int, fmpq], place: str) -> None:
+        """The spring and the dashpot of a part, and its laws that have corners."""
+        found = laws(table)
+        for subject, law in found:
+            self.corners.append(Corner(place, subject, stretch, law))
+        sprung = {type(law) for _, law in found}
+        spring, dashpot = exact(table.get("spring", 0)), exact(table.get("dashpot", 0))
+        self.tied(fmpq(0) if sprung & {Sided, Yielding} else spring, fmpq(0) if Sided in sprung else dashpot, stretch)
+
     def line(self, name: str, parts: Sequence[Any], begin: int | None = None, ratio: fmpq = _ONE) -> None:
         """Read the parts of a line."""
         here = self.point() if begin is None else begin
         x, points, follows = Fraction(0), [(Fraction(0), here)], []
         for k, part in enumerate(parts):
             table = part if isinstance(part, Mapping) else {}
+            place = f"{name}{name and ':'}{x}"
             beside = [p for p in parts[max(k - 1, 0) : k + 2] if isinstance(p, Mapping) and "rod" in p]
             if "rod" in table:
                 there = self.point()
-                self._rod(table, here, there, ratio)
+                self._rod(table, here, there, ratio, place)
                 x += Fraction(str(table["rod"]))
                 follows.append(len(self.rods) - 1)
             elif part == "contact" or "contact" in table:
                 there = self.point()
-                place = f"{name}{name and ':'}{x}"
-                self.contacts.append(Contact(place, here, there, ratio, exact(table.get("contact", 0))))
+                gap = exact(table.get("contact", 0))
+                law = Touching("open" if gap > 0 else "closed", gap)
+                self.corners.append(Corner(place, "contact", {here: -ratio, there: _ONE}, law))
                 follows.append(None)
             elif not table or table.keys() & {"mass", "joint", "motion"}:
-                self._node(here, part, table, beside)
+                self._node(here, part, table, beside, place)
                 continue
             else:
                 there = self.point()
-                self.tied(exact(table.get("spring", 0)), exact(table.get("dashpot", 0)), {here: -ratio, there: _ONE})
+                self.bound(table, {here: -ratio, there: _ONE}, place)
                 follows.append(None)
             points.append((x, there))
             here, ratio = there, _ONE
         self.lines[name], self.on[name] = points, follows
 
-    def _rod(self, table: Mapping[str, Any], here: int, there: int, ratio: fmpq) -> None:
+    def _rod(self, table: Mapping[str, Any], here: int, there: int, ratio: fmpq, place: str) -> None:
         speed, v, strain = (
             exact(table.get(key, 0 if key != "speed" else 1)) for key in ("speed", "velocity", "strain")
         )
@@ -128,11 +131,13 @@ class Assembly:
         self.rods.append(
             Rod((here, there), (ratio, _ONE), length, Fraction(str(table.get("speed", 1))), impedance, begun)
         )
-        self.tied(exact(table.get("spring", 0)), exact(table.get("dashpot", 0)), {here: -ratio, there: _ONE})
+        self.bound(table, {here: -ratio, there: _ONE}, place)
         for point, n in ((here, ratio), (there, _ONE)):
             self.tied(fmpq(0), impedance * n * n, {point: _ONE})
 
-    def _node(self, point: int, part: object, table: Mapping[str, Any], beside: Sequence[Mapping[str, Any]]) -> None:
+    def _node(
+        self, point: int, part: object, table: Mapping[str, Any], beside: Sequence[Mapping[str, Any]], place: str
+    ) -> None:
         if part == "fixed":
             self.motion[point] = "fixed"
         if part == "absorbing":
@@ -142,7 +147,7 @@ class Assembly:
         self.mass[point] = exact(table.get("mass", 0))
         own = table.get("velocity", beside[0].get("velocity", 0) if beside and "mass" in table else 0)
         self.velocity[point] = exact(own)
-        self.tied(exact(table.get("spring", 0)), exact(table.get("dashpot", 0)), {point: _ONE})
+        self.bound(table, {point: _ONE}, place)
         if "name" in table:
             self.names[table["name"]] = point
 
@@ -172,6 +177,25 @@ class Assembly:
         line, _, bare = at.rstrip("+-").rpartition(":")
         there = [point for x, point in self.lines[line] if x == Fraction(bare)]
         return there[-1 if at[-1] == "+" else 0]
+
+
+def laws(table: Mapping[str, Any]) -> list[tuple[str, Law]]:
+    """The laws that have corners of a part, each with the name of what has it."""
+    found: list[tuple[str, Law]] = []
+    if table.get("friction"):
+        found.append(("friction", Rubbing("sticks", exact(table["friction"]))))
+    spring, dashpot, gap = exact(table.get("spring", 0)), exact(table.get("dashpot", 0)), table.get("gap", 0)
+    if "yield" in table:
+        limits = table["yield"] if isinstance(table["yield"], list) else [table["yield"]] * 2
+        found.append(("spring", Yielding("holds", spring, (exact(limits[0]), exact(limits[1])))))
+    elif "only" in table or "gap" in table:
+        if isinstance(gap, list):
+            sides = [(-1, -exact(gap[0])), (1, exact(gap[1]))]
+        else:
+            sides = [(1 if table.get("only") == "pull" else -1, exact(gap))]
+        for side, free in sides:
+            found.append(("spring", Sided("idles" if free > 0 else "acts", side, free, spring, dashpot)))
+    return found
 
 
 def jumps(load: Mapping[str, Any]) -> Iterator[tuple[Fraction, int, fmpq]]:

@@ -84,7 +84,7 @@ class Laplace:
     def __init__(self, scene: Mapping[str, Any], until: Fraction | int) -> None:
         self.until = Fraction(until)
         self._made = made = Assembly.of(scene)
-        assert not made.contacts, "contacts are not linear"
+        assert not made.corners, "corners are not linear"
         self._velocity: list[Series] = [{} for _ in made.mass]
         """Of each point."""
         self._sent: dict[tuple[int, int], Series] = {(k, side): {} for k in range(len(made.rods)) for side in (0, 1)}

@@ -11,8 +11,9 @@ from hypothesis import given, settings
 
 from tests.support.chains import chains
 from tests.support.laplace import Laplace
+from tests.support.piecewise import PiecewiseChain
+from tests.support.series import Unclear
 from tests.support.striking import seeded
-from tests.support.unilateral import Unclear, Unilateral
 
 DIGITS = 25
 
@@ -21,7 +22,7 @@ def scene(*parts: Any, load: Any = ()) -> dict[str, Any]:
     return {"system": {"type": "chain", "parts": list(parts)}, "load": list(load)}
 
 
-def events(made: Unilateral) -> list[tuple[str, str, fmpq]]:
+def events(made: PiecewiseChain) -> list[tuple[str, str, fmpq]]:
     return [(event.place, event.kind, event.tau) for event in made.events]
 
 
@@ -38,7 +39,7 @@ def digits():
 @settings(max_examples=5)
 @given(chains(3))
 def test_without_contacts_it_is_the_laplace_expansion(table: dict[str, Any]) -> None:
-    made, expansion = Unilateral(table, 3), Laplace(table, 3)
+    made, expansion = PiecewiseChain(table, 3), Laplace(table, 3)
     for quantity in ("velocity", "strain", "displacement"):
         for place in table["output"][quantity]:
             for tau in (Fraction(1, 7), Fraction(8, 5), Fraction(299, 100)):
@@ -50,7 +51,7 @@ def test_without_contacts_it_is_the_laplace_expansion(table: dict[str, Any]) -> 
 def test_a_rigid_mass_leaves_a_free_rod_after_two_delays(ratio: object) -> None:
     """Of mass ratio a, with the restitution (1 - e^-2a)/a - e^-2a."""
     a = Fraction(str(ratio))
-    made = Unilateral(scene({"mass": str(1 / a), "velocity": 1, "name": "body"}, "contact", {"rod": 1}), 5)
+    made = PiecewiseChain(scene({"mass": str(1 / a), "velocity": 1, "name": "body"}, "contact", {"rod": 1}), 5)
     assert events(made) == [("0", "opens", 2)]
     left = made.value("velocity", "body", Fraction(4))
     exact = arb(a.numerator) / a.denominator
@@ -59,7 +60,7 @@ def test_a_rigid_mass_leaves_a_free_rod_after_two_delays(ratio: object) -> None:
 
 def test_two_bars_of_one_section() -> None:
     """The force lasts 2 l1/c, the ends part at 2 l2/c; then the first is at rest, the other moves with v l1/l2."""
-    made = Unilateral(scene({"rod": 1, "velocity": 3}, {"contact": "1/2"}, {"rod": "5/2"}), 7)
+    made = PiecewiseChain(scene({"rod": 1, "velocity": 3}, {"contact": "1/2"}, {"rod": "5/2"}), 7)
     start = fmpq(1, 6)
     assert [event[:2] for event in events(made)] == [("1", "closes"), ("1", "opens")]
     assert all(near(event.tau, tau) for event, tau in zip(made.events, (start, start + 5), strict=True))
@@ -72,7 +73,7 @@ def test_a_bar_that_bounces() -> None:
     """Doyen, Ern and Piperno 2011: E 900, density 1, length 10, gravity 10, dropped from 5, in the falling frame."""
     bar = {"rod": 10, "speed": 30, "impedance": 30}
     load = [{"at": "ground", "times": [0], "steps": [10]}]
-    made = Unilateral(scene({"motion": "acceleration", "name": "ground"}, {"contact": 5}, bar, load=load), 6)
+    made = PiecewiseChain(scene({"motion": "acceleration", "name": "ground"}, {"contact": 5}, bar, load=load), 6)
     contact = [fmpq(1), fmpq(5, 3), fmpq(11, 3), fmpq(13, 3)]
     assert len(made.events) == len(contact)
     assert all(near(event.tau, tau) for event, tau in zip(made.events, contact, strict=True))
@@ -83,7 +84,7 @@ def test_a_bar_that_bounces() -> None:
 
 def test_what_strikes_a_fixed_bar_strikes_it_again() -> None:
     """From p(tau) = sum_k H(tau - 2k) e^-(tau - 2k) L_k(2 (tau - 2k)): it leaves where p(tau) + p(tau - 2) = 0."""
-    made = Unilateral(scene({"mass": 1, "velocity": 1}, "contact", {"rod": 1}, "fixed"), 6)
+    made = PiecewiseChain(scene({"mass": 1, "velocity": 1}, "contact", {"rod": 1}, "fixed"), 6)
     assert [event.kind for event in made.events] == ["opens", "closes", "opens"]
     w = arb(made.events[0].tau) - 2
     assert near((-w).exp() * (1 - 2 * w) + (-w - 2).exp() + (-w).exp(), 0)
@@ -91,7 +92,7 @@ def test_what_strikes_a_fixed_bar_strikes_it_again() -> None:
 
 def test_events_by_symmetry_are_at_one_instant() -> None:
     half = [{"mass": 1, "velocity": 1}, "contact", {"rod": 1}]
-    made = Unilateral(scene(*half, "contact", {"rod": 1}, "contact", {"mass": 1, "velocity": -1}), 5)
+    made = PiecewiseChain(scene(*half, "contact", {"rod": 1}, "contact", {"mass": 1, "velocity": -1}), 5)
     assert len(made.events) == 7
     outer = [[event.tau for event in made.events if event.place == place] for place in ("0", "2")]
     assert outer[0] == outer[1]
@@ -101,14 +102,14 @@ def test_a_contact_without_force_waits_for_what_parts_it() -> None:
     """Two bars at rest that touch; the force on the second is 0 until a load pulls it away."""
     load = [{"at": "end", "times": [1], "steps": [1]}]
     parts = [{"rod": 1}, "contact", {"rod": 1}, {"joint": True, "name": "end"}]
-    assert events(Unilateral(scene(*parts, load=load), 4)) == [("1", "opens", 2)]
+    assert events(PiecewiseChain(scene(*parts, load=load), 4)) == [("1", "opens", 2)]
 
 
 def test_drawn_scenes_are_decided_and_many_things_happen() -> None:
     found = []
     for seed in (1, 5, 14, 18):
         table = seeded(seed)
-        found.append(len(Unilateral(table, Fraction(str(table["output"]["until"]))).events))
+        found.append(len(PiecewiseChain(table, Fraction(str(table["output"]["until"]))).events))
     assert sum(found) >= 15
 
 
@@ -117,4 +118,4 @@ def test_what_only_touches_is_unclear() -> None:
     wall = {"motion": "velocity", "velocity": 1, "name": "wall"}
     load = [{"at": "wall", "times": [0], "ramps": [-1]}]
     with pytest.raises(Unclear):
-        Unilateral(scene(wall, {"contact": "1/2"}, {"rod": "3/2"}, load=load), 2)
+        PiecewiseChain(scene(wall, {"contact": "1/2"}, {"rod": "3/2"}, load=load), 2)

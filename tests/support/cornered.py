@@ -1,0 +1,141 @@
+"""Chains whose links have corners, drawn: one-sided springs, backlash, what yields and what rubs, with rods and masses.
+
+Nasty sizes are always among them: equal and nearly equal numbers, limits of 0, limits that nothing reaches, chains that
+are their own mirror image (events at one instant), loads that turn just as a front arrives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+Choose = Callable[[Sequence[Any]], Any]
+"""Takes one of some things."""
+
+LENGTHS = [1, 1, "1/2", "3/2", "1.000000001", "0.7"]
+IMPEDANCES = [1, 1, 2, "1/2", "1.001"]
+MASSES = [1, 1, "1/2", 2, "1.001"]
+VELOCITIES = [0, 0, 1, -1, "1/2", "0.3"]
+SPRINGS = [1, 4, "9/2", "4.001"]
+GAPS = [0, "1/4", "1/3", "0.1", "1e-9", 1]
+LIMITS = [0, "1/8", "1/4", "1/3", "0.7", 1, 1000]
+LAWS = ["push", "pull", "both", "yield", "unequal", "linear"]
+
+
+def spring(choose: Choose, kinds: Sequence[str] = LAWS) -> dict[str, Any]:
+    """A spring with a law."""
+    table, kind = {"spring": choose(SPRINGS)}, choose(kinds)
+    match kind:
+        case "push" | "pull":
+            return table | {"only": kind, "gap": choose(GAPS)}
+        case "both":
+            low, high = choose([("-1/4", "1/8"), (0, 0), ("-1e-9", "1/3"), ("1/8", "1/2"), ("-1/3", "1/3")])
+            return table | {"gap": [low, high]}
+        case "yield":
+            return table | {"yield": choose(LIMITS[1:])}
+        case "unequal":
+            return table | {"yield": [choose(LIMITS), choose(LIMITS[1:])]}
+    return table
+
+
+def seeded(seed: int, friction: bool = True) -> dict[str, Any]:
+    """The table of a scene; another one for every seed."""
+    choose = Random(seed).choice
+    parts: list[Any] = [_node(choose, 0, friction)]
+    for _ in range(choose([1, 2, 2, 3])):
+        rubs = "friction" in parts[-1]
+        if choose([0, 1]) or rubs or _massless(parts[-1]):
+            parts.append({"rod": choose(LENGTHS), "impedance": choose(IMPEDANCES)})
+            if choose([0, 0, 0, 1]) and not rubs:
+                parts[-1] |= spring(choose)
+            parts.append(_node(choose, len(parts), friction and not _sprung(parts[-1])))
+        else:
+            parts.append(spring(choose))
+            parts.append(_mass(choose, len(parts)))
+    if choose([0, 1]):
+        parts += [{"rod": 1} if "friction" in parts[-1] else spring(choose), "fixed"]
+    elif _massless(parts[-1]) and not choose([0, 1]):
+        parts.append({"rod": 1})
+    if choose([0, 0, 0, 1]):
+        parts = _mirrored(parts)
+    return _scene(choose, parts, choose([3, "7/2", "2.000000001"]))
+
+
+def closed_chain(seed: int) -> dict[str, Any]:
+    """One whose energy goes where it slides or yields, and nowhere else."""
+    table = seeded(seed)
+    table["load"] = []
+    for part in table["system"]["parts"]:
+        if isinstance(part, dict):
+            part.pop("dashpot", None)
+            if "mass" in part:
+                part["velocity"] = 1 if not part["velocity"] else part["velocity"]
+    return table
+
+
+def _massless(part: Any) -> bool:
+    return "joint" in part
+
+
+def _sprung(part: Any) -> bool:
+    return "gap" in part or "only" in part or "yield" in part
+
+
+def _mass(choose: Choose, number: int) -> dict[str, Any]:
+    mass = {"mass": choose(MASSES), "velocity": choose(VELOCITIES), "name": f"n{number}"}
+    return mass | {"dashpot": choose([0, 0, "1/5"])}
+
+
+def _node(choose: Choose, number: int, friction: bool) -> dict[str, Any]:
+    """A mass or a joint, with friction or a spring to the ground, or neither."""
+    massless = number and choose([0, 0, 1])
+    node = {"joint": True, "name": f"n{number}"} if massless else _mass(choose, number)
+    match choose(["", "", "friction", "spring"]):
+        case "friction" if friction:
+            node.pop("dashpot", None)
+            return node | {"friction": choose(LIMITS[1:])}
+        case "spring":
+            node.pop("dashpot", None)
+            return node | spring(choose)
+    return node
+
+
+def _mirrored(parts: list[Any]) -> list[Any]:
+    """The same on both sides of a rod, and what moves to the right on one side moves to the left on the other."""
+    half = [part for part in parts if part != "fixed"]
+    while not (isinstance(half[-1], dict) and ("mass" in half[-1] or "joint" in half[-1])):
+        half.pop()
+    turned = []
+    for part in reversed(half):
+        turned.append(dict(part))
+        if "velocity" in part:
+            turned[-1]["velocity"] = str(-Fraction(str(part["velocity"])))
+        if "name" in part:
+            turned[-1]["name"] = f"m{part['name'][1:]}"
+        if ("mass" in part or "joint" in part) and _sprung(part):
+            turned[-1] |= _other_way(part)
+    return [*half, {"rod": 1}, *turned]
+
+
+def _other_way(part: dict[str, Any]) -> dict[str, Any]:
+    """The law of a spring to the ground, seen from the other side."""
+    if "only" in part:
+        return {"only": "pull" if part["only"] == "push" else "push"}
+    for key, sign in (("gap", -1), ("yield", 1)):
+        if isinstance(part.get(key), list):
+            return {key: [str(sign * Fraction(str(each))) for each in reversed(part[key])]}
+    return {}
+
+
+def _scene(choose: Choose, parts: list[Any], until: Any) -> dict[str, Any]:
+    names = [part["name"] for part in parts if isinstance(part, dict) and "name" in part]
+    loads = []
+    if choose([0, 1, 1]):
+        times = choose([[0, 1], ["1/3", "1.1"], [0, "2"], [1, "2.000000001"]])
+        keys = choose([("steps",), ("ramps",), ("steps", "ramps")])
+        load = {"at": choose(names), "times": times}
+        loads = [load | {key: [choose([1, -1, "-1/2", 2]) for _ in times] for key in keys}]
+    output = {"until": until, "tolerance": 1e-9, "displacement": names, "velocity": names}
+    return {"name": "drawn", "system": {"type": "chain", "parts": parts}, "load": loads, "output": output}
