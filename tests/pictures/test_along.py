@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from wavesym.mechanics.loads import Applied
 from wavesym.pictures.along import Along, Band, Spot, along, cells, limit
 from wavesym.pictures.envelope_values import envelope, extremes
 from wavesym.pictures.loads import load_histories, stretches
-from wavesym.pictures.page.png import SHADES, shaded
+from wavesym.pictures.page.png import SHADES, colours, shaded
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.scene import Scene, lower
 
@@ -153,7 +154,7 @@ def test_loads_are_the_sums_that_scenes_state() -> None:
 def test_cells_are_pixels(tmp_path: Path) -> None:
     """Read by a decoder of its own: shades from the least to the greatest, and one for what is no number."""
     values = np.array([[-5.0, -1, 0], [0.1, 1, np.nan]])
-    data = shaded(values, 1.0)
+    data = shaded(values, -1.0, 1.0, signed=True)
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     start = data.index(b"IDAT") + 4
     size = int.from_bytes(data[start - 8 : start - 4], "big")
@@ -163,6 +164,13 @@ def test_cells_are_pixels(tmp_path: Path) -> None:
     ]
     middle = SHADES // 2
     assert [row[:3] for row in pixels] == [[0, 0, middle], [middle + 1, SHADES - 1, SHADES]]
+
+
+def test_sizes_go_from_light_to_dark_and_values_with_a_sign_from_white() -> None:
+    sizes, signed = ([sum(colour) for colour in colours(signed=each)[:-1]] for each in (False, True))
+    assert all(later < before for before, later in pairwise(sizes))
+    assert signed.index(max(signed)) == SHADES // 2
+    assert signed[0] < signed[SHADES // 2] > signed[-1]
 
 
 @pytest.mark.parametrize("kind", ["envelope", "map"])

@@ -55,7 +55,7 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
     x, y = PlotAxis(0.0, long, LEFT, WIDTH - RIGHT), PlotAxis(0.0, until * scale.per_tau, TOP + _TALL, TOP)
     cells = element(
         "image",
-        href=address(shaded(values[::-1], largest)),
+        href=address(shaded(values[::-1], -largest, largest, signed=True)),
         x=x.start,
         y=y.end,
         width=x.end - x.start,
@@ -67,7 +67,7 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
     nodes = together(*_nodes(model, stations, open_times(model, field.events), x, scale.per_tau, y))
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
     words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
-    bar = colour_bar(words, ends, TOP + _TALL + BELOW)
+    bar = colour_bar(words, ends, TOP + _TALL + BELOW, signed=True)
     told = (
         f"Colours show the {name} of every rod of the main line, place to the right and time upward to "
         f"{scale.format(until)}; waves are bands that slope by one rod in one crossing."

@@ -127,7 +127,7 @@ def _map(
     rows = _evenly(band, values)
     image = element(
         "image",
-        href=address(shaded(rows[::-1], largest)),
+        href=address(shaded(rows[::-1], -largest, largest, signed=True)),
         x=x.start,
         y=y.end,
         width=x.end - x.start,
@@ -137,7 +137,7 @@ def _map(
     )
     frame = Frame(x, y, scale.title, upward, places)
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
-    bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), ends, TOP + tall + BELOW)
+    bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), ends, TOP + tall + BELOW, signed=True)
     return together(frame.drawn(), image, bar), TOP + tall + BELOW + 34
 
 
@@ -151,9 +151,9 @@ def _evenly(band: Band, values: Points) -> Points:
     return np.asarray(values[np.searchsorted(edges, middles, side="right") - 1])
 
 
-def colour_bar(title: str, ends: tuple[str, str], top: float) -> Svg:
+def colour_bar(title: str, ends: tuple[str, str], top: float, *, signed: bool) -> Svg:
     """From the least to the greatest colour, what is written at its ends, and what they mean."""
-    shades = colours()[:-1]
+    shades = colours(signed=signed)[:-1]
     wide = 20.0
     left = (WIDTH - wide * len(shades)) / 2
     cells = (

@@ -10,34 +10,32 @@ import numpy as np
 
 from wavesym.pictures.histories import Points
 
-SHADES = 15  # 0 is white, in the middle
+SHADES = 15  # of values with a sign 0 is white, in the middle
 _BLOCK = 65535  # bytes, the most that deflate stores in one block
 _NEGATIVE, _WHITE, _POSITIVE = (33, 92, 168), (247, 247, 247), (178, 34, 43)
+_SIZES = ((255, 255, 217), (65, 182, 196), (8, 29, 88))  # from the least to the greatest
 _FORMAL = (190, 190, 190)
 
 
-def colours() -> list[tuple[int, int, int]]:
-    """From the least to the greatest, and that of what is no number."""
-    half = SHADES // 2
-    found = []
-    for k in range(-half, half + 1):
-        end, part = (_POSITIVE if k > 0 else _NEGATIVE), abs(k) / half
-        red, green, blue = (round(white + (most - white) * part) for white, most in zip(_WHITE, end, strict=True))
-        found.append((red, green, blue))
-    return [*found, _FORMAL]
+def colours(*, signed: bool) -> list[tuple[int, int, int]]:
+    """From the least to the greatest, and that of what is no number: diverging with a sign, sequential for sizes."""
+    anchors = np.array((_NEGATIVE, _WHITE, _POSITIVE) if signed else _SIZES, dtype=float)
+    places = np.linspace(0, 2, SHADES)
+    parts = np.column_stack([np.interp(places, (0, 1, 2), anchors[:, k]) for k in range(3)])
+    return [*((round(red), round(green), round(blue)) for red, green, blue in parts.tolist()), _FORMAL]
 
 
-def shaded(values: Points, limit: float) -> bytes:
-    """Values (rows, columns), the first row at the top, as a PNG; those beyond `limit` have the strongest colours."""
-    half = SHADES // 2
-    shades = np.rint(np.clip(values / limit, -1, 1) * half) + half
+def shaded(values: Points, least: float, greatest: float, *, signed: bool) -> bytes:
+    """Values (rows, columns), the first row at the top, as a PNG; those beyond the limits have the last colours."""
+    parts = np.clip((values - least) / (greatest - least), 0, 1)
+    shades = np.rint(parts * (SHADES - 1))
     numbers = np.where(np.isnan(values), SHADES, np.nan_to_num(shades)).astype(np.uint8)
     if numbers.shape[1] % 2:
         numbers = np.pad(numbers, ((0, 0), (0, 1)))
     packed = numbers[:, ::2] << 4 | numbers[:, 1::2]
     content = b"".join(b"\0" + row.tobytes() for row in packed)
     header = pack(">IIBBBBB", values.shape[1], values.shape[0], 4, 3, 0, 0, 0)
-    palette = bytes(part for colour in colours() for part in colour)
+    palette = bytes(part for colour in colours(signed=signed) for part in colour)
     chunks = ((b"IHDR", header), (b"PLTE", palette), (b"IDAT", _stored(content)), (b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(kind, data) for kind, data in chunks)
 

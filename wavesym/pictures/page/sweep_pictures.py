@@ -107,14 +107,13 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     """The size as colours, the first dimension to the right, the second upward, each value as wide as the next."""
     across, upward = axes
     low, high = float(np.nanmin(size)), float(np.nanmax(size))
-    middle, half = (low + high) / 2, (high - low) / 2 or 1.0
     x, y = (
         PlotAxis(0.5, len(across) + 0.5, LEFT, WIDTH - RIGHT),
         PlotAxis(0.5, len(upward) + 0.5, TOP + _MAP, TOP),
     )
     image = element(
         "image",
-        href=address(shaded(_fewer(size).T[::-1] - middle, half)),
+        href=address(shaded(_fewer(size).T[::-1], low, high if high > low else low + 1, signed=False)),
         x=x.start,
         y=y.end,
         width=x.end - x.start,
@@ -126,7 +125,7 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     where = ", ".join(_where(axis, int(k)) for axis, k in zip(axes, worst, strict=True))
     frame = Frame(x, y, _axis_title(across), _axis_title(upward), _places(upward), _places(across))
     name = f"size of {output.title}" + f", the greatest over {' and '.join(beyond)}" * bool(beyond)
-    bar = colour_bar(name, (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW)
+    bar = colour_bar(name, (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW, signed=False)
     title = f"{output.name} over {across.name} and {upward.name}"
     ends = f"from {_value_text(low, output.unit)} to {_value_text(high, output.unit)}"
     told = f"Colours show the size, {ends}, the largest where {where}."
