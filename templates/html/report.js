@@ -131,7 +131,19 @@
       show();
     });
   }
-  slider.addEventListener("input", show);
+  // wider curves, scrolled so that the cursor is in the middle
+  const zoom = document.getElementById("zoom");
+  function follow() {
+    for (const plot of plots) {
+      const figure = plot.closest("figure"), width = plot.viewBox.baseVal.width, left = Number(plot.dataset.left), right = Number(plot.dataset.right);
+      const at = (left + (right - left) * Number(slider.value) / columns) / width;
+      plot.style.width = zoom.value > 1 ? 100 * zoom.value + "%" : "";
+      figure.classList.toggle("zoomed", zoom.value > 1);
+      figure.scrollLeft = at * plot.getBoundingClientRect().width - figure.clientWidth / 2;
+    }
+  }
+  zoom.addEventListener("change", follow);
+  slider.addEventListener("input", () => { show(); if (zoom.value > 1) follow(); });
   reader.hidden = false;
   for (const value of document.querySelectorAll(".value")) value.hidden = false;
   show();

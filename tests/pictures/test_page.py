@@ -392,6 +392,24 @@ def test_the_cursor_reads_values_off(building: str, tmp_path: Path) -> None:
             assert float(said[name]) == pytest.approx(value, abs=0.006 * size)
 
 
+def test_curves_are_zoomed_around_the_cursor(building: str, tmp_path: Path) -> None:
+    script = """
+      const slider = document.getElementById("cursor"), zoom = document.getElementById("zoom");
+      const plot = document.querySelector("svg.timed"), figure = plot.closest("figure");
+      slider.value = 800; slider.dispatchEvent(new Event("input"));
+      const before = plot.getBoundingClientRect().width;
+      zoom.value = "4"; zoom.dispatchEvent(new Event("change"));
+      const cursor = plot.querySelector(".cursor").getBoundingClientRect(), box = figure.getBoundingClientRect();
+      const seen = (cursor.left - box.left) / box.width, wide = plot.getBoundingClientRect().width;
+      zoom.value = "1"; zoom.dispatchEvent(new Event("change"));
+      report([wide / before, seen, plot.getBoundingClientRect().width / before]);
+    """
+    wider, seen, again = reported(building, script, tmp_path)  # type: ignore[misc]
+    assert wider == pytest.approx(4, rel=0.01)
+    assert seen == pytest.approx(0.5, abs=0.02)
+    assert again == pytest.approx(1)
+
+
 LOOK = "\n;axe.run(document).then((found) => report(found.violations.map((each) => each.id)));"
 
 
