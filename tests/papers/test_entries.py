@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.papers.small import ABOUT
-from wavesym.papers.entries import WHOLE, Aside, Paper, Passage, passage_hashes, problems
+from wavesym.papers.entries import WHOLE, Aside, Paper, Passage, merge_records, passage_hashes, problems
 from wavesym.papers.selection import plain, position
 
 TEXT = r"$$(1.1) \quad a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m$$"
@@ -112,3 +112,17 @@ def test_a_string_selects_its_part_of_a_passage(
 def test_what_stands_twice_is_selected_twice() -> None:
     first = position("a a", ("a",))
     assert (first, position("a a", ("a",), used=[first or (0, 0)])) == ((0, 1), (2, 3))
+
+
+def test_what_several_records_share_stands_once() -> None:
+    """Lists of several keys are joined, and what a slip has; anything else stands in one of them."""
+    tables = {
+        "T1.{I,II}.{a,b}": {"ranges": ["i = 1"], "slip": {"note": "Both."}},
+        "T1.I.a": {"ranges": ["j = 2"], "slip": {"correction": "n"}},
+    }
+    found = merge_records(tables)
+    assert list(found) == ["T1.I.a", "T1.I.b", "T1.II.a", "T1.II.b"]
+    assert found["T1.I.a"] == {"ranges": ["i = 1", "j = 2"], "slip": {"note": "Both.", "correction": "n"}}
+    assert found["T1.II.b"] == tables["T1.{I,II}.{a,b}"]
+    with pytest.raises(ValueError, match=r"T1\.I\.a\.slip: note is given twice"):
+        merge_records({**tables, "T1.I.{a}": {"slip": {"note": "One."}}})

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -95,9 +95,9 @@ class Aside(NamedTuple):
 class Passage(_Data):
     """Lines of the source, first to last, with their text where anything of it is judged, else the reason.
 
-    `where` names the place; {line} in it is the last part of a record's id. `record` has what is printed, by id; its
-    records have the `kind` and `subject` of the passage unless they say otherwise. Every cell of a `table` is a record
-    too, about which `record` may say more.
+    `where` names the place; {line} in it is the last part of a record's id. `record` has what is printed, by id
+    (`merge_records`); its records have the `kind` and `subject` of the passage unless they say otherwise. Every cell of
+    a `table` is a record too, about which `record` may say more.
     """
 
     lines: tuple[int, int]
@@ -203,7 +203,11 @@ def read_paper(directory: Path) -> Paper:
     """The passages of the TOML files of a directory, what paper.toml says of the paper, and hashes.txt."""
     data = {file.stem: tomllib.loads(file.read_text(encoding="utf-8")) for file in sorted(directory.glob("*.toml"))}
     description = PaperDescription(**data.pop("paper"))
-    passages = [Passage(**passage) for file in data.values() for passage in file["passage"]]
+    passages = [
+        Passage(**{**passage, "record": merge_records(passage.get("record", {}))})
+        for file in data.values()
+        for passage in file["passage"]
+    ]
     for first, last, where, why in (row for file in data.values() for row in file.get("unjudged_lines", ())):
         passages.append(Passage(lines=(first, last), where=where, why=why))
     hashes = {}
@@ -211,6 +215,36 @@ def read_paper(directory: Path) -> Paper:
         first, last, *known = line.split()
         hashes[int(first), int(last)] = PassageHashes(*known)
     return Paper(description, tuple(sorted(passages, key=lambda passage: passage.lines)), hashes)
+
+
+def merge_records(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    """What is known of each record, by id, in the order of the first keys.
+
+    A key such as "T1.{I,III}.S" is of several records. Lists that several keys give one record are joined, and what a
+    slip has; ValueError where anything else is given twice.
+    """
+    found: dict[str, dict[str, Any]] = {}
+    for key, data in tables.items():
+        choices = [part.split(",") if number % 2 else [part] for number, part in enumerate(re.split(r"[{}]", key))]
+        for parts in product(*choices):
+            id = "".join(parts)
+            found[id] = _joined_values(id, found.get(id, {}), data)
+    return found
+
+
+def _joined_values(name: str, known: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, Any]:
+    found = dict(known)
+    for key, value in more.items():
+        match found.get(key), value:
+            case None, _:
+                found[key] = value
+            case list() as values, list():
+                found[key] = [*values, *value]
+            case dict() as values, dict():
+                found[key] = _joined_values(f"{name}.{key}", values, value)
+            case _:
+                raise ValueError(f"{name}: {key} is given twice")
+    return found
 
 
 def digest(text: str) -> str:
