@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from lark import Lark, Token, Transformer
+from lark import Lark, Token, Transformer, v_args
 from lark.exceptions import UnexpectedInput, VisitError
 
 from wavesym.papers.tree import (
@@ -70,187 +71,141 @@ def _parser() -> Lark:
     return Lark(grammar, parser="lalr", start=["formula", "range"], maybe_placeholders=True)
 
 
+@v_args(inline=True)
 class _Trees(Transformer[Token, Any]):
-    """Lark's parse to our trees."""
+    """Lark's parse to our trees: what each rule of latex.lark makes of its parts."""
 
-    def formula(self, items: list[Tree]) -> Tree:
-        return items[0] if len(items) == 1 else FormulaList(tuple(items))
+    def formula(self, *items: Tree) -> Tree:
+        return items[0] if len(items) == 1 else FormulaList(items)
 
-    def progression(self, items: list[Any]) -> Tree:
-        variable, shown, dots, last = items
+    def progression(self, variable: Tree, shown: tuple[Tree, ...], dots: Token | None, last: Tree | None) -> Tree:
         return Progression(variable, shown, dots is not None, last)
 
-    def first_value(self, items: list[Tree]) -> tuple[Tree, ...]:
-        return tuple(items)
+    def first_value(self, value: Tree) -> tuple[Tree, ...]:
+        return (value,)
 
-    def next_value(self, items: list[Any]) -> tuple[Tree, ...]:
-        return (*items[0], items[1])
+    def next_value(self, values: tuple[Tree, ...], value: Tree) -> tuple[Tree, ...]:
+        return (*values, value)
 
-    def comparison(self, items: list[Any]) -> Tree:
-        kept = [item for item in items if item is not None]
-        return Relation(tuple(kept[::2]), tuple(map(str, kept[1::2])))
+    def relation(self, *items: Any) -> Tree:
+        stated = [item for item in items if item is not None]
+        return Relation(tuple(stated[::2]), tuple(map(str, stated[1::2])))
 
-    def interval(self, items: list[Any]) -> Tree:
-        variable, _, opening, low, high, closing = items
-        return Interval(variable, (opening, closing), low, high)
+    def interval(self, variable: Tree, opening: Token, low: Tree, high: Tree, closing: Token) -> Tree:
+        return Interval(variable, (str(opening), str(closing)), low, high)
 
-    def opening(self, items: list[Token]) -> str:
-        return str(items[0])
+    def signed_terms(self, *items: Any) -> Tree:
+        signs, terms = items[::2], items[1::2]
+        found = [Minus(term) if sign == "-" else term for sign, term in zip(signs, terms, strict=True)]
+        return found[0] if len(found) == 1 else Addition(tuple(found))
 
-    closing = opening
-
-    def related_sides(self, items: list[Any]) -> Tree:
-        return Relation(tuple(items[::2]), tuple(items[1::2]))
-
-    def equal(self, items: list[Any]) -> str:
-        return "="
-
-    def otherwise(self, items: list[Token]) -> str:
-        return str(items[0])
-
-    def signed_terms(self, items: list[Any]) -> Tree:
-        terms: list[Tree] = []
-        negative = False
-        for item in items:
-            if item is None:
-                continue
-            if isinstance(item, Token):
-                negative = item == "-"
-            else:
-                terms.append(Minus(item) if negative else item)
-                negative = False
-        return terms[0] if len(terms) == 1 else Addition(tuple(terms))
-
-    def term(self, items: list[Tree]) -> Tree:
+    def term(self, *items: Any) -> Tree:
         factors: list[Tree] = []
         for item in items:
             before = factors[-1] if factors else None
-            if isinstance(before, Symbol) and _applies(before) and isinstance(item, (_Arguments, Group)):
-                if isinstance(item, Group) and item.bracket != "(":
+            is_applied = isinstance(before, Symbol) and before.name in _FUNCTIONS and not before.above
+            match before, item:
+                case Symbol() as function, _Arguments(arguments) if is_applied:
+                    factors[-1] = Call(function, arguments)
+                case Symbol() as function, Group("(", argument) if is_applied:
+                    factors[-1] = Call(function, (argument,))
+                case _, _Arguments():
+                    raise ValueError("brackets with commas after what is no function")
+                case _:
                     factors.append(item)
-                else:
-                    factors[-1] = Call(before, item.items if isinstance(item, _Arguments) else (item.inner,))
-            elif isinstance(item, _Arguments):
-                raise ValueError("brackets with commas after what is no function")
-            else:
-                factors.append(item)
         return factors[0] if len(factors) == 1 else Product(tuple(factors))
 
-    def slash(self, items: list[Tree]) -> Tree:
-        return Fraction(items[0], items[1], bar=False)
+    def slash(self, numerator: Tree, denominator: Tree) -> Tree:
+        return Fraction(numerator, denominator, bar=False)
 
-    def number(self, items: list[Token]) -> Tree:
-        return Number(str(items[0]))
+    def fraction(self, numerator: Tree, denominator: Tree) -> Tree:
+        return Fraction(numerator, denominator)
 
-    def blank(self, items: list[Token]) -> Tree:
-        return Blank(str(items[0]))
+    def number(self, digits: Token) -> Tree:
+        return Number(str(digits))
 
-    def round(self, items: list[Any]) -> Any:
+    def name(self, name: Token) -> Tree:
+        return Symbol(str(name))
+
+    def blank(self, mark: Token) -> Tree:
+        return Blank(str(mark))
+
+    def round(self, *items: Any) -> Any:
         *inner, power = items
-        if len(inner) > 1:
-            return _Arguments(inner)
-        return _power(Group("(", inner[0]), power)
+        return _Arguments(tuple(inner)) if len(inner) > 1 else _power("(", inner[0], power)
 
-    def square(self, items: list[Any]) -> Tree:
-        return _power(Group("[", items[0]), items[1])
+    def square(self, inner: Tree, power: Tree | None) -> Tree:
+        return _power("[", inner, power)
 
-    def curly(self, items: list[Any]) -> Tree:
-        return _power(Group("{", items[1]), items[3])
+    def curly(self, inner: Tree, power: Tree | None) -> Tree:
+        return _power("{", inner, power)
 
-    def fraction(self, items: list[Any]) -> Tree:
-        return Fraction(items[1], items[2])
-
-    def derivative(self, items: list[Any]) -> Tree:
-        _, _, power, of, _, by = items
-        order = 1 if power is None else _order(power)
-        if isinstance(by, Power):
-            lower, by = _order(by.exponent), by.base
-        else:
-            lower = 1
-        if lower != order or not isinstance(by, Symbol):
+    def derivative(self, power: Tree | None, function: Tree, variable: Tree) -> Tree:
+        lower = None
+        if isinstance(variable, Power):
+            lower, variable = variable.exponent, variable.base
+        if _order(lower) != _order(power) or not isinstance(variable, Symbol):
             raise ValueError("orders of a derivative differ")
-        return Derivative(order, of, by)
+        return Derivative(_order(power), function, variable)
 
-    def at_value(self, items: list[Any]) -> Tree:
-        _, of, _, where = items
-        if not isinstance(where, Relation):
+    def at_value(self, expression: Tree, condition: Tree) -> Tree:
+        if not isinstance(condition, Relation):
             raise ValueError("a derivative is taken where a variable has a value")
-        return AtValue(of, where)
+        return AtValue(expression, condition)
 
-    def cases(self, items: list[Any]) -> Tree:
-        return Cases(tuple(item for item in items if isinstance(item, tuple)))
+    def cases(self, *branches: tuple[Tree, Tree]) -> Tree:
+        return Cases(branches)
 
-    def branch(self, items: list[Tree]) -> tuple[Tree, Tree]:
-        return items[0], items[1]
+    def branch(self, value: Tree, where: Tree) -> tuple[Tree, Tree]:
+        return value, where
 
-    def series(self, items: list[Any]) -> Tree:
-        _, variable, first, last, body = items
-        (upper,) = last
-        return Series(variable, first, upper, body)
+    def series(self, variable: Symbol, first: Tree, last: tuple[Tree], body: Tree) -> Tree:
+        return Series(variable, first, *last, body)
 
-    def sum_body(self, items: list[Tree]) -> Tree:
-        return items[0]
+    def power(self, index: tuple[Tree]) -> Tree:
+        (exponent,) = index
+        return exponent
 
-    def power(self, items: list[Any]) -> Tree:
-        ((exponent,),) = items
-        return exponent  # type: ignore[no-any-return]
+    def symbol(self, letter: tuple[str, str], early: Token | None, scripts: tuple[Any, Any, Any] | None) -> Tree:
+        (accent, name), (below, above, late) = letter, scripts or (None, None, None)
+        symbol = Symbol(name, accent, len(early or "") + len(late or ""), below or ())
+        if above is not None and name in _INDEXED_ABOVE:
+            return replace(symbol, above=above)
+        return symbol if above is None else Power(symbol, self.power(above))
 
-    def symbol(self, items: list[Any]) -> Tree:
-        (accent, name), early, scripts = items
-        below, above, late = scripts or (None, None, None)
-        primes = len(early or "") + len(late or "")
-        symbol = Symbol(name, accent, primes, below or ())
-        if above is None:
-            return symbol
-        if name in _INDEXED_ABOVE:
-            return Symbol(name, accent, primes, below or (), above)
-        (exponent,) = above
-        return Power(symbol, exponent)
+    def scripts(self, below: Any, above: Any, primes: Token | None) -> tuple[Any, Any, Any]:
+        return below, above, primes
 
-    def scripts(self, items: list[Any]) -> list[Any]:
-        return items
+    def above_alone(self, above: Any) -> tuple[Any, Any, Any]:
+        return None, above, None
 
-    def above_alone(self, items: list[Any]) -> list[Any]:
-        return [None, items[0], None]
-
-    def letter(self, items: list[Any]) -> tuple[str, str]:
+    def letter(self, *items: Any) -> tuple[str, str]:
         if len(items) == 1:
             return "", str(items[0])
         accent, (inner, name) = items
         return f"{accent}{inner}", name
 
-    def below(self, items: list[Any]) -> tuple[Tree, ...]:
-        return tuple(part for entry in items[0] for part in _indices(entry))
+    def below(self, index: tuple[Tree, ...]) -> tuple[Tree, ...]:
+        return tuple(part for entry in index for part in _indices(entry))
 
-    def above(self, items: list[Any]) -> tuple[Tree, ...]:
-        return tuple(items[0])
-
-    def number_index(self, items: list[Token]) -> tuple[Tree, ...]:
-        return (Number(str(items[0])),)
-
-    def name_index(self, items: list[Token]) -> tuple[Tree, ...]:
-        return (Symbol(str(items[0])),)
-
-    def index(self, items: list[Tree]) -> tuple[Tree, ...]:
-        return tuple(items)
+    def index(self, *items: Tree) -> tuple[Tree, ...]:
+        return items
 
 
-class _Arguments:
+class _Arguments(NamedTuple):
     """What stands between brackets with commas."""
 
-    def __init__(self, items: list[Tree]) -> None:
-        self.items = tuple(items)
+    items: tuple[Tree, ...]
 
 
-def _applies(symbol: Symbol) -> bool:
-    return symbol.name in _FUNCTIONS and not symbol.above
+def _power(bracket: str, inner: Tree, power: Tree | None) -> Tree:
+    return Group(bracket, inner) if power is None else Power(Group(bracket, inner), power)
 
 
-def _power(group: Tree, power: Tree | None) -> Tree:
-    return group if power is None else Power(group, power)
-
-
-def _order(exponent: Tree) -> int:
+def _order(exponent: Tree | None) -> int:
+    """The order of a derivative; where none is printed it is the first."""
+    if exponent is None:
+        return 1
     if not isinstance(exponent, Number):
         raise ValueError("the order of a derivative is no number")
     return int(exponent.digits)
