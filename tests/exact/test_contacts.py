@@ -215,7 +215,7 @@ def test_outputs_of_single_precision_and_fields_know_of_contacts():
     assert [(e.x, e.kind) for e in events(model, SINGLE)] == [(e.x, e.kind) for e in events(model)]
     import numpy as np
 
-    velocity, _ = Field(model).at(0, np.zeros(3), np.array([0.25, 1.5, 5.5]))
+    velocity, _ = Field(model).values_at(0, np.zeros(3), np.array([0.25, 1.5, 5.5]))
     (exact,) = values(model, ["1/4", "3/2", "11/2"])
     assert velocity == pytest.approx([float(v.p) / float(v.q) for v in exact], abs=1e-12)
     assert identically_zero(model, q(6)) == [False]
@@ -302,7 +302,7 @@ def test_a_cap_with_hardly_any_mass_is_served():
 
 def test_waves_that_contacts_were_found_with_are_those_of_the_chain_moved_anew():
     model = line([body(1, velocity=1, force="1/2"), contact("1/10"), rod(), rod("1/2", 2), FIXED], 6)
-    last = tuple(model.reached(model.until).items())
+    last = tuple(model.joints_in_reach(model.until).items())
     known = room.schedule(model.network, model.loads, last)
     assert known.changes
     with ctx.workprec(2 * known.bits):

@@ -309,7 +309,7 @@ def test_a_short_stiff_rod_beside_a_light_mass_costs_no_bits(monkeypatch):
     assert motion.first_bits <= 1024
     assert all(
         motion._breakpoints.joints[number][-1] <= until + fmpq(1, 15)
-        for number, until in model.reached(motion.until).items()
+        for number, until in model.joints_in_reach(motion.until).items()
     )
 
 

@@ -36,7 +36,7 @@ def by_the_law(nodes, scale):
 
     rows = []
     for x, node in enumerate(nodes):
-        law = node_law().at(node)
+        law = node_law().with_numbers(node)
         left = E * sent(x - 1, x) if node.left else 0
         right = E * sent(x + 1, x) if node.right else 0
         moving = (law.own[0] * sympy.I * W + law.own[1]) * q[x]
@@ -170,7 +170,7 @@ def test_no_frequency_is_missed(name):
         w = float((below + above) / 2)
         clamped = sum(int(w * float(bar.delay) / pi) for bar in network.bars)
         count = edges.index(above)
-        assert stiffness.counted(np.array([w]))[0] == count
+        assert stiffness.count_below(np.array([w]))[0] == count
         assert clamped <= count <= clamped + sum(point.motion is None for point in network.points)
 
 

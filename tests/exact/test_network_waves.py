@@ -88,7 +88,7 @@ def test_the_wave_at_a_stretchs_start_is_the_one_that_begins_there():
 
 def test_what_a_rod_holds_at_the_start():
     bar = Bar(0, 1, fmpq(1), fmpq(3), fmpq(1), velocity=fmpq(5), strain=fmpq(1, 2))
-    right, left = bar.held(0), bar.held(1)
+    right, left = bar.initial_wave(0), bar.initial_wave(1)
     assert right + left == 5  # velocity
     assert (left - right) / 3 == fmpq(1, 2)  # strain
 
@@ -155,7 +155,7 @@ def test_equal_lengths_have_windows():
 def test_only_what_can_be_felt_is_moved():
     model = chain([1] * 9, 3, {"velocity": [2]})
     assert sorted(Breakpoints(model, model.until).joints) == [0, 1, 2, 3, 4, 5]
-    assert model.reached(rational(3))[5] == 0
+    assert model.joints_in_reach(rational(3))[5] == 0
 
 
 def test_an_absorbing_end_sends_exactly_nothing():

@@ -33,7 +33,7 @@ def tower(places, until="1"):
     ],
 )
 def test_the_cone(outputs, until, first, last):
-    reached = tower(outputs).reached(rational(until))
+    reached = tower(outputs).joints_in_reach(rational(until))
     assert (min(reached), max(reached)) == (first, last)
 
 
@@ -43,5 +43,5 @@ def test_the_cone(outputs, until, first, last):
 def test_damped_modes_have_no_cone(damping, nodes):
     """Each is damped as a whole: all of the chain acts on an output, and is told with it."""
     model = replace(tower(["1-"], until=2), damping=damping)
-    assert len(model.reached(model.until)) == nodes
+    assert len(model.joints_in_reach(model.until)) == nodes
     assert len(model.letters["kappa"]) == (3 if nodes == 4 else 101)

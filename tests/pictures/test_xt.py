@@ -35,7 +35,7 @@ def test_a_field_has_what_outputs_have():
     taus = np.linspace(0.01, 5.9, 50)
     values = np.array(Reference(model).values(taus.tolist()))
     for k, (bar, part, impedance) in enumerate([(0, 0.5, 1), (1, 0.5, 3 * 2), (2, 1 / 3, 1)]):
-        velocity, force = field.at(bar, np.full_like(taus, part), taus)
+        velocity, force = field.values_at(bar, np.full_like(taus, part), taus)
         assert np.allclose(force, impedance * values[k], rtol=0, atol=VISIBLE)
         assert np.allclose(velocity, values[3 + k], rtol=0, atol=VISIBLE)
 

@@ -104,7 +104,7 @@ def test_the_train_loses_no_energy() -> None:
     field, part = Field(model), (np.arange(2000) + 0.4142) / 2000
     held = 0.0
     for number, bar in enumerate(model.network.bars):
-        velocity, force = field.at(number, part, np.full_like(part, 29.9))
+        velocity, force = field.values_at(number, part, np.full_like(part, 29.9))
         held += float(bar.length) * np.mean(float(bar.impedance) * velocity**2 + force**2 / float(bar.impedance)) / 2
     assert held == pytest.approx((1 + 1 / 4) / 2, rel=2e-3)
 

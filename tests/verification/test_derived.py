@@ -85,7 +85,7 @@ def test_a_power_too_low_fails(monkeypatch):
 def test_a_wrong_equation_fails(monkeypatch):
     def wrong(system, *parameters):
         first, *others = delay_equations(system, *parameters)
-        return (replace(first, right=first.right.scaled(2)), *others)
+        return (replace(first, right=first.right.scale(2)), *others)
 
     monkeypatch.setattr(module, "delay_equations", wrong)
     text, passed = derivation_report(only_the_drive)

@@ -60,7 +60,7 @@ def side(rod: Rod, number: Expr, x: Expr, outgoing: str) -> Side:
         number,
         velocity=f + g + moving,
         strain=g - f,
-        arriving=(f if outgoing == "g" else g) + moving.scaled(Rational(1, 2)),
+        arriving=(f if outgoing == "g" else g) + moving.scale(Rational(1, 2)),
         outgoing=Wave(outgoing, exact(number), lag[outgoing]),
     )
 
@@ -69,7 +69,7 @@ def _solve_for(equation: Line, unknown: Wave) -> tuple[Operator, Line]:
     """`equation` = 0 as (own operator) unknown = right, on the clock of the unknown, own operator D + b or 1."""
     a, b = equation.waves[unknown]
     factor = a if a != 0 else b
-    right = equation.without(unknown).scaled(-1 / factor).delayed(-unknown.lag)
+    right = equation.without(unknown).scale(-1 / factor).delayed(-unknown.lag)
     return Operator(exact(a / factor), exact((b / factor).expand())), right
 
 
@@ -85,13 +85,13 @@ def balance(node: Node, x: Expr) -> tuple[Line, Line]:
     left, right = sides(node, x)
     own = right or left
     assert own is not None  # a node has a rod
-    motion, force = own.velocity.scaled(node.damping), Line()
+    motion, force = own.velocity.scale(node.damping), Line()
     if node.inertia:
-        motion = motion + own.velocity.differentiated().scaled(node.inertia)
+        motion = motion + own.velocity.differentiate().scale(node.inertia)
     if right:
-        force = force + right.strain.scaled(Rational(1, 2) * node.beta)
+        force = force + right.strain.scale(Rational(1, 2) * node.beta)
     if left:
-        force = force - left.strain.scaled(Rational(1, 2) * node.alpha)
+        force = force - left.strain.scale(Rational(1, 2) * node.alpha)
     return motion, force + loads(node)
 
 
@@ -103,13 +103,13 @@ def loads(node: Node) -> Line:
 
 def _lawful(node: Node, left: Side | None, right: Side | None, moving: Side) -> Line:
     """What the node's law makes 0, with the velocity as one of its rods has it."""
-    law = node_law().at(node)
-    line = moving.velocity.scaled(law.own.b) - loads(node).scaled(law.load)
+    law = node_law().with_numbers(node)
+    line = moving.velocity.scale(law.own.b) - loads(node).scale(law.load)
     if law.own.a != 0:
-        line = line + moving.velocity.differentiated().scaled(law.own.a)
+        line = line + moving.velocity.differentiate().scale(law.own.a)
     for side, factor in ((left, law.left), (right, law.right)):
         if side:
-            line = line - side.arriving.scaled(factor)
+            line = line - side.arriving.scale(factor)
     return line
 
 

@@ -53,7 +53,7 @@ class Line:
             {source: value for source, value in loads.items() if value != 0},
         )
 
-    def scaled(self, factor: Expr | int) -> Line:
+    def scale(self, factor: Expr | int) -> Line:
         """Every term times a factor."""
         return Line() + Line(  # a sum leaves out what is 0
             {wave: Operator(expand(factor * a), expand(factor * b)) for wave, (a, b) in self.waves.items()},
@@ -61,7 +61,7 @@ class Line:
         )
 
     def __sub__(self, other: Line) -> Line:
-        return self + other.scaled(-1)
+        return self + other.scale(-1)
 
     def delayed(self, lag: Expr) -> Line:
         """The same line, `lag` later on every clock."""
@@ -70,7 +70,7 @@ class Line:
             {source._replace(lag=expand(source.lag + lag)): value for source, value in self.loads.items()},
         )
 
-    def differentiated(self) -> Line:
+    def differentiate(self) -> Line:
         """D of a line of plain waves. A constant start velocity goes; the D of a load is never needed."""
         assert all(a == 0 for a, _ in self.waves.values())
         assert all(s.kind == "impact" for s in self.loads)
@@ -86,9 +86,9 @@ class Line:
         for wave, (a, b) in self.waves.items():
             if (wave.function, wave.rod) == (function, rod):
                 late = value.delayed(wave.lag)
-                result = result.without(wave) + late.scaled(b)
+                result = result.without(wave) + late.scale(b)
                 if a != 0:
-                    result = result + late.differentiated().scaled(a)
+                    result = result + late.differentiate().scale(a)
         return result
 
     def renumbered(self, index: Expr, by: Expr) -> Line:

@@ -34,7 +34,7 @@ class NodeLaw:
     right: Expr
     load: Expr
 
-    def at(self, node: Node) -> NodeLaw:
+    def with_numbers(self, node: Node) -> NodeLaw:
         """With a node's own numbers or symbols for inertia, damping, alpha and beta."""
         values = {
             INERTIA: exact(node.inertia),

@@ -33,7 +33,7 @@ def _statistic(statistic: Statistic, output: OutputSummary) -> float | dict[str,
     """A value, an instant (null where there is none), or a value with its instant."""
     at = statistic.when(output) if statistic.when is not None else None
     if statistic.value is None:
-        return None if at is None else at.shown
+        return None if at is None else at.in_scene_time
     value = statistic.value(output)
     return value if at is None else {"value": value, "tau": at.tau, "time": at.time}
 
@@ -47,7 +47,7 @@ def _lines(summary: Summary) -> Iterable[str]:
         yield "-  it comes up to this value, and jumps then"
     if (drift := summary.largest_drift) is not None:
         peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
-        yield f"largest drift: {drift.label}, {number_text(peak.value)}{unit} at {number_text(peak.at.shown)}"
+        yield f"largest drift: {drift.label}, {number_text(peak.value)}{unit} at {number_text(peak.at.in_scene_time)}"
     yield f"{summary.how}: {summary.certain}"
 
 

@@ -93,7 +93,7 @@ class _Fronts:
     def __init__(self, model: Model, until: fmpq, t: int) -> None:
         self._model, self._until, self._t = model, until, t
         self._network = model.network
-        self._reached = model.reached(until)
+        self._reached = model.joints_in_reach(until)
         self._joints = {number: _Answer(model, number, t) for number in self._reached}
         self._coming: dict[tuple[fmpq, int], dict[End, int]] = {}
         self._order: list[tuple[fmpq, int]] = []
@@ -112,7 +112,7 @@ class _Fronts:
                         bar = network.bars[end.bar]
                         ends[end].append((k, way * bar.delay, heard))
                         # what a bar holds is there until something is sent into it
-                        sums[k][fmpq(0)] = (sums[k][fmpq(0)] + heard * _modular(bar.held(end.side))) % _MODULUS
+                        sums[k][fmpq(0)] = (sums[k][fmpq(0)] + heard * _modular(bar.initial_wave(end.side))) % _MODULUS
                 elif reading.quantity == "load":
                     for time, value in self._joints[network.joint_of[point]].acts(point):
                         if time <= self._until:
@@ -150,7 +150,7 @@ class _Fronts:
         for number in self._reached:
             self._meet(fmpq(0), number)
             for end, _ in self._network.joints[number].ends:
-                self._arrive(fmpq(0), end, _modular(self._network.bars[end.bar].held(1 - end.side)))
+                self._arrive(fmpq(0), end, _modular(self._network.bars[end.bar].initial_wave(1 - end.side)))
             for time in self._joints[number].begins:
                 self._meet(time, number)
 
@@ -243,7 +243,7 @@ class _Answer:
         sent = {}
         for end, k, ratio, _ in self._ends:
             value = _modular(ratio) * q[k] - came.get(end, 0)
-            sent[end] = (value - (_modular(network.bars[end.bar].held(end.side)) if begins else 0)) % _MODULUS
+            sent[end] = (value - (_modular(network.bars[end.bar].initial_wave(end.side)) if begins else 0)) % _MODULUS
         return sent, {point: q[k] for point, k in self._place.items()}
 
 

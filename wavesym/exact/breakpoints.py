@@ -43,14 +43,14 @@ class Breakpoints:
     def __init__(self, model: Model, until: fmpq) -> None:
         self._network = model.network
         self._until = until
-        self._acting = model.acting(until)
-        self._last = model.reached(until)
+        self._acting = model.loads_until(until)
+        self._last = model.joints_in_reach(until)
         self._delays = {bar.delay for bar in self._network.bars}
         self._windowed = len(self._delays) == 1 and not self._network.contacts
         self._scheduled = partial(scheduled, model, until)
 
     @property
-    def reached(self) -> Collection[int]:
+    def joints_in_reach(self) -> Collection[int]:
         """The joints that can be felt."""
         return self._last.keys()
 

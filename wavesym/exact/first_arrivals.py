@@ -34,7 +34,7 @@ def first_arrivals(model: Model) -> list[fmpq | None]:
     early, left = shortest, list(range(len(found)))
     while left:
         early = min(2 * early, until)
-        beginning = replace(model.watching(model.probes[k] for k in left), loads=model.acting(early))
+        beginning = replace(model.watching(model.probes[k] for k in left), loads=model.loads_until(early))
         for k, time in zip(left, arrivals(beginning, early), strict=True):
             found[k] = time
         left = [k for k in left if found[k] is None]

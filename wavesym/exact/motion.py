@@ -57,7 +57,7 @@ class Motion:
         self.until = until
         self.probes = model.probes
         self._model, self._network = model, model.network
-        self._acting = model.acting(until)
+        self._acting = model.loads_until(until)
         self._breakpoints = Breakpoints(model, until)
         self._solved: dict[int, Waves] = {}
         if (kept := self._breakpoints.crossings) > MOST_STRETCHES:
@@ -104,7 +104,9 @@ class Motion:
     @cached_property
     def _series(self) -> bool:
         """Whether joints have a state, which makes series of what arrives: mass, or springs."""
-        points = {point for number in self._breakpoints.reached for point in self._network.joints[number].points}
+        points = {
+            point for number in self._breakpoints.joints_in_reach for point in self._network.joints[number].points
+        }
         return any(
             self._network.points[point].stiffness != 0
             or (self._network.points[point].mass != 0 and self._network.points[point].motion is None)

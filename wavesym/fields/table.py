@@ -89,7 +89,7 @@ class Faults:
         self.found = list(found)
 
     @contextmanager
-    def gathered(self, *keys: str | int) -> Iterator[None]:
+    def gather(self, *keys: str | int) -> Iterator[None]:
         """Keep what the body finds wrong; `keys` lead to what it reads."""
         try:
             yield
@@ -106,7 +106,7 @@ class Faults:
 def key_context(*keys: str | int) -> Iterator[None]:
     """Say of what the body finds wrong where in the scene it is: `keys` lead to what it reads."""
     faults = Faults()
-    with faults.gathered(*keys):
+    with faults.gather(*keys):
         yield
     faults.refuse()
 
@@ -158,7 +158,7 @@ class SceneTable(BaseModel):
         ]
         faults = Faults([*unknown, *missing])
         if faults.found:
-            with faults.gathered():  # also what is wrong with the other keys
+            with faults.gather():  # also what is wrong with the other keys
                 handler({key: each for key, each in value.items() if key in fields})
             faults.found = [fault for fault in faults.found if fault.what != _MISSING]
             faults.refuse()

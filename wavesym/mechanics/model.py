@@ -125,11 +125,11 @@ class Model:
         """The same until the last tau in `real` numbers, for what compares times with `until`: it has been reached."""
         return self.shortened(rational(self.horizon(real)))
 
-    def acting(self, until: fmpq) -> tuple[Applied, ...]:
+    def loads_until(self, until: fmpq) -> tuple[Applied, ...]:
         """The loads that begin by then."""
         return tuple(load for load in self.loads if load.time <= until)
 
-    def reached(self, until: fmpq) -> dict[int, fmpq]:
+    def joints_in_reach(self, until: fmpq) -> dict[int, fmpq]:
         """The joints of the network that can influence an output by then, and until when each can.
 
         A contact counts as if it were closed: it may close. What one does is asked for until the end, as an output is.

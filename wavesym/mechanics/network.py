@@ -72,7 +72,7 @@ class Bar:
         """How long a wave takes from end to end."""
         return self.length / self.speed
 
-    def held(self, side: int) -> fmpq:
+    def initial_wave(self, side: int) -> fmpq:
         """The wave that it holds at tau = 0 and that was sent from its left (0) or right (1) end."""
         return (self.velocity + (-self.speed if side == 0 else self.speed) * self.strain) / 2
 
@@ -253,8 +253,8 @@ class Network:
         pulls = {point: -self.points[point].damping * velocities[point] for point in joint.points}
         for end, point in joint.ends:
             bar = self.bars[end.bar]
-            ratio, arriving = bar.ratios[end.side], bar.held(1 - end.side)
-            if ratio * velocities[point] - arriving != bar.held(end.side):
+            ratio, arriving = bar.ratios[end.side], bar.initial_wave(1 - end.side)
+            if ratio * velocities[point] - arriving != bar.initial_wave(end.side):
                 return False
             pulls[point] += ratio * bar.impedance * (2 * arriving - ratio * velocities[point])
         for link in self.links:

@@ -28,19 +28,19 @@ class Quantity:
     usual: bool = False
 
     @property
-    def called(self) -> str:
+    def phrase(self) -> str:
         """In a sentence."""
         return self.words or self.name
 
     @property
-    def titled(self) -> str:
+    def heading(self) -> str:
         """In a title."""
-        return self.title or self.called
+        return self.title or self.phrase
 
     @property
     def plural(self) -> str:
         """Several of them."""
-        return f"{self.called[:-1]}ies" if self.called.endswith("y") else f"{self.called}s"
+        return f"{self.phrase[:-1]}ies" if self.phrase.endswith("y") else f"{self.phrase}s"
 
 
 QUANTITIES = {

@@ -47,7 +47,7 @@ class Band:
     spots: tuple[Spot, ...]
     values: Points
 
-    def numbered(self, most: int, first: int = 1) -> list[tuple[float, str]]:
+    def tick_labels(self, most: int, first: int = 1) -> list[tuple[float, str]]:
         """Its places with their numbers, at most so many."""
         return [(spot.x, str(k)) for k, spot in enumerate(self.spots, first)][:: -(-len(self.spots) // most)]
 

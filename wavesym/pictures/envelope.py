@@ -79,7 +79,7 @@ def _over_height(axes: Axes, quantity: Along, band: Band) -> None:
     draw_grid(axes, zero=False)
     axes.axvline(0, color="0.6", linewidth=0.8)
     axes.set_ylabel("storey" if quantity.storeys else "floor")
-    axes.set_yticks(*zip(*band.numbered(_TICKS, first=1 if quantity.storeys else 0), strict=True))
+    axes.set_yticks(*zip(*band.tick_labels(_TICKS, first=1 if quantity.storeys else 0), strict=True))
     axes.set_ylim(band.spots[0].low - _ROOM, band.spots[-1].high + _ROOM)
     axes.use_sticky_edges = False
     axes.margins(x=0.25)

@@ -37,7 +37,7 @@ class Field:
         motion = Motion(everywhere, model.until)
         self._waves = {end: _SampledWave(wave) for end, wave in _visible_waves(motion).sent.items()}
 
-    def at(self, bar: int, part: Array, tau: Array) -> tuple[Array, Array]:
+    def values_at(self, bar: int, part: Array, tau: Array) -> tuple[Array, Array]:
         """Velocity and force of a bar at parts of its length from the left end; all of one shape."""
         delay = nearest(self._network.bars[bar].delay)
         right = self._waves[End(bar, 0)](tau - part * delay)

@@ -61,7 +61,7 @@ def draw(model: Model, found: Sequence[Along], loads: Sequence[History]) -> Figu
 def _frame(axes: Axes, quantity: Along, band: Band) -> None:
     """The places, upward."""
     if quantity.storeys:
-        axes.set_yticks(*zip(*band.numbered(_NAMED), strict=True))
+        axes.set_yticks(*zip(*band.tick_labels(_NAMED), strict=True))
         axes.set_ylabel("storey")
     else:
         axes.set_ylabel(axis_text(band.line, quantity.length))

@@ -33,7 +33,7 @@ def output_title(model: Model, probe: Probe) -> str:
         probe: its name is QUANTITY@PLACE.
     """
     quantity, _, place = probe.name.partition("@")
-    words = QUANTITIES[quantity].titled
+    words = QUANTITIES[quantity].heading
     side = {"+": "above", "-": "below"}.get(place[-1:], "at")
     if model.labels.system["type"] == "building" and quantity != "strain" and place.rstrip("+-").isdecimal():
         place = place.rstrip("+-")

@@ -176,7 +176,7 @@ def _image(
         count = max(8, int(_COLUMNS * (high - low) / float(stations[-1].x)))
         columns = np.linspace(low, high, count + 1)
         part = (np.arange(count) + _OFF) / count
-        velocity, force = field.at(station.right, *np.meshgrid(part, tau))
+        velocity, force = field.values_at(station.right, *np.meshgrid(part, tau))
         values = factor * (velocity if quantity == "velocity" else force)
         images.append((columns, edges * timescale(model).per_tau, values))
     return images

@@ -283,7 +283,7 @@ def _with_ratios(model: Model, rows: Sequence[ModeRow], per_tau: float) -> tuple
     if model.damping is None:
         return tuple(rows)
     elastic = np.array([row.omega * per_tau for row in rows if row.omega])
-    ratios = iter(damping_ratios(model.damping, elastic.tolist()).at(elastic).tolist())
+    ratios = iter(damping_ratios(model.damping, elastic.tolist()).ratios_at(elastic).tolist())
     return tuple(replace(row, damping=next(ratios)) if row.omega else row for row in rows)
 
 

@@ -150,7 +150,7 @@ class _Search:
         self.at: arb | None = None
         self.pole = False
 
-    def seen(self, w: arb, square: arb) -> None:
+    def amplitude_squared(self, w: arb, square: arb) -> None:
         """An amplitude, squared, at a frequency."""
         if square.is_finite() and (self.at is None or square.lower() > self.square):
             self.square, self.at = square.lower(), w
@@ -187,14 +187,14 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
         near, next_to = _squares(transfer, first), _squares(transfer, 2 * first)
         for search, (square, _, _), (later, _, _) in zip(found, near, next_to, strict=True):
             if square > later * _GROWTH:
-                search.seen(first, square)
+                search.amplitude_squared(first, square)
                 search.pole, search.at = True, arb(0)
     every = list(range(len(found)))
     edges = [(first + (last - first) * k / _PARTS).mid() for k in range(_PARTS + 1)]
     edges[0], edges[-1] = first.lower(), last.upper()
     for edge in (edges[0], edges[-1]):
         for search, (square, _, _) in zip(found, _squares(transfer, edge), strict=True):
-            search.seen(edge, square)
+            search.amplitude_squared(edge, square)
     level, count = [_Interval(*each, every) for each in pairwise(edges)], 0
     allowed = _MOST // parts
     while level:
@@ -204,7 +204,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
         middles = [_squares(transfer, each.middle) for each in level]
         for each, squares in zip(level, middles, strict=True):
             for k in each.outputs:
-                found[k].seen(each.middle, squares[k][0])
+                found[k].amplitude_squared(each.middle, squares[k][0])
         following: list[_Interval] = []
         for each, squares in zip(level, middles, strict=True):
             whole = _squares(transfer, each.low.union(each.high))
@@ -237,7 +237,7 @@ def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb)
             return
         better = (search.at - slope / (2 * bend)).mid()
         if first < better < last:
-            search.seen(better, _squares(transfer, better)[k][0])
+            search.amplitude_squared(better, _squares(transfer, better)[k][0])
 
 
 def _squares(transfer: Transfers, w: arb) -> list[tuple[arb, arb, arb]]:

@@ -96,7 +96,7 @@ def cells(output: OutputSummary, jumps: str) -> tuple[str, ...]:
             found.append(number_text(each.value(output)))
         if each.when is not None:
             at = each.when(output)
-            found.append("never" if at is None else number_text(at.shown) + jumps * (not each.reached(output)))
+            found.append("never" if at is None else number_text(at.in_scene_time) + jumps * (not each.reached(output)))
     return tuple(found)
 
 

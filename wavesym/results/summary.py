@@ -39,7 +39,7 @@ class When(NamedTuple):
     time: float | None
 
     @property
-    def shown(self) -> float:
+    def in_scene_time(self) -> float:
         """The time of a scene that has units, else tau."""
         return self.tau if self.time is None else self.time
 
@@ -124,7 +124,7 @@ class Summary:
                 if each.when is not None:
                     at = each.when(output)
                     row[f"{each.name} at {time}" if each.value else f"{each.name}, {time}"] = (
-                        None if at is None else at.shown
+                        None if at is None else at.in_scene_time
                     )
             rows.append(row)
         return rows

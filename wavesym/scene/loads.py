@@ -17,7 +17,7 @@ def loads(tables: object, system: SystemTable) -> tuple[Load, ...]:
     faults = Faults()
     found = []
     for k, table in enumerate(as_list(tables)):
-        with faults.gathered(k):
+        with faults.gather(k):
             found.append(_load(table, system))
     faults.refuse()
     damping = getattr(system, "damping", None)

@@ -130,7 +130,7 @@ def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> t
         positions: tuple[Position, ...] = getattr(output, quantity)
         for k, position in enumerate(positions):
             text = show(WrittenDecimal(position.written))
-            with faults.gathered("output", quantity, k):
+            with faults.gather("output", quantity, k):
                 try:
                     place = watching.place(position, quantity)
                 except MisplacedError as error:

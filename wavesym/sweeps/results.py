@@ -89,7 +89,7 @@ class SweepResults:
         return tuple(map(len, self.dimensions))
 
     @property
-    def kept(self) -> tuple[str, ...]:
+    def statistics(self) -> tuple[str, ...]:
         """The statistics of outputs that there are."""
         return tuple(self.manifest.keep.summary)
 

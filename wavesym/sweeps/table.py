@@ -52,9 +52,9 @@ def _columns(found: SweepResults) -> Iterator[Columns]:
         counts = tuple(each.stop - each.start for each in part)
         place = np.unravel_index(np.arange(prod(counts)), counts)
         made: Columns = {name: values[part[axis]][place[axis]] for axis, name, values in varied}
-        values = {name: found.array(name, part).reshape(len(place[0]), -1) for name in found.kept}
+        values = {name: found.array(name, part).reshape(len(place[0]), -1) for name in found.statistics}
         for k, output in enumerate(found.outputs):
-            made |= {f"{output}.{name}": values[name][:, k] for name in found.kept}
+            made |= {f"{output}.{name}": values[name][:, k] for name in found.statistics}
         yield made
 
 

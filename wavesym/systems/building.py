@@ -282,7 +282,7 @@ class PhysicalBuilding(SceneTable):
             displacement=first.length,
             force=first.stiffness * first.length,
             lengths=tuple(rod.length for rod in rods),
-            acting=lambda load: acting,
+            load_unit=lambda load: acting,
             kappa=kappa,
         )
 

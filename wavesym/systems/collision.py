@@ -220,7 +220,7 @@ class PhysicalCollision(SceneTable):
             displacement=first.length,
             force=first.stiffness * first.length,
             lengths=tuple(rod.length for rod in rods.all),
-            acting=_unloaded,
+            load_unit=_unloaded,
             kappa=kappa,
         )
 

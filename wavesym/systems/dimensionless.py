@@ -42,6 +42,6 @@ class DimensionlessSystem:
     displacement: Fraction
     force: Fraction
     lengths: tuple[Fraction, ...]
-    acting: Callable[[Mapping[str, Any]], LoadUnit]
+    load_unit: Callable[[Mapping[str, Any]], LoadUnit]
     kappa: tuple[Fraction, ...] = ()
     lines: Mapping[str, Fraction] | None = None

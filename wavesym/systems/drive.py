@@ -224,7 +224,7 @@ class PhysicalDrive(SceneTable):
             displacement=Fraction(1),
             force=force,
             lengths=tuple(rod.length for rod in rods.all),
-            acting=acting,
+            load_unit=acting,
             kappa=kappa,
         )
 

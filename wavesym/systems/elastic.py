@@ -78,7 +78,7 @@ class Rods:
         return self.in_step and all(rod.mass == self.first.mass for rod in self.all)
 
     @property
-    def rounded(self) -> int:
+    def rounded_ratios(self) -> int:
         """How many different ratios of delays are irrational, and so rounded."""
         first = self.first.delay_squared
         return len(

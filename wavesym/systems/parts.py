@@ -171,7 +171,7 @@ def read_parts(value: object) -> tuple[ChainPart | str, ...]:
     faults = Faults()
     found = []
     for k, part in enumerate(as_list(value)):
-        with faults.gathered(k):
+        with faults.gather(k):
             found.append(_part(part))
     faults.refuse()
     return tuple(found)

@@ -125,7 +125,7 @@ class Balancing:
         to is allowed, and what quadrature misses.
         """
         fine, coarse = (_Books(self, evaluate, errors, points) for points in (_POINTS, _FEWER))
-        largest = max(float(np.max(fine.stored.value)), fine.started) or 1.0
+        largest = max(float(np.max(fine.stored.value)), fine.initial_energy) or 1.0
         unit = _ROUNDINGS * len(self.cuts) * float(UNIT_ROUNDOFF)
 
         def balance(name: str, ours: Within, theirs: Within, scale: float) -> Balance:
@@ -239,7 +239,7 @@ class _Books:
         return self._content(2, problem.impedance) + self._ends.form(kept / 2)
 
     @cached_property
-    def started(self) -> float:
+    def initial_energy(self) -> float:
         """The energy at tau = 0."""
         problem = self._problem
         waves = np.sum(problem.start_waves**2, axis=1)
@@ -252,7 +252,7 @@ class _Books:
         work = self._q.T @ (free[:, np.newaxis] * self._load) - self._q.T @ problem.damping @ self._q
         reaction = self._resisted - problem.onto @ self._force - problem.parting.T @ self._push
         work += self._q.T @ ((1 - free)[:, np.newaxis] * reaction)
-        return self._balance(self.stored, self._all.form(work), self.started)
+        return self._balance(self.stored, self._all.form(work), self.initial_energy)
 
     # momentum
 

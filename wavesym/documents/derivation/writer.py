@@ -99,7 +99,7 @@ class Writer:
 
     def stretch(self, node: Node, x: Expr, at: Place) -> Iterator[str]:
         """The law of the node at x on powers of time, where no front passes."""
-        law = stretch_law(node_law().at(node))
+        law = stretch_law(node_law().with_numbers(node))
         own = [(at(law.own.same), self.n.term("q", POWER)), (at(law.own.raised), self.n.term("q", POWER + 1))]
         arriving = ((law.left, "a"), (law.right, "b"), (law.load if node.loads else Integer(0), "s"))
         right = [(at(factor), self.n.term(name, POWER)) for factor, name in arriving]

@@ -31,7 +31,7 @@ def law_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
         yield not_served(model)
         return
     rules = Rules(chain)
-    reached = model.reached(rational(model.horizon()))
+    reached = model.joints_in_reach(rational(model.horizon()))
     functions = [Function(name, rod) for rod in range(min(reached) + 1, max(reached) + 1) for name in ("f", "g")]
     yield Listing(
         "functions",
@@ -61,7 +61,7 @@ def not_served(model: Model) -> Facts:
 def joints(model: Model) -> Listing:
     """What joints in the light cone are, in a line each: the points that they hold, and how they answer a wave."""
     rows = []
-    for number in model.reached(rational(model.horizon())):
+    for number in model.joints_in_reach(rational(model.horizon())):
         joint = model.network.joints[number]
         points = Display([_point_name(model, point) for point in joint.points], _point_names(model, joint))
         law = _polynomial(JointLaw.of(model.network, joint))
@@ -74,12 +74,12 @@ def joint_laws(model: Model) -> Listing:
     until = rational(model.horizon())
     try:
         found = Breakpoints(model, until)
-        knots = {number: found.count(number) for number in found.reached}
+        knots = {number: found.count(number) for number in found.joints_in_reach}
         refusal = ""
     except CostError as error:
         knots, refusal = {}, str(error)
     rows: list[dict[str, Plain | Display]] = []
-    for number in model.reached(until):
+    for number in model.joints_in_reach(until):
         joint = model.network.joints[number]
         law = JointLaw.of(model.network, joint)
         mass = [[m if a == b else fmpq(0) for b in range(len(law.mass))] for a, m in enumerate(law.mass)]

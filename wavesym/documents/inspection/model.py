@@ -61,7 +61,7 @@ def part_counts(model: Model) -> dict[str, Plain]:
 
 def light_cone(model: Model) -> Facts:
     """The joints that are modelled, and how many are not."""
-    count, reached = len(model.network.joints), model.reached(rational(model.horizon()))
+    count, reached = len(model.network.joints), model.joints_in_reach(rational(model.horizon()))
     out = count - len(reached)
     values: dict[str, Plain | Display] = {
         "modelled": list(reached),
@@ -145,7 +145,7 @@ def _damped_modes(model: Model) -> Iterator[Section]:
     if rule.rayleigh:
         after = "at any frequency w it is ({:.6g}/w + {:.6g} w)/2".format(*rule.rayleigh)
     rows: list[dict[str, Plain | Display]] = []
-    for number, (frequency, ratio) in enumerate(zip(w.tolist(), rule.at(w).tolist(), strict=True), 1):
+    for number, (frequency, ratio) in enumerate(zip(w.tolist(), rule.ratios_at(w).tolist(), strict=True), 1):
         period = 2 * np.pi / frequency
         row: dict[str, Plain | Display] = {"mode": number, "frequency": frequency, "period": period, "damping": ratio}
         if model.clock:

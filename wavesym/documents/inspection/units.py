@@ -93,7 +93,7 @@ def _rods(physical: PhysicalScene) -> Listing:
 def remarks(physical: PhysicalScene) -> Iterator[str]:
     """What someone who knows the structure should look at twice."""
     rods = physical.scale.rods.all
-    if rounded := physical.scale.rods.rounded:
+    if rounded := physical.scale.rods.rounded_ratios:
         yield f"ratios of delays to the first are irrational and rounded likewise: {rounded}"
     low, high = _KAPPA
     for at, kappa in _runs([float(kappa) for kappa in physical.kappa]):

@@ -32,7 +32,7 @@ def scheduled(model: Model, until: fmpq) -> Schedule | None:
         return None
     from wavesym.exact.contacts.schedule import schedule  # how contacts touch: few scenes have any
 
-    return schedule(model.network, model.acting(until), tuple(model.reached(until).items()))
+    return schedule(model.network, model.loads_until(until), tuple(model.joints_in_reach(until).items()))
 
 
 def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
@@ -83,7 +83,7 @@ def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
         return ()
     from wavesym.exact.contacts.schedule import first_opening  # how contacts touch: few scenes have any
 
-    reached, ends = model.reached(until), []
+    reached, ends = model.joints_in_reach(until), []
     for number in glued:
         if (latest := reached.get(network.joint_of[number])) is None:
             continue
@@ -92,7 +92,7 @@ def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
         # what can reach the contact until its opening has the time to reach the nearest output
         distances = apart.distances((), (link.left, link.right))
         last = tuple((joint, latest - far) for joint, far in sorted(distances.items()) if far <= latest)
-        found = first_opening(apart, model.acting(latest), last)
+        found = first_opening(apart, model.loads_until(latest), last)
         if found and found.low <= latest:
             ends.append(ContactEnd(int(network.points[number].place), found.instant))
     return tuple(ends)

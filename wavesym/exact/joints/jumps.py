@@ -125,7 +125,7 @@ class _Answer:
         network, points = self._network, self._network.points
         if network.at_rest(self._joint):
             return {}, {}
-        held = {end: network.bars[end.bar].held(1 - end.side) for end, *_ in self._ends}
+        held = {end: network.bars[end.bar].initial_wave(1 - end.side) for end, *_ in self._ends}
         kept = {
             point: points[point].velocity
             for point in self._joint.points
@@ -134,7 +134,7 @@ class _Answer:
         moved, sent = self.to(held, kept)
         return (
             {point: q - points[point].velocity for point, q in moved.items()},
-            {end: wave - network.bars[end.bar].held(end.side) for end, wave in sent.items()},
+            {end: wave - network.bars[end.bar].initial_wave(end.side) for end, wave in sent.items()},
         )
 
     def to(self, waves: Mapping[End, fmpq], acts: Mapping[int, fmpq]) -> tuple[dict[int, fmpq], dict[End, fmpq]]:

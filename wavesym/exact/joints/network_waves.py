@@ -71,7 +71,7 @@ class Waves:
         self.rates: dict[End, SentWave] = {}
         for number, bar in enumerate(network.bars):
             for side in (0, 1):
-                held = bar.held(side)
+                held = bar.initial_wave(side)
                 constant = Enclosed.of(fmpq_poly([held])) if held != 0 else STILL
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
         shown = {network.point_at(end) for end in self.sent if network.bars[end.bar].ratios[end.side] == 1}

@@ -201,7 +201,7 @@ def _proved(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -
     made = trial(stiffness, law, inside, root, _I * inside)
     # a square root away from where it jumps
     scale = (-made.mass).rsqrt() * _I if made.mass.real.mid() < 0 else made.mass.rsqrt()
-    points = stiffness.placed([row * scale for row in made.rows])
+    points = stiffness.point_motions([row * scale for row in made.rows])
     if not all(q.real.rad() < _SHARP and q.imag.rad() < _SHARP for q in points):
         return None
     return Mode(stiffness, inside, points)

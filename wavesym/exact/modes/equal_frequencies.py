@@ -53,7 +53,7 @@ def met(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> arb | None
     force[root] = arb(1)
     for _ in range(_NEWTON):
         cot, csc = circular(law, w)
-        moved = stiffness.solved(*law.matrix(w, cot, csc), force)
+        moved = stiffness.solve(*law.matrix(w, cot, csc), force)
         better = (w * w + moved[root] / moved_mass(law, w, moved, stiffness.parents, cot, csc)).sqrt().mid()
         if not better.is_finite():
             return None
@@ -93,7 +93,7 @@ def _shapes(stiffness: Stiffness, law: HarmonicLaw, w: arb, aside: arb, count: i
         row = max(range(len(left)), key=lambda k: float(left[k].mid()))
         force = [arb(0)] * len(left)
         force[row] = square
-        column = stiffness.solved(list(near[0]), near[1], force)
+        column = stiffness.solve(list(near[0]), near[1], force)
         column = [q + arb(0, (others * c * calm[row]).upper()) for q, c in zip(column, calm, strict=True)]
         for shape in shapes:
             column = [q - s * shape[row] for q, s in zip(column, shape, strict=True)]
@@ -102,4 +102,4 @@ def _shapes(stiffness: Stiffness, law: HarmonicLaw, w: arb, aside: arb, count: i
         scale = column[row].rsqrt()
         shapes.append([q * scale for q in column])
         left = [each - q * q for each, q in zip(left, shapes[-1], strict=True)]
-    return [stiffness.placed(shape) for shape in shapes]
+    return [stiffness.point_motions(shape) for shape in shapes]

@@ -135,7 +135,7 @@ def searched(stiffness: Stiffness, count: int) -> Vector:
     low = np.zeros(count)
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
-        below = stiffness.counted(middle) < n
+        below = stiffness.count_below(middle) < n
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return np.asarray(high, np.float64)
 
@@ -212,7 +212,7 @@ def _bisected(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, shar
 def _normal(stiffness: Stiffness, found: Trial) -> list[arb]:
     """The points of a shape, of mass 1."""
     scale = found.mass.rsqrt()
-    return stiffness.placed([row * scale for row in found.rows])
+    return stiffness.point_motions([row * scale for row in found.rows])
 
 
 def _still(stiffness: Stiffness, free: tuple[fmpq, ...]) -> Mode:

@@ -82,14 +82,14 @@ class Statics:
         diagonal, up = law.assembled(arb(0), over, [-each for each in over])
         return self.stiffness.pivots(diagonal, up), up
 
-    def solved(self, forces: Sequence[arb]) -> list[arb]:
+    def solve(self, forces: Sequence[arb]) -> list[arb]:
         """How far the points move under forces on them, those that are not free by nothing.
 
         Where nothing holds the chain the forces are in balance, and its root does not move.
         """
         pivots, up = self._springs
         acting = [forces[point] for point in self.stiffness.points]
-        return self.stiffness.placed(self.stiffness.substituted(pivots, up, acting, free=self.free is not None))
+        return self.stiffness.point_motions(self.stiffness.substituted(pivots, up, acting, free=self.free is not None))
 
     def inertia(self, points: Sequence[arb]) -> list[arb]:
         """The forces on points that accelerate everything as points move, and what is between them linearly."""
@@ -115,7 +115,7 @@ class Statics:
         """The shape that the unit motion of a point imposes that moves as it is told."""
         over = {bar.delay: 1 / arb(bar.delay) for bar in self.stiffness.network.bars}
         _, forces = self.stiffness.prescribed_column(point, arb, over, over)
-        moved = self.solved([forces.get(other, arb(0)) for other in range(len(self.stiffness.network.points))])
+        moved = self.solve([forces.get(other, arb(0)) for other in range(len(self.stiffness.network.points))])
         moved[point] = arb(1)
         return Shape(self, moved)
 
@@ -125,16 +125,16 @@ class Statics:
         for point, force in forces.items():
             acting[point] += arb(force)
         if self.free is None:
-            return Shape(self, self.solved(acting))
+            return Shape(self, self.solve(acting))
         along = self._along(acting)
         bent = [along * q for q in self.free]
         pull = self.inertia(bent)
-        moved = self.solved([force - inertia for force, inertia in zip(acting, pull, strict=True)])
+        moved = self.solve([force - inertia for force, inertia in zip(acting, pull, strict=True)])
         return Shape(self, self._without(moved, bent), bent)
 
     def accelerated(self, imposed: Shape) -> Shape:
         """The shape that lags behind an imposed one when that has the acceleration 1."""
-        return Shape(self, self.solved([-force for force in self.inertia(imposed.points)]), imposed.points)
+        return Shape(self, self.solve([-force for force in self.inertia(imposed.points)]), imposed.points)
 
     def broken(self, end: End) -> arb:
         """The mass of the shape with a unit break at the end of a bar: the sum of (slope there)^2 / w^4."""
@@ -142,7 +142,7 @@ class Statics:
         acting = [arb(0)] * len(self.stiffness.network.points)
         acting[bar.left] -= arb(bar.ratios[0] / bar.delay)
         acting[bar.right] += arb(bar.ratios[1] / bar.delay)
-        moved = self.solved(acting)
+        moved = self.solve(acting)
         gap = {end: 1 / arb(bar.impedance) * (-1 if end.side else 1)}
         mass = self.mass(moved, gap)
         if self.free is None:

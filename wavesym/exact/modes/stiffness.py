@@ -223,7 +223,7 @@ class Stiffness:
                 diagonal[parent] = diagonal[parent] - up[row] * up[row] / diagonal[row]
         return diagonal
 
-    def solved(self, diagonal: list[Quantity], up: Sequence[Quantity], forces: Sequence[Quantity]) -> list[Quantity]:
+    def solve(self, diagonal: list[Quantity], up: Sequence[Quantity], forces: Sequence[Quantity]) -> list[Quantity]:
         """How far rows move under forces on them, `diagonal` eliminated in place."""
         return self.substituted(self.pivots(diagonal, up), up, forces)
 
@@ -243,7 +243,7 @@ class Stiffness:
                 moved[row] = moved[row] * 0 if free else moved[row] / pivots[row]
         return moved
 
-    def placed(self, moved: Sequence[Quantity]) -> list[Quantity]:
+    def point_motions(self, moved: Sequence[Quantity]) -> list[Quantity]:
         """How far points move where rows move so far; those that are not free do not."""
         points = [moved[0] * 0] * len(self.network.points)
         for point, each in zip(self.points, moved, strict=True):
@@ -274,7 +274,7 @@ class Stiffness:
         pairs = zip(law.held, law.mass, strict=True)
         return 2 * float(np.sqrt(sum(held / mass for held, mass in pairs if mass != 0)) or 1)
 
-    def counted(self, w: Vector) -> NDArray[np.int64]:
+    def count_below(self, w: Vector) -> NDArray[np.int64]:
         """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
         angles = [w * delay for delay in self.doubles.delays]
         sines = [np.sin(angle) for angle in angles]

@@ -66,7 +66,7 @@ class RuledNetwork:
             held = bar.strain if reading.quantity == "strain" else bar.velocity
         return trimmed({fmpq(0): {-1: [fmpq(0), held], 0: [held], 1: []}[reading.order]})
 
-    def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
+    def acting_loads(self, loads: Sequence[Applied]) -> Sequence[Applied]:
         """The loads, and the start where anything moves then."""
         return [Applied(START, fmpq(0), fmpq(1)), *loads] if START in self.joints.sources else loads
 
@@ -142,7 +142,7 @@ class RuledNetwork:
         for end, k, _, factor in self.joints.ends(number):
             add(forces[k], waves.get(end, {}), factor)
             if source == START:
-                add(forces[k], {fmpq(0): [self.network.bars[end.bar].held(1 - end.side)]}, factor)
+                add(forces[k], {fmpq(0): [self.network.bars[end.bar].initial_wave(1 - end.side)]}, factor)
         for k, point in enumerate(self.network.points[number] for number in joint.points):
             unit = {fmpq(0): [point.velocity]} if source == START else unit_at(point, source)
             if law.given[k] is not None:

@@ -76,7 +76,7 @@ def signals_at(
 ) -> tuple[Signal, ...]:
     """The signals at `probes` until tau = `until` under `loads`."""
     read = [readings(ruled.network, probe) for probe in probes]
-    loads = ruled.acting(loads)
+    loads = ruled.acting_loads(loads)
     parts = {
         reading: () if reading.quantity == "load" else tuple(ruled.parts(reading))
         for terms in read

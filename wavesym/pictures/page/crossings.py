@@ -75,7 +75,7 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
     title = f"{name}: place to the right, time upward".capitalize()
     height = TOP + _TALL + BELOW + 34
     size = float(model.length.size) if model.length else 1.0
-    frame = Frame(replace(x, high=size * long), y, axis_text("", model.length), scale.title).drawn()
+    frame = Frame(replace(x, high=size * long), y, axis_text("", model.length), scale.title).draw()
     return PagePicture(
         title, picture(f"xt-{name}", title, told, height, frame, cells, formal, nodes, bar, class_="plot")
     )
@@ -101,7 +101,7 @@ def _cells(field: Field, stations: tuple[Station, ...], until: float, quantity: 
         here = (x >= low) & (x < high)
         if station.right is not None and here.any():
             part, instants = np.meshgrid((x[here] - low) / (high - low), tau)
-            result[:, here] = field.at(station.right, part, instants)[quantity]
+            result[:, here] = field.values_at(station.right, part, instants)[quantity]
     return result
 
 

@@ -68,7 +68,7 @@ class Frame:
     places: Sequence[tuple[float, str]] | None = None
     x_places: Sequence[tuple[float, str]] | None = None
 
-    def drawn(self, numbers: bool = True) -> Svg:
+    def draw(self, numbers: bool = True) -> Svg:
         """The grid, the numbers (those of x only where `numbers` are asked for) and the titles."""
         left, right, top, bottom = self.x.start, self.x.end, self.y.end, self.y.start
         parts = []

@@ -48,10 +48,10 @@ def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) ->
         PlotAxis(low, high, LEFT, WIDTH - RIGHT),
         PlotAxis(band.spots[0].low - 0.3, band.spots[-1].high + 0.3, TOP + tall, TOP),
     )
-    places = band.numbered(_NUMBERED, first=1 if quantity.storeys else 0)
+    places = band.tick_labels(_NUMBERED, first=1 if quantity.storeys else 0)
     title = axis_title(model, quantity.quantity, quantity.unit).replace("\n", " ")
     frame = Frame(x, y, title, "storey" if quantity.storeys else "floor", places)
-    parts = [frame.drawn(), line(x.at(0), y.start, x.at(0), y.end, "zero")]
+    parts = [frame.draw(), line(x.at(0), y.start, x.at(0), y.end, "zero")]
     ends = [(y.at(spot.x), x.at(a), x.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
     if quantity.storeys:
         half = 0.38 * (y.start - y.end) / (y.high - y.low)
@@ -77,7 +77,7 @@ def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> 
     frame = Frame(x, y, axis_text(band.line, quantity.length), axis_title(model, quantity.quantity, quantity.unit))
     ends = [(x.at(spot.x), y.at(a), y.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
     parts = [
-        frame.drawn(),
+        frame.draw(),
         polyline([*((at, a) for at, a, _ in ends), *((at, b) for at, _, b in ends[::-1])], "between"),
         polyline([(at, a) for at, a, _ in ends], "least"),
         polyline([(at, b) for at, _, b in ends], "greatest"),
@@ -122,7 +122,7 @@ def _map(
     tall = max(120.0, min(16.0 * len(band.spots), 260.0))
     x = PlotAxis(0.0, float(quantity.taus[-1]) * scale.per_tau, LEFT, WIDTH - RIGHT)
     y = PlotAxis(band.spots[0].low, band.spots[-1].high, TOP + tall, TOP)
-    places = band.numbered(_NUMBERED) if quantity.storeys else None
+    places = band.tick_labels(_NUMBERED) if quantity.storeys else None
     upward = "storey" if quantity.storeys else axis_text(band.line, quantity.length)
     rows = _evenly(band, values)
     image = element(
@@ -138,7 +138,7 @@ def _map(
     frame = Frame(x, y, scale.title, upward, places)
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
     bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), ends, TOP + tall + BELOW, signed=True)
-    return together(frame.drawn(), image, bar), TOP + tall + BELOW + 34
+    return together(frame.draw(), image, bar), TOP + tall + BELOW + 34
 
 
 def _evenly(band: Band, values: Points) -> Points:

@@ -72,7 +72,7 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
         title,
         told,
         TOP + height + (BELOW if last else 8),
-        frame.drawn(numbers=last),
+        frame.draw(numbers=last),
         placed,
         *marks,
         line(LEFT, TOP, LEFT, TOP + height, "cursor"),

@@ -58,7 +58,7 @@ def _drift(found: OutputSummary | None, scale: Timescale) -> str:
     if found is None:
         return ""
     value = f"{number_text(found.largest.value)} {found.unit}".rstrip()
-    when = f"{scale.symbol} = {number_text(found.largest.at.shown)} {scale.unit}".rstrip()
+    when = f"{scale.symbol} = {number_text(found.largest.at.in_scene_time)} {scale.unit}".rstrip()
     return f"Largest drift of a rod: {found.label}, {value} at {when}"
 
 

@@ -43,8 +43,8 @@ class SweepOutput:
 
 def outputs_of(found: SweepResults, most: int) -> list[SweepOutput]:
     """The first outputs; of statistics that were not kept, the other one stands for both."""
-    low, high = ("min" if "min" in found.kept else "max"), ("max" if "max" in found.kept else "min")
-    if low not in found.kept:
+    low, high = ("min" if "min" in found.statistics else "max"), ("max" if "max" in found.statistics else "min")
+    if low not in found.statistics:
         return []
     names = list(found.outputs.items())[:most]
     return [SweepOutput(*each, found.values(low, k), found.values(high, k)) for k, each in enumerate(names)]
@@ -89,7 +89,7 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
     value = float(greatest[worst] if greatest[worst] >= -least[worst] else least[worst])
     title = f"{output.name} over {axis.name}"
     told = f"Largest: {_value_text(value, output.unit)} where {_where(axis, worst)}."
-    parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).drawn()]
+    parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).draw()]
     for values, class_, sign in ((least, "least", -1.0), (greatest, "greatest", 1.0)):
         points = np.column_stack([along[done] - x.low, values[done]])
         if ordered:
@@ -133,7 +133,7 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
         x.at(float(worst[0] + 1)), y.at(float(worst[1] + 1)), where, above=y.at(worst[1] + 1.0) > TOP + 30
     )
     return PagePicture(
-        title, picture(number, title, told, TOP + _MAP + BELOW + 34, frame.drawn(), image, *marks, bar, class_="plot")
+        title, picture(number, title, told, TOP + _MAP + BELOW + 34, frame.draw(), image, *marks, bar, class_="plot")
     )
 
 

@@ -50,7 +50,7 @@ def split(model: Model) -> SplitLoads:
     SpacingError for one of too many samples on the horizon.
     """
     until = rational(model.horizon())
-    rest, records = list(model.acting(until)), []
+    rest, records = list(model.loads_until(until)), []
     for step, ramp in _pairs(model):
         own = [load for load in rest if load.source in (step, ramp)]
         if len({load.time for load in own}) < _FEW:

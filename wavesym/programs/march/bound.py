@@ -204,7 +204,7 @@ def size_of(plan: MarchPlan, track: int) -> float:
         if send == track
     )
     network = plan.model.network
-    reached = list(plan.model.reached(rational(plan.tau_max)))
+    reached = list(plan.model.joints_in_reach(rational(plan.tau_max)))
     law = JointLaw.of(network, network.joints[reached[number]])
     free = [k for k, given in enumerate(law.given) if given is None]
     held = [law.damping[a][b] + (law.mass[a] if a == b else 0) for a in free for b in free]

@@ -209,13 +209,13 @@ def march_plan(
             )
     tau_max = model.horizon(real)
     until = rational(tau_max)
-    reached = model.reached(until)
+    reached = model.joints_in_reach(until)
     modelled = {end for number in reached for end, _ in network.joints[number].ends}
     bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.watched if read.point is None})
     step = _step([network.bars[bar].delay for bar in bars])
     track_of = {End(bar, side): 2 * k + side for k, bar in enumerate(bars) for side in (0, 1)}
     tracks = [
-        Track(int(bar.delay / step), bar.held(side), bar.impedance)
+        Track(int(bar.delay / step), bar.initial_wave(side), bar.impedance)
         for bar in (network.bars[number] for number in bars)
         for side in (0, 1)
     ]
@@ -306,7 +306,7 @@ class _Loads:
         for number in points:
             point = model.network.points[number]
             units = {unit.source: fmpq_poly(list(moved_by(point, unit))) for unit in point.loads}
-            for load in model.acting(until):
+            for load in model.loads_until(until):
                 if load.source in units:
                     self.changes.append((load.time, number, load.weight * units[load.source]))
             if point.motion is not None and point.velocity != 0:

@@ -50,7 +50,7 @@ class ComplexProjection:
         return np.abs(self.rates)
 
     @cached_property
-    def pushed(self) -> Complex:
+    def load_terms(self) -> Complex:
         """What loads do to modes, z' = rate z + this; the real part of what outputs are of them counts."""
         twice = np.where(self.rates.imag != 0, 2.0, 1.0)  # for what is conjugate to it
         return np.asarray(self.shares * twice / (2 * self.rates))
@@ -115,7 +115,7 @@ class ComplexModes(ModalModel[ComplexProjection]):
             direct[o, :, 0] = known.beside[o, :, min(count, len(known.rates))]
         # a mode is rate z + loads; of one load, z = y' - conj(rate) y, y an oscillator's
         read = known.outputs[:, :count] * rates ** orders[:, None]
-        pushed = known.pushed[:, :count]
+        pushed = known.load_terms[:, :count]
         phase = pushed[np.abs(pushed).argmax(axis=0), np.arange(len(rates))]
         phase = np.where(phase != 0, phase / np.where(phase != 0, np.abs(phase), 1.0), 1.0)
         pushed, read = pushed / phase, read * phase

@@ -115,7 +115,7 @@ class LowFrequency:
         stiffness, zero = self._stiffness, arb_series([0])
         moved = [zero] * len(self._network.points)
         given = [forces.get(point, zero) for point in stiffness.points]
-        for point, q in zip(stiffness.points, stiffness.solved(*self._matrix, given), strict=True):
+        for point, q in zip(stiffness.points, stiffness.solve(*self._matrix, given), strict=True):
             moved[point] = q
         return moved
 

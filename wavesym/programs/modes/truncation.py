@@ -52,7 +52,7 @@ class ModalModel(ABC, Generic[K]):
     def drivers(self) -> tuple[Driver, ...]:
         """The loads that act; one that moves nothing where there are none."""
         network = self.model.network
-        acting = {load.source for load in self.model.acting(self.model.until)}
+        acting = {load.source for load in self.model.loads_until(self.model.until)}
         every = drivers_of(network)
         found = tuple(each for each in every if {each.step, each.ramp} & acting)
         still = next((number for number, point in enumerate(network.points) if point.motion != "fixed"), 0)
@@ -143,7 +143,7 @@ class ModalModel(ABC, Generic[K]):
             return
         raise CostError(f"system: {rods} rods in modes, the limit is {most} (fewer rods or march helps)")
 
-    def reached(self, known: K, count: int) -> Numbers:
+    def output_bounds(self, known: K, count: int) -> Numbers:
         """What each output reaches, but for what is left out."""
         system, until = self.system(known, count), self.model.horizon()
         scheme = ModesScheme(scheme_tables(system, self.loads, DOUBLE), {"loads": len(self.drivers)}, until, np.float64)
@@ -201,7 +201,7 @@ def truncated(chain: ModalModel[K]) -> ModalModes:
         errors = chain.errors(known, count)
         # an output that no mode has a part in may have no error at all, and has a largest value
         if np.any(errors > _REASONABLE * largest) or not largest.any():
-            about = chain.reached(known, count)
+            about = chain.output_bounds(known, count)
             largest = np.maximum(largest, about - errors)
         worst = _relative(errors, largest).max(initial=0.0)
         if worst <= tolerance:

@@ -47,7 +47,7 @@ class DampingRatios:
     ratios: tuple[float, ...] = (0.0,)
     rayleigh: tuple[float, float] | None = None
 
-    def at(self, w: Numbers) -> Numbers:
+    def ratios_at(self, w: Numbers) -> Numbers:
         """The ratios at ascending frequencies from the first on; 0 for a motion without strain."""
         strained = w > 0
         made = np.zeros(len(w))
@@ -198,7 +198,7 @@ class UndampedModes(ModalModel[Projection]):
         tail, rule = self.tail(known, count), self.rule(known)
         rest = known.rest(count)
         orders = np.array([output.order for output in self.outputs])[:, None]
-        damping = rule.at(w)
+        damping = rule.ratios_at(w)
         direct = np.zeros((*rest.shape, 3))
         for order in range(3):
             direct[:, :, 2 - order] += np.where(orders == order, known.imposed, 0.0)
@@ -206,7 +206,7 @@ class UndampedModes(ModalModel[Projection]):
         if tail.lags:
             # the modes left out, each load's as one
             above = np.full(len(pushes), tail.above)
-            w, damping = np.append(w, above), np.append(damping, rule.at(above))
+            w, damping = np.append(w, above), np.append(damping, rule.ratios_at(above))
             values = np.hstack([values, np.where(orders < 2, rest, 0.0)])
             pushes = np.hstack([pushes, np.diag(above**2)])
         else:

@@ -127,7 +127,7 @@ class _Response:
         law = self._stiffness.law(_modular)
         pairs = [self._circular[delay] for delay in sorted(self._circular)]
         matrix = law.matrix(_W, [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs], _I * _W)
-        found = self._stiffness.solved(*matrix, [forces[point] for point in self._stiffness.points])
+        found = self._stiffness.solve(*matrix, [forces[point] for point in self._stiffness.points])
         for point, q in zip(self._stiffness.points, found, strict=True):
             moved[point] = q
         return moved

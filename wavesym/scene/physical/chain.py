@@ -77,7 +77,7 @@ class PhysicalChain(SceneTable):
         elastic: list[ElasticRod] = []
         for keys, part in (read for line in (main, *branches) for read in line):
             if isinstance(part, RodKeys):
-                with faults.gathered(*keys):
+                with faults.gather(*keys):
                     elastic.append(part.elastic(names["dashpot"]))
         faults.refuse()
         rods = Rods.of(elastic)
@@ -97,7 +97,7 @@ class PhysicalChain(SceneTable):
             displacement=pen.displacement,
             force=pen.force,
             lengths=(rods.first.length,),
-            acting=pen.acting,
+            load_unit=pen.load_unit,
             lines=pen.lines,
         )
 
@@ -105,11 +105,11 @@ class PhysicalChain(SceneTable):
 def _read(faults: Faults, parts: object, kind: Kind, *at: str | int) -> list[_Read]:
     """Parts by their keys; what is wrong with them is kept in `faults`."""
     values: Sequence[object] = ()
-    with faults.gathered(*at):
+    with faults.gather(*at):
         values = as_list(parts)
     found: list[_Read] = []
     for k, value in enumerate(values):
-        with faults.gathered(*at, k):
+        with faults.gather(*at, k):
             found.append(((*at, k), _part(value, kind)))
     return found
 
@@ -197,7 +197,7 @@ class _Pen:
                 table[key] = read_quantity(value, dimension, least) / self._units[key]
         return table
 
-    def acting(self, load: Mapping[str, Any]) -> LoadUnit:
+    def load_unit(self, load: Mapping[str, Any]) -> LoadUnit:
         """What a load does depends on where it is."""
         if "at" not in load:
             return LoadUnit(self.names["force"], self.names["force rate"], self.force)

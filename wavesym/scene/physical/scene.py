@@ -81,14 +81,14 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     if isinstance(loads := fields.get("load"), list | tuple):
         said["load"], made["load"] = [], []
         for k, load in enumerate(loads):
-            with faults.gathered("load", k):
-                said["load"].append(read(load, found.acting))
+            with faults.gather("load", k):
+                said["load"].append(read(load, found.load_unit))
                 made["load"].append(_load(said["load"][-1], found, seconds))
     if isinstance(output := fields.get("output"), Mapping):
-        with faults.gathered("output"):
+        with faults.gather("output"):
             made["output"] = _output(output, found, seconds)
     faults.refuse()
-    for acting in (found.acting(load) for load in said.get("load", ()) if isinstance(load, Mapping)):
+    for acting in (found.load_unit(load) for load in said.get("load", ()) if isinstance(load, Mapping)):
         size, text = results.unit_of(acting.dimension)
         inputs.append((acting.size / size, text))
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
@@ -97,14 +97,14 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
 
 def acts(fields: Mapping[str, Any]) -> Acts:
     """What loads of a scene with [units], whose fields are sound, act as."""
-    return _system(fields["system"], UnitsTable.model_validate(fields["units"])).acting
+    return _system(fields["system"], UnitsTable.model_validate(fields["units"])).load_unit
 
 
 @contextmanager
 def _of_quantities(said: Mapping[str, Any]) -> Iterator[None]:
     """What is wrong with a number that nobody wrote, such as a kappa, is said of the quantities that make it."""
     faults = Faults()
-    with faults.gathered():
+    with faults.gather():
         yield
     for number, (what, keys) in enumerate(faults.found):
         if keys and keys[0] not in said:
@@ -138,21 +138,21 @@ def _system(table: object, units: UnitsTable) -> DimensionlessSystem:
 
 
 def _load(load: object, found: DimensionlessSystem, seconds: Fraction) -> object:
-    return dimensionless(load, found.acting(load), seconds) if isinstance(load, Mapping) else load
+    return dimensionless(load, found.load_unit(load), seconds) if isinstance(load, Mapping) else load
 
 
 def _output(output: Mapping[str, Any], found: DimensionlessSystem, seconds: Fraction) -> dict[str, Any]:
     made = dict(output)
     faults = Faults()
     if "until" in output:
-        with faults.gathered("until"):
+        with faults.gather("until"):
             made["until"] = _until(output["until"], seconds)
     if found.lines is not None:
         for quantity in _LENGTHS & output.keys():
             if isinstance(places := output[quantity], list | tuple):
                 made[quantity] = list(places)
                 for k, at in enumerate(places):
-                    with faults.gathered():
+                    with faults.gather():
                         made[quantity][k] = _position(at, found, quantity, k)
     faults.refuse()
     return made
