@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 import wavesym
+from tests.pictures.browser import axe, reported
+from tests.pictures.test_page import LOOK
 from tools.notebooks import NOTEBOOKS
 from tools.site import NAMED, PAGES, ROOT, gallery, lay_out, public_names
 
@@ -62,6 +64,20 @@ def test_the_site_builds_and_a_broken_link_is_seen(tmp_path: Path) -> None:
     done = build(tmp_path)
     assert done.returncode == 1
     assert "docs/nothing.svg" in done.stderr
+
+
+@pytest.mark.slow
+def test_axe_finds_nothing_on_pages_of_the_site(tmp_path: Path) -> None:
+    pytest.importorskip("mkdocs")
+    shutil.copy(ROOT / "mkdocs.yml", tmp_path)
+    lay_out(tmp_path / PAGES.relative_to(ROOT))
+    for source in NOTEBOOKS.glob("*.py"):
+        page = tmp_path / PAGES.relative_to(ROOT) / "docs" / "notebooks" / source.stem
+        page.with_suffix(".md").write_text(f"# {source.stem}\n")
+    assert build(tmp_path).returncode == 0
+    for name in ("index.html", "gallery.html", "docs/tutorials/structures.html"):
+        page = tmp_path / "build" / "site" / name
+        assert reported(page.read_text(encoding="utf-8"), axe() + LOOK, page.parent) == [], name
 
 
 def test_examples_in_docstrings_are_code() -> None:
