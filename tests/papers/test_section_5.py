@@ -72,7 +72,7 @@ def test_every_load_is_told_with_its_outcome(id: str) -> None:
 
 
 def test_a_load_is_the_sum_of_its_pieces() -> None:
-    """Shifted and added curves are those of the scene with the whole load."""
+    """Shifted and added curves of the exact tables are those of the scene with the whole load, by waves in balls."""
     for number, name in ((7, "stairs down"), (8, "fast zigzag")):
         (load,) = (load for load in loads(number) if load.name == name)
         scene = figure(number)

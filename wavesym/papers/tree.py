@@ -6,7 +6,7 @@ A tree says what stands there, not what it means: an index is an expression, a b
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
@@ -253,16 +253,24 @@ def negative(term: Tree) -> Tree:
     return term.term if isinstance(term, Minus) else Minus(term)
 
 
-def symbols(tree: Any) -> Iterator[Symbol]:
+def parts_of(tree: Tree) -> tuple[Tree, ...]:
+    """A tree and all its parts, those of indices included; they are found once and kept with the tree."""
+    if (parts := tree.__dict__.get("_parts")) is None:
+        parts = tree.__dict__["_parts"] = (tree, *_inner_parts(getattr(tree, field.name) for field in fields(tree)))
+    return parts  # type: ignore[no-any-return]
+
+
+def _inner_parts(values: Iterable[Any]) -> Iterator[Tree]:
+    for value in values:
+        if isinstance(value, tuple):
+            yield from _inner_parts(value)
+        elif is_dataclass(value):
+            yield from parts_of(value)  # type: ignore[arg-type]
+
+
+def symbols(tree: Tree) -> Iterator[Symbol]:
     """All letters of a tree, those of indices included."""
-    if isinstance(tree, Symbol):
-        yield tree
-    if isinstance(tree, tuple):
-        for part in tree:
-            yield from symbols(part)
-    elif is_dataclass(tree):
-        for field in fields(tree):
-            yield from symbols(getattr(tree, field.name))
+    return (part for part in parts_of(tree) if isinstance(part, Symbol))
 
 
 def replace_part(tree: Any, part: Tree, instead: Tree) -> Any:

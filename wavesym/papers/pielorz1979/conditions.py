@@ -15,10 +15,10 @@ from wavesym.papers.pielorz1979.chains import (
     LoadedChain,
     instants,
 )
-from wavesym.papers.pielorz1979.equation_group import EquationGroup, Key, Place, parts_of
+from wavesym.papers.pielorz1979.equation_group import EquationGroup, Key, Place
 from wavesym.papers.pielorz1979.letters import DISPLACEMENTS, rods_at
 from wavesym.papers.record import Case, Reading, Reproduction
-from wavesym.papers.tree import Call, Derivative, Symbol, Tree, latex
+from wavesym.papers.tree import Call, Derivative, Symbol, Tree, latex, parts_of
 
 NODES: Mapping[str, Callable[[Node], bool]] = {
     "a free end": lambda node: not (node.left and node.right) and not node.inertia and not node.loads,
@@ -66,8 +66,9 @@ class Conditions(EquationGroup):
     def _rods(self, equation: Tree, i: int | None) -> set[int]:
         """The rods that a condition is about; MeaninglessError where it is about another place than the node."""
         for part in parts_of(equation):
-            is_moved = isinstance(part, Call) and letter_name(part.function) in DISPLACEMENTS.values()
-            if is_moved and tuple(map(latex, part.arguments)) != (r"\bar{x}", r"\tau"):
+            if not isinstance(part, Call) or letter_name(part.function) not in DISPLACEMENTS.values():
+                continue
+            if tuple(map(latex, part.arguments)) != (r"\bar{x}", r"\tau"):
                 raise MeaninglessError(f"{latex(part)} is not at the node")
         names = ("U", *DISPLACEMENTS.values())
         scope = Scope({"m": self.scope.chain.m} | ({} if i is None else {"i": i}))

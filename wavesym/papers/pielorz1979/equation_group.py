@@ -5,8 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import fields, is_dataclass, replace
-from functools import lru_cache, partial
+from dataclasses import replace
+from functools import partial
 from typing import Any, ClassVar
 
 from flint import fmpq
@@ -23,7 +23,7 @@ from wavesym.papers.pielorz1979.chains import (
 from wavesym.papers.pielorz1979.letters import Motion, Units
 from wavesym.papers.pielorz1979.transcript import others
 from wavesym.papers.record import Case, Reading, Reproduction, case, format_value
-from wavesym.papers.tree import Progression, Symbol, Tree, latex
+from wavesym.papers.tree import Progression, Symbol, Tree, latex, parts_of
 
 Place = Mapping[str, Any]
 """Values of running letters."""
@@ -32,14 +32,6 @@ Key = tuple[Any, ...]
 
 SLOW, FAST = Units(fmpq(2), fmpq(3), fmpq(5, 7)), Units(fmpq(5, 2), fmpq(1, 7), fmpq(3))
 _MOVING = "the exact motion of chains with all parameters different under loads of several steps"
-
-
-@lru_cache(maxsize=1000)
-def parts_of(tree: Any) -> tuple[Any, ...]:
-    """A tree and all its parts."""
-    values = (getattr(tree, field.name) for field in fields(tree))
-    parts = (part for value in values for part in (value if isinstance(value, tuple) else (value,)))
-    return (tree, *(inner for part in parts if is_dataclass(part) for inner in parts_of(part)))  # type: ignore[arg-type]
 
 
 class EquationGroup(ABC):

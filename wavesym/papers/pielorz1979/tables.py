@@ -16,7 +16,6 @@ from wavesym.derivation.table import Function as TableFunction
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, constants_in, holds, items, places, sides, span
 from wavesym.papers.mutations import ends, mutations
-from wavesym.papers.pielorz1979.equation_group import parts_of
 from wavesym.papers.pielorz1979.forms import (
     ALPHA,
     EXACT,
@@ -50,6 +49,7 @@ from wavesym.papers.tree import (
     Symbol,
     Tree,
     latex,
+    parts_of,
     replace_part,
     symbols,
 )
