@@ -257,7 +257,7 @@ def parts_of(tree: Tree) -> tuple[Tree, ...]:
     """A tree and all its parts, those of indices included; they are found once and kept with the tree."""
     if (parts := tree.__dict__.get("_parts")) is None:
         parts = tree.__dict__["_parts"] = (tree, *_inner_parts(getattr(tree, field.name) for field in fields(tree)))
-    return parts  # type: ignore[no-any-return]
+    return parts
 
 
 def _inner_parts(values: Iterable[Any]) -> Iterator[Tree]:
