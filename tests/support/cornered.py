@@ -40,22 +40,22 @@ def spring(choose: Choose, kinds: Sequence[str] = LAWS) -> dict[str, Any]:
     return table
 
 
-def seeded(seed: int, friction: bool = True) -> dict[str, Any]:
-    """The table of a scene; another one for every seed."""
+def seeded(seed: int, kinds: Sequence[str] = LAWS) -> dict[str, Any]:
+    """The table of a scene with friction and some kinds of springs; another one for every seed."""
     choose = Random(seed).choice
-    parts: list[Any] = [_node(choose, 0, friction)]
+    parts: list[Any] = [_node(choose, 0, kinds)]
     for _ in range(choose([1, 2, 2, 3])):
         rubs = "friction" in parts[-1]
         if choose([0, 1]) or rubs or _massless(parts[-1]):
             parts.append({"rod": choose(LENGTHS), "impedance": choose(IMPEDANCES)})
             if choose([0, 0, 0, 1]) and not rubs:
-                parts[-1] |= spring(choose)
-            parts.append(_node(choose, len(parts), friction and not _sprung(parts[-1])))
+                parts[-1] |= spring(choose, kinds)
+            parts.append(_node(choose, len(parts), kinds, not _sprung(parts[-1])))
         else:
-            parts.append(spring(choose))
+            parts.append(spring(choose, kinds))
             parts.append(_mass(choose, len(parts)))
     if choose([0, 1]):
-        parts += [{"rod": 1} if "friction" in parts[-1] else spring(choose), "fixed"]
+        parts += [{"rod": 1} if "friction" in parts[-1] else spring(choose, kinds), "fixed"]
     elif _massless(parts[-1]) and not choose([0, 1]):
         parts.append({"rod": 1})
     if choose([0, 0, 0, 1]):
@@ -88,7 +88,7 @@ def _mass(choose: Choose, number: int) -> dict[str, Any]:
     return mass | {"dashpot": choose([0, 0, "1/5"])}
 
 
-def _node(choose: Choose, number: int, friction: bool) -> dict[str, Any]:
+def _node(choose: Choose, number: int, kinds: Sequence[str], friction: bool = True) -> dict[str, Any]:
     """A mass or a joint, with friction or a spring to the ground, or neither."""
     massless = number and choose([0, 0, 1])
     node = {"joint": True, "name": f"n{number}"} if massless else _mass(choose, number)
@@ -98,7 +98,7 @@ def _node(choose: Choose, number: int, friction: bool) -> dict[str, Any]:
             return node | {"friction": choose(LIMITS[1:])}
         case "spring":
             node.pop("dashpot", None)
-            return node | spring(choose)
+            return node | spring(choose, kinds)
     return node
 
 

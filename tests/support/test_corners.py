@@ -124,6 +124,33 @@ def test_newmarks_sliding_block(resistance: str, pulse: str) -> None:
     assert near(made.value("displacement", "a", Fraction(20)), fmpq(*slip.as_integer_ratio()))
 
 
+@pytest.mark.parametrize("force", ["2/3", "3/4", "4/5"])
+def test_an_oscillator_that_yields_under_a_force_that_stays(force: str) -> None:
+    """Biggs 1964: a force F that comes at once takes it to 1/(2 (1 - F/R)) times the stretch at which it yields."""
+    load = [{"at": "a", "times": [0], "steps": [force]}]
+    made = chain({**BODY, "velocity": 0}, {"spring": 4, "yield": 1}, "fixed", until=4, load=load)
+    assert [event.kind for event in made.events] == ["yields", "holds"]
+    largest = made.value("displacement", "a", Fraction(str(made.events[1].tau)))
+    assert near(largest, fmpq(*(1 / (2 * (1 - Fraction(force))) / 4).as_integer_ratio()))
+
+
+@pytest.mark.parametrize("stiffness", [1, 4, 9])
+def test_a_ram_on_a_cushion_and_a_pile_without_end(stiffness: int) -> None:
+    """Deeks and Randolph 1993, without an anvil: the force is v k/w exp(-k t/(2 Z)) sin(w t), w^2 = k/m - (k/(2 Z))^2.
+
+    The cushion pulls nothing: at pi/w the ram leaves it, with the restitution exp(-k pi/(2 Z w)).
+    """
+    pile = [{"joint": True, "name": "head"}, {"rod": 10, "impedance": 2, "velocity": 0}, "absorbing"]
+    made = chain(BODY, {"spring": stiffness, "only": "push"}, *pile, until=9)
+    slow = arb(stiffness) / 4
+    w = (stiffness - slow**2).sqrt()
+    assert happened(made, [("lets go", arb.pi() / w)])
+    assert near(made.value("velocity", "a", Fraction(9)), -(-slow * arb.pi() / w).exp())
+    half = Fraction(1, 2)
+    force = stiffness / w * (-slow * arb(half.numerator) / half.denominator).exp() * (w / 2).sin()
+    assert near(made.value("velocity", "head", half), force / 2)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_what_sliding_and_yielding_takes_is_what_energy_is_lost(seed: int) -> None:
     table = closed_chain(seed)
