@@ -253,3 +253,14 @@ def test_the_wheel_works_in_a_bare_python(version: str, checkout: Path, here: di
     assert generated(tmp_path / "out", program=bare["program"], path=()) == here
     (tmp_path / "frame.toml").write_text(python("-m", "wavesym", "init", "frame", **bare))
     assert "largest drift" in python("-m", "wavesym", "summary", "frame.toml", **bare)
+
+
+def test_the_oldest_versions_are_the_floors() -> None:
+    """constraints-oldest.txt has what pyproject.toml allows at least, and no other version."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = (line for name in ("plot", "test", "sweep", "papers") for line in project["optional-dependencies"][name])
+    floors = dict(line.split(">=") for line in (*project["dependencies"], *extras) if ">=" in line)
+    pinned = dict(line.split("==") for line in (ROOT / "constraints-oldest.txt").read_text().splitlines()[1:])
+    assert set(pinned) == set(floors)
+    for name, floor in floors.items():
+        assert re.fullmatch(rf"{re.escape(floor)}(\.0)*", pinned[name]), name
