@@ -100,7 +100,7 @@ _CLOSED = PortableProgram("closed", _BUILDING, Request("closed"), "values", _COU
 _PIECES = PortableProgram("pieces", _BUILDING, Request("pieces"), "values", (*_COUNTS, 5))  # blocks of 4, read plainly
 _MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), effort="followed")
 _BLOCKS_MARCH = PortableProgram(
-    "blocks", "damped_building", Request("march"), "values", _COUNTS, (("output.until", 6),)
+    "blocks", "damped_building", Request("march"), "values", _COUNTS, (("output.until", 6),), effort="more"
 )
 _MODES = PortableProgram("modes", _BUILDING, Request("modes"), "stream", changes=tuple(_SHAKEN.items()), effort="more")
 _MODES_SINGLE = replace(
