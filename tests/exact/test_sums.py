@@ -182,7 +182,7 @@ ALL: dict[str, Any] = {
 
 def test_contacts_included() -> None:
     model = accelerated(ALL)
-    assert len(model.network.contacts) == 2
+    assert len(model.network.corners) == 2
     assert agree(model)
 
 

@@ -38,7 +38,7 @@ def touching(network: Network) -> list[tuple[int, int, str, fmpq]]:
 
 
 def contacts(network: Network) -> list[Link]:
-    return [network.links[number] for number in network.contacts]
+    return [network.links[number] for number in network.corners]
 
 
 def test_a_contact_parts_two_points() -> None:
@@ -186,7 +186,7 @@ def test_what_a_closed_collision_is_does_not_change() -> None:
     assert collision().model_dump()["system"]["contacts"] == "open"
     assert lower(collision()).labels.sha256 != lower(said).labels.sha256
     assert said.with_({"system.contacts": "open"}) == collision()
-    assert not lower(said).network.contacts
+    assert not lower(said).network.corners
 
 
 def test_sides_of_an_open_collision() -> None:
@@ -201,6 +201,6 @@ def test_sides_of_an_open_collision() -> None:
 @pytest.mark.parametrize("parts", [[MASS, "contact", ROD], [ROD, {"contact": 1}, ROD]])
 def test_what_has_one_law_refuses_contacts(parts: list[Any]) -> None:
     with pytest.raises(UnservedError, match=r"system: the contact at \S+ opens and closes, .* march"):
-        chain(parts).network.refuse_contacts()
+        chain(parts).network.refuse_corners()
     with pytest.raises(UnservedError, match=r"system: the contact at \S+ opens and closes"):
-        lower(collision()).network.refuse_contacts()
+        lower(collision()).network.refuse_corners()

@@ -38,7 +38,7 @@ _T = 0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357 % _PRIME  # drawn once, so that the 
 
 def identically_zero(model: Model, until: fmpq) -> list[bool]:
     """Whether each output is 0 on all of [0, until]. False where contacts open and close: no transform tells then."""
-    if model.network.contacts:
+    if model.network.corners:
         return [False] * len(model.probes)
     return [first is None for first in arrivals(model, until)]
 
@@ -48,7 +48,7 @@ def smooth_starts(model: Model, until: fmpq) -> list[fmpq | None]:
 
     None where it jumps, or is identically zero, or where contacts open and close.
     """
-    if model.network.contacts:
+    if model.network.corners:
         return [None] * len(model.probes)
     found: list[fmpq | None] = []
     for sums, jumps in _gains(model, until):

@@ -46,7 +46,7 @@ class Breakpoints:
         self._acting = model.loads_until(until)
         self._last = model.joints_in_reach(until)
         self._delays = {bar.delay for bar in self._network.bars}
-        self._windowed = len(self._delays) == 1 and not self._network.contacts
+        self._windowed = len(self._delays) == 1 and not self._network.corners
         self._scheduled = partial(scheduled, model, until)
 
     @property
@@ -101,7 +101,7 @@ class Breakpoints:
         """Whether stretches are cut for the sake of springs."""
         if self._windowed:
             return len(self._natural_parts) < len(self._parts)
-        if self._network.contacts:  # stages bear what they have to
+        if self._network.corners:  # stages bear what they have to
             return False
         return any(
             high - low > longest
@@ -114,7 +114,7 @@ class Breakpoints:
         """What series bear at most, as exp(this), where stages of contacts are cut for it."""
         if self.schedule is None:
             return None
-        from wavesym.exact.contacts.touching_joint import MOST_SWING  # how contacts touch: few scenes have any
+        from wavesym.exact.contacts.joint_stretch import MOST_SWING  # how contacts touch: few scenes have any
 
         return MOST_SWING
 

@@ -26,7 +26,7 @@ def first_arrivals(model: Model) -> list[fmpq | None]:
     CostError where contacts open and close too often.
     """
     until = rational(model.horizon())
-    if model.network.contacts:
+    if model.network.corners:
         motion = Motion(model, until)
         return [_begins(motion.segments(probe, motion.first_bits), until) for probe in model.probes]
     found: list[fmpq | None] = [None] * len(model.probes)

@@ -123,7 +123,7 @@ class Motion:
     @cached_property
     def _crossed(self) -> fmpq:
         """The bits that crossings of bars take; none where contacts open and close and all is exact (`ExactJoint`)."""
-        if not self._network.bars or (self._network.contacts and not self._series):
+        if not self._network.bars or (self._network.corners and not self._series):
             return fmpq(0)
         return _CROSSING * self.until / self._network.shortest
 
@@ -156,7 +156,7 @@ class Motion:
 
     def vanishes(self, sizes: Iterable[arb]) -> bool:
         """Whether what is at most so large counts as 0, where contacts open and close: no sum is exact then."""
-        return bool(self._network.contacts) and all(size < self.size * NEGLIGIBLE_WAVE for size in sizes)
+        return bool(self._network.corners) and all(size < self.size * NEGLIGIBLE_WAVE for size in sizes)
 
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""

@@ -75,7 +75,7 @@ class Reference:
         if self.signals is None:
             self._motion.refuse_long(len(taus))
         try:
-            if self.model.network.contacts:
+            if self.model.network.corners:
                 return [
                     self._as_known(source, whole, taus)
                     for source, whole in zip(self._sources(taus), self._sources(), strict=True)
@@ -99,7 +99,7 @@ class Reference:
 
         It is 0, too, where contacts open and close and nothing is more than 2^-200 of the largest wave.
         """
-        vanishes = self._motion.vanishes if self.model.network.contacts else lambda sizes: False
+        vanishes = self._motion.vanishes if self.model.network.corners else lambda sizes: False
         return [largest(source, self.tau_max, self._first_bits, vanishes) for source in self._sources()]
 
     def breakpoints(self) -> list[float]:

@@ -1,4 +1,4 @@
-"""What happens at a contact, and when: it opens, or it closes; what rubs slips, or sticks."""
+"""What happens at a link whose law has a corner, and when."""
 
 from __future__ import annotations
 
@@ -8,6 +8,11 @@ from typing import Literal
 from flint import arb
 
 from wavesym.numbers.doubles import midpoint
+
+Happening = Literal["opens", "closes", "slips", "sticks", "engages", "lets go", "yields", "holds"]
+LAW_OF: dict[str, str] = {"opens": "contact", "closes": "contact", "slips": "friction", "sticks": "friction"}
+LAW_OF |= dict.fromkeys(("engages", "lets go", "yields", "holds"), "spring")
+"""The law whose corner it is that something happens at."""
 
 
 class KnownInstant:
@@ -30,14 +35,15 @@ class KnownInstant:
 class ContactEvent(KnownInstant):
     """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball; what rubs there slips or sticks.
 
-    A contact that is closed from the start is no event.
+    A spring that acts on one side engages and lets go; one that yields does so until it holds again. A contact that is
+    closed from the start is no event.
     """
 
     x: str
-    kind: Literal["opens", "closes", "slips", "sticks"]
+    kind: Happening
     tau: arb
 
     @property
     def subject(self) -> str:
         """What it happens to."""
-        return f"friction at x = {self.x}" if self.kind in ("slips", "sticks") else f"contact at x = {self.x}"
+        return f"{LAW_OF[self.kind]} at x = {self.x}"

@@ -117,10 +117,9 @@ def _forces_on(network: Network, point: int, before: int | None = None) -> Itera
     for number, link in enumerate(network.links):
         if point not in (link.left, link.right) or number == before:
             continue
-        if link.friction != 0:
+        if link.has_corner and not link.contact:
             raise UnservedError(
-                f"output.acceleration: what rubs at {link.place} acts with a force that sticks and slips, which is no "
-                "sum of readings; take velocity"
+                f"output.acceleration: {link.changes}, and its force is no sum of readings; take velocity"
             )
         if link.contact:
             other, share = (link.right, link.ratio) if point == link.left else (link.left, 1 / link.ratio)

@@ -138,10 +138,10 @@ class Model:
 
     def contacts(self, until: fmpq) -> tuple[int, ...]:
         """The links that are contacts and can influence an output by then."""
-        if not self.network.contacts:
+        if not self.network.corners:
             return ()
         reached, network = self._reached(until), self.network
-        return tuple(n for n in network.contacts if network.joint_of[network.links[n].left] in reached)
+        return tuple(n for n in network.corners if network.joint_of[network.links[n].left] in reached)
 
     def _reached(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
         network = self.network

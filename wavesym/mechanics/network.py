@@ -83,7 +83,9 @@ class Link:
 
     A `contact` has neither: it pushes and never pulls, and is open while its two sides are apart, at tau = 0 by `gap`.
     Where it has `friction` R it has neither, too: its sides stick while it takes no more than R to hold them, else it
-    takes R against their sliding (Coulomb). `place` is what a scene calls it.
+    takes R against their sliding (Coulomb). With a `side` its spring only pulls (1) or only pushes (-1), where it is
+    longer, or shorter, than at tau = 0 by more than `gap`. With `limits` its spring yields: the largest pull and push.
+    `place` is what a scene calls it.
     """
 
     left: int
@@ -95,11 +97,36 @@ class Link:
     gap: fmpq = _ZERO
     place: str = ""
     friction: fmpq = _ZERO
+    side: int = 0
+    limits: tuple[fmpq, fmpq] | None = None
 
     @property
     def has_corner(self) -> bool:
         """Whether its law has a corner: it is another one from some instants on, which have to be found."""
-        return self.contact or self.friction != 0
+        return self.contact or self.friction != 0 or self.is_spring_with_corner
+
+    @property
+    def is_spring_with_corner(self) -> bool:
+        """Whether it is a spring that acts on one side alone, or that yields."""
+        return self.side != 0 or self.limits is not None
+
+    @property
+    def law(self) -> str:
+        """What it is, where its law has a corner, in a word."""
+        if self.is_spring_with_corner:
+            return "spring"
+        return "friction" if self.friction != 0 else "contact"
+
+    @property
+    def changes(self) -> str:
+        """What it does at a corner of its law, in words."""
+        if self.side != 0:
+            return f"the spring at {self.place} engages and lets go"
+        if self.limits is not None:
+            return f"the spring at {self.place} yields"
+        if self.friction != 0:
+            return f"what rubs at {self.place} sticks and slips"
+        return f"the contact at {self.place} opens and closes"
 
 
 class End(NamedTuple):
@@ -148,22 +175,19 @@ class Network:
         return tuple(Joint(tuple(points), tuple(ends[first])) for first, points in members.items())
 
     @cached_property
-    def contacts(self) -> tuple[int, ...]:
-        """The links whose laws have corners: contacts, and friction."""
+    def corners(self) -> tuple[int, ...]:
+        """The links whose laws have corners: contacts, friction, springs that act on one side or yield."""
         return tuple(number for number, link in enumerate(self.links) if link.has_corner)
 
-    def refuse_contacts(self) -> None:
-        """UnservedError where contacts open and close: for what is one law from the start to the end.
+    def refuse_corners(self) -> None:
+        """UnservedError where a law has a corner: for what is one law from the start to the end.
 
-        (One may close without any front, where what it parts moves at constant speed.)
+        (A contact may close without any front, where what it parts moves at constant speed.)
         """
-        for number in self.contacts:
-            link = self.links[number]
-            what = f"the contact at {link.place} opens and closes"
-            if link.friction != 0:
-                what = f"what rubs at {link.place} sticks and slips"
+        for number in self.corners:
             raise UnservedError(
-                f"system: {what}, which tables, closed form and march do not support (take pieces or `run`)"
+                f"system: {self.links[number].changes}, which tables, closed form and march do not support "
+                "(take pieces or `run`)"
             )
 
     def refuse_loss(self) -> None:
@@ -261,6 +285,8 @@ class Network:
             if link.left in velocities:
                 opening = velocities[link.right] - link.ratio * velocities[link.left]
                 if opening != 0 and (link.stiffness != 0 or link.friction != 0):
+                    return False
+                if link.side != 0 and link.gap < 0:  # it is strained
                     return False
                 pull = link.damping * opening
                 pulls[link.left] += link.ratio * pull

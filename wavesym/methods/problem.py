@@ -284,8 +284,8 @@ def network_problem(model: Model, kind: type[Stated]) -> Stated:
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
     gaps, parting = [], []
     for link in network.links:
-        if link.friction != 0:
-            raise UnservedError(f"system: friction at {link.place} is not supported by integrations; take `run`")
+        if link.has_corner and not link.contact:
+            raise UnservedError(f"system: {link.changes}, which integrations do not support; take `run`")
         pair = np.zeros(len(points))
         pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
         if link.contact:

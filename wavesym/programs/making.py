@@ -28,7 +28,7 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked
         CostError: where the one requested would cost too much.
     """
     _, form, why = choose(model, request.evaluator, request.precision, request.optimize, asked=asked)
-    happening = events(model, form.real) if model.network.contacts else None
+    happening = events(model, form.real) if model.network.corners else None
     provenance = Provenance(model, why, request.options, contact_ends(model, form.real), happening)
     return _finish(model, form, provenance, tested)
 

@@ -173,7 +173,7 @@ class Transfer:
 
     @cached_property
     def _harmonic(self) -> HarmonicNetwork:
-        self.model.network.refuse_contacts()
+        self.model.network.refuse_corners()
         return HarmonicNetwork(self.model.network)
 
     @cached_property

@@ -13,9 +13,9 @@ from wavesym.mechanics.length import LengthUnit, place_text
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
-from wavesym.systems.contacts import name_contacts, refuse_impacts, refuse_joined_friction
+from wavesym.systems.contacts import name_contacts, refuse_impacts, refuse_joined_corners
 from wavesym.systems.lines import Keys, PlacedBetween, PlacedNode, alternating
-from wavesym.systems.parts import Branch, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart
+from wavesym.systems.parts import Branch, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart, SpringLaw
 from wavesym.systems.station import MAIN, Lines, Station
 
 
@@ -112,7 +112,7 @@ class _Pen:
         for k, point in enumerate(self.points):
             self._bearable(k, point)
         refuse_impacts(self.points, self.contacts)
-        refuse_joined_friction(self.points, self.links, self.written)
+        refuse_joined_corners(self.points, self.links, self.written)
         return Drawing(tuple(self.points), tuple(self.bars), tuple(self.links), self.lines, self.names, self.places)
 
     def line(
@@ -133,23 +133,24 @@ class _Pen:
         for k, ((number, part), left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
             last, turns = stations[-1], ratio if begin is not None and k == 0 else Fraction(1)
             if isinstance(part, RodPart):
+                self.places[len(self.links)] = name, last.x
                 if part.name and any(part.name == bar.name for bar in self.bars):
                     raise refusal(f"{show(part.name)} is taken; write another name", *at, number, "name")
                 bar = self._bar(part, left, right, turns)
                 stations[-1] = replace(last, right=bar)
                 stations.append(Station(last.x + part.rod, (right,), bar, None))
                 continue
+            self.places[len(self.links)] = name, last.x
             if isinstance(part, LinkPart):
                 self._link(part, left, right, turns)
             else:
-                self.places[len(self.links)] = name, last.x
                 self._contact(part, left, right, turns, (*at, number))
             stations[-1] = replace(last, points=(*last.points, right))
         self.lines[name] = tuple(stations)
         for placed, number in zip(nodes, numbers, strict=True):
-            if placed is not None and isinstance(placed[1], PointPart) and placed[1].friction:
+            if placed is not None and isinstance(placed[1], PointPart) and (placed[1].friction or placed[1].has_law):
                 x = next(station.x for station in stations if number in station.points)
-                self._rub(placed[1].friction, number, (name, x), (*at, placed[0]))
+                self._hold(placed[1], number, (name, x), (*at, placed[0]))
 
     def _drawn(self, nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], k: int, at: Keys) -> int:
         """A new point for a node."""
@@ -162,13 +163,16 @@ class _Pen:
             self._become(number, placed[1], [part for part in beside if isinstance(part, RodPart)], (*at, placed[0]))
         return number
 
-    def _rub(self, friction: Fraction, point: int, place: tuple[str, Fraction], at: Keys) -> None:
-        """Friction between a point and the ground, a point of its own."""
+    def _hold(self, part: PointPart, point: int, place: tuple[str, Fraction], at: Keys) -> None:
+        """Friction, or a spring with a law, between a point and the ground, a point of its own."""
         self.points.append(Point(fmpq(0), motion="fixed"))
         ground = len(self.points) - 1
         self.written[ground] = at
         self.places[len(self.links)] = place
-        self.links.append(Link(ground, point, friction=rational(friction)))
+        if part.friction:
+            self.links.append(Link(ground, point, friction=rational(part.friction)))
+        if part.has_law:
+            self._link(part, ground, point, Fraction(1))
 
     def _wheel(self, point: int, part: ChainPart | str, ratio: Fraction, at: Keys) -> None:
         """What stands first in a branch turns with its node, `ratio` times as fast: the node has all of it."""
@@ -177,8 +181,9 @@ class _Pen:
         if part.name or part.velocity is not None:
             key = "name" if part.name else "velocity"
             raise refusal("what turns with the node of the branch has that of the node; leave it out", *at, key)
-        if part.friction:
-            raise refusal("not of what turns with the node of a branch; write it at the node", *at, "friction")
+        if part.friction or part.has_law:
+            key = "friction" if part.friction else "spring"
+            raise refusal("not of what turns with the node of a branch; write it at the node", *at, key)
         square, here = rational(ratio) ** 2, self.points[point]
         if here.motion is not None:
             raise refusal("a mass on an end that moves as it is told; write what holds the branch to it", *at)
@@ -206,8 +211,19 @@ class _Pen:
             self._link(part, left, right, ratio)
         return len(self.bars) - 1
 
-    def _link(self, part: RodPart | LinkPart, left: int, right: int, ratio: Fraction) -> None:
-        self.links.append(Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio)))
+    def _link(self, part: SpringLaw, left: int, right: int, ratio: Fraction) -> None:
+        """A spring and a dashpot; with a gap on both sides two springs."""
+        linear = Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio))
+        number = len(self.links)
+        if part.yields is not None:
+            pull, push = part.yields
+            self.links.append(replace(linear, limits=(rational(pull), rational(push))))
+        elif part.sides:
+            self.links += [replace(linear, side=side, gap=rational(gap)) for side, gap in part.sides]
+        else:
+            self.links.append(linear)
+        if number in self.places:
+            self.places |= dict.fromkeys(range(number, len(self.links)), self.places[number])
 
     def _contact(self, part: ContactPart, left: int, right: int, ratio: Fraction, at: Keys) -> None:
         gap = rational(part.contact)
@@ -231,8 +247,9 @@ class _Pen:
             if part.velocity is None and part.inertia:
                 self.unsaid[point] = at
             velocity = part.velocity if part.velocity is not None else min(velocities, default=Fraction(0))
-            mass, damping, spring = map(rational, (part.inertia, part.dashpot, part.spring))
-            self.points[point] = Point(mass, damping, spring, rational(velocity), name=part.name or "")
+            spring = Fraction(0) if part.has_law else part.spring
+            mass, damping, stiffness = map(rational, (part.inertia, part.dashpot, spring))
+            self.points[point] = Point(mass, damping, stiffness, rational(velocity), name=part.name or "")
         elif isinstance(part, MotionPart):
             start = rational(part.velocity)
             self.points[point] = Point(fmpq(0), velocity=start, motion=part.motion, name=part.name or "")

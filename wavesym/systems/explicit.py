@@ -104,7 +104,7 @@ def _damper(network: Network) -> str:
             return f"a dashpot or an absorbing end at {point.name or point.place}"
     for link in network.links:
         if link.has_corner:
-            return "a contact" if link.contact else "friction"
+            return {"contact": "a contact", "spring": "a spring with a corner"}.get(link.law, link.law)
         if link.damping != 0:
             return "a dashpot"
     return ""

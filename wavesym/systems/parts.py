@@ -45,6 +45,43 @@ def _read_motion(value: object) -> Literal["velocity", "acceleration"]:
     raise refusal(f'{show(value)} is not a motion; write "velocity" or "acceleration"')
 
 
+def _side(value: object) -> Literal["push", "pull"] | None:
+    if value == "push":
+        return "push"
+    if value == "pull":
+        return "pull"
+    raise refusal(f'{show(value)} is not a side; write "push" or "pull"')
+
+
+def _gap(value: object) -> Fraction | tuple[Fraction, Fraction]:
+    if not isinstance(value, list | tuple):
+        return _not_negative(value)
+    first, last = _two(value)
+    if first > last:
+        raise refusal(f"{show(value)} is not in order; write the smaller number first")
+    return first, last
+
+
+def _yield(value: object) -> tuple[Fraction, Fraction]:
+    if not isinstance(value, list | tuple):
+        return (_not_negative(value),) * 2
+    first, last = _two(value)
+    if min(first, last) < 0:
+        raise refusal(f"{show(value)} has a negative number; write the largest pull and push, both 0 or more")
+    return first, last
+
+
+def _numbers(value: Fraction | tuple[Fraction, ...]) -> str | list[str]:
+    """As they are written."""
+    return [str(number) for number in value] if isinstance(value, tuple) else str(value)
+
+
+def _two(value: list[object] | tuple[object, ...]) -> tuple[Fraction, Fraction]:
+    if len(value) != 2:
+        raise refusal(f"{show(value)} are {len(value)} numbers; write two")
+    return exact(value[0]), exact(value[1])
+
+
 PartName = Annotated[str, PlainValidator(_name)]
 NotNegative = Annotated[Fraction, PlainValidator(_not_negative), PlainSerializer(str, return_type=str)]
 
@@ -59,7 +96,53 @@ class ChainPart(SceneTable):
     key: ClassVar[str]
 
 
-class RodPart(ChainPart):
+class SpringLaw(SceneTable):
+    """What a spring does beyond being linear: it acts on one side, with a gap, or it yields."""
+
+    spring: NotNegative = Fraction(0)
+    dashpot: NotNegative = Fraction(0)
+    only: Annotated[Any, PlainValidator(_side)] = Field(
+        None, description='"push" or "pull": the spring does nothing else'
+    )
+    gap: Annotated[Any, PlainValidator(_gap), PlainSerializer(_numbers)] = Field(
+        None, description="how far it gets shorter or longer before it acts; [A, B] for both sides: at A, and at B"
+    )
+    yields: Annotated[Any, PlainValidator(_yield), PlainSerializer(_numbers)] = Field(
+        None, alias="yield", description="the largest pull and push, or [pull, push]"
+    )
+
+    @model_validator(mode="after")
+    def _one_law(self) -> SpringLaw:
+        keys = {"only": self.only, "gap": self.gap, "yield": self.yields}
+        written = [key for key, value in keys.items() if value is not None]
+        if not written:
+            return self
+        if self.spring == 0:
+            raise refusal("a law of a spring, and there is none; write spring = K too", written[0])
+        if self.dashpot != 0:
+            raise refusal(f"not beside a spring with {written[0]}, which has none; leave it out", "dashpot")
+        if self.yields is not None and len(written) > 1:
+            raise refusal(f"not together with {written[0]}; leave one of them out", "yield")
+        if self.gap is not None and self.only is None and not isinstance(self.gap, tuple):
+            raise refusal('of one side alone; write only = "push" or "pull" too, or gap = [A, B]', "gap")
+        if self.only is not None and isinstance(self.gap, tuple):
+            raise refusal("two numbers are for both sides; write one, or leave out only", "gap")
+        return self
+
+    @property
+    def has_law(self) -> bool:
+        """Whether it is not linear."""
+        return self.yields is not None or bool(self.sides)
+
+    @property
+    def sides(self) -> tuple[tuple[int, Fraction], ...]:
+        """The sides on which it acts, 1 where it pulls and -1 where it pushes, each with its gap, unless linear."""
+        if isinstance(self.gap, tuple):
+            return (-1, -self.gap[0]), (1, self.gap[1])
+        return () if self.only is None else ((1 if self.only == "pull" else -1, self.gap or Fraction(0)),)
+
+
+class RodPart(ChainPart, SpringLaw):
     """An elastic rod; a spring and a dashpot in parallel to it go from end to end."""
 
     key: ClassVar[str] = "rod"
@@ -75,7 +158,7 @@ class RodPart(ChainPart):
     name: PartName | None = None
 
 
-class PointPart(ChainPart):
+class PointPart(ChainPart, SpringLaw):
     """What moves as one: a rigid mass or a massless joint, with a dashpot, a spring and friction to the ground."""
 
     velocity: Exact | None = None
@@ -123,7 +206,7 @@ class MotionPart(ChainPart):
     name: PartName | None = None
 
 
-class LinkPart(ChainPart):
+class LinkPart(ChainPart, SpringLaw):
     """A spring and a dashpot between the parts on its two sides."""
 
     key: ClassVar[str] = "spring"
@@ -178,7 +261,7 @@ def read_parts(value: object) -> tuple[ChainPart | str, ...]:
 
 
 def _serialise(parts: tuple[ChainPart | str, ...]) -> list[Any]:
-    return [part if isinstance(part, str) else part.model_dump(exclude_defaults=True) for part in parts]
+    return [part if isinstance(part, str) else part.model_dump(exclude_defaults=True, by_alias=True) for part in parts]
 
 
 def describe_parts(parts: tuple[ChainPart | str, ...]) -> str:
@@ -189,7 +272,7 @@ def describe_parts(parts: tuple[ChainPart | str, ...]) -> str:
 
 
 def _describe_part(part: ChainPart) -> str:
-    given = part.model_dump(exclude_defaults=True)
+    given = part.model_dump(exclude_defaults=True, by_alias=True)
     keys = sorted(given, key=lambda key: (key == "name", key != part.key))
     return ", ".join(key if given[key] is True else f"{key} {given[key]}" for key in keys)
 

@@ -252,7 +252,7 @@ def elements(known: ReferenceOutputs) -> list[Outcome]:
 def contact_changes(known: ReferenceOutputs) -> list[Outcome]:
     """When contacts open and close, against collocation between fronts and central differences."""
     model, judged = known.model, known.integrated
-    if not judged.network.contacts:
+    if not judged.network.corners:
         return []
     solved, stepped = _solved_once(known), _grid(judged).struck(known.until, MOST_MOVED)
     seen = {
@@ -263,7 +263,7 @@ def contact_changes(known: ReferenceOutputs) -> list[Outcome]:
     notes += [] if stepped else [f"{model.name}: {_NO_GRID}"]
     outcomes = [Outcome("contacts", {}, True, note) for note in notes]
     claimed, reaching = events(model), model.contacts(rational(model.horizon()))
-    for number, link in enumerate(model.network.contacts):
+    for number, link in enumerate(model.network.corners):
         if link in reaching:
             place = model.network.links[link].place
             here = {name: each and each.at(number) for name, each in seen.items()}

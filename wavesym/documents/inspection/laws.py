@@ -47,7 +47,7 @@ def law_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
 def not_served(model: Model) -> Facts:
     """What named systems have and written-out chains have not."""
     try:
-        model.network.refuse_contacts()
+        model.network.refuse_corners()
         refusal = (
             f"system.type: {model.labels.type} has no closed form, as collision, drive and building have; take "
             "pieces, march or `run`"
@@ -96,7 +96,7 @@ def joint_laws(model: Model) -> Listing:
                 "refusal": Display(None, "") if rows or not refusal else refusal,
             }
         )
-    parted = ", with all contacts open" if model.network.contacts else ""
+    parted = ", with all contacts open" if model.network.corners else ""
     return Listing(
         "joints",
         f"Joints in the light cone, with a knot for each start of a stretch without fronts{parted}:\n{LAW}",

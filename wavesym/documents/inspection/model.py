@@ -40,7 +40,12 @@ def model_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
     yield light_cone(model)
     yield dump("points", "Points: what moves as one, with what holds it to the ground", network.points, "point")
     yield dump("bars", "Bars: elastic rods, each between two points", network.bars, "rod", 1)
-    yield dump("links", "Links: springs, dashpots, contacts and friction between two points", network.links, "link")
+    yield dump(
+        "links",
+        "Links: springs, dashpots, contacts, friction and laws with corners between two points",
+        network.links,
+        "link",
+    )
     if chain:
         yield from _paper_parts(chain)
     yield dump("loads", "Loads: unit responses, each from its time on and times its weight", model.loads)

@@ -79,7 +79,7 @@ def choice(model: Model, tried: Sequence[Attempt]) -> Facts:
 
 def contacts(model: Model) -> Listing:
     """When contacts open, as far as that matters; a scene whose ends are not known in time is refused for that."""
-    if model.network.contacts:
+    if model.network.corners:
         return _happening(model)
     words = "Contacts whose opening can reach an output"
     try:

@@ -15,10 +15,9 @@ from typing import NamedTuple
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Sliding
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.contacts.touching_joint import UNIT, JointStretch
-from wavesym.exact.joints.enclosed import Enclosed, add_terms
+from wavesym.exact.contacts.joint_stretch import JointStretch, way
+from wavesym.exact.joints.enclosed import UNIT, Enclosed, add_terms
 from wavesym.numbers.doubles import middle
 
 
@@ -250,7 +249,7 @@ class Friction(Corner):
     def take(self, moved: JointStretch) -> bool:
         """Stick, or slide one way; whether it did not when that was last decided."""
         before = self._decided
-        self._decided = self.sign, self.closed = _way(self.link, moved.sliding), self.link in moved.closed
+        self._decided = self.sign, self.closed = way(self.link, moved.sliding), self.link in moved.closed
         return before != self._decided
 
     def _margins(self, moved: JointStretch) -> list[Enclosed]:
@@ -260,7 +259,7 @@ class Friction(Corner):
 
     def _forward(self, moved: JointStretch) -> Enclosed:
         """How fast it goes the way it slides."""
-        return add_terms([(fmpq(_way(self.link, moved.sliding)), moved.rates[self.link])])
+        return add_terms([(fmpq(way(self.link, moved.sliding)), moved.rates[self.link])])
 
 
 def _middles(known: Enclosed) -> fmpq_poly:
@@ -272,10 +271,6 @@ def _without_start(known: Enclosed) -> Enclosed:
     """A function with the signs of the middle of what is known, which is not 0 at the start."""
     powers = [c.mid() for c in known.polynomial.coeffs()]
     return Enclosed(arb_poly(powers[1:] if powers and powers[0] == 0 else powers), arb(0))
-
-
-def _way(link: int, sliding: Sliding) -> int:
-    return next((sign for n, sign in sliding if n == link), 0)
 
 
 def _begins_bearable(force: Enclosed) -> bool:

@@ -12,7 +12,7 @@ from math import log
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.contacts.touching_joint import MOST_SWING, JointStretch
+from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network

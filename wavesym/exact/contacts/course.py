@@ -8,7 +8,7 @@ from heapq import heappop
 from flint import fmpq
 
 from wavesym.exact.contacts.branches import Corner
-from wavesym.exact.contacts.touching_joint import JointStretch
+from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.touching_waves import Stage
 
 

@@ -12,7 +12,29 @@ from wavesym.numbers.doubles import middle
 
 _COARSE = 64  # bits that do, where the interval is no shorter than this part of the whole
 _CLOSE, _NEAR = fmpq(1, 2**24), fmpq(1, 2**6)
+_FINEST = fmpq(1, 2**60)  # parts of a stretch on which a function is looked at
+_TINY = 2**16  # errors: what is no farther from 0 may be so by rounding
 _STEPS = 12  # of Newton's method: each doubles the bits
+
+
+class _Course:
+    """How a polynomial less an error goes on parts of [0, high]: with few bits where these are long."""
+
+    def __init__(self, p: arb_poly, error: arb, high: fmpq) -> None:
+        self.p, self.error, self._high = p, error, high
+        with ctx.workprec(_COARSE):
+            self._rough = shorten(Enclosed(p * arb(1), error), high)
+
+    def sign_on(self, a: fmpq, b: fmpq) -> tuple[bool, int]:
+        """As `_sign_on`."""
+        half = (b - a) / 2
+        positive, way = False, 0
+        if b - a > self._high * _CLOSE:
+            with ctx.workprec(_COARSE):
+                positive, way = _sign_on(self._rough.polynomial, self._rough.error, a + half, half)
+        if b - a <= self._high * _CLOSE or (b - a <= self._high * _NEAR and not positive and not way):
+            positive, way = _sign_on(self.p, self.error, a + half, half)
+        return positive, way
 
 
 def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq | None:
@@ -20,17 +42,12 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
 
     It is `low` itself where nothing can be said there.
     """
-    with ctx.workprec(_COARSE):
-        rough = shorten(Enclosed(p * arb(1), error), high)
+    course = _Course(p, error, high)
     stack = [(low, high)]
     while stack:
         a, b = stack.pop()
         half = (b - a) / 2
-        if b - a > high * _CLOSE:
-            with ctx.workprec(_COARSE):
-                positive, way = _sign_on(rough.polynomial, rough.error, a + half, half)
-        if b - a <= high * _CLOSE or (b - a <= high * _NEAR and not positive and not way):
-            positive, way = _sign_on(p, error, a + half, half)
+        positive, way = course.sign_on(a, b)
         if positive:
             continue
         if way:  # the least value is at an end
@@ -43,6 +60,80 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
             return a
         stack += [(a + half, b), (a, a + half)]
     return None
+
+
+def shortfall(known: Enclosed, high: fmpq) -> arb:
+    """How far below 0 a function may be on [0, high]: 0 where it is certainly not."""
+    if known.exact is not None and first_fall(known.exact, fmpq(0), high) is None:
+        return arb(0)
+    p, error, worst = known.polynomial, known.error, arb(0)
+    course = _Course(p, error, high)
+    stack = [(fmpq(0), high)]
+    while stack:
+        a, b = stack.pop()
+        positive, way = course.sign_on(a, b)
+        if positive:
+            continue
+        low = p(arb(a)).min(p(arb(b))) if way else _least_on(p, a, b)
+        if way or low >= -_TINY * error or b - a <= high * _FINEST:
+            worst = worst.max((error - low).upper())
+            continue
+        half = (b - a) / 2
+        stack += [(a + half, b), (a, a + half)]
+    return worst
+
+
+def certain_fall(known: Enclosed, low: fmpq, high: fmpq, resolution: fmpq) -> tuple[fmpq, fmpq] | None:
+    """Since when a function that is positive at `low`, or nearly, may be negative, and from where it certainly is.
+
+    None where it is certainly negative nowhere before `high`. Both are the same where its sign changes at a rational.
+    What is below 0 by some times its error alone may be so by rounding, and is not certain.
+    """
+    if known.exact is not None:
+        fall = first_fall(known.exact, low, high)
+        if not isinstance(fall, tuple):
+            return None if fall is None else (fall, fall)
+    p, error = known.polynomial, known.error
+    course, allowed, safe = _Course(p, error, high), _TINY * error, low
+    stack = [(low, high)]
+    while stack:
+        a, b = stack.pop()
+        positive, way = course.sign_on(a, b)
+        if not positive and way < 0 and p(arb(b)) < -allowed:
+            since = _last(p, error, a, b, resolution) if p(arb(a)) > error else safe
+            return since, _certain_until(p, allowed, max(since, a), b, resolution)
+        settled = positive or way != 0 or b - a <= high * _FINEST or _least_on(p, a, b) >= -allowed
+        if not settled:
+            half = (b - a) / 2
+            stack += [(a + half, b), (a, a + half)]
+        elif p(arb(b)) > error:
+            safe = b
+    return None
+
+
+def _certain_until(p: arb_poly, allowed: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq:
+    """The first place, about, at which what falls steadily from `low` to `high` is certainly below what is allowed."""
+    step = resolution
+    at = (_last(p + 2 * allowed, arb(0), low, high, resolution) / resolution).ceil() * resolution
+    while at + step < high:
+        if p(arb(now := fmpq(at + step))) < -allowed:
+            return now
+        step *= 2
+    return high
+
+
+def _least_on(p: arb_poly, a: fmpq, b: fmpq) -> arb:
+    """A lower bound on an interval; a close one where it is convex there, and so above all its tangents."""
+    half = (b - a) / 2
+    local = p(arb_poly([arb(a + half), arb(half)]))
+    slope = local.derivative()
+    bent = slope.derivative()
+    if not bent.length() or not bent[0] > sum(map(abs, bent.coeffs()[1:]), arb(0)):
+        return arb((local[0] - sum(map(abs, local.coeffs()[1:]), arb(0))).lower())
+    x = fmpq(0)
+    for _ in range(_STEPS):
+        x = min(max(x - middle(slope(arb(x)) / bent(arb(x))), fmpq(-1)), fmpq(1))
+    return arb((local(arb(x)) - 2 * abs(slope(arb(x)))).lower())
 
 
 def _sign_on(p: arb_poly, error: arb, centre: fmpq, half: fmpq) -> tuple[bool, int]:

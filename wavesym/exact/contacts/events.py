@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from flint import arb, fmpq
 
-from wavesym.mechanics.event import ContactEvent, KnownInstant
+from wavesym.mechanics.event import ContactEvent, Happening, KnownInstant
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link, with_contacts
 from wavesym.numbers.doubles import rational
@@ -28,7 +28,7 @@ class ContactEnd(KnownInstant):
 
 def scheduled(model: Model, until: fmpq) -> Schedule | None:
     """When what is closed, until then; None for a chain without contacts. CostError, GrazingError as in `schedule`."""
-    if not model.network.contacts:
+    if not model.network.corners:
         return None
     from wavesym.exact.contacts.schedule import schedule  # how contacts touch: few scenes have any
 
@@ -53,7 +53,11 @@ def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
     )
 
 
-def _kind(link: Link, change: Change) -> Literal["opens", "closes", "slips", "sticks"]:
+def _kind(link: Link, change: Change) -> Happening:
+    if link.side != 0:
+        return "engages" if change.closes else "lets go"
+    if link.limits is not None:
+        return "holds" if change.closes else "yields"
     if link.friction != 0:
         return "sticks" if change.closes else "slips"
     return "closes" if change.closes else "opens"

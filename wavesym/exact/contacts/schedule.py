@@ -93,6 +93,11 @@ def _attempt(
             f"friction at {link.place}: {bits} bits do not show whether it sticks or slips at tau = {tau} "
             "(another friction, load or length helps)"
         )
+    if link.is_spring_with_corner:
+        raise GrazingError(
+            f"spring at {link.place}: {bits} bits do not show what it does at tau = {tau} "
+            "(another gap, yield, load or length helps)"
+        )
     what = "force" if undecided.closed else "gap"
     raise GrazingError(
         f"contact at {link.place}: {bits} bits do not show the sign of its {what} at tau = {tau} "

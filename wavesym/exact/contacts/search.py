@@ -18,7 +18,8 @@ from wavesym.exact.contacts.branches import BranchEnd, Contact, Corner, Friction
 from wavesym.exact.contacts.cluster import Closed, Sliding, subsets
 from wavesym.exact.contacts.cost import Cost
 from wavesym.exact.contacts.course import Course, Doubt
-from wavesym.exact.contacts.touching_joint import MOST_SWING, JointStretch, SwingError
+from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, SwingError
+from wavesym.exact.contacts.spring_branches import OneSided, Yielding
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
@@ -89,7 +90,8 @@ class Search:
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> Course:
         network, joint = self._network, self._network.joints[number]
         far = [network.bars[end.bar].delay for end, _ in joint.ends]
-        contacts = tuple(self._corner(number, n) for n in self.waves.joints[number].touches)
+        moving = self.waves.joints[number]
+        contacts = tuple(self._corner(number, n) for n in (*moving.touches, *moving.springs.springs))
         shortest = min(far, default=last + 1)
         course = Course(number, last, last + self._beyond, shortest, contacts, fmpq(0), fmpq(0))
         sources = {unit.source for point in joint.points for unit in network.points[point].loads}
@@ -100,6 +102,9 @@ class Search:
 
     def _corner(self, number: int, n: int) -> Corner:
         link, points = self._network.links[n], self._network.points
+        if link.is_spring_with_corner:
+            spring = self.waves.joints[number].springs.springs[n]
+            return OneSided.begin(n, spring) if link.side else Yielding.begin(n, spring)
         if link.friction == 0:
             return Contact.begin(n, link.gap)
         rate = points[link.right].velocity - link.ratio * points[link.left].velocity
@@ -132,7 +137,7 @@ class Search:
         since, known = course.since, time - course.since
         if course.moved.swing * (limit - since) > MOST_SWING:
             return False
-        moved = self._move(course, since, limit - since, course.moved.closed, course.moved.sliding)
+        moved = self._move(course, since, limit - since, course.moved.closed, course.moved.sliding, trial=True)
         if moved.length <= known:
             return False
         moved, end = self._cut(course, since, moved, known)
@@ -142,25 +147,28 @@ class Search:
         return True
 
     def _move(
-        self, course: Course, start: fmpq, length: fmpq, closed: Closed, sliding: Sliding = frozenset()
+        self, course: Course, start: fmpq, length: fmpq, closed: Closed, sliding: Sliding, *, trial: bool = False
     ) -> JointStretch:
-        """On a stretch, or on as much of it as a series bears."""
+        """On a stretch, or on as much of it as a series bears; as a `trial`, if all stay on these branches so long."""
         joint = self.waves.joints[course.number]
         try:
             arriving = self.waves.arriving(course.number, start, length)
-            return joint.move(arriving, start, length, closed, sliding=sliding, relaxing=self._relaxing)
+            return joint.move(arriving, start, length, closed, sliding=sliding, relaxing=self._relaxing, trial=trial)
         except SwingError as error:
-            return self._move(course, start, error.longest, closed, sliding)
+            return self._move(course, start, error.longest, closed, sliding, trial=trial)
 
     def _cut(
         self, course: Course, start: fmpq, moved: JointStretch, low: fmpq
     ) -> tuple[JointStretch, BranchEnd | None]:
         """As much of a stretch as all contacts are certainly on their branches, as they are up to `low`."""
         end = self._end(course, moved, low)
-        if end is None or end.length == 0:
+        if end is not None and end.length == 0:
             return moved, end
-        moved = self._move(course, start, end.length, moved.closed, moved.sliding)
-        return moved, end if moved.length == end.length else None
+        if end is None and not self.waves.joints[course.number].springs:
+            return moved, None
+        length = moved.length if end is None else end.length
+        moved = self._move(course, start, length, moved.closed, moved.sliding)
+        return moved, end if moved.length == length else None
 
     def _end(self, course: Course, moved: JointStretch, low: fmpq) -> BranchEnd | None:
         """How long all contacts are certainly on their branches; None: all the way."""
@@ -179,6 +187,8 @@ class Search:
     def _begin(self, course: Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
         begun = self._decide(course, start, limit) if course.spread is None else None
+        if begun is None and self.waves.joints[course.number].springs:
+            raise UndecidedError(course.contacts[0].link, course.contacts[0].closed, start)
         if begun is None:
             course.reached = self._drift(course, start, limit, course.spread or fmpq(0))
             course.spread = None
@@ -198,7 +208,7 @@ class Search:
         shut = [contact.link for contact in course.contacts if contact.may_close]
         for closed in sorted(subsets(shut), key=len, reverse=True):
             for sliding in _ways(contact for contact in course.contacts if contact.link not in closed):
-                moved = self._move(course, start, limit - start, closed, sliding)
+                moved = self._move(course, start, limit - start, closed, sliding, trial=True)
                 if all(contact.begins(moved) for contact in course.contacts):
                     moved, end = self._cut(course, start, moved, fmpq(0))
                     return (moved, end) if end is None or end.length > 0 else None

@@ -12,7 +12,8 @@ from operator import itemgetter
 from flint import fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed, Sliding
-from wavesym.exact.contacts.touching_joint import JointStretch, TouchingJoint
+from wavesym.exact.contacts.joint_stretch import JointStretch
+from wavesym.exact.contacts.touching_joint import TouchingJoint
 from wavesym.exact.joints.enclosed import Enclosed, add_terms
 from wavesym.exact.joints.network_waves import SentWave, Waves
 from wavesym.mechanics.loads import Applied

@@ -119,6 +119,7 @@ class Enclosed:
 
 
 STILL = Enclosed(arb_poly(), arb(0), fmpq_poly())
+UNIT = Enclosed.of(fmpq_poly([1]))
 
 Terms = list[tuple[fmpq, Enclosed]]
 """A sum with exact factors."""

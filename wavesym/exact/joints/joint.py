@@ -70,8 +70,11 @@ class JointLaw:
     elastic: tuple[tuple[fmpq, ...], ...] = ()
 
     @classmethod
-    def of(cls, network: Network, joint: Joint) -> JointLaw:
-        """Assembled from points, links and rod ends, each as it is derived."""
+    def of(cls, network: Network, joint: Joint, acting: Collection[int] | None = None) -> JointLaw:
+        """Assembled from points, links and rod ends, each as it is derived.
+
+        Of springs with a corner those `acting` (the numbers of their links) are in it; all of them, where that is None.
+        """
         size = len(joint.points)
         place = {point: k for k, point in enumerate(joint.points)}
         points = [network.points[point] for point in joint.points]
@@ -85,10 +88,12 @@ class JointLaw:
             bar = network.bars[end.bar]
             radiated = rule.radiates[1 - end.side] * bar.ratios[end.side] ** 2 * bar.impedance
             damping[place[number]][place[number]] += radiated
-        for link in network.links:
+        for n, link in enumerate(network.links):
             if link.left in place:
                 a, b = place[link.left], place[link.right]
-                for matrix, value in ((damping, rule.damping * link.damping), (stiffness, link.stiffness)):
+                idle = acting is not None and link.is_spring_with_corner and n not in acting
+                spring = fmpq(0) if idle else link.stiffness
+                for matrix, value in ((damping, rule.damping * link.damping), (stiffness, spring)):
                     matrix[a][a] += link.ratio**2 * value
                     matrix[b][b] += value
                     matrix[a][b] -= link.ratio * value

@@ -30,7 +30,7 @@ def refuse_jumps(model: Model, until: fmpq) -> None:
     if not readings:
         return
     first = readings[0][0].name
-    if model.network.contacts:
+    if model.network.corners:
         raise WavesymError(
             f"output.acceleration: {first} has no mass, and contacts that close make velocities jump (write a "
             "place with mass)"

@@ -40,7 +40,7 @@ def refuse_damped(network: Network) -> None:
         if link.has_corner or link.damping != 0:
             what, serve = "dashpot", "pieces and march serve"
             if link.has_corner:
-                what, serve = "contact" if link.contact else "friction", "pieces serve"
+                what, serve = link.law, "pieces serve"
             at = link.place or network.points[link.left].name or network.points[link.left].place
             raise UnservedError(f"system: the {what} at {at} is not supported by modes ({serve} it)")
 

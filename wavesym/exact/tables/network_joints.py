@@ -31,7 +31,7 @@ class NetworkJoints:
     """What the joints of a network answer, made when they are first asked for. UnservedError where it has contacts."""
 
     def __init__(self, network: Network) -> None:
-        network.refuse_contacts()
+        network.refuse_corners()
         self.network = network
         self._responses: dict[int, JointResponse] = {}
 

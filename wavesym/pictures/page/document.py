@@ -206,7 +206,7 @@ def _facts(
             f"that at x = {end.x} opens at {scale.format(end.double)}; "
             "what that reaches is drawn as if it stayed closed",
         )
-    for number in network.contacts:
+    for number in network.corners:
         place = network.links[number].place
         if own := [each for each in program.provenance.events or () if each.x == place]:
             yield (

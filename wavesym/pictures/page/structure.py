@@ -126,7 +126,7 @@ class _Pen:
         bodies = len([point for point in self.network.points if point.mass])
         more = [
             f"{len(self.lines) - 1} branches" * (len(self.lines) > 1),
-            f"{len(self.network.contacts)} contacts" * bool(self.network.contacts),
+            f"{len(self.network.corners)} contacts" * bool(self.network.corners),
             "springs or dashpots" * any(not link.contact for link in self.network.links),
         ]
         told = f"A chain of {len(self.network.bars)} rods and {bodies} rigid bodies"

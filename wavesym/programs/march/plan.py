@@ -199,7 +199,7 @@ def march_plan(
     UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
     network = model.network
-    network.refuse_contacts()
+    network.refuse_corners()
     model.refuse_damping()
     network.refuse_rodless("a march", "take pieces or modes")
     for probe, terms in model.sums.items():

@@ -82,7 +82,7 @@ class ComplexModes(ModalModel[ComplexProjection]):
         """The first modes. UnservedError for what modes do not serve."""
         self.refuse()
         network = self.model.network
-        network.refuse_contacts()
+        network.refuse_corners()
         refuse_absorbing(network)
         found = self.spectrum.first(count)  # only then it is known how bars are cut
         for probe in self.accelerated():

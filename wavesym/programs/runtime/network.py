@@ -77,7 +77,7 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     UnservedError for what is not served, WavesymError for a name that the scene does not have.
     """
     network, parameters = model.network, model.parameters
-    network.refuse_contacts()
+    network.refuse_corners()
     model.refuse_damping()
     for point in network.points:
         if point.motion is not None and point.velocity != 0:

@@ -1,0 +1,81 @@
+"""A joint on a stretch of time: how its points move, what it sends, where it is at the end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from flint import arb, fmpq
+
+from wavesym.exact.contacts.cluster import Closed, Sliding
+from wavesym.exact.contacts.springs import SpringMotion, SpringState
+from wavesym.exact.joints.enclosed import Enclosed, Terms
+
+MOST_SWING = fmpq(20)
+"""A series is begun anew where it would have to bear more than exp(this): few bits cancel in it then."""
+
+
+@dataclass(frozen=True)
+class PointState:
+    """How fast a point is, and where: exact where that is known, and the energy of what is not known of its set."""
+
+    velocity: arb
+    displacement: arb
+    exact: tuple[fmpq, fmpq] | None
+    unknown: arb
+
+    @property
+    def place(self) -> fmpq:
+        """The displacement, where it is known exactly."""
+        assert self.exact is not None
+        return self.exact[1]
+
+    @classmethod
+    def from_exact(cls, velocity: fmpq, displacement: fmpq) -> PointState:
+        """Known exactly."""
+        return cls(arb(velocity), arb(displacement), (velocity, displacement), arb(0))
+
+    def lose(self, energy: arb) -> PointState:
+        """The same, by so much energy less known."""
+        unknown = ((self.unknown.sqrt() + energy.sqrt()) ** 2).upper()
+        return PointState(self.velocity, self.displacement, None, unknown)
+
+
+@dataclass
+class JointStretch:
+    """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
+
+    `closed` are also the springs with a corner that act or hold, `springs` how they move and are at the end.
+    `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
+    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts, `known` the contacts whose two
+    sides begin in a state that is known exactly. Its series, where it is one, bears exp(`swing` length); it is
+    `fleeting` where what decays fast keeps it short, until that has died away.
+    """
+
+    length: fmpq
+    closed: Closed
+    vague: Closed
+    sliding: Sliding
+    velocities: dict[int, Terms]
+    sends: dict[int, Enclosed] = field(default_factory=dict)
+    state: dict[int, PointState] = field(default_factory=dict)
+    rates: dict[int, Enclosed] = field(default_factory=dict)
+    pushes: dict[int, Enclosed] = field(default_factory=dict)
+    bare: set[int] = field(default_factory=set)
+    known: set[int] = field(default_factory=set)
+    strained: dict[int, SpringMotion] = field(default_factory=dict)
+    springs: dict[int, SpringState] = field(default_factory=dict)
+    swing: fmpq = field(default_factory=fmpq)
+    fleeting: bool = False
+
+
+class SwingError(Exception):
+    """A stretch that is too long for a series, by what it is at most."""
+
+    def __init__(self, longest: fmpq) -> None:
+        super().__init__()
+        self.longest = longest
+
+
+def way(link: int, sliding: Sliding) -> int:
+    """Which way a link slides, or yields; 0 where it does not."""
+    return next((sign for n, sign in sliding if n == link), 0)

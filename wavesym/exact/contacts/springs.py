@@ -1,0 +1,173 @@
+"""Springs whose laws have corners, each on one branch of it: what they do, and what is not known of that.
+
+A spring on one side acts while it is longer (or shorter) than its gap lets it be, else it idles. One that yields holds,
+as any spring, while its pull is within its limits; at a limit it yields, with that force, as long as it goes on that
+way. So the force is continuous in time, and it is not asked which branch the true motion is on: what is computed keeps
+to its branch until that is certainly wrong. How far it is from its guard then, x, and what is not known of its stretch,
+make its force wrong by K x at most, which is taken for a force that is not known (`docs/contacts.md`).
+
+While a spring acts, it is longer than unstrained by what its points say and a `shift`. What is not known of that when
+it begins to act, r, is energy not known, K r^2 / 2, which grows no more while it acts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from flint import arb, arb_poly, fmpq, fmpq_poly
+
+from wavesym.exact.contacts.crossing import shortfall
+from wavesym.exact.joints.enclosed import UNIT, Enclosed, Terms, add_terms
+from wavesym.mechanics.network import Link
+from wavesym.numbers.doubles import middle
+
+
+class Strained(Protocol):
+    """Where a point is, as far as it is known."""
+
+    @property
+    def displacement(self) -> arb:
+        """A ball."""
+
+    @property
+    def exact(self) -> tuple[fmpq, fmpq] | None:
+        """How fast, and where."""
+
+
+@dataclass(frozen=True)
+class CornerSpring:
+    """A spring with a corner between two points of a joint, told by their places in it; right moves `ratio` times left.
+
+    `rest` is how much longer it is than at tau = 0 where it has no force.
+    """
+
+    left: int
+    right: int
+    ratio: fmpq
+    stiffness: fmpq
+    side: int
+    gap: fmpq
+    limits: tuple[fmpq, fmpq]
+
+    @classmethod
+    def of(cls, link: Link, place: Mapping[int, int]) -> CornerSpring:
+        """That of a link, where points have these places."""
+        limits = link.limits or (fmpq(0), fmpq(0))
+        return cls(place[link.left], place[link.right], link.ratio, link.stiffness, link.side, link.gap, limits)
+
+    @property
+    def rest(self) -> fmpq:
+        """How long it is without force, and yields nothing."""
+        return self.side * self.gap
+
+    @property
+    def most(self) -> tuple[fmpq, fmpq]:
+        """The stretches at which it yields: when pulled, and when pushed."""
+        pull, push = self.limits
+        return pull / self.stiffness, -push / self.stiffness
+
+    def pull(self, sign: int) -> fmpq:
+        """With how much it pulls where it yields."""
+        return self.limits[0] if sign > 0 else -self.limits[1]
+
+    def between(self, points: Mapping[int, Strained]) -> tuple[fmpq, bool]:
+        """How far apart its points are by their displacements, the middles of them; and whether that is exact."""
+        left, right = points[self.left], points[self.right]
+        if left.exact is not None and right.exact is not None:
+            return right.exact[1] - self.ratio * left.exact[1], True
+        return middle(right.displacement) - self.ratio * middle(left.displacement), False
+
+    def add_pull(self, forces: list[Terms], terms: Terms) -> None:
+        """Add what it does to the forces on points, where it pulls with the sum of some terms."""
+        forces[self.right] = [*forces[self.right], *((-factor, known) for factor, known in terms)]
+        forces[self.left] = [*forces[self.left], *((self.ratio * factor, known) for factor, known in terms)]
+
+
+@dataclass(frozen=True)
+class SpringState:
+    """How much longer a spring is: than at tau = 0, or, where it yields, than without force; exact where that is known.
+
+    `shift` is how much more than its points are apart, while it acts or holds; None where it does not.
+    """
+
+    stretch: arb
+    exact: fmpq | None
+    shift: fmpq | None = None
+
+    @classmethod
+    def from_exact(cls, stretch: fmpq) -> SpringState:
+        """Known exactly."""
+        return cls(arb(stretch), stretch)
+
+    def begin(self, spring: CornerSpring, points: Mapping[int, Strained]) -> SpringState:
+        """The same, acting."""
+        if self.shift is not None:
+            return self
+        apart, exact = spring.between(points)
+        if self.exact is not None and exact:
+            return SpringState(self.stretch, self.exact, self.exact - apart)
+        return SpringState(self.stretch, None, middle(self.stretch) - apart)
+
+    @property
+    def shift_known(self) -> fmpq:
+        """That of a spring that acts."""
+        assert self.shift is not None
+        return self.shift
+
+    @property
+    def unknown(self) -> arb:
+        """How far off the middle of its stretch may be."""
+        return abs(self.stretch - self.stretch.mid()).upper()
+
+
+@dataclass(frozen=True)
+class SpringMotion:
+    """A spring on a stretch of time: its `stretch`, and the guards of its branch, which should not be negative."""
+
+    stretch: Enclosed
+    guards: tuple[Enclosed, ...]
+
+    def excess(self, length: fmpq) -> arb:
+        """How far a guard may be below 0."""
+        most = arb(0)
+        for guard in self.guards:
+            most = most.max(shortfall(guard, length))
+        return most
+
+
+def acting(spring: CornerSpring, stretch: Enclosed) -> SpringMotion:
+    """A spring that acts, or holds."""
+    if spring.side != 0:
+        return SpringMotion(stretch, (add_terms([(fmpq(spring.side), stretch), (-spring.gap, UNIT)]),))
+    most, least = spring.most
+    guards = (add_terms([(most, UNIT), (fmpq(-1), stretch)]), add_terms([(-least, UNIT), (fmpq(1), stretch)]))
+    return SpringMotion(stretch, guards)
+
+
+def idle(spring: CornerSpring, state: SpringState, rate: Enclosed, length: fmpq) -> SpringMotion:
+    """A spring on one side that does not act, and gets longer at a `rate`."""
+    if state.exact is not None and rate.exact is not None:
+        stretch = Enclosed.of(rate.exact.integral() + state.exact)
+    else:
+        error = (rate.error * arb(length) + state.unknown).upper()
+        stretch = Enclosed(rate.polynomial.integral() + state.stretch.mid(), error)
+    return SpringMotion(stretch, (add_terms([(spring.gap, UNIT), (fmpq(-spring.side), stretch)]),))
+
+
+def yielding(spring: CornerSpring, state: SpringState, sign: int, rate: Enclosed) -> SpringMotion:
+    """A spring that yields one way, and gets longer at a `rate`."""
+    limit = spring.most[0 if sign > 0 else 1]
+    off = abs(state.stretch - arb(limit)).upper() if state.exact != limit else arb(0)
+    stretch = Enclosed(arb_poly([arb(limit).mid()]), (off + abs(arb(limit) - arb(limit).mid())).upper())
+    if off == 0:
+        stretch = Enclosed.of(fmpq_poly([limit]))
+    return SpringMotion(stretch, (add_terms([(fmpq(sign), rate)]),))
+
+
+def at_end(motion: SpringMotion, length: fmpq) -> SpringState:
+    """Its state at the end of a stretch, as if it did not act any more."""
+    if motion.stretch.exact is not None:
+        return SpringState.from_exact(motion.stretch.exact(length))
+    return SpringState(motion.stretch.at(length), None)

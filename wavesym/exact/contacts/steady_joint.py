@@ -1,0 +1,416 @@
+"""A joint whose contacts are closed or open: closed ones make one of their points, open ones leave them apart.
+
+A closed contact pushes with a force N >= 0, the right point forwards and the left one backwards; an open one has a gap
+>= 0, which grows at a `rate`. With the balance of a point k, M q' + C q + K u = s + what contacts push, N is the sum
+of C q + K u - s over the points on one side of the contact, which have no mass.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from math import log2
+
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
+
+from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, connected_sets
+from wavesym.exact.contacts.joint_springs import JointSprings
+from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError
+from wavesym.exact.joints.enclosed import STILL, UNIT, Enclosed, Onset, Terms, add_terms, collect, scale_terms
+from wavesym.exact.joints.exact_motion import exact_motion, onsets
+from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
+from wavesym.exact.joints.network_waves import LoadPolynomial
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import Network
+
+_ONE = fmpq(1)
+_ROUNDS = 4  # in which a bound of springs' forces must hold
+_SHORTER = 4  # where it does not, as a spring answers to its own force
+_MISSED = 16  # bits: what has died away is that much more than rounding errors, at most
+
+
+class SteadyJoint(ABC):
+    """A joint as time goes on, at the working precision; whether what decays fast has been left out."""
+
+    def __init__(self, network: Network, number: int, loads: Sequence[Applied]) -> None:
+        joint = network.joints[number]
+        place = {point: k for k, point in enumerate(joint.points)}
+        self.law = JointLaw.of(network, joint)
+        self.touches = {
+            n: Touch(place[link.left], place[link.right], link.ratio, link.friction)
+            for n, link in enumerate(network.links)
+            if link.has_corner and not link.is_spring_with_corner and link.left in place
+        }
+        self.springs = JointSprings(network, place)
+        self._connected = connected_sets(self.law, self.touches, frozenset())
+        self._law_of: Callable[[Closed], JointLaw] = cache(lambda springs: JointLaw.of(network, joint, springs))
+        self._clusters: dict[tuple[Closed, Closed], list[Cluster]] = {}
+        self._loads = [LoadPolynomial(network, point, loads) for point in joint.points]
+        self._ends = joint_ends(network, joint)
+        touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
+        self._bare = {n for n, end in enumerate(self._ends) if end.place in touched and self.law.mass[end.place] == 0}
+        self._state = {
+            k: PointState.from_exact(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)
+        }
+        self._energy = arb(0)  # the largest that a set had
+        self.has_relaxed = False
+        # sets of points that have energy: mass or springs
+        self._sets = [
+            points for points in self._connected if any(self.law.mass[k] != 0 or self._elastic(k) for k in points)
+        ]
+
+    def take(self, moved: JointStretch) -> None:
+        """Go on to the end of a stretch."""
+        self._state |= moved.state
+        self.springs.take(moved)
+
+    def move(
+        self,
+        arriving: Sequence[Enclosed],
+        start: fmpq,
+        length: fmpq,
+        closed: Closed,
+        vague: Closed = frozenset(),
+        sliding: Sliding = frozenset(),
+        relaxing: bool | None = None,
+        trial: bool = False,
+    ) -> JointStretch:
+        """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then.
+
+        What rubs is closed where it sticks, else one of those that are `sliding`.
+
+        Where a series would have to bear more than exp(`MOST_SWING`), that is its motion without what decays fast. Such
+        a stretch is decided already (`relaxing` None), or it is seen that this is lost among rounding errors:
+        SwingError where it is not, or where it is not to be tried. In a `trial` springs with a corner keep to their
+        branches for certain, as long as they are on them.
+        """
+        if trial or not self.springs:
+            return self._move(arriving, start, length, closed, vague, sliding, relaxing, {})
+        unknown: dict[int, arb] = {}
+        for _ in range(_ROUNDS):
+            moved = self._move(arriving, start, length, closed, vague, sliding, relaxing, unknown)
+            off = self.springs.wrong_forces(moved)
+            if all(force <= unknown.get(n, arb(0)) for n, force in off.items()):
+                return moved
+            unknown = {n: (2 * force).upper() for n, force in off.items()}
+        raise SwingError(length / _SHORTER)
+
+    def _move(
+        self,
+        arriving: Sequence[Enclosed],
+        start: fmpq,
+        length: fmpq,
+        closed: Closed,
+        vague: Closed,
+        sliding: Sliding,
+        relaxing: bool | None,
+        unknown: Mapping[int, arb],
+    ) -> JointStretch:
+        """The same, where forces of springs with a corner are `unknown` by so much."""
+        acting = [load.on(start) for load in self._loads]
+        forces = self._add_friction(forces_on(self._ends, arriving, acting), sliding)
+        self.springs.add_pulls(forces, closed, sliding, self._state, unknown)
+        result = JointStretch(length, closed, vague, sliding, {})
+        for cluster in self._split(closed, vague):
+            if any(self.touches[n].left in cluster.points for n in vague):
+                self._drift(cluster, result, arriving, forces, acting)
+            else:
+                self._move_cluster(cluster, result, forces, acting, relaxing)
+        for spring, energy in self.springs.flows(result, unknown):
+            for k in next(points for points in self._connected if spring.left in points):
+                result.state[k] = result.state.get(k, self._state[k]).lose(energy)
+        for n, touch in self.touches.items():
+            if self._state[touch.left].exact is not None and self._state[touch.right].exact is not None:
+                result.known.add(n)
+            if n not in closed and n not in vague:
+                result.rates[n] = add_terms(rate_terms(touch, result.velocities))
+        for number, wave in enumerate(arriving):
+            if number not in result.sends:
+                result.sends[number] = self._outgoing(number, result.velocities, wave)
+                if number in self._bare and not collect(self._end_force(number, result.velocities, wave)):
+                    result.bare.add(number)
+        return result
+
+    def _add_friction(self, forces: Sequence[Terms], sliding: Sliding) -> list[Terms]:
+        """With what is taken against sliding."""
+        result = list(forces)
+        for n, sign in sorted(sliding):
+            if n in self.springs.springs:
+                continue
+            touch = self.touches[n]
+            against = -sign * touch.friction
+            result[touch.right] = [*result[touch.right], (against, UNIT)]
+            result[touch.left] = [*result[touch.left], (-against * touch.ratio, UNIT)]
+        return result
+
+    def _outgoing(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
+        end = self._ends[number]
+        return add_terms(outgoing_terms(end, velocities[end.place], wave))
+
+    def _end_force(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Terms:
+        """What is sent less what arrives: up to a factor, what acts on the end."""
+        end = self._ends[number]
+        return [*outgoing_terms(end, velocities[end.place], wave), (fmpq(-1), wave)]
+
+    def _split(self, closed: Closed, vague: Closed) -> list[Cluster]:
+        if (closed, vague) not in self._clusters:
+            springs = self.springs.acting(closed)
+            touching = closed - springs
+            law = self._law_of(springs) if self.springs else self.law
+            self._clusters[closed, vague] = [
+                Cluster.from_law(law, points, self.touches, touching)
+                for points in connected_sets(self.law, self.touches, touching | vague)
+            ]
+        return self._clusters[closed, vague]
+
+    @abstractmethod
+    def _drift(
+        self,
+        cluster: Cluster,
+        result: JointStretch,
+        arriving: Sequence[Enclosed],
+        forces: Sequence[Terms],
+        acting: Sequence[fmpq_poly],
+    ) -> None:
+        """Move a cluster some of whose contacts are vague."""
+
+    def _move_cluster(
+        self,
+        cluster: Cluster,
+        result: JointStretch,
+        forces: Sequence[Terms],
+        acting: Sequence[fmpq_poly],
+        relaxing: bool | None,
+    ) -> None:
+        law, points = cluster.law, cluster.points
+        pushed = group_forces(cluster, forces)
+        prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
+        motion, places = None, None
+        if cluster.stateless:
+            q = scatter(law, pushed, prescribed_terms(law, prescribed))
+            result.state |= self._stopped(cluster)
+        elif (exact := self._move_exactly(cluster, pushed, prescribed)) is not None:
+            q = [[(_ONE, Enclosed.of(p))] for p in exact]
+            places = {
+                k: ratio * exact[group].integral() + self._state[k].place
+                for k, (group, ratio) in zip(points, law.moves, strict=True)
+            }
+            for k, (group, ratio) in zip(points, law.moves, strict=True):
+                place = places[k](result.length) if self._elastic(k) else fmpq(0)
+                result.state[k] = PointState.from_exact(ratio * exact[group](result.length), place)
+        else:
+            motion = self._balls(cluster)
+            waves = [add_terms(force) for force in pushed]
+            longest = max(wave.polynomial.length() for wave in waves)
+            if law.fastest * result.length > MOST_SWING:
+                rate, moving = self._relax(cluster, motion, waves, prescribed, result.length, relaxing)
+            else:
+                rate, terms = law.fastest, series_terms(law.fastest * result.length, longest)
+                moving = motion.move(waves, prescribed, result.length, terms)
+            q = [[(_ONE, each)] for each in self._add_onsets(cluster, pushed, prescribed, moving, result.length)]
+            result.state |= self._state_after(cluster, motion)
+            if rate > result.swing:
+                result.swing = rate
+                cut = 2 * rate * result.length > MOST_SWING
+                result.fleeting = cut and any(each.slow < rate for each in cluster.relaxations)
+            self._energy = self._energy.max(motion.energy(motion.velocity, motion.displacement))
+        for k, (group, ratio) in zip(points, law.moves, strict=True):
+            result.velocities[k] = scale_terms(q[group], ratio)
+        for k in cluster.stuck:
+            if (unknown := result.state.get(k, self._state[k]).unknown) != 0:
+                slow = (2 * unknown / arb(self.law.mass[k])).sqrt().upper()
+                result.velocities[k] = [(_ONE, Enclosed(arb_poly(), slow))]
+        for n, push in cluster.pushes.items():
+            pull = self._pull(cluster, push, result.velocities, forces)
+            if places is not None:
+                pull += [
+                    (factor * self.law.stiffness[k][j], Enclosed.of(places[j])) for k, factor in push for j in points
+                ]
+            result.pushes[n] = add_terms(pull)
+            if motion is not None:
+                result.pushes[n] = self._add_springs(cluster, push, motion, result.pushes[n])
+        self.springs.strain(points, result, self._state, places if motion is None else motion)
+        self._lose_excess(cluster, result)
+
+    def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
+        """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it."""
+        for n in cluster.pushes:
+            touch = self.touches[n]
+            for k in {touch.left, touch.right} & set(cluster.stuck):
+                force = result.pushes[n]
+                excess = abs(force.at(fmpq(0))).max(abs(force.at(result.length))) - arb(touch.friction)
+                if touch.friction == 0 or not excess.upper() > 0:
+                    continue
+                more = (excess.upper() * arb(result.length)) ** 2 / (2 * arb(self.law.mass[k]))
+                for j in cluster.points:
+                    result.state[j] = result.state.get(j, self._state[j]).lose(more)
+
+    def _relax(
+        self,
+        cluster: Cluster,
+        motion: JointMotion,
+        waves: Sequence[Enclosed],
+        prescribed: Sequence[fmpq_poly],
+        length: fmpq,
+        relaxing: bool | None,
+    ) -> tuple[fmpq, list[Enclosed]]:
+        """The rate at which a cluster moves when what decays fast has died away, and its velocities."""
+        longest = max(wave.polynomial.length() for wave in waves)
+        if relaxing is None:
+            relaxation = next(each for each in reversed(cluster.relaxations) if each.slow * length <= MOST_SWING)
+            q, u, missed = motion.relax(relaxation, waves, prescribed, series_terms(relaxation.slow * length, longest))
+            motion.lose(missed)
+            return relaxation.slow, motion.follow(q, u, waves, length)
+        for relaxation in cluster.relaxations if relaxing else ():
+            shorter = min(length, MOST_SWING / relaxation.slow) if relaxation.slow != 0 else length
+            terms = series_terms(relaxation.slow * shorter, longest)
+            if not relaxation.serves(shorter, terms):
+                continue
+            q, u, missed = motion.relax(relaxation, waves, prescribed, terms)
+            if missed > self._energy * arb(2) ** (2 * (_MISSED - ctx.prec)):
+                continue
+            if shorter < length:
+                raise SwingError(shorter)
+            self.has_relaxed = True
+            motion.lose(missed)
+            return relaxation.slow, motion.follow(q, u, waves, length)
+        raise SwingError(MOST_SWING / cluster.law.fastest)
+
+    def _elastic(self, k: int) -> bool:
+        return any(c != 0 for c in self.law.stiffness[k])
+
+    def _exact_state(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
+        """The state of a cluster, where it is known exactly."""
+        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        return known if len(known) == len(cluster.points) and self.springs.are_exact(cluster.points) else None
+
+    def _move_exactly(
+        self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
+    ) -> list[fmpq_poly] | None:
+        """The velocities of groups, where all is known exactly and they are polynomials."""
+        if (known := self._exact_state(cluster)) is None:
+            return None
+        forces = [force for terms in pushed if (force := add_terms(terms).exact) is not None]
+        if len(forces) < len(pushed):
+            return None
+        velocity = [known[leader][0] for leader in cluster.law.leaders]
+        return exact_motion(cluster.law, velocity, [u for _, u in known], forces, prescribed)
+
+    def _add_onsets(
+        self,
+        cluster: Cluster,
+        pushed: Sequence[Terms],
+        prescribed: Sequence[fmpq_poly],
+        velocities: Sequence[Enclosed],
+        length: fmpq,
+    ) -> Sequence[Enclosed]:
+        """The velocities of groups, with how they begin, where that is known."""
+        if (known := self._exact_state(cluster)) is None:
+            return velocities
+        forces = [begins for terms in pushed if (begins := add_terms(terms).begins) is not None]
+        if len(forces) < len(pushed):
+            return velocities
+        span = arb(0).union(arb(length))
+        begin = onsets(
+            cluster.law,
+            ([known[leader][0] for leader in cluster.law.leaders], [u for _, u in known]),
+            forces,
+            [Onset(p) for p in prescribed],
+            [abs(each.over(span)).upper() for each in velocities],
+            length,
+        )
+        return [replace(each, onset=onset) for each, onset in zip(velocities, begin, strict=True)]
+
+    def _pull(
+        self,
+        cluster: Cluster,
+        push: Sequence[tuple[int, fmpq]],
+        velocities: Mapping[int, Terms],
+        forces: Sequence[Terms],
+    ) -> Terms:
+        """The force of a closed contact, but for what springs do."""
+        terms: Terms = []
+        for k, factor in push:
+            terms += scale_terms(forces[k], -factor)
+            for j in cluster.points:
+                terms += scale_terms(velocities[j], factor * self.law.damping[k][j])
+        return terms
+
+    def _add_springs(
+        self, cluster: Cluster, push: Sequence[tuple[int, fmpq]], motion: JointMotion, force: Enclosed
+    ) -> Enclosed:
+        """With what springs do."""
+        springs = [(factor, self._spring(cluster, motion, k)) for k, factor in push if self._elastic(k)]
+        return add_terms([(_ONE, force), *springs])
+
+    def _spring(self, cluster: Cluster, motion: JointMotion, k: int) -> Enclosed:
+        """What springs pull at a point on a stretch."""
+        if not self._elastic(k):
+            return STILL
+        polynomial = arb_poly()
+        for j, series in zip(cluster.points, motion.places, strict=True):
+            polynomial += arb(self.law.stiffness[k][j]) * arb_poly(series)
+        return Enclosed(polynomial, (arb(self.law.stiffness[k][k]).sqrt() * motion.strained).upper())
+
+    # in balls
+
+    def _balls(self, cluster: Cluster) -> JointMotion:
+        """The state of a cluster; what rounding loses of one that was exact is energy not known."""
+        points = cluster.points
+        state = [self._state[k] for k in points]
+        unknown = sum((self._state[each[0]].unknown for each in self._sets if each[0] in points), arb(0))
+        velocity = [state[leader].velocity for leader in cluster.law.leaders]
+        displacement = [each.displacement for each in state]
+        motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], unknown, decays=True)
+        motion.round(velocity, displacement)
+        motion.lose(self.springs.energy(points))
+        for k in cluster.stuck:
+            motion.lose(self._energy_of(k))
+        return motion
+
+    def _energy_of(self, k: int) -> arb:
+        """The kinetic energy of a point, at most."""
+        return (arb(self.law.mass[k]) * self._state[k].velocity ** 2 / 2).upper()
+
+    def _stopped(self, cluster: Cluster) -> dict[int, PointState]:
+        """What was sliding and sticks, where nothing has a state: how fast it may be yet is energy not known of it."""
+        if not cluster.stuck or self._exact_state(cluster) is not None:
+            return {}
+        unknown = max(self._state[k].unknown for k in cluster.points)
+        for k in cluster.stuck:
+            unknown = ((unknown.sqrt() + self._energy_of(k).sqrt()) ** 2).upper()
+        return {k: PointState(arb(0), self._state[k].displacement, None, unknown) for k in cluster.points}
+
+    def _state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
+        leaders = dict(zip(cluster.law.leaders, motion.velocity, strict=True))
+        return {
+            k: PointState(leaders.get(n, arb(0)), motion.displacement[n], None, motion.unknown)
+            for n, k in enumerate(cluster.points)
+        }
+
+
+def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
+    """What acts on the groups of a cluster."""
+    terms: list[Terms] = [[] for _ in cluster.law.mass]
+    for k, (group, ratio) in zip(cluster.points, cluster.law.moves, strict=True):
+        terms[group] += scale_terms(forces[k], ratio)
+    return terms
+
+
+def prescribed_terms(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:
+    return {a: [(_ONE, Enclosed.of(p))] for a, p in enumerate(prescribed) if law.given[a] is not None}
+
+
+def rate_terms(touch: Touch, velocities: Mapping[int, Terms]) -> Terms:
+    return [*velocities[touch.right], *scale_terms(velocities[touch.left], -touch.ratio)]
+
+
+def series_terms(swing: fmpq, least: int) -> int:
+    """As many terms as a series needs that goes like exp(swing)."""
+    x, size, n = float(swing), 0.0, 0
+    while x > 0 and size > -ctx.prec - 8:
+        n += 1
+        size += log2(x / n)
+    return max(n, least) + 2
