@@ -13,7 +13,8 @@ from wavesym.numbers.doubles import middle
 _COARSE = 64  # bits that do, where the interval is no shorter than this part of the whole
 _CLOSE, _NEAR = fmpq(1, 2**24), fmpq(1, 2**6)
 _FINEST = fmpq(1, 2**60)  # parts of a stretch on which a function is looked at
-_TINY = 2**16  # errors: what is no farther from 0 may be so by rounding
+TINY = 2**16
+"""Errors: what is no farther from 0 may be so by rounding."""
 _STEPS = 12  # of Newton's method: each doubles the bits
 
 
@@ -75,7 +76,7 @@ def shortfall(known: Enclosed, high: fmpq) -> arb:
         if positive:
             continue
         low = p(arb(a)).min(p(arb(b))) if way else _least_on(p, a, b)
-        if way or low >= -_TINY * error or b - a <= high * _FINEST:
+        if way or low >= -TINY * error or b - a <= high * _FINEST:
             worst = worst.max((error - low).upper())
             continue
         half = (b - a) / 2
@@ -94,7 +95,7 @@ def certain_fall(known: Enclosed, low: fmpq, high: fmpq, resolution: fmpq) -> tu
         if not isinstance(fall, tuple):
             return None if fall is None else (fall, fall)
     p, error = known.polynomial, known.error
-    course, allowed, safe = _Course(p, error, high), _TINY * error, low
+    course, allowed, safe = _Course(p, error, high), TINY * error, low
     stack = [(low, high)]
     while stack:
         a, b = stack.pop()

@@ -140,8 +140,9 @@ class Search:
         moved = self._move(course, since, limit - since, course.moved.closed, course.moved.sliding, trial=True)
         if moved.length <= known:
             return False
+        trial = moved.length
         moved, end = self._cut(course, since, moved, known)
-        if moved.length <= known and end is None:
+        if end is None and (moved.length <= known or moved.length < trial):
             return False
         self._keep(course, moved, end)
         return True

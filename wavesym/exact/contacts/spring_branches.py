@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from flint import arb, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.branches import BranchEnd, Corner
-from wavesym.exact.contacts.crossing import certain_fall, sign_after
+from wavesym.exact.contacts.crossing import TINY, certain_fall, sign_after
 from wavesym.exact.contacts.joint_stretch import JointStretch, way
 from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.joints.enclosed import Enclosed
-from wavesym.numbers.doubles import middle
 
 
 @dataclass
@@ -65,13 +64,13 @@ class OneSided(_SpringCorner):
 
     @property
     def may_close(self) -> bool:
-        """The middle of its stretch is not within its gap."""
-        return self.spring.side * middle(self.stretch) >= self.spring.gap
+        """Its stretch is not certainly within its gap."""
+        return not self.spring.side * self.stretch < arb(self.spring.gap)
 
     def begins(self, moved: JointStretch) -> bool:
-        """Whether the middle of its guard is not negative just after the start."""
+        """Whether its guard does not become negative just after the start."""
         (guard,) = moved.strained[self.link].guards
-        return sign_after(middles(guard), fmpq(0)) >= 0
+        return leaning(guard, moved.length) >= 0
 
 
 @dataclass
@@ -91,23 +90,23 @@ class Yielding(_SpringCorner):
     @property
     def ways(self) -> tuple[int, ...]:
         """Those whose limit is reached."""
-        most, least = self.spring.most
-        stretch = middle(self.stretch)
-        return (1,) * (stretch >= most) + (-1,) * (stretch <= least)
+        most, least = map(arb, self.spring.most)
+        return (1,) * (not self.stretch < most) + (-1,) * (not self.stretch > least)
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether it is within its limits, or goes on the way that it yields, just after the start."""
         guards = moved.strained[self.link].guards
         if self.link not in moved.closed:
-            return sign_after(middles(guards[0]), fmpq(0)) > 0
-        return all(map(_holds, map(middles, guards)))
+            return leaning(guards[0], moved.length) > 0
+        return all(leaning(guard, moved.length) >= 0 or leaning(guard, moved.length, 1) > 0 for guard in guards)
 
 
-def _holds(guard: fmpq_poly) -> bool:
-    """Whether what is left of a limit is more than 0, or gets no less."""
-    return bool(guard[0] > 0) or sign_after(guard - guard[0], fmpq(0)) >= 0
-
-
-def middles(known: Enclosed) -> fmpq_poly:
-    """The polynomial that is the middle of what is known, or all of it."""
-    return known.exact if known.exact is not None else fmpq_poly([middle(c) for c in known.polynomial.coeffs()])
+def leaning(known: Enclosed, length: fmpq, first: int = 0) -> int:
+    """The sign just after the start: of the first power, from `first` on, that is more than rounding; else 0."""
+    if known.exact is not None:
+        return sign_after(fmpq_poly([fmpq(0)] * first + known.exact.coeffs()[first:]), fmpq(0))
+    allowed, h = TINY * known.error, arb(length)
+    for n, c in enumerate(known.polynomial.coeffs()[first:], first):
+        if abs(c) * h**n > allowed:
+            return 1 if c > 0 else -1
+    return 0

@@ -1,0 +1,205 @@
+"""Springs that act on one side, with gaps, and springs that yield: against closed forms and a solver of its own."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.support.sprung import LawSpring, Sprung
+from wavesym.errors import SceneError
+from wavesym.exact.contacts.events import events
+from wavesym.exact.contacts.springs import CornerSpring
+from wavesym.exact.reference import Reference
+from wavesym.mechanics.model import Model
+from wavesym.scene import Scene, lower
+
+
+def chain(
+    parts: list[Any], until: object, loads: tuple[dict[str, Any], ...] = (), at: tuple[str, ...] = ("a",)
+) -> Model:
+    output = {"until": until, "tolerance": 1e-9, "displacement": list(at), "velocity": list(at)}
+    return lower(Scene(name="springs", system={"type": "chain", "parts": parts}, load=list(loads), output=output))
+
+
+def happenings(model: Model) -> list[tuple[str, float]]:
+    return [(event.kind, event.double) for event in events(model)]
+
+
+def body(spring: dict[str, Any], until: object = 5, velocity: object = 1) -> Model:
+    return chain([{"mass": 1, "velocity": velocity, "name": "a"}, {"spring": 4, **spring}, "fixed"], until)
+
+
+def test_a_body_meets_a_spring_and_leaves_it() -> None:
+    """Half a period of 2 rad, which reverses it."""
+    model = body({"only": "push", "gap": "1/2"})
+    assert happenings(model) == [("engages", 0.5), ("lets go", pytest.approx(0.5 + math.pi / 2, rel=1e-16))]
+    (event, _) = events(model)
+    assert event.digits == "0.50000000000000000000"
+    assert event.subject == "spring at x = 0"
+    taus = np.array([0.25, 1.0, 2.0, 3.0])
+    v, x = Reference(model).values(taus.tolist())
+    inside = (taus > 0.5) & (taus < 0.5 + math.pi / 2)
+    w = taus - 0.5
+    left = 0.5 - (w - math.pi / 2)
+    assert x == pytest.approx(np.where(taus < 0.5, taus, np.where(inside, 0.5 + np.sin(2 * w) / 2, left)), rel=1e-15)
+    assert v == pytest.approx(np.where(taus < 0.5, 1, np.where(inside, np.cos(2 * w), -1)), rel=1e-15)
+
+
+def test_backlash_has_a_period() -> None:
+    """Twice half a period of the spring, and twice the way through the gap."""
+    found = happenings(body({"gap": ["-1/2", "1/4"]}, 8))
+    swing, way = math.pi / 2, 0.75
+    begin = [0.5 + k * (swing + way) for k in range(4)]
+    expected = [each for start in begin for each in (("engages", start), ("lets go", start + swing)) if each[1] < 8]
+    assert [kind for kind, _ in found] == [kind for kind, _ in expected]
+    assert [tau for _, tau in found] == pytest.approx([tau for _, tau in expected], rel=1e-15)
+
+
+def test_a_spring_yields_and_keeps_a_set() -> None:
+    """The limit 3/4 is met at asin(3/8)/2 with v = cos(2 t) and held until the body has come to rest."""
+    model = body({"yield": "3/4"}, 3)
+    begin = math.asin(3 / 8) / 2
+    speed = math.sqrt(1 - (3 / 8) ** 2)
+    found = happenings(model)[:2]
+    assert [kind for kind, _ in found] == ["yields", "holds"]
+    assert [tau for _, tau in found] == pytest.approx([begin, begin + speed / 0.75], rel=1e-15)
+    (v, *_), (x, *_) = Reference(model).values([begin + speed / 0.75])
+    assert abs(v) < 1e-15  # the instant is rounded
+    assert x == pytest.approx(3 / 16 + speed**2 / 1.5, rel=1e-15)
+
+
+def test_a_pile_is_driven_into_soil_that_yields() -> None:
+    """A rod without end of impedance 2, velocity 1, on a toe K = 4, R = 1: Z q + K z = Z v until z = R/K."""
+    parts = ["absorbing", {"rod": 10, "impedance": 2, "velocity": 1}, {"joint": True, "name": "a"}]
+    model = chain([*parts, {"spring": 4, "yield": 1}, "fixed"], 8)
+    (kind, tau), *rest = happenings(model)
+    assert (kind, rest) == ("yields", [])
+    assert tau == pytest.approx(math.log(2) / 2, rel=1e-15)
+    v, x = Reference(model).values([0.2, 4.0])
+    assert v == pytest.approx([math.exp(-0.4), 0.5], rel=1e-15)
+    assert x == pytest.approx([(1 - math.exp(-0.4)) / 2, 0.25 + (4 - math.log(2) / 2) / 2], rel=1e-15)
+
+
+@pytest.mark.parametrize("law", [{"gap": [0, 0]}, {"yield": 1000}, {"gap": [-1000, 1000]}])
+def test_where_no_corner_is_met_values_are_those_of_the_linear_scene(law: dict[str, Any]) -> None:
+    """To the last bit; with a gap of 0 on both sides a spring changes sides, and does the same."""
+    linear = {} if "gap" in law and law["gap"][0] == 0 else law
+    spring: dict[str, Any] = {"spring": 4} if linear in ({}, {"yield": 1000}) else {"dashpot": "1/3"}
+    parts = [{"mass": 1, "velocity": 1, "name": "a"}, {"rod": 1}, {"mass": 2, "name": "b"}]
+    ends: list[dict[str, Any]] = [{"spring": 4, **law}, spring]
+    if "dashpot" in spring:  # nothing touches the spring: it is as if it were not there
+        parts[2] = {"mass": 2, "name": "b", "dashpot": "1/3"}
+        with_law, without = chain([*parts, ends[0], "fixed"], 6, at=("a", "b")), chain(parts, 6, at=("a", "b"))
+    else:
+        with_law, without = (chain([*parts, end, "fixed"], 6, at=("a", "b")) for end in ends)
+    taus = [0.3, 1.0, 2.7, 3.1, 5.9]
+    assert Reference(with_law).values(taus) == Reference(without).values(taus)
+
+
+def mixed(draw: st.DrawFn) -> tuple[Model, Sprung, float]:
+    """Two masses and two springs in a row, each with a law, in a scene and in the solver."""
+    size = st.sampled_from(["1", "1/2", "2", "3/7", "1.001"])
+    until = draw(st.sampled_from(["4", "7/2"]))
+    laws, springs = [], []
+    for place, (left, right) in enumerate(((0, 1), (1, None))):
+        stiffness, limit = (Fraction(draw(st.sampled_from(["4", "9/2", "3"]))), Fraction(draw(size)))
+        kind = draw(st.sampled_from(["push", "pull", "both", "yield", "unequal", "linear"]))
+        k, r = mp.mpf(stiffness.numerator) / stiffness.denominator, mp.mpf(limit.numerator) / limit.denominator
+        name = str(place)
+        table: dict[str, Any] = {"spring": str(stiffness)}
+        if kind in ("push", "pull"):
+            table |= {"only": kind, "gap": str(limit / 4)}
+            springs.append(LawSpring(left, right, k, {"push": -1, "pull": 1}[kind], r / 4, name=name))
+        elif kind == "both":
+            table |= {"gap": [str(-limit / 4), str(limit / 8)]}
+            springs += [LawSpring(left, right, k, side, r / (8 if side > 0 else 4), name=name) for side in (-1, 1)]
+        elif kind in ("yield", "unequal"):
+            table |= {"yield": str(limit) if kind == "yield" else [str(limit / 3), str(limit)]}
+            springs.append(LawSpring(left, right, k, limits=(r if kind == "yield" else r / 3, r), name=name))
+        else:
+            springs.append(LawSpring(left, right, k, name=name))
+        laws.append(table)
+    masses, speeds = (
+        [draw(size) for _ in range(2)],
+        [draw(st.sampled_from(["1", "-1/2", "0", "3/2"])) for _ in range(2)],
+    )
+    damping = draw(st.sampled_from(["0", "1/5"]))
+    jump, when = draw(st.sampled_from(["1", "-2", "1/3"])), draw(st.sampled_from(["0", "1", "2.3"]))
+    nodes = [
+        {"mass": mass, "velocity": speed, "name": name} for mass, speed, name in zip(masses, speeds, "ab", strict=True)
+    ]
+    nodes[0]["dashpot"] = damping
+    load = {"at": "a", "times": [when], "steps": [jump]}
+    model = chain([nodes[0], laws[0], nodes[1], laws[1], "fixed"], until, (load,), ("a", "b"))
+
+    def number(text: str) -> mp.mpf:
+        value = Fraction(text)
+        return mp.mpf(value.numerator) / value.denominator
+
+    with mp.workdps(50):
+        solver = Sprung(
+            [number(mass) for mass in masses],
+            [number(damping), mp.mpf(0)],
+            springs,
+            [number(speed) for speed in speeds],
+            [(number(when), 0, number(jump))],
+        )
+    return model, solver, float(Fraction(until))
+
+
+@pytest.mark.slow
+@settings(max_examples=100)
+@given(st.data())
+def test_drawn_chains_are_those_of_a_solver_of_its_own(data: st.DataObject) -> None:
+    """Every event to 20 digits, every value to the last bit."""
+    with mp.workdps(50):
+        model, solver, until = data.draw(st.composite(mixed)())
+        taus = [mp.mpf(k) * until / 16 for k in (1, 3, 7, 11, 16)]
+        happened, values = solver.run(taus)
+    found = list(events(model))
+    # what begins on the edge of a branch, at tau = 0, is no event
+    expected = [each for each in happened if each[2] > mp.mpf(10) ** -15]
+    assert [event.kind for event in found] == [kind for kind, _, _ in expected]
+    with mp.workdps(40):
+        for event, (_, _, tau) in zip(found, expected, strict=True):
+            assert abs(mp.mpf(event.digits) - tau) <= mp.mpf(10) ** -19 * tau
+    computed = np.array(Reference(model).values([float(tau) for tau in taus]))
+    truth = np.array([[float(value) for value in row] for row in values]).T
+    assert np.all(np.abs(computed[[2, 3, 0, 1]] - truth) <= 2.0**-52 * np.maximum(np.abs(truth), 1e-3))
+
+
+def test_the_rest_of_a_spring_on_the_wrong_side_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(CornerSpring, "rest", property(lambda spring: -spring.side * spring.gap))
+    model = body({"only": "push", "gap": "1/3"})
+    assert happenings(model) != [("engages", 1 / 3), ("lets go", pytest.approx(1 / 3 + math.pi / 2, rel=1e-16))]
+
+
+@pytest.mark.parametrize(
+    ("spring", "line"),
+    [
+        ({"spring": 4, "only": "up"}, r'only: "up" is not a side; write "push" or "pull"'),
+        ({"dashpot": 4, "only": "push"}, r"only: a law of a spring, and there is none; write spring = K too"),
+        ({"spring": 4, "dashpot": 1, "yield": 2}, r"dashpot: not beside a spring with yield"),
+        ({"spring": 4, "gap": 1}, r"gap: of one side alone; write only"),
+        ({"spring": 4, "gap": [1, 0]}, r"gap: a list is not in order"),
+        ({"spring": 4, "yield": [1, -2]}, r"yield: a list has a negative number"),
+        ({"spring": 4, "yield": 1, "only": "pull"}, r"yield: not together with only"),
+        ({"spring": 4, "yield": [1, 2, 3]}, r"yield: a list are 3 numbers; write two"),
+    ],
+)
+def test_what_is_no_law_is_said_in_a_line(spring: dict[str, Any], line: str) -> None:
+    with pytest.raises(SceneError, match=line):
+        chain([{"mass": 1, "name": "a"}, spring, "fixed"], 3)
+
+
+def test_beside_a_contact_springs_with_a_law_are_refused() -> None:
+    parts = [{"rod": 1, "velocity": 1}, "contact", {"mass": 1, "name": "a"}, {"spring": 4, "yield": 1}, "fixed"]
+    with pytest.raises(SceneError, match="joined to a contact by what has no length; write a rod between them"):
+        chain(parts, 3)
