@@ -305,10 +305,10 @@ def test_the_error_keeps_its_parts_when_pickled() -> None:
 
 def test_a_large_wrong_scene_is_refused_quickly() -> None:
     system = {"type": "building", "m": 2, "kappa": [1, 1, 1], "base": "ground"}
-    began = time.perf_counter()
+    began = time.process_time()
     with pytest.raises(SceneError, match=r"^scene: load\[0\]\.samples\[0\]: "):
         Scene(name="s", system=system, load=[{"spacing": 1, "samples": ["x"] * 10**6}], output={"until": 1})
-    assert time.perf_counter() - began < 2
+    assert time.process_time() - began < 2
 
 
 LARGE = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from fractions import Fraction
-from time import perf_counter
+from time import process_time
 
 import pytest
 from hypothesis import given
@@ -175,10 +175,10 @@ def test_any_mixture_of_units_is_exact(number: Fraction, name: str, length: str,
 )
 def test_what_is_no_quantity(value: object, dimension: str, expected: str) -> None:
     si_value("1 m", "length")  # so that pint is there
-    start = perf_counter()
+    start = process_time()
     with pytest.raises(PydanticCustomError) as refused:
         si_value(value, dimension)
-    assert perf_counter() - start < 1
+    assert process_time() - start < 1
     line = str(refused.value)
     assert expected in line
     assert line.isascii()

@@ -42,7 +42,7 @@ def model_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
     yield dump("bars", "Bars: elastic rods, each between two points", network.bars, "rod", 1)
     yield dump(
         "links",
-        "Links: springs, dashpots, contacts, friction and laws with corners between two points",
+        "Links: springs, dashpots, contacts and friction between two points",
         network.links,
         "link",
     )

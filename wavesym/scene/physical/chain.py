@@ -124,6 +124,10 @@ def _part(value: object, kind: Kind) -> object:
     return keys.model_validate(value)
 
 
+_MEASURES = {"contact": "displacement", "friction": "force", "gap": "displacement", "yield": "force"}
+_WRITTEN = {"yields": "yield"}  # fields whose keys are words of Python
+
+
 @dataclass
 class _Pen:
     """Writes parts without units, one line after another, and keeps what loads and places need to know of them."""
@@ -146,6 +150,8 @@ class _Pen:
             "dashpot": first.stiffness * seconds,
             "contact": self.displacement,
             "friction": self.force,
+            "gap": self.displacement,
+            "yield": self.force,
         }
 
     def line(self, name: str, parts: list[_Read]) -> list[object]:
@@ -185,16 +191,20 @@ class _Pen:
 
     def _converted(self, part: SceneTable, *without: str) -> dict[str, object]:
         table: dict[str, object] = {}
-        for key, value in part:
+        for field, value in part:
+            key = _WRITTEN.get(field, field)
             if value is None or key in without:
                 continue
             if key not in self._units:
                 table[key] = value
                 continue
             least = None if key == "velocity" else 1 if key == "mass" else 0
+            dimension, unit = self.names[_MEASURES.get(key, key)], self._units[key]
             with key_context(key):
-                dimension = self.names[{"contact": "displacement", "friction": "force"}.get(key, key)]
-                table[key] = read_quantity(value, dimension, least) / self._units[key]
+                if key in ("gap", "yield") and isinstance(value, list):
+                    table[key] = [read_quantity(each, dimension) / unit for each in value]
+                else:
+                    table[key] = read_quantity(value, dimension, least) / unit
         return table
 
     def load_unit(self, load: Mapping[str, Any]) -> LoadUnit:

@@ -20,7 +20,17 @@ from wavesym.systems.elastic import ElasticRod
 from wavesym.systems.parts import PartName
 
 
-class RodKeys(SceneTable):
+class SpringKeys(SceneTable):
+    """A spring and a dashpot, and what the spring does beyond being linear."""
+
+    spring: Any = None
+    dashpot: Any = None
+    only: Any = Field(None, description='"push" or "pull"')
+    gap: Any = Field(None, description="how far it gets shorter or longer before it acts, or two such numbers")
+    yields: Any = Field(None, alias="yield", description="the largest pull and push, or two such numbers")
+
+
+class RodKeys(SpringKeys):
     """Keys of a rod of any kind. It may say its impedance and wave speed instead of what they follow from."""
 
     key: ClassVar[str] = "rod"
@@ -31,8 +41,6 @@ class RodKeys(SceneTable):
     speed: Any = None
     velocity: Any = None
     strain: Any = None
-    spring: Any = None
-    dashpot: Any = None
     loss: Any = None
     name: PartName | None = None
 
@@ -146,28 +154,24 @@ class TorsionalRod(RodKeys):
         return found["G"] * found["J"]
 
 
-class MassKeys(SceneTable):
+class MassKeys(SpringKeys):
     """A rigid mass, or a moment of inertia."""
 
     key: ClassVar[str] = "mass"
 
     mass: Any = Field(description="a mass")
     velocity: Any = None
-    dashpot: Any = None
-    spring: Any = None
     friction: Any = None
     name: PartName | None = None
 
 
-class JointKeys(SceneTable):
+class JointKeys(SpringKeys):
     """A joint without mass."""
 
     key: ClassVar[str] = "joint"
 
     joint: Any = Field(description="true")
     velocity: Any = None
-    dashpot: Any = None
-    spring: Any = None
     friction: Any = None
     name: PartName | None = None
 
@@ -190,13 +194,10 @@ class ContactKeys(SceneTable):
     contact: Any = Field(description="a gap")
 
 
-class LinkKeys(SceneTable):
+class LinkKeys(SpringKeys):
     """A spring and a dashpot between the parts on their two sides."""
 
     key: ClassVar[str] = "spring"
-
-    spring: Any = None
-    dashpot: Any = None
 
 
 RODS: Mapping[Kind, type[RodKeys]] = {
