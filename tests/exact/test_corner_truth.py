@@ -22,6 +22,9 @@ BITS = 300
 # beside linear springs, between rods, on a mass and without one; a chain that is its own mirror image
 KEPT = (82, 16, 29, 89, 118)
 
+# springs of one side, with gaps on both, that yield: beside rods, between masses, to the ground
+SPRUNG = (5, 8, 10, 19, 22, 25)
+
 # a pair of events is told where the instant at which another node sticks arrives, and what rubs stays as it is
 FAULTY = 72
 CLOSE = arb("1e-18")
@@ -62,6 +65,23 @@ def drawn(seed: int) -> dict[str, Any]:
 @pytest.mark.parametrize("seed", KEPT)
 def test_what_rubs_slips_and_sticks_as_it_should(seed: int) -> None:
     assert wrong(drawn(seed)) == []
+
+
+@pytest.mark.parametrize("seed", SPRUNG)
+def test_springs_with_laws_change_branches_as_they_should(seed: int) -> None:
+    assert wrong(seeded(seed)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", range(0, 50, 10))
+def test_drawn_springs_change_branches_as_they_should(start: int) -> None:
+    refused = 0
+    for seed in range(start, start + 10):
+        try:
+            assert wrong(seeded(seed)) == [], seed
+        except (WavesymError, Unclear):
+            refused += 1
+    assert refused <= 1
 
 
 @pytest.mark.slow
