@@ -139,11 +139,13 @@ def test_a_force_of_the_wrong_sign_is_seen(monkeypatch):
 
 
 def test_a_gap_of_the_wrong_sign_is_seen(monkeypatch):
-    from wavesym.exact.contacts import touching_joint
+    from wavesym.exact.contacts import steady_joint
 
-    rate = touching_joint._rate
+    rate = steady_joint.rate_terms
     monkeypatch.setattr(
-        touching_joint, "_rate", lambda touch, velocities: touching_joint.scale_terms(rate(touch, velocities), fmpq(-1))
+        steady_joint,
+        "rate_terms",
+        lambda touch, velocities: steady_joint.scale_terms(rate(touch, velocities), fmpq(-1)),
     )
     assert differs()
 

@@ -124,5 +124,5 @@ def test_what_several_records_share_stands_once() -> None:
     assert list(found) == ["T1.I.a", "T1.I.b", "T1.II.a", "T1.II.b"]
     assert found["T1.I.a"] == {"ranges": ["i = 1", "j = 2"], "slip": {"note": "Both.", "correction": "n"}}
     assert found["T1.II.b"] == tables["T1.{I,II}.{a,b}"]
-    with pytest.raises(ValueError, match=r"T1\.I\.a\.slip: note is given twice"):
+    with pytest.raises(ValueError, match=r"T1\.I\.a\.slip: note stands there twice"):
         merge_records({**tables, "T1.I.{a}": {"slip": {"note": "One."}}})

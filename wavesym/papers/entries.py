@@ -221,7 +221,7 @@ def merge_records(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str
     """What is known of each record, by id, in the order of the first keys.
 
     A key such as "T1.{I,III}.S" is of several records. Lists that several keys give one record are joined, and what a
-    slip has; ValueError where anything else is given twice.
+    slip has; ValueError where anything else stands there twice.
     """
     found: dict[str, dict[str, Any]] = {}
     for key, data in tables.items():
@@ -243,7 +243,7 @@ def _joined_values(name: str, known: Mapping[str, Any], more: Mapping[str, Any])
             case dict() as values, dict():
                 found[key] = _joined_values(f"{name}.{key}", values, value)
             case _:
-                raise ValueError(f"{name}: {key} is given twice")
+                raise ValueError(f"{name}: {key} stands there twice")
     return found
 
 
