@@ -189,9 +189,9 @@ def test_contacts_included() -> None:
 @pytest.mark.parametrize(
     "part",
     [
-        ('yield Weighted(_ONE, Gauge("load"', 'yield Weighted(-_ONE, Gauge("load"'),
-        ("yield Weighted(-body.damping,", "yield Weighted(body.damping,"),
-        ("yield Weighted(-body.stiffness,", "yield Weighted(body.stiffness,"),
+        ('yield ReadingTerm(_ONE, Gauge("load"', 'yield ReadingTerm(-_ONE, Gauge("load"'),
+        ("yield ReadingTerm(-body.damping,", "yield ReadingTerm(body.damping,"),
+        ("yield ReadingTerm(-body.stiffness,", "yield ReadingTerm(body.stiffness,"),
         ("(1, -1)[side]", "(1, 1)[side]"),
         ("[side] * bar.ratios[side] *", "[side] *"),
         ("(link.right, link.ratio) if", "(link.right, -link.ratio) if"),
