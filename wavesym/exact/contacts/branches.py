@@ -16,7 +16,7 @@ from typing import NamedTuple
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.contacts.joint_stretch import JointStretch, way
+from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
 from wavesym.exact.joints.enclosed import UNIT, Enclosed, add_terms
 from wavesym.numbers.doubles import middle
 
@@ -249,7 +249,7 @@ class Friction(Corner):
     def take(self, moved: JointStretch) -> bool:
         """Stick, or slide one way; whether it did not when that was last decided."""
         before = self._decided
-        self._decided = self.sign, self.closed = way(self.link, moved.sliding), self.link in moved.closed
+        self._decided = self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed
         return before != self._decided
 
     def _margins(self, moved: JointStretch) -> list[Enclosed]:
@@ -259,7 +259,7 @@ class Friction(Corner):
 
     def _forward(self, moved: JointStretch) -> Enclosed:
         """How fast it goes the way it slides."""
-        return add_terms([(fmpq(way(self.link, moved.sliding)), moved.rates[self.link])])
+        return add_terms([(fmpq(sliding_sign(self.link, moved.sliding)), moved.rates[self.link])])
 
 
 def _middles(known: Enclosed) -> fmpq_poly:

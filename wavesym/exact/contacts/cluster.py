@@ -41,13 +41,14 @@ class Cluster:
     """The points, their law with closed contacts, and for each of these the points and factors that make its force.
 
     A contact pushes with N = sum over these of factor (C q + K u - s): what is on one side of it, without mass, or what
-    sticks to the ground. `stuck` are the points with mass that do.
+    sticks to the ground. `stuck` are the points with mass that do, `springs` the links whose springs act in it.
     """
 
     points: tuple[int, ...]
     law: JointLaw
     pushes: Mapping[int, Sequence[tuple[int, fmpq]]]
     stuck: tuple[int, ...] = ()
+    springs: Closed = frozenset()
 
     @classmethod
     def from_law(cls, law: JointLaw, points: Sequence[int], touches: Mapping[int, Touch], closed: Closed) -> Cluster:

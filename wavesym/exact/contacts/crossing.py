@@ -13,8 +13,10 @@ from wavesym.numbers.doubles import middle
 _COARSE = 64  # bits that do, where the interval is no shorter than this part of the whole
 _CLOSE, _NEAR = fmpq(1, 2**24), fmpq(1, 2**6)
 _FINEST = fmpq(1, 2**60)  # parts of a stretch on which a function is looked at
-TINY = 2**16
+TINY = 8
 """Errors: what is no farther from 0 may be so by rounding."""
+_CLEAR = 2**10  # errors: what is farther from 0 stays so, though errors grow
+_CLOSEST = 64  # resolutions in which a function may rise
 _STEPS = 12  # of Newton's method: each doubles the bits
 
 
@@ -112,6 +114,22 @@ def certain_fall(known: Enclosed, low: fmpq, high: fmpq, resolution: fmpq) -> tu
     return None
 
 
+def certain_rise(known: Enclosed, high: fmpq, resolution: fmpq) -> fmpq | None:
+    """From where on, about, a function that is not certainly positive at 0 is; None where that is nowhere soon.
+
+    0 where it is at once, or nothing of it is unknown.
+    """
+    p, error = known.polynomial, known.error
+    if known.exact is not None or p(arb(0)) > error:
+        return fmpq(0)
+    at = _CLOSEST * resolution
+    while at < high:
+        if p(arb(at)) > _CLEAR * error:
+            return at
+        at *= 2
+    return None
+
+
 def _certain_until(p: arb_poly, allowed: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq:
     """The first place, about, at which what falls steadily from `low` to `high` is certainly below what is allowed."""
     step = resolution
@@ -134,7 +152,9 @@ def _least_on(p: arb_poly, a: fmpq, b: fmpq) -> arb:
     x = fmpq(0)
     for _ in range(_STEPS):
         x = min(max(x - middle(slope(arb(x)) / bent(arb(x))), fmpq(-1)), fmpq(1))
-    return arb((local(arb(x)) - 2 * abs(slope(arb(x)))).lower())
+    falls = slope(arb(x))
+    below = (falls * arb(x + 1)).upper().max((falls * arb(x - 1)).upper()).max(arb(0))  # of the tangent at either end
+    return arb((local(arb(x)) - below).lower())
 
 
 def _sign_on(p: arb_poly, error: arb, centre: fmpq, half: fmpq) -> tuple[bool, int]:

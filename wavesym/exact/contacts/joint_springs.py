@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.cluster import Closed, Sliding
-from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, way
-from wavesym.exact.contacts.springs import CornerSpring, SpringState, acting, at_end, idle, yielding
+from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding
+from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, sliding_sign
+from wavesym.exact.contacts.springs import CornerSpring, SpringState, acting_motion, idle_motion, yielding_motion
 from wavesym.exact.joints.enclosed import UNIT, Enclosed, Terms, add_terms, scale_terms
 from wavesym.exact.joints.joint import JointMotion
 from wavesym.mechanics.network import Network
@@ -23,23 +23,23 @@ class JointSprings:
 
     def __init__(self, network: Network, place: Mapping[int, int]) -> None:
         """Those between points that have a place in the joint."""
-        self.springs = {
+        self.of_link = {
             n: CornerSpring.of(link, place)
             for n, link in enumerate(network.links)
             if link.is_spring_with_corner and link.left in place
         }
-        self._state = {n: SpringState.from_exact(fmpq(0)) for n in self.springs}
+        self._state = {n: SpringState.from_exact(fmpq(0)) for n in self.of_link}
 
     def __bool__(self) -> bool:
-        return bool(self.springs)
+        return bool(self.of_link)
 
     def take(self, moved: JointStretch) -> None:
         """Go on to the end of a stretch."""
         self._state |= moved.springs
 
-    def acting(self, closed: Closed) -> Closed:
+    def among(self, closed: Closed) -> Closed:
         """Of what is closed, springs."""
-        return closed.intersection(self.springs)
+        return closed.intersection(self.of_link)
 
     def add_pulls(
         self,
@@ -53,8 +53,8 @@ class JointSprings:
 
         Their forces are `unknown` by so much.
         """
-        for n, spring in self.springs.items():
-            sign = way(n, sliding)
+        for n, spring in self.of_link.items():
+            sign = sliding_sign(n, sliding)
             if n in closed:
                 constant = spring.stiffness * (self._begin(n, points).shift_known - spring.rest)
             else:
@@ -65,25 +65,30 @@ class JointSprings:
 
     def strain(
         self,
-        among: Sequence[int],
+        cluster: Cluster,
         result: JointStretch,
         points: Mapping[int, PointState],
         displacements: Displacements | None,
     ) -> None:
-        """How the springs between some points get longer on a stretch, as the velocities of these are known."""
-        for n, spring in self._between(among):
-            if n in result.closed:
-                assert displacements is not None
-                state = self._begin(n, points)
-                moving = acting(spring, self._stretch(spring, state, among, displacements))
-                end = replace(at_end(moving, result.length), shift=state.shift)
-            else:
+        """How the springs that act in a cluster get longer on a stretch, as the displacements there are known."""
+        for n in cluster.springs:
+            assert displacements is not None
+            spring, state = self.of_link[n], self._begin(n, points)
+            moving = acting_motion(spring, self._stretch(spring, state, cluster.points, displacements))
+            result.strained[n] = moving
+            result.springs[n] = replace(moving.at_end(result.length), shift=state.shift)
+
+    def strain_others(self, result: JointStretch) -> None:
+        """How those that do not act get longer, as the velocities of all points are known."""
+        for n, spring in self.of_link.items():
+            if n not in result.closed:
                 left = scale_terms(result.velocities[spring.left], -spring.ratio)
                 rate = add_terms([*result.velocities[spring.right], *left])
-                sign, state = way(n, result.sliding), self._state[n]
-                moving = yielding(spring, state, sign, rate) if sign else idle(spring, state, rate, result.length)
-                end = at_end(moving, result.length)
-            result.strained[n], result.springs[n] = moving, end
+                sign, state = sliding_sign(n, result.sliding), self._state[n]
+                moving = idle_motion(spring, state, rate, result.length)
+                if sign:
+                    moving = yielding_motion(spring, state, sign, rate, result.length)
+                result.strained[n], result.springs[n] = moving, moving.at_end(result.length)
 
     @staticmethod
     def _stretch(
@@ -101,45 +106,42 @@ class JointSprings:
     def wrong_forces(self, moved: JointStretch) -> dict[int, arb]:
         """How wrong the force of each may be on a stretch, as the true motion may be on another branch."""
         found = {}
-        for n, spring in self.springs.items():
+        for n, spring in self.of_link.items():
             moving = moved.strained[n]
             excess = moving.excess(moved.length)
-            if way(n, moved.sliding):
+            if sliding_sign(n, moved.sliding):
                 excess = excess * arb(moved.length) + moving.stretch.error
             found[n] = (arb(spring.stiffness) * excess).upper()
         return found
 
-    def flows(self, moved: JointStretch, unknown: Mapping[int, arb]) -> list[tuple[CornerSpring, arb]]:
-        """What may have yielded, or come back, by forces that are unknown: energy of springs that hold.
+    def flows(self, moved: JointStretch, unknown: Mapping[int, arb]) -> list[tuple[int, arb]]:
+        """What may have yielded, or come back, by forces that are unknown: of springs that hold, as energy.
 
         What does not hold is known so much less at the end of the stretch.
         """
         lost = []
         for n, force in unknown.items():
-            spring, state = self.springs[n], moved.springs[n]
+            spring, state = self.of_link[n], moved.springs[n]
             if spring.side != 0 or force == 0:
                 continue
             flow = (force / arb(spring.stiffness)).upper()
-            if state.shift is None:
+            if state.shift is not None:
+                lost.append((n, arb(spring.stiffness) * flow**2 / 2))
+            elif state.exact is None:
                 moved.springs[n] = SpringState(state.stretch + arb(0, flow), None)
-            else:
-                lost.append((spring, arb(spring.stiffness) * flow**2 / 2))
         return lost
 
-    def are_exact(self, among: Collection[int]) -> bool:
-        """Whether it is known exactly how long springs between some points are."""
-        return all(self._state[n].exact is not None for n, _ in self._between(among))
+    def are_exact(self, cluster: Cluster) -> bool:
+        """Whether it is known exactly how long the springs are that act in a cluster."""
+        return all(self._state[n].exact is not None for n in cluster.springs)
 
-    def energy(self, among: Collection[int]) -> arb:
-        """What is not known, as energy, of springs between some points that begin to act; at most."""
+    def energy(self, cluster: Cluster) -> arb:
+        """What is not known, as energy, of springs that begin to act in a cluster; at most."""
         root = arb(0)
-        for n, spring in self._between(among):
+        for n in cluster.springs:
             if self._state[n].shift is None:
-                root += (arb(spring.stiffness) / 2).sqrt() * self._state[n].unknown
+                root += (arb(self.of_link[n].stiffness) / 2).sqrt() * self._state[n].unknown
         return (root**2).upper()
 
     def _begin(self, n: int, points: Mapping[int, PointState]) -> SpringState:
-        return self._state[n].begin(self.springs[n], points)
-
-    def _between(self, among: Collection[int]) -> list[tuple[int, CornerSpring]]:
-        return [(n, spring) for n, spring in self.springs.items() if spring.left in among]
+        return self._state[n].begin(self.of_link[n], points)

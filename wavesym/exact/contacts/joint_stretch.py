@@ -76,6 +76,6 @@ class SwingError(Exception):
         self.longest = longest
 
 
-def way(link: int, sliding: Sliding) -> int:
+def sliding_sign(link: int, sliding: Sliding) -> int:
     """Which way a link slides, or yields; 0 where it does not."""
     return next((sign for n, sign in sliding if n == link), 0)

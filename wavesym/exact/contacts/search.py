@@ -91,7 +91,7 @@ class Search:
         network, joint = self._network, self._network.joints[number]
         far = [network.bars[end.bar].delay for end, _ in joint.ends]
         moving = self.waves.joints[number]
-        contacts = tuple(self._corner(number, n) for n in (*moving.touches, *moving.springs.springs))
+        contacts = tuple(self._corner(number, n) for n in (*moving.touches, *moving.springs.of_link))
         shortest = min(far, default=last + 1)
         course = Course(number, last, last + self._beyond, shortest, contacts, fmpq(0), fmpq(0))
         sources = {unit.source for point in joint.points for unit in network.points[point].loads}
@@ -103,7 +103,7 @@ class Search:
     def _corner(self, number: int, n: int) -> Corner:
         link, points = self._network.links[n], self._network.points
         if link.is_spring_with_corner:
-            spring = self.waves.joints[number].springs.springs[n]
+            spring = self.waves.joints[number].springs.of_link[n]
             return OneSided.begin(n, spring) if link.side else Yielding.begin(n, spring)
         if link.friction == 0:
             return Contact.begin(n, link.gap)
@@ -206,14 +206,25 @@ class Search:
 
     def _decide(self, course: Course, start: fmpq, limit: fmpq) -> tuple[JointStretch, BranchEnd | None] | None:
         """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
-        shut = [contact.link for contact in course.contacts if contact.may_close]
-        for closed in sorted(subsets(shut), key=len, reverse=True):
-            for sliding in _ways(contact for contact in course.contacts if contact.link not in closed):
-                moved = self._move(course, start, limit - start, closed, sliding, trial=True)
-                if all(contact.begins(moved) for contact in course.contacts):
-                    moved, end = self._cut(course, start, moved, fmpq(0))
-                    return (moved, end) if end is None or end.length > 0 else None
+        for closed, sliding in self._choices(course):
+            moved = self._move(course, start, limit - start, closed, sliding, trial=True)
+            if all(contact.begins(moved) for contact in course.contacts):
+                moved, end = self._cut(course, start, moved, fmpq(0))
+                return (moved, end) if end is None or end.length > 0 else None
         return None
+
+    @staticmethod
+    def _choices(course: Course) -> list[tuple[Closed, Sliding]]:
+        """What may be closed, and slide: as it is first, then as much as may be closed."""
+        shut = [contact.link for contact in course.contacts if contact.may_close]
+        found = [
+            (closed, sliding)
+            for closed in sorted(subsets(shut), key=len, reverse=True)
+            for sliding in _ways(contact for contact in course.contacts if contact.link not in closed)
+        ]
+        closed = frozenset(contact.link for contact in course.contacts if contact.closed)
+        sliding = frozenset((contact.link, contact.sign) for contact in course.contacts if contact.sign)
+        return sorted(found, key=lambda choice: choice != (closed, sliding))
 
     def _add_stage(self, course: Course, stage: Stage, moved: JointStretch) -> None:
         course.stages.append(stage)

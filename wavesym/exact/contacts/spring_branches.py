@@ -11,10 +11,14 @@ from dataclasses import dataclass
 from flint import arb, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.branches import BranchEnd, Corner
-from wavesym.exact.contacts.crossing import TINY, certain_fall, sign_after
-from wavesym.exact.contacts.joint_stretch import JointStretch, way
+from wavesym.exact.contacts.crossing import TINY, certain_fall, certain_rise, sign_after
+from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
 from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.joints.enclosed import Enclosed
+
+_CLOSE = 64  # resolutions: a stretch is not shortened to less
+_NEAR = arb(2) ** -64
+_FINER = 2**112  # than what contacts are known by
 
 
 @dataclass
@@ -33,10 +37,24 @@ class _SpringCorner(Corner):
         return False
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
-        """Where a guard is certainly negative, and since when it may have been."""
+        """Where a guard is certainly negative, or the stretch from or to where it may be so.
+
+        What is not known of a force counts on all of a stretch: so those on which something is are short.
+        """
+        resolution = resolution / _FINER
         falls = [certain_fall(each, low, moved.length, resolution) for each in moved.strained[self.link].guards]
         first = min((fall for fall in falls if fall is not None), key=lambda fall: fall[1], default=None)
-        return None if first is None else BranchEnd(first[1], None, first[1] - first[0])
+        clears = moved.strained[self.link].clears if low == 0 else ()
+        rises = [certain_rise(each, moved.length, resolution) for each in clears]
+        clear = max((rise for rise in rises if rise is not None), default=fmpq(0))
+        if 0 < clear < (moved.length if first is None else first[0]):
+            return BranchEnd(clear, None)
+        if first is None:
+            return None
+        since, certain = first
+        if since > low + _CLOSE * resolution and since < certain:
+            return BranchEnd(since, None)
+        return BranchEnd(certain, None, certain - since)
 
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Its branch is always taken."""
@@ -49,7 +67,7 @@ class _SpringCorner(Corner):
     def take(self, moved: JointStretch) -> bool:
         """Be on the branch that a stretch begins with; whether that is another one."""
         before = self.sign, self.closed
-        self.sign, self.closed = way(self.link, moved.sliding), self.link in moved.closed
+        self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed
         return before != (self.sign, self.closed)
 
 
@@ -64,13 +82,13 @@ class OneSided(_SpringCorner):
 
     @property
     def may_close(self) -> bool:
-        """Its stretch is not certainly within its gap."""
-        return not self.spring.side * self.stretch < arb(self.spring.gap)
+        """Its stretch is not well within its gap."""
+        return not _well_below(self.spring.side * self.stretch, arb(self.spring.gap))
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether its guard does not become negative just after the start."""
         (guard,) = moved.strained[self.link].guards
-        return leaning(guard, moved.length) >= 0
+        return _begins(guard, moved.length)
 
 
 @dataclass
@@ -89,16 +107,26 @@ class Yielding(_SpringCorner):
 
     @property
     def ways(self) -> tuple[int, ...]:
-        """Those whose limit is reached."""
+        """Those whose limit may be reached."""
         most, least = map(arb, self.spring.most)
-        return (1,) * (not self.stretch < most) + (-1,) * (not self.stretch > least)
+        return (1,) * (not _well_below(self.stretch, most)) + (-1,) * (not _well_below(-self.stretch, -least))
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether it is within its limits, or goes on the way that it yields, just after the start."""
         guards = moved.strained[self.link].guards
         if self.link not in moved.closed:
             return leaning(guards[0], moved.length) > 0
-        return all(leaning(guard, moved.length) >= 0 or leaning(guard, moved.length, 1) > 0 for guard in guards)
+        return all(_begins(guard, moved.length) or leaning(guard, moved.length, 1) > 0 for guard in guards)
+
+
+def _begins(guard: Enclosed, length: fmpq) -> bool:
+    """Whether a guard is more than 0 at the start, if only its middle, or does not become negative just after it."""
+    return bool(guard.polynomial[0].mid() > 0) or leaning(guard, length) >= 0
+
+
+def _well_below(value: arb, limit: arb) -> bool:
+    """By more than rounding makes of either, on any stretch that is tried: what is nearer is looked at closely."""
+    return bool(value + (abs(value) + abs(limit)) * _NEAR < limit)
 
 
 def leaning(known: Enclosed, length: fmpq, first: int = 0) -> int:

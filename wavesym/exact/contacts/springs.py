@@ -124,10 +124,28 @@ class SpringState:
 
 @dataclass(frozen=True)
 class SpringMotion:
-    """A spring on a stretch of time: its `stretch`, and the guards of its branch, which should not be negative."""
+    """A spring on a stretch of time: its `stretch`, and the guards of its branch, which should not be negative.
+
+    Of what yields, where its limit is not reached for certain at the start, `reach` is positive as soon as it is.
+    """
 
     stretch: Enclosed
     guards: tuple[Enclosed, ...]
+    limit: fmpq | None = None
+    reach: Enclosed | None = None
+
+    @property
+    def clears(self) -> tuple[Enclosed, ...]:
+        """What is soon positive for certain, where it is not at the start."""
+        return self.guards if self.reach is None else (*self.guards, self.reach)
+
+    def at_end(self, length: fmpq) -> SpringState:
+        """Its state at the end of a stretch, as if it did not act any more."""
+        if self.stretch.exact is not None:
+            return SpringState.from_exact(self.stretch.exact(length))
+        if self.limit is not None and self.reach is not None and self.reach.at(length) > 0 and self.excess(length) == 0:
+            return SpringState.from_exact(self.limit)
+        return SpringState(self.stretch.at(length), None)
 
     def excess(self, length: fmpq) -> arb:
         """How far a guard may be below 0."""
@@ -137,7 +155,7 @@ class SpringMotion:
         return most
 
 
-def acting(spring: CornerSpring, stretch: Enclosed) -> SpringMotion:
+def acting_motion(spring: CornerSpring, stretch: Enclosed) -> SpringMotion:
     """A spring that acts, or holds."""
     if spring.side != 0:
         return SpringMotion(stretch, (add_terms([(fmpq(spring.side), stretch), (-spring.gap, UNIT)]),))
@@ -146,7 +164,7 @@ def acting(spring: CornerSpring, stretch: Enclosed) -> SpringMotion:
     return SpringMotion(stretch, guards)
 
 
-def idle(spring: CornerSpring, state: SpringState, rate: Enclosed, length: fmpq) -> SpringMotion:
+def idle_motion(spring: CornerSpring, state: SpringState, rate: Enclosed, length: fmpq) -> SpringMotion:
     """A spring on one side that does not act, and gets longer at a `rate`."""
     if state.exact is not None and rate.exact is not None:
         stretch = Enclosed.of(rate.exact.integral() + state.exact)
@@ -156,18 +174,14 @@ def idle(spring: CornerSpring, state: SpringState, rate: Enclosed, length: fmpq)
     return SpringMotion(stretch, (add_terms([(spring.gap, UNIT), (fmpq(-spring.side), stretch)]),))
 
 
-def yielding(spring: CornerSpring, state: SpringState, sign: int, rate: Enclosed) -> SpringMotion:
+def yielding_motion(spring: CornerSpring, state: SpringState, sign: int, rate: Enclosed, length: fmpq) -> SpringMotion:
     """A spring that yields one way, and gets longer at a `rate`."""
     limit = spring.most[0 if sign > 0 else 1]
     off = abs(state.stretch - arb(limit)).upper() if state.exact != limit else arb(0)
     stretch = Enclosed(arb_poly([arb(limit).mid()]), (off + abs(arb(limit) - arb(limit).mid())).upper())
+    forward = add_terms([(fmpq(sign), rate)])
     if off == 0:
-        stretch = Enclosed.of(fmpq_poly([limit]))
-    return SpringMotion(stretch, (add_terms([(fmpq(sign), rate)]),))
-
-
-def at_end(motion: SpringMotion, length: fmpq) -> SpringState:
-    """Its state at the end of a stretch, as if it did not act any more."""
-    if motion.stretch.exact is not None:
-        return SpringState.from_exact(motion.stretch.exact(length))
-    return SpringState(motion.stretch.at(length), None)
+        return SpringMotion(Enclosed.of(fmpq_poly([limit])), (forward,))
+    error = (forward.error * arb(length)).upper()
+    reach = Enclosed(forward.polynomial.integral() - off, error)
+    return SpringMotion(stretch, (forward,), limit, reach)

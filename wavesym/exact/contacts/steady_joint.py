@@ -17,7 +17,7 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, connected_sets
 from wavesym.exact.contacts.joint_springs import JointSprings
-from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError
+from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
 from wavesym.exact.joints.enclosed import STILL, UNIT, Enclosed, Onset, Terms, add_terms, collect, scale_terms
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
 from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
@@ -44,7 +44,6 @@ class SteadyJoint(ABC):
             if link.has_corner and not link.is_spring_with_corner and link.left in place
         }
         self.springs = JointSprings(network, place)
-        self._connected = connected_sets(self.law, self.touches, frozenset())
         self._law_of: Callable[[Closed], JointLaw] = cache(lambda springs: JointLaw.of(network, joint, springs))
         self._clusters: dict[tuple[Closed, Closed], list[Cluster]] = {}
         self._loads = [LoadPolynomial(network, point, loads) for point in joint.points]
@@ -56,10 +55,9 @@ class SteadyJoint(ABC):
         }
         self._energy = arb(0)  # the largest that a set had
         self.has_relaxed = False
-        # sets of points that have energy: mass or springs
-        self._sets = [
-            points for points in self._connected if any(self.law.mass[k] != 0 or self._elastic(k) for k in points)
-        ]
+        # sets of points that have energy, mass or springs, while no contact is closed and no spring with a corner acts
+        apart = connected_sets(self._law_of(frozenset()), self.touches, frozenset())
+        self._sets = [points for points in apart if any(self.law.mass[k] != 0 or self._elastic(k) for k in points)]
 
     def take(self, moved: JointStretch) -> None:
         """Go on to the end of a stretch."""
@@ -113,13 +111,15 @@ class SteadyJoint(ABC):
         forces = self._add_friction(forces_on(self._ends, arriving, acting), sliding)
         self.springs.add_pulls(forces, closed, sliding, self._state, unknown)
         result = JointStretch(length, closed, vague, sliding, {})
-        for cluster in self._split(closed, vague):
+        clusters = self._split(closed, vague)
+        for cluster in clusters:
             if any(self.touches[n].left in cluster.points for n in vague):
                 self._drift(cluster, result, arriving, forces, acting)
             else:
                 self._move_cluster(cluster, result, forces, acting, relaxing)
-        for spring, energy in self.springs.flows(result, unknown):
-            for k in next(points for points in self._connected if spring.left in points):
+        self.springs.strain_others(result)
+        for n, energy in self.springs.flows(result, unknown):
+            for k in next(cluster.points for cluster in clusters if n in cluster.springs):
                 result.state[k] = result.state.get(k, self._state[k]).lose(energy)
         for n, touch in self.touches.items():
             if self._state[touch.left].exact is not None and self._state[touch.right].exact is not None:
@@ -136,10 +136,10 @@ class SteadyJoint(ABC):
     def _add_friction(self, forces: Sequence[Terms], sliding: Sliding) -> list[Terms]:
         """With what is taken against sliding."""
         result = list(forces)
-        for n, sign in sorted(sliding):
-            if n in self.springs.springs:
+        for n, touch in self.touches.items():
+            sign = sliding_sign(n, sliding)
+            if sign == 0:
                 continue
-            touch = self.touches[n]
             against = -sign * touch.friction
             result[touch.right] = [*result[touch.right], (against, UNIT)]
             result[touch.left] = [*result[touch.left], (-against * touch.ratio, UNIT)]
@@ -156,12 +156,14 @@ class SteadyJoint(ABC):
 
     def _split(self, closed: Closed, vague: Closed) -> list[Cluster]:
         if (closed, vague) not in self._clusters:
-            springs = self.springs.acting(closed)
-            touching = closed - springs
-            law = self._law_of(springs) if self.springs else self.law
+            springs = self.springs.among(closed)
+            law, touching = self._law_of(springs), closed - springs
             self._clusters[closed, vague] = [
-                Cluster.from_law(law, points, self.touches, touching)
-                for points in connected_sets(self.law, self.touches, touching | vague)
+                replace(
+                    Cluster.from_law(law, points, self.touches, touching),
+                    springs=frozenset(n for n in springs if self.springs.of_link[n].left in points),
+                )
+                for points in connected_sets(law, self.touches, touching | vague)
             ]
         return self._clusters[closed, vague]
 
@@ -231,7 +233,7 @@ class SteadyJoint(ABC):
             result.pushes[n] = add_terms(pull)
             if motion is not None:
                 result.pushes[n] = self._add_springs(cluster, push, motion, result.pushes[n])
-        self.springs.strain(points, result, self._state, places if motion is None else motion)
+        self.springs.strain(cluster, result, self._state, places if motion is None else motion)
         self._lose_excess(cluster, result)
 
     def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
@@ -284,7 +286,7 @@ class SteadyJoint(ABC):
     def _exact_state(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
         """The state of a cluster, where it is known exactly."""
         known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
-        return known if len(known) == len(cluster.points) and self.springs.are_exact(cluster.points) else None
+        return known if len(known) == len(cluster.points) and self.springs.are_exact(cluster) else None
 
     def _move_exactly(
         self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
@@ -365,7 +367,7 @@ class SteadyJoint(ABC):
         displacement = [each.displacement for each in state]
         motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], unknown, decays=True)
         motion.round(velocity, displacement)
-        motion.lose(self.springs.energy(points))
+        motion.lose(self.springs.energy(cluster))
         for k in cluster.stuck:
             motion.lose(self._energy_of(k))
         return motion
