@@ -32,6 +32,13 @@ class BranchEnd(NamedTuple):
     late: fmpq = fmpq(0)
 
 
+class Branch(NamedTuple):
+    """What a link does: it is closed (touches, sticks, acts or holds), or not; then it may slide or yield one way."""
+
+    closed: bool
+    sign: int = 0
+
+
 class Corner(ABC):
     """A link whose law has a corner, as time goes on; which way it slides, where it rubs and is certain to (`sign`)."""
 
@@ -70,9 +77,14 @@ class Corner(ABC):
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Go to the end of a stretch on which its branch was right, or of a short one on which it was left open."""
 
+    @property
     @abstractmethod
-    def take(self, moved: JointStretch) -> bool:
-        """Be on the branch that a stretch begins with; whether that is another one."""
+    def branch(self) -> Branch:
+        """That which was decided last."""
+
+    @abstractmethod
+    def take(self, moved: JointStretch) -> None:
+        """Be on the branch that a stretch begins with."""
 
 
 @dataclass
@@ -100,10 +112,14 @@ class Contact(Corner):
         """It is not known whether it has a gap."""
         return not self.may_close and not self.wide
 
-    def take(self, moved: JointStretch) -> bool:
-        """Be closed or open; whether it was not."""
-        before, self.closed = self.closed, self.link in moved.closed
-        return before != self.closed
+    @property
+    def branch(self) -> Branch:
+        """Closed or open."""
+        return Branch(self.closed)
+
+    def take(self, moved: JointStretch) -> None:
+        """Be closed or open."""
+        self.closed = self.link in moved.closed
 
     @property
     def wide(self) -> bool:
@@ -180,13 +196,13 @@ class Friction(Corner):
     rate: arb
     sign: int
     closed: bool
-    _decided: tuple[int, bool] = (0, False)
+    _decided: Branch
 
     @classmethod
     def begin(cls, link: int, limit: fmpq, inert: bool, rate: fmpq) -> Friction:
         """At the start: what is at rest sticks."""
         sign = int(rate > 0) - int(rate < 0)
-        return cls(link, limit, inert, arb(rate), sign, rate == 0, (sign, rate == 0))
+        return cls(link, limit, inert, arb(rate), sign, rate == 0, Branch(rate == 0, sign))
 
     @property
     def may_close(self) -> bool:
@@ -246,11 +262,15 @@ class Friction(Corner):
         if self.link in moved.vague:
             self.sign, self.closed = 0, False
 
-    def take(self, moved: JointStretch) -> bool:
-        """Stick, or slide one way; whether it did not when that was last decided."""
-        before = self._decided
-        self._decided = self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed
-        return before != self._decided
+    @property
+    def branch(self) -> Branch:
+        """It sticks, or slides one way, or that was left open."""
+        return self._decided
+
+    def take(self, moved: JointStretch) -> None:
+        """Stick, or slide one way."""
+        self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed
+        self._decided = Branch(self.closed, self.sign)
 
     def _margins(self, moved: JointStretch) -> list[Enclosed]:
         """What is left of the limit either way."""

@@ -10,7 +10,7 @@ from typing import TypeVar
 from flint import ctx, fmpq
 
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.search import Change, Search, UndecidedError
+from wavesym.exact.contacts.search import Change, Search, UndecidedError, lasting
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replayed
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
@@ -19,6 +19,9 @@ from wavesym.numbers.doubles import nearest
 # what is tried: bits, and whether what decays fast is left out where it is lost among rounding errors (if it was not,
 # the second is the first)
 _ATTEMPTS = ((448, True), (448, False), (896, False))
+
+# what is taken back so soon, in longest stretches on which it is left open what a contact does, is no event
+_MOMENT = 64
 
 T = TypeVar("T")
 
@@ -111,7 +114,7 @@ def _whole(search: Search) -> Schedule:
     return Schedule(
         {number: course.stages for number, course in search.courses.items()},
         {number: course.reached for number, course in search.courses.items()},
-        tuple(sorted(search.changes, key=lambda each: (each.low, each.link))),
+        tuple(lasting(search.changes, _MOMENT * search.width)),
         search.width,
         search.waves,
         ctx.prec,

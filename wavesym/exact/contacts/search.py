@@ -14,7 +14,7 @@ from itertools import product
 
 from flint import arb, ctx, fmpq
 
-from wavesym.exact.contacts.branches import BranchEnd, Contact, Corner, Friction
+from wavesym.exact.contacts.branches import Branch, BranchEnd, Contact, Corner, Friction
 from wavesym.exact.contacts.cluster import Closed, Sliding, subsets
 from wavesym.exact.contacts.cost import Cost
 from wavesym.exact.contacts.course import Course, Doubt
@@ -36,12 +36,18 @@ _SPARE = 128
 
 @dataclass(frozen=True)
 class Change:
-    """A contact (the number of its link) goes to its other branch between two instants, or at one."""
+    """A corner (the number of its link) goes from one branch to another one between two instants, or at one."""
 
     link: int
-    closes: bool
+    before: Branch
+    after: Branch
     low: fmpq
     high: fmpq
+
+    @property
+    def closes(self) -> bool:
+        """Whether it is closed then: touches, sticks, acts, holds."""
+        return self.after.closed
 
     @property
     def instant(self) -> arb:
@@ -196,10 +202,12 @@ class Search:
             return
         moved, end = begun
         for contact in course.contacts:
-            if contact.take(moved):
+            before = contact.branch
+            contact.take(moved)
+            if contact.branch != before:
                 doubt = course.doubt
                 low = doubt.low if doubt is not None and doubt.high == start else start - course.late
-                self.changes.append(Change(contact.link, contact.closed, low, start))
+                self.changes.append(Change(contact.link, before, contact.branch, low, start))
         course.since, course.late = start, fmpq(0)
         self._add_stage(course, Stage(start, moved.closed, frozenset(), moved.sliding), moved)
         self._keep(course, moved, end)
@@ -299,6 +307,19 @@ class Search:
             if not wrong:
                 return moved
             vague |= wrong
+
+
+def lasting(changes: Iterable[Change], width: fmpq) -> list[Change]:
+    """As one each what a link does within so long, where its branch was left open; nothing where that is taken back."""
+    kept: dict[int, list[Change]] = {}
+    for change in changes:
+        of_link = kept.setdefault(change.link, [])
+        if of_link and change.high - of_link[-1].low <= width:
+            last = of_link.pop()
+            change = Change(last.link, last.before, change.after, last.low, change.high)
+        if change.before != change.after:
+            of_link.append(change)
+    return sorted((each for of_link in kept.values() for each in of_link), key=lambda each: (each.low, each.link))
 
 
 def _ways(contacts: Iterable[Corner]) -> Iterator[Sliding]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.branches import BranchEnd, Corner
+from wavesym.exact.contacts.branches import Branch, BranchEnd, Corner
 from wavesym.exact.contacts.crossing import TINY, certain_fall, certain_rise, sign_after
 from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
 from wavesym.exact.contacts.springs import CornerSpring
@@ -64,11 +64,14 @@ class _SpringCorner(Corner):
         """Know its stretch at the end of one of time."""
         self.stretch = moved.strained[self.link].stretch.at(length)
 
-    def take(self, moved: JointStretch) -> bool:
-        """Be on the branch that a stretch begins with; whether that is another one."""
-        before = self.sign, self.closed
+    @property
+    def branch(self) -> Branch:
+        """It acts, or holds; or yields one way."""
+        return Branch(self.closed, self.sign)
+
+    def take(self, moved: JointStretch) -> None:
+        """Be on the branch that a stretch begins with."""
         self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed
-        return before != (self.sign, self.closed)
 
 
 @dataclass
