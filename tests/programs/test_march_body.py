@@ -18,7 +18,8 @@ from wavesym.programs.march.plan import march_plan
 from wavesym.programs.march.responses import BodyOperator, _norm, block_response, body_operator, body_roundings
 from wavesym.programs.march.space import BODY
 from wavesym.programs.march.tables import MarchTables
-from wavesym.programs.schemes.march import Bodies, Marching, RunningLoads
+from wavesym.programs.schemes.march_joints import Bodies
+from wavesym.programs.schemes.march_windows import Marching, RunningLoads
 from wavesym.scene import Scene, lower
 
 STEPS = pytest.mark.parametrize(
@@ -117,24 +118,23 @@ def in_c(of, count):
 def in_numpy(of, count):
     """The scheme, with numbers that count in place of its own; q is what it sends into a port where nothing arrives."""
     degree = len(of.ratio) - 1
-    scheme = SimpleNamespace(real=object, held=np.zeros(3), steps=np.ones(3, int), degree=degree, panels=1)
-    tables = {
-        "first_point": (0, 1),
-        "first_state": (0, 1),
-        "first_port": (0, 2),
-        "arrive": (0, 1),
-        "send": (0, 1),
-        "push": (1, 0),
-        "ratio": (1, 1),
-        "point_of": (0, 0),
-        "drive": (0,),
-        "matrix": Rounded.table(of.rows),
-    }
-    group = Bodies(scheme, tables, np.array([0]), np.zeros((1, 1), int))
+    numbers = {"push": (1, 0), "ratio": (1, 1), "drive": (0,), "matrix": Rounded.table(of.rows)}
+    scheme = SimpleNamespace(
+        real=object,
+        held=np.zeros(3),
+        steps=np.ones(3, int),
+        degree=degree,
+        panels=1,
+        firsts={"point": np.array([0, 1]), "state": np.array([0, 1]), "port": np.array([0, 2])},
+        ports={"arrive": (0, 1), "send": (0, 1), "point_of": (0, 0)},
+        joint_numbers={name: np.array(values, object) for name, values in numbers.items()},
+        answers=np.zeros((1, 1), int),
+    )
+    group = Bodies(scheme, np.array([0]))
     p, velocity = inputs(degree, count)
     x = Rounded.array([velocity])
     arriving = np.stack([p, np.zeros(degree + 1, object)])[None, None]
-    sent = group.sent(arriving, np.zeros((1, 1, 1, 3), object), x, np.zeros((1, 1), object))
+    sent = group.step(arriving, np.zeros((1, 1, 1, 3), object), x, np.zeros((1, 1), object))
     return sent[0, 0, 1], x[0]
 
 

@@ -1,6 +1,7 @@
 """A language is a module with a TARGET: files.py asks for no more than that, and other rooms ask files.py."""
 
 import ast
+import inspect
 import re
 import sys
 from pathlib import Path
@@ -60,6 +61,8 @@ def test_generated_python_imports_nothing_but_numpy(evaluator, precision):
 
 @pytest.mark.parametrize("kind", SCHEMES)
 def test_nor_does_the_arithmetic_that_is_written_into_it(kind):
-    scheme = (ROOT / "wavesym" / "programs" / "schemes" / f"{kind}.py").read_text(encoding="utf-8")
-    parts = {f"wavesym.programs.schemes.{other}" for other in SCHEMES if SCHEMES[other] in PARTS.get(kind, ())}
-    assert set(imports(scheme)) - parts - {"collections.abc"} == {"numpy", "numpy.typing"}
+    """But for other files of it, and names of types, which are above what is written."""
+    for part in PARTS.get(kind, (SCHEMES[kind],)):
+        scheme = Path(inspect.getfile(part)).read_text(encoding="utf-8")
+        others = {other.__module__ for other in PARTS.get(kind, ())}
+        assert set(imports(scheme)) - others - {"__future__", "collections.abc", "typing"} == {"numpy", "numpy.typing"}

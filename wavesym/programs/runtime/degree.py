@@ -22,7 +22,9 @@ from wavesym.programs.march.plan import MarchedJoint, MarchPlan, march_plan
 from wavesym.programs.march.space import BLOCK, BODY
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.runtime.plan import RuntimePlan
-from wavesym.programs.schemes.march import Bodies, Marching, MarchScheme
+from wavesym.programs.schemes.march import MarchScheme
+from wavesym.programs.schemes.march_joints import Bodies
+from wavesym.programs.schemes.march_windows import Marching
 
 LIGHTER = 10
 """Unless it is said how light bodies may be, they may be so many times as light as those of the scene."""

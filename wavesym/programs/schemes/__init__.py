@@ -10,6 +10,8 @@ from __future__ import annotations
 from wavesym.programs.schemes.closed import ClosedScheme
 from wavesym.programs.schemes.hats import HatScheme
 from wavesym.programs.schemes.march import MarchScheme
+from wavesym.programs.schemes.march_joints import JointGroup
+from wavesym.programs.schemes.march_windows import Marching
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.programs.schemes.pieces import PiecesScheme
 
@@ -23,5 +25,6 @@ SCHEMES: dict[str, type[Scheme]] = {
     "modes": ModesScheme,
 }
 
-PARTS: dict[str, tuple[type[Scheme], ...]] = {"hats": (MarchScheme,)}
-"""What a scheme is made of."""
+_MARCH = (MarchScheme, JointGroup, Marching)
+PARTS: dict[str, tuple[type, ...]] = {"march": _MARCH, "hats": (*_MARCH, HatScheme)}
+"""A class of each file that a scheme is made of, in order; of others the file of the scheme alone."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from wavesym.programs.program import Program
-from wavesym.programs.schemes import PARTS, SCHEMES, Scheme
+from wavesym.programs.schemes import PARTS, SCHEMES
 from wavesym.rendering import render
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, lines, literal
@@ -37,15 +37,15 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables={name: lines(written(program.tables[name]), _WIDTH) for name in scheme.TABLES},
         constants=dict(zip(scheme.CONSTANTS, written(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
-        scheme="\n\n\n".join(map(_text, (*PARTS.get(program.kernel, ()), scheme))),
+        scheme="\n\n\n".join(map(_text, PARTS.get(program.kernel, (scheme,)))),
         scheme_name=scheme.__name__,
     )
     return render("numpy/program.py.j2", context)
 
 
-def _text(scheme: type[Scheme]) -> str:
-    """A scheme's file from its first class on."""
-    module = inspect.getmodule(scheme)
+def _text(part: type) -> str:
+    """The file of a part of a scheme, from its first class on."""
+    module = inspect.getmodule(part)
     assert module  # it was imported from one
     text = inspect.getsource(module)
     return text[text.index("\nclass ") :].strip()
