@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from flint import arb, ctx
 
-from tests.support.cornered import seeded
+from tests.support.cornered import damped_chain, seeded
 from tests.support.piecewise import PiecewiseChain
 from tests.support.series import Unclear
 from wavesym.errors import WavesymError
@@ -27,6 +27,9 @@ SPRUNG = (5, 8, 10, 19, 22, 25)
 
 # the instant at which another node sticks arrives, and what rubs stays as it is: no event
 LASTING = 72
+
+# dashpots beside springs that yield
+DAMPED = (1, 5, 11, 52)
 CLOSE = arb("1e-18")
 """How near events are to the truth; what happens this near to the horizon may count or not."""
 
@@ -70,6 +73,11 @@ def test_what_rubs_slips_and_sticks_as_it_should(seed: int) -> None:
 @pytest.mark.parametrize("seed", SPRUNG)
 def test_springs_with_laws_change_branches_as_they_should(seed: int) -> None:
     assert wrong(seeded(seed)) == []
+
+
+@pytest.mark.parametrize("seed", DAMPED)
+def test_dashpots_beside_springs_that_yield_act_all_the_time(seed: int) -> None:
+    assert wrong(damped_chain(seed)) == []
 
 
 @pytest.mark.slow

@@ -63,6 +63,15 @@ def seeded(seed: int, kinds: Sequence[str] = LAWS) -> dict[str, Any]:
     return _scene(choose, parts, choose([3, "7/2", "2.000000001"]))
 
 
+def damped_chain(seed: int) -> dict[str, Any]:
+    """One with dashpots beside its springs that yield."""
+    table, choose = seeded(seed), Random(seed).choice
+    for part in table["system"]["parts"]:
+        if "yield" in part:
+            part["dashpot"] = choose(["1/5", "1", "3/2"])
+    return table
+
+
 def closed_chain(seed: int) -> dict[str, Any]:
     """One whose energy goes where it slides or yields, and nowhere else."""
     table = seeded(seed)

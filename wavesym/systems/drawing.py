@@ -172,7 +172,7 @@ class _Pen:
         if part.friction:
             self.links.append(Link(ground, point, friction=rational(part.friction)))
         if part.has_law:
-            self._link(part, ground, point, Fraction(1))
+            self._link(part.model_copy(update={"dashpot": Fraction(0)}), ground, point, Fraction(1))
 
     def _wheel(self, point: int, part: ChainPart | str, ratio: Fraction, at: Keys) -> None:
         """What stands first in a branch turns with its node, `ratio` times as fast: the node has all of it."""

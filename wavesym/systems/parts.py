@@ -97,7 +97,10 @@ class ChainPart(SceneTable):
 
 
 class SpringLaw(SceneTable):
-    """What a spring does beyond being linear: it acts on one side, with a gap, or it yields."""
+    """What a spring does beyond being linear: it acts on one side, with a gap, or it yields.
+
+    A dashpot beside one that yields acts all the time, with all its force.
+    """
 
     spring: NotNegative = Fraction(0)
     dashpot: NotNegative = Fraction(0)
@@ -119,8 +122,12 @@ class SpringLaw(SceneTable):
             return self
         if self.spring == 0:
             raise refusal("a law of a spring, and there is none; write spring = K too", written[0])
-        if self.dashpot != 0:
-            raise refusal(f"not beside a spring with {written[0]}, which has none; leave it out", "dashpot")
+        if self.dashpot != 0 and self.yields is None:
+            raise refusal(
+                f"with {written[0]} it would act only while the spring does, and its force would jump, which is not "
+                "served; leave it out, or write it at a node of its own",
+                "dashpot",
+            )
         if self.yields is not None and len(written) > 1:
             raise refusal(f"not together with {written[0]}; leave one of them out", "yield")
         if self.gap is not None and self.only is None and not isinstance(self.gap, tuple):
