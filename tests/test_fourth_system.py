@@ -15,7 +15,7 @@ from tests.support.braced import Braced
 from tests.support.generated import files
 from wavesym import api
 from wavesym.errors import WavesymError
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Bar, Point
 from wavesym.numbers.doubles import rational
 from wavesym.running.compiled import compiled, imported
@@ -124,4 +124,4 @@ def test_its_mistakes_are_one_line():
 
 
 def test_its_loads_are_those_of_a_building():
-    assert lower(scene()).loads == (Applied("a", fmpq(0), fmpq(1)), Applied("a", fmpq(2), fmpq(-1)))
+    assert lower(scene()).loads == (AppliedLoad("a", fmpq(0), fmpq(1)), AppliedLoad("a", fmpq(2), fmpq(-1)))

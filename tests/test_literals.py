@@ -159,7 +159,9 @@ def test_polynomials_are_those_of_the_exact_tables(name: str, record_property) -
                     if not begun or balls.zero:
                         assert [float(text) for text in literals] == [0.0] * len(literals)
                         continue
-                    exact = chebyshev(lambda tau, s=begun[-1]: s.at(tau - arb(s.start)), place, half, len(literals))
+                    exact = chebyshev(
+                        lambda tau, s=begun[-1]: s.evaluate(tau - arb(s.start)), place, half, len(literals)
+                    )
                     assert not wrong(literals, [middle(c) for c in exact]), f"output {member} from {float(start)}"
                     checked += len(literals)
         for scale in map(float, pieces.real["scale"]):
@@ -192,7 +194,7 @@ def test_the_end_of_a_contact_is_right_in_all_its_digits() -> None:
     with ctx.workprec(300):
         balls = Balls(segments(strain, ctx.prec))
         end, last = Fraction(digits), Fraction(1, 2 * 10 ** len(digits.partition(".")[2]))
-        assert balls.at(rational(end - last)) < 0 < balls.at(rational(end + last))
+        assert balls.evaluate(rational(end - last)) < 0 < balls.evaluate(rational(end + last))
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -41,7 +41,7 @@ def test_every_rod_is_there_once_as_the_node_on_its_right_has_it(system, m):
     numbers = {i: Integer(100 + i) for i in range(m + 2)}
     given = Parameters(numbers, numbers, numbers)
     nodes = {
-        x: family.at(x)
+        x: family.node_at(x)
         for family in system.families(m, given)
         for x in range(int(family.first), int(family.last) + 1, family.step)
     }
@@ -78,7 +78,7 @@ def test_the_conditions_are_those_of_section_2_without_dimensions(system):
     masses = 0
     for family in system.families(COUNT, SYMBOLS):
         x = exact(family.first) if exact(family.first - family.last) == 0 else INDEX
-        node = family.at(x)
+        node = family.node_at(x)
         if not node.inertia:
             continue
         masses += 1
@@ -95,7 +95,7 @@ def test_the_conditions_are_those_of_section_2_without_dimensions(system):
 def test_the_base_of_the_paper_balances_the_foundation():
     """A dU/dx = M_0 a, divided by A U_0 / l, for an acceleration in units of a_0."""
     units = dimensions(BUILDING_FORCE)
-    base = BUILDING_FORCE.families(COUNT, SYMBOLS)[0].at(0)
+    base = BUILDING_FORCE.families(COUNT, SYMBOLS)[0].node_at(0)
     (_, unit) = units.load
     force = units.inertia.subs(INDEX, 0) * unit.subs(SPEED**2, units.speed_squared)
     expected = -force / (units.stiffness * UNIT / LENGTH)
@@ -109,7 +109,7 @@ def test_the_conditions_in_waves_are_differentiated_from_4_2(system):
     """The velocity and the strain at a node, against (4.2) differentiated as a function of tau and x."""
     for family in system.families(COUNT, SYMBOLS):
         x = exact(family.first) if exact(family.first - family.last) == 0 else INDEX
-        node = family.at(x)
+        node = family.node_at(x)
         for end, rod in zip(sides(node, x), (node.left, node.right), strict=True):
             if rod is None:
                 assert end is None

@@ -49,7 +49,7 @@ def numbers(table, values):
     """The rows of a symbolic table where the symbols have `values`."""
 
     def at(ratio):
-        return ratio.at(values) if isinstance(ratio, Ratio) else ratio
+        return ratio.evaluate(values) if isinstance(ratio, Ratio) else ratio
 
     rows = [row._replace(rate=at(row.rate), value=at(row.value)) for row in table.rows()]
     return {row[:-1]: row.value for row in rows if row.value != 0}
@@ -61,7 +61,7 @@ def told(table, values):
     def at(value):
         if not isinstance(value, Ratio):
             return value
-        content, above, below = value.factored
+        content, above, below = value.factorization
         point = [values[name] for name in value.ring.told.names()]
         return (
             content
@@ -179,10 +179,10 @@ def test_ratios_are_a_field_in_lowest_terms(a, b, c, d):
     assert (p / q) ** 2 * q == p * p / q
     assert hash(p * r / (q * r)) == hash(p / q)
     assert hash(p / p) == hash(fmpq(1))
-    below = q.at({"x": fmpq(5, 7), "y": fmpq(11, 13)})
+    below = q.evaluate({"x": fmpq(5, 7), "y": fmpq(11, 13)})
     if below != 0:
         point = {"x": fmpq(5, 7), "y": fmpq(11, 13)}
-        assert (p / q + 1).at(point) == p.at(point) / below + 1
+        assert (p / q + 1).evaluate(point) == p.evaluate(point) / below + 1
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from wavesym.systems.drive import DRIVE
 
 def counted(chain, intervals):
     values = [row.value for row in full_table(chain, intervals, fmpq(0)).rows()]
-    return sum(len(factor) for v in values if isinstance(v, Ratio) for factor, _ in v.factored.above)
+    return sum(len(factor) for v in values if isinstance(v, Ratio) for factor, _ in v.factorization.numerator)
 
 
 @pytest.mark.parametrize(

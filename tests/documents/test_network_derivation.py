@@ -128,7 +128,7 @@ def test_the_law_in_symbols_is_that_in_numbers(table: dict[str, Any]) -> None:
     for kind in found:
         for number in kind.numbers:
             made = alone(network, number)
-            assert made.law == JointLaw.of(network, network.joints[number])
+            assert made.law == JointLaw.assemble(network, network.joints[number])
             free = len(made.law.heavy) + len(made.law.light)
             if not 0 < free <= MOST_SYMBOLIC:
                 continue

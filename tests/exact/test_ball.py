@@ -13,7 +13,7 @@ from wavesym.errors import RangeError
 from wavesym.exact import reference
 from wavesym.exact.reference import Reference
 from wavesym.exact.tables import ball as room
-from wavesym.exact.tables.ball import Balls, Segment, largest, segments, shifted, values
+from wavesym.exact.tables.ball import Balls, Segment, largest, segments, shift, values
 from wavesym.exact.tables.signal import Arrival, Signal
 from wavesym.numbers.balls import precise
 from wavesym.scene import lower
@@ -36,32 +36,34 @@ def test_a_segment_is_the_sum_of_its_families():
     for u in (fmpq(0), fmpq(1, 3), fmpq(7)):
         x = arb(u)
         exact = 1 + 2 * x + 3 * x * (-2 * x).exp() - 5 * (-x / 2).exp()
-        assert segment.at(u).overlaps(exact)
-        assert segment.at(u).rad() < fmpq(1, 2**110)
-        families = shifted(segment.families, segment.families.values(), fmpq(1))
+        assert segment.evaluate(u).overlaps(exact)
+        assert segment.evaluate(u).rad() < fmpq(1, 2**110)
+        families = shift(segment.families, segment.families.values(), fmpq(1))
         later = Segment(fmpq(4), dict(zip(segment.families, families, strict=True)))
-        assert later.at(u).overlaps(segment.at(u + 1))
-        assert later.at(u).rad() < fmpq(1, 2**110)
+        assert later.evaluate(u).overlaps(segment.evaluate(u + 1))
+        assert later.evaluate(u).rad() < fmpq(1, 2**110)
 
 
 def test_a_signal_carries_what_came_before():
     gained = ({fmpq(1): [fmpq(2)]}, {fmpq(0): [fmpq(1)], fmpq(1): [fmpq(0), fmpq(3)]}, {fmpq(2): [fmpq(-1)]})
     times = (fmpq(1), fmpq(5, 3), fmpq(7, 2))
     made = Balls(segments(Signal("made", tuple(map(Arrival, times, gained))), ctx.prec))
-    assert made.at(fmpq(999, 1000)) == 0
+    assert made.evaluate(fmpq(999, 1000)) == 0
     for tau in (fmpq(1), fmpq(3, 2), fmpq(5, 3), fmpq(3), fmpq(7, 2), fmpq(9)):
         exact = arb(0)
         for time, increment in zip(times, gained, strict=True):
             w = arb(tau - time)
             for rate, powers in increment.items() if tau >= time else ():
                 exact += (-w * arb(rate)).exp() * sum((c * w**k for k, c in enumerate(powers)), arb(0))
-        assert made.at(tau).overlaps(exact)
-        assert made.at(tau).rad() < fmpq(1, 2**100)
+        assert made.evaluate(tau).overlaps(exact)
+        assert made.evaluate(tau).rad() < fmpq(1, 2**100)
 
 
 def test_at_a_jump_the_value_is_the_one_after_it():
     balls = Balls([polynomial(1, 5), polynomial(2, 7, 1), polynomial(4, 0)])
-    found = [balls.at(tau) for tau in (fmpq(0), fmpq(999, 1000), fmpq(1), fmpq(1999, 1000), fmpq(2), fmpq(3), fmpq(4))]
+    found = [
+        balls.evaluate(tau) for tau in (fmpq(0), fmpq(999, 1000), fmpq(1), fmpq(1999, 1000), fmpq(2), fmpq(3), fmpq(4))
+    ]
     assert [float(value.mid()) for value in found] == [0, 0, 5, 5, 7, 8, 0]
 
 

@@ -64,7 +64,7 @@ def test_fronts_meet_joints_as_they_do_in_fractions(lengths: list[str], until: i
         if time <= last[number] and (time, number) not in met:
             met.add((time, number))
             for end, _ in network.joints[number].ends:
-                other = network.joint_of[network.point_at(network.beyond(end))]
+                other = network.joint_of[network.point_at(network.opposite_end(end))]
                 heappush(coming, (time + network.bars[end.bar].delay, other))
     assert list(front_times(network, sources, last)) == sorted(met)
 

@@ -21,7 +21,7 @@ from wavesym.exact.contacts.cluster import Cluster
 from wavesym.exact.contacts.events import events
 from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.exact.contacts.search import Search
-from wavesym.exact.joints.enclosed import Enclosed
+from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.exact.reference import Reference
 from wavesym.pictures.field import Field
 
@@ -236,13 +236,13 @@ def test_a_contact_that_no_bits_decide_is_refused_with_the_instant(monkeypatch):
     monkeypatch.setattr(branches, "first_fall", lambda p, low, high: (low, high) if p(high) < p(low) else None)
     monkeypatch.setattr(room, "_ATTEMPTS", ((384, True), (768, False)))
     model = line([body(1, velocity=1, force=-1), contact("1/2"), rod()], "3/2")
-    inexact = Enclosed.of
+    inexact = Enclosure.from_polynomial
 
     def blurred(exact):
         known = inexact(exact)
-        return Enclosed(known.polynomial, arb(2) ** -300) if exact.length() > 1 else known
+        return Enclosure(known.polynomial, arb(2) ** -300) if exact.length() > 1 else known
 
-    monkeypatch.setattr("wavesym.exact.contacts.touching_joint.Enclosed.of", blurred)
+    monkeypatch.setattr("wavesym.exact.contacts.touching_joint.Enclosure.from_polynomial", blurred)
     with pytest.raises(
         GrazingError, match=r"^contact at 0: \d+ bits do not show the sign of its gap at tau = (1|0\.9+\d*) "
     ):
@@ -314,10 +314,10 @@ def test_waves_that_contacts_were_found_with_are_those_of_the_chain_moved_anew()
         for end, wave in kept.sent.items():
             until = known.ends[model.network.joint_of[model.network.point_at(end)]]
             for tau in (until * k / 60 for k in range(60)):
-                (one, since), (other, after) = wave.at(tau), anew.sent[end].at(tau)
+                (one, since), (other, after) = wave.locate(tau), anew.sent[end].locate(tau)
                 with ctx.workprec(bits):
-                    assert one.at(since).overlaps(other.at(after))
-                    assert one.at(since).rad() < arb(2) ** (20 - bits)
+                    assert one.evaluate(since).overlaps(other.evaluate(after))
+                    assert one.evaluate(since).rad() < arb(2) ** (20 - bits)
 
 
 def test_light_cones_take_a_contact_for_closed():

@@ -62,7 +62,7 @@ def at(response: JointResponse, s: fmpq) -> dict[tuple[int, int], fmpq]:
 @pytest.mark.parametrize("name", LAWS)
 def test_partial_fractions_are_the_inverse_of_the_matrix(name: str) -> None:
     made = LAWS[name]
-    free = [k for k, motion in enumerate(made.given) if motion is None]
+    free = [k for k, motion in enumerate(made.motions) if motion is None]
     for s in (Q(1, 7), Q(2), Q(31)):
         rows = [
             [made.mass[a] * s * (a == b) + made.damping[a][b] + made.stiffness[a][b] / s for b in free] for a in free

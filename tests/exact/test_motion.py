@@ -12,11 +12,11 @@ from tests.support.drawn import scenes
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import motion as room
-from wavesym.exact.joints.enclosed import Enclosed, weighted_sum
+from wavesym.exact.joints.enclosure import Enclosure, weighted_sum
 from wavesym.exact.joints.network_waves import SentWave
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.ball import Balls, is_zero
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import End
 from wavesym.numbers.doubles import rational
 from wavesym.scene import lower
@@ -35,7 +35,7 @@ def made(scene):
 
 def enclosures(motion, place, taus):
     balls = Balls(motion.segments(place, ctx.prec))
-    return [balls.at(tau) for tau in taus]
+    return [balls.evaluate(tau) for tau in taus]
 
 
 @pytest.fixture(autouse=True)
@@ -68,7 +68,7 @@ def by_hand(scene, right, left):
     waves = motion.waves(53)
     for side, known in ((0, right), (1, left)):
         for x, stretches in known.items():
-            held = Enclosed(arb_poly(), arb(0))
+            held = Enclosure(arb_poly(), arb(0))
             starts = [fmpq(n) for n in range(-1, len(stretches))]
             waves.sent[End(x if side == 0 else x - 1, side)] = SentWave(starts, [held, *stretches])
     motion._solved = dict.fromkeys((53, *(2**k for k in range(6, 14))), waves)  # at every precision
@@ -77,7 +77,7 @@ def by_hand(scene, right, left):
 
 
 def waves(count, *powers, error=0):
-    return [Enclosed(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
+    return [Enclosure(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_strain_is_the_difference_of_the_waves_and_velocity_their_sum(output, ex
     """One polynomial in tau for the whole of a wave: as each panel has its own start, the waves are cut to it here."""
     sides = {}
     for name, (start, slope) in {"right": (3, 5), "left": (7, 11)}.items():
-        sides[name] = [Enclosed(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
+        sides[name] = [Enclosure(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, **output), {1: sides["right"]}, {2: sides["left"]})
     (place,) = motion.probes
     for tau in (fmpq(1), fmpq(5, 4), fmpq(3, 2), fmpq(7, 4), fmpq(2), fmpq(13, 5)):
@@ -113,11 +113,11 @@ def test_both_waves_errors_are_in_the_value(output, one, other):
 
 def test_errors_of_all_that_is_summed_are_in_a_value():
     """Of a drift, which reads both ends of its rod, and of any sum: none takes the place of another."""
-    parts = [(fmpq(2), Enclosed(arb_poly([1]), arb(1))), (fmpq(-3), Enclosed(arb_poly([1]), arb(fmpq(1, 4))))]
-    for terms in (parts, parts[::-1], [*parts, (fmpq(1), Enclosed(arb_poly(), arb(0)))]):
+    parts = [(fmpq(2), Enclosure(arb_poly([1]), arb(1))), (fmpq(-3), Enclosure(arb_poly([1]), arb(fmpq(1, 4))))]
+    for terms in (parts, parts[::-1], [*parts, (fmpq(1), Enclosure(arb_poly(), arb(0)))]):
         for total in (room._sum(terms), weighted_sum(terms)):
-            assert total.at(fmpq(0)).contains(-1 + fmpq(11, 4))
-            assert total.at(fmpq(0)).contains(-1 - fmpq(11, 4))
+            assert total.evaluate(fmpq(0)).contains(-1 + fmpq(11, 4))
+            assert total.evaluate(fmpq(0)).contains(-1 - fmpq(11, 4))
             assert total.error < fmpq(12, 4)
 
 
@@ -150,13 +150,13 @@ def test_what_begins_without_a_jump_is_exactly_0_there(system, load, place, quan
 
 
 def test_a_displacement_begins_at_0_and_goes_on_where_it_was():
-    steady = [Enclosed(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
+    steady = [Enclosure(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, displacement=["5/4"]), {1: steady}, {2: steady})
     segments = motion.segments(motion.probes[0], ctx.prec)
-    assert Balls(segments).at(fmpq(0)) == 0
+    assert Balls(segments).evaluate(fmpq(0)) == 0
     for one, other in pairwise(segments):
-        assert one.at(other.start - one.start).overlaps(other.at(fmpq(0)))
-        assert other.at(fmpq(0)).rad() < fmpq(1, 2**90)
+        assert one.evaluate(other.start - one.start).overlaps(other.evaluate(fmpq(0)))
+        assert other.evaluate(fmpq(0)).rad() < fmpq(1, 2**90)
 
 
 def test_places_with_sides_lie_in_the_rod_on_that_side():
@@ -173,7 +173,7 @@ def test_segments_start_where_an_output_can_bend():
     motion = made(drive(1, [{"body": 2, "times": ["1/2"], "steps": [1]}], strain=["5/4"]))
     (place,) = motion.probes
     assert motion.starts(place) == [fmpq(0), fmpq(1, 4), fmpq(3, 4)]
-    assert motion.segments(place, ctx.prec)[0].at(fmpq(1, 8)) == 0
+    assert motion.segments(place, ctx.prec)[0].evaluate(fmpq(1, 8)) == 0
 
 
 @pytest.mark.parametrize("quantity", ["strain", "velocity", "displacement"])
@@ -189,7 +189,7 @@ def test_segments_for_some_taus_are_those_of_all(quantity):
         (found,), (expected,) = segment.families.values(), every[segment.start].values()
         assert [str(c) for c in found.coeffs()] == [str(c) for c in expected.coeffs()]
     for tau in taus:
-        assert str(Balls(some).at(tau)) == str(Balls(motion.segments(place, ctx.prec)).at(tau))
+        assert str(Balls(some).evaluate(tau)) == str(Balls(motion.segments(place, ctx.prec)).evaluate(tau))
 
 
 def test_of_what_begins_at_the_end_only_the_first_value_is_seen():
@@ -199,7 +199,7 @@ def test_of_what_begins_at_the_end_only_the_first_value_is_seen():
     (polynomial,) = last.families.values()
     assert polynomial.length() == 1
     exact = Truth(drive(3, strain=["1+"]), Fraction(3))
-    assert last.at(fmpq(0)).overlaps(exact.value(0, Fraction(3)))
+    assert last.evaluate(fmpq(0)).overlaps(exact.value(0, Fraction(3)))
 
 
 def test_loads_after_the_horizon_are_not_there():
@@ -207,7 +207,7 @@ def test_loads_after_the_horizon_are_not_there():
     motion = made(drive(3, late, strain=["1/2"]))
     assert motion._breakpoints.joints[0][:4] == [fmpq(0), fmpq(1, 2), fmpq(9, 10), fmpq(1)]
     at_the_end = made(drive(3, [{"body": 2, "times": [3], "steps": [1]}], velocity=[1]))
-    assert at_the_end._acting == (Applied("M2", fmpq(3), fmpq(1)),)
+    assert at_the_end._acting == (AppliedLoad("M2", fmpq(3), fmpq(1)),)
 
 
 def test_more_bits_make_smaller_balls_and_fewer_do_not_spoil_them():

@@ -70,7 +70,7 @@ def test_the_law_of_joints_makes_the_tables_of_the_paper(name: str) -> None:
 @settings(max_examples=8)
 @given(scenes())
 def test_any_named_system_has_one_table(scene: Scene) -> None:
-    model = lower(scene).shortened(fmpq(5))
+    model = lower(scene).shorten(fmpq(5))
     chain = named_chain(scene)
     assert chain is not None
     assert network_rows(model) == named_rows(model, chain)
@@ -121,8 +121,8 @@ def test_the_law_of_a_named_node_is_that_of_its_joint() -> None:
         scene = Scene.from_toml(name)
         model = lower(scene)
         for node, joint in zip(scene.system.chain.nodes, model.network.joints, strict=True):
-            law = JointLaw.of(model.network, joint)
-            if law.given[0] is None:
+            law = JointLaw.assemble(model.network, joint)
+            if law.motions[0] is None:
                 assert law.mass[0] * node.radiation == law.damping[0][0] * node.inertia
                 assert (law.mass[0] == 0) == (node.inertia == 0)
 
@@ -226,7 +226,7 @@ def test_to_twenty_digits(table: dict[str, Any]) -> None:
         for tau in (Fraction(1, 7), Fraction(1), Fraction(2003, 1000), Fraction(29, 10)):
             true = terms.value(tau)
             with ctx.workprec(400):
-                assert abs(balls.at(fmpq(*tau.as_integer_ratio())) - true) < 1e-20 * (1 + abs(true))
+                assert abs(balls.evaluate(fmpq(*tau.as_integer_ratio())) - true) < 1e-20 * (1 + abs(true))
 
 
 # ---- faults: each is seen
@@ -335,7 +335,7 @@ def test_the_size_is_told_before(until: int) -> None:
     for source, response in table.responses.items():
         last = dict.fromkeys(range(len(network.joints)), fmpq(until))
         made = sum(len(powers) for each in response.values() for _, one in each for powers in one.values())
-        assert made <= ruled.foreseen.size(source, last).coefficients <= 1.5 * made
+        assert made <= ruled.forecast.size(source, last).coefficients <= 1.5 * made
 
 
 def refusal(network: Network, until: object = 4, intervals: int | None = None) -> str:
@@ -349,7 +349,7 @@ def test_what_would_be_large_is_counted_first(monkeypatch: pytest.MonkeyPatch) -
         raise AssertionError("solved")
 
     monkeypatch.setattr(RuledNetwork, "_velocities", solved)
-    monkeypatch.setattr("wavesym.exact.tables.foreseen.MOST_FRONTS", 2000)
+    monkeypatch.setattr("wavesym.exact.tables.forecast.MOST_FRONTS", 2000)
     parts = [{"mass": 1, "name": "a"}]
     for k in range(12):
         parts += [{"rod": f"{100 + k}/100"}, {"mass": f"{k + 2}/{k + 1}"}]
@@ -409,7 +409,7 @@ def test_only_what_matters_is_asked() -> None:
     near = lower(Scene(name="near", system=far, output={"until": 5, "velocity": ["a"]}))
     assert len(signals(near)[0].arrivals) == 1
     with pytest.raises(UnservedError, match="the joint at x = 3 has"):
-        signals(near.shortened(fmpq(6)))
+        signals(near.shorten(fmpq(6)))
 
 
 def test_a_table_keeps_its_order() -> None:

@@ -13,7 +13,7 @@ from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import breakpoints as room
 from wavesym.exact.breakpoints import Breakpoints
-from wavesym.exact.joints.enclosed import Enclosed
+from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.exact.joints.network_waves import NetworkWaves, SentWave
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.network import Bar, End, Link, Network, Point
@@ -64,8 +64,8 @@ def test_waves_are_where_they_are_said_to_be(name, terms):
                         continue
                     divided = ("strain", x, way) in number
                     strain = exact.value(number["strain", x, way if divided else 0], at, 200)
-                    sent, offset = waves.sent[End(bar, side)].at(tau)
-                    found = sent.at(offset)
+                    sent, offset = waves.sent[End(bar, side)].locate(tau)
+                    found = sent.evaluate(offset)
                     assert found.overlaps((velocity - way * strain) / 2), (tau, x, way)
                     loosest = loosest.max(found.rad())
     assert terms < 60 or loosest < fmpq(1, 10**15)
@@ -73,17 +73,17 @@ def test_waves_are_where_they_are_said_to_be(name, terms):
 
 @pytest.mark.parametrize("error", [fmpq(1), fmpq(1, 8)])
 def test_a_wave_is_anywhere_within_its_error(error):
-    value = Enclosed(arb_poly([3, 2]), arb(error)).at(fmpq(5))
+    value = Enclosure(arb_poly([3, 2]), arb(error)).evaluate(fmpq(5))
     assert value.contains(13 + arb(error))
     assert value.contains(13 - arb(error))
-    assert Enclosed(arb_poly([3, 2]), arb(0)).at(fmpq(5)) == 13
+    assert Enclosure(arb_poly([3, 2]), arb(0)).evaluate(fmpq(5)) == 13
 
 
 def test_the_wave_at_a_stretchs_start_is_the_one_that_begins_there():
-    stretches = [Enclosed(arb_poly([k]), arb(0)) for k in range(3)]
+    stretches = [Enclosure(arb_poly([k]), arb(0)) for k in range(3)]
     wave = SentWave([fmpq(-1), fmpq(0), fmpq(1, 3)], stretches)
     for tau, place, offset in ((fmpq(-1, 2), 0, fmpq(1, 2)), (fmpq(0), 1, fmpq(0)), (fmpq(1, 3), 2, fmpq(0))):
-        assert wave.at(tau) == (stretches[place], offset)
+        assert wave.locate(tau) == (stretches[place], offset)
 
 
 def test_what_a_rod_holds_at_the_start():

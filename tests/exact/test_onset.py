@@ -13,7 +13,7 @@ from tests.support.touching import FIXED, body, contact, line, q, rod, seen, tol
 from wavesym.errors import CostError
 from wavesym.exact.contacts.events import events
 from wavesym.exact.contacts.search import Search
-from wavesym.exact.joints.enclosed import ORDER, Onset, combine
+from wavesym.exact.joints.enclosure import ORDER, Onset, combine
 from wavesym.exact.joints.exact_motion import onsets
 from wavesym.exact.joints.joint import JointLaw, motion_series
 from wavesym.exact.reference import Reference

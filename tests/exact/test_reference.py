@@ -119,7 +119,7 @@ def test_a_beginning_is_as_much_of_the_horizon_as_is_known_soon(monkeypatch):
     assert beginning(short) == short
     begun = beginning(long)
     assert 8 <= begun.until < 5000
-    assert reference.waves_size(begun) <= reference._QUICK < reference.waves_size(long.shortened(2 * begun.until))
+    assert reference.waves_size(begun) <= reference._QUICK < reference.waves_size(long.shorten(2 * begun.until))
     assert begun.network is long.network
     monkeypatch.setattr(reference, "_QUICK", 0)
     assert beginning(long).until == 8

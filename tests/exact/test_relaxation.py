@@ -15,7 +15,7 @@ from tests.exact.test_contact_truth import wrong
 from tests.support.cushioned import seeded
 from wavesym.exact.contacts import schedule as room
 from wavesym.exact.contacts.events import events, scheduled
-from wavesym.exact.joints.enclosed import Enclosed
+from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.exact.joints.joint import JointLaw, JointMotion
 from wavesym.exact.joints.relaxation import Relaxation
 from wavesym.scene import Scene, lower
@@ -55,11 +55,13 @@ STIFF = [
 ]
 
 
-def moved(motion: JointMotion, forces: list[fmpq_poly], steps: int, length: fmpq) -> list[list[Enclosed]]:
+def moved(motion: JointMotion, forces: list[fmpq_poly], steps: int, length: fmpq) -> list[list[Enclosure]]:
     """By so many Taylor series."""
     step, found = length / steps, []
     for n in range(steps):
-        acting = [Enclosed.of(force(fmpq_poly([n * step, 1])) if force.length() else force) for force in forces]
+        acting = [
+            Enclosure.from_polynomial(force(fmpq_poly([n * step, 1])) if force.length() else force) for force in forces
+        ]
         found.append(motion.move(acting, [NO_MOTION] * len(forces), step, 160))
     return found
 
@@ -69,7 +71,7 @@ def begun(law: JointLaw, decaying: int) -> tuple[JointMotion, list[fmpq_poly]]:
     size = range(len(law.mass))
     forces = [fmpq_poly([n + 1, -1, fmpq(1, 3)]) for n in size]
     motion = JointMotion(law, [arb(1) for _ in size], [arb(n) / 7 for n in size], decays=True)
-    time = decaying / Relaxation.all(law)[-1].fast
+    time = decaying / Relaxation.separate(law)[-1].fast
     moved(motion, forces, 1 + int((time * law.fastest / 12).ceil()), time)
     return motion, [force(fmpq_poly([time, 1])) for force in forces]
 
@@ -79,9 +81,9 @@ def begun(law: JointLaw, decaying: int) -> tuple[JointMotion, list[fmpq_poly]]:
 def test_the_slow_motion_encloses_what_steps_find(law: JointLaw, decaying: int) -> None:
     """Also where not all has died away: then the bound has what is left."""
     motion, forces = begun(law, decaying)
-    relaxation = Relaxation.all(law)[-1]
+    relaxation = Relaxation.separate(law)[-1]
     length = 200 / relaxation.fast
-    acting, terms = [Enclosed.of(force) for force in forces], 100
+    acting, terms = [Enclosure.from_polynomial(force) for force in forces], 100
     long = replace(motion, velocity=[*motion.velocity], displacement=[*motion.displacement])
     assert relaxation.serves(length, terms)
     series, places, missed = long.relax(relaxation, acting, [NO_MOTION] * len(forces), terms)
@@ -91,12 +93,12 @@ def test_the_slow_motion_encloses_what_steps_find(law: JointLaw, decaying: int) 
     exact = moved(motion, forces, steps, length)
     for one, each in zip(found, zip(*exact, strict=True), strict=True):
         for n, known in enumerate(each):
-            assert one.at(length * n / steps).overlaps(known.at(fmpq(0)))
+            assert one.evaluate(length * n / steps).overlaps(known.evaluate(fmpq(0)))
     if decaying > 1000:
         assert max(one.error for one in found) < arb(2) ** -350
     apart = [one - other for one, other in zip(long.displacement, motion.displacement, strict=True)]
     sizes = [one - other for one, other in zip(long.velocity, motion.velocity, strict=True)]
-    assert long.energy(sizes, apart).sqrt() <= long.unknown.sqrt() + motion.unknown.sqrt()
+    assert long.energy(sizes, apart).sqrt() <= long.unknown_energy.sqrt() + motion.unknown_energy.sqrt()
 
 
 @settings(max_examples=9)
@@ -104,9 +106,9 @@ def test_the_slow_motion_encloses_what_steps_find(law: JointLaw, decaying: int) 
 def test_a_series_that_is_wrong_has_a_bound_that_says_so(law: JointLaw, power: int, size: str) -> None:
     """Nothing of how it was found is taken for granted: its defect bounds its error."""
     motion, forces = begun(law, 1200)
-    relaxation = Relaxation.all(law)[-1]
+    relaxation = Relaxation.separate(law)[-1]
     length = 200 / relaxation.fast
-    acting = [Enclosed.of(force) for force in forces]
+    acting = [Enclosure.from_polynomial(force) for force in forces]
     long = replace(motion, velocity=[*motion.velocity], displacement=[*motion.displacement])
     series, places, missed = long.relax(relaxation, acting, [NO_MOTION] * len(forces), 20)
     k = law.heavy[0]
@@ -126,17 +128,17 @@ def test_a_series_that_is_wrong_has_a_bound_that_says_so(law: JointLaw, power: i
     found = long.follow(series, places, acting, length)
     exact = moved(motion, forces, 40, length)
     for one, each in zip(found, zip(*exact, strict=True), strict=True):
-        assert all(one.at(length * n / 40).overlaps(known.at(fmpq(0))) for n, known in enumerate(each))
+        assert all(one.evaluate(length * n / 40).overlaps(known.evaluate(fmpq(0))) for n, known in enumerate(each))
     assert found[k].error > arb(q(size)) / 1000
 
 
 def test_rates_are_parted_where_they_are_far_apart() -> None:
-    slow, fast = (next(iter(Relaxation.all(STIFF[0]))), Relaxation.all(STIFF[3])[-1])
+    slow, fast = (next(iter(Relaxation.separate(STIFF[0]))), Relaxation.separate(STIFF[3])[-1])
     assert (slow.slow, slow.fast) == (0, 20000)
     assert 12000 < fast.fast < 14000
     assert fast.slow * 8 < fast.fast
     # what swings long does not die away, and nothing is far from a rate alone
-    assert Relaxation.all(JointLaw((q(1),), ((q("1/100"),),), ((q(10**6),),), (None,))) == ()
+    assert Relaxation.separate(JointLaw((q(1),), ((q("1/100"),),), ((q(10**6),),), (None,))) == ()
 
 
 # ---- cushions that lift off
@@ -196,7 +198,7 @@ def test_what_has_died_away_cuts_no_stretches(dashpot: str, cap: dict[str, Any])
 def test_without_leaving_out_what_is_fast_the_same_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     model = lower(Scene(**cushioned(100, "1/8", "2.4", gap="1/7")))
     short = events(model)
-    monkeypatch.setattr(Relaxation, "all", lambda law: ())
+    monkeypatch.setattr(Relaxation, "separate", lambda law: ())
     room.schedule.cache_clear()
     long = events(model)
     room.schedule.cache_clear()
@@ -224,6 +226,6 @@ def test_more_bits_are_had_from_the_stretches_that_were_found() -> None:
         for end, wave in known.waves.sent.items():
             until = known.ends[model.network.joint_of[model.network.point_at(end)]]
             for tau in (until * k / 41 for k in range(40)):
-                (one, since), (other, after) = wave.at(tau), anew.sent[end].at(tau)
-                assert one.at(since).overlaps(other.at(after))
-                assert other.at(after).rad() < arb(2) ** -330
+                (one, since), (other, after) = wave.locate(tau), anew.sent[end].locate(tau)
+                assert one.evaluate(since).overlaps(other.evaluate(after))
+                assert other.evaluate(after).rad() < arb(2) ** -330

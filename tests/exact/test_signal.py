@@ -42,7 +42,7 @@ def test_signals_are_the_exact_solution(drawn):
             assert seen == [rational(t) for t in instants if t < end or rational(t) in seen]
             balls = Balls(segments(signal, ctx.prec))
             for tau in [*instants, *(end * k / 7 for k in range(8))]:
-                value = balls.at(rational(tau))
+                value = balls.evaluate(rational(tau))
                 assert value.overlaps(exact.value(number, tau, 200))
                 assert value.rad() < fmpq(1, 10**50)
 
@@ -54,7 +54,7 @@ def test_a_jump_at_the_end_of_the_horizon_is_seen(until):
     exact = Truth(made, tau)
     with ctx.workprec(300):
         for number, signal in enumerate(signals(lower(made))):
-            assert Balls(segments(signal, ctx.prec)).at(rational(tau)).overlaps(exact.value(number, tau, 200))
+            assert Balls(segments(signal, ctx.prec)).evaluate(rational(tau)).overlaps(exact.value(number, tau, 200))
 
 
 def arrivals(made, real=DOUBLE):

@@ -84,11 +84,11 @@ def test_cuts_are_no_further_apart_than_a_series_bears(
     network = known.network
     for number, times in cut.items():
         assert set(natural[number][:-1]) <= set(times)
-        law = JointLaw.of(network, network.joints[number])
+        law = JointLaw.assemble(network, network.joints[number])
         if law.springs:
             assert all((high - low) * law.fastest <= SWING for low, high in pairwise(times))
         for end, _ in network.joints[number].ends:
-            other = network.joint_of[network.point_at(network.beyond(end))]
+            other = network.joint_of[network.point_at(network.opposite_end(end))]
             far = {time + network.bars[end.bar].delay for time in times[1:-1]}
             assert {time for time in far if time <= min(until, cut[other][-2])} <= set(cut[other])
 
@@ -96,7 +96,7 @@ def test_cuts_are_no_further_apart_than_a_series_bears(
 @pytest.mark.parametrize("right", ["1", "1.5", "1.414213562"])
 def test_soft_springs_are_not_cut(right: str) -> None:
     known = model(table(BETWEEN, 36, ("1", right), 6))
-    assert any(law.longest for law in (JointLaw.of(known.network, joint) for joint in known.network.joints))
+    assert any(law.longest for law in (JointLaw.assemble(known.network, joint) for joint in known.network.joints))
     cut = dict(Breakpoints(known, fmpq(6)).joints)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(JointLaw, "longest", None)

@@ -104,7 +104,7 @@ def integrated(model: Model, bits: int) -> list[tuple[arb, arb]]:
             for piece, end in zip(pieces, ends, strict=True):
                 if piece.start < end:
                     gained = piece.families[fmpq(0)].integral()(arb(end - piece.start))
-                    found.append((gained, velocity.at(end) - velocity.at(piece.start)))
+                    found.append((gained, velocity.evaluate(end) - velocity.evaluate(piece.start)))
     return found
 
 

@@ -17,7 +17,7 @@ from wavesym.lab.chart.measure import ChartRow, Measurements, _Judge, measure, t
 from wavesym.lab.chart.subjects import Subject, other_method, spacing, subjects, taus
 from wavesym.lab.floor import floor
 from wavesym.lab.timing import medians
-from wavesym.methods.every import METHODS
+from wavesym.methods.catalogue import METHODS
 from wavesym.scene import Scene, lower
 
 SCENE = Scene(

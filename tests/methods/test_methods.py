@@ -11,7 +11,7 @@ from flint import fmpq
 from wavesym.api import evaluator
 from wavesym.exact.reference import Reference
 from wavesym.methods import characteristics, differences, elements, laplace
-from wavesym.methods.every import METHODS
+from wavesym.methods.catalogue import METHODS
 from wavesym.methods.problem import problem_of
 from wavesym.scene import Scene, lower
 

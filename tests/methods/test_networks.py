@@ -12,7 +12,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.lab.chart.subjects import left_out
 from wavesym.methods import characteristics, differences, discrete, elements, laplace
-from wavesym.methods.every import METHODS
+from wavesym.methods.catalogue import METHODS
 from wavesym.scene import Scene, lower
 
 CHARACTERISTICS = (characteristics.SECOND, characteristics.FOURTH)

@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from wavesym.errors import RangeError
 from wavesym.numbers.doubles import (
     UNIT_ROUNDOFF,
-    above,
     bound,
     fraction,
     midpoint,
@@ -22,6 +21,7 @@ from wavesym.numbers.doubles import (
     not_below,
     rational,
     rounded_ball,
+    upper_double,
 )
 from wavesym.numbers.reals import DOUBLE, SINGLE
 
@@ -50,7 +50,7 @@ def even(real, number):
 def test_between_two_numbers_the_nearer_is_taken(real, data):
     """Up to the middle the lower one, after it the upper one, in the middle the even one; and none is below itself."""
     low = data.draw(numbers(real))
-    high = real.next_to(low, math.inf)
+    high = real.next_after(low, math.inf)
     assert float(np.nextafter(FORMATS[real](low), FORMATS[real](math.inf))) == high
     gap = rational(high) - rational(low)
     part = fmpq(1, 3) ** data.draw(st.integers(1, 40))
@@ -115,7 +115,7 @@ def test_a_printed_bound_is_above_in_two_digits(low, width):
     shown = bound(ball)
     assert arb(shown) >= ball.upper()
     assert float(f"{shown:.1e}") == shown
-    assert shown <= float(above(ball)) * 1.11
+    assert shown <= float(upper_double(ball)) * 1.11
 
 
 @pytest.mark.parametrize("digits", ["1.0", "1.1", "4.9", "5.0", "9.5", "9.9"])
@@ -153,8 +153,8 @@ def test_what_is_far_beyond_all_doubles_costs_no_memory():
     with ctx.workprec(64):
         gone = arb(2) ** -(10**12)
         assert rounded_ball(gone) == midpoint(gone) == 0.0
-        assert above(gone) == 5e-324
-        assert above(-gone) == 0.0
+        assert upper_double(gone) == 5e-324
+        assert upper_double(-gone) == 0.0
         for far in (arb(2) ** 10**6, -(arb(2) ** 10**6), arb(2) ** 1024):
             with pytest.raises(RangeError):
                 rounded_ball(far)

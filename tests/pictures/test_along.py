@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wavesym
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.pictures.along import Along, Band, Spot, along, cells, limit
 from wavesym.pictures.envelope_values import envelope, extremes
 from wavesym.pictures.loads import load_histories, stretches
@@ -147,7 +147,7 @@ def test_loads_are_the_sums_that_scenes_state() -> None:
         stretch = next(each for each in reversed(load.stretches) if each[0, 0] <= tau)
         right = 1.0 * (tau >= 1 / 3) + (-1 + (tau - 2) / 2) * (tau >= 2)
         assert np.interp(tau, *stretch.T) == pytest.approx(right, abs=1e-15)
-    ramp = list(stretches([(Applied("b", fmpq(1), fmpq(2)), 1)], fmpq(3)))
+    ramp = list(stretches([(AppliedLoad("b", fmpq(1), fmpq(2)), 1)], fmpq(3)))
     assert [each.tolist() for each in ramp] == [[[0, 0], [1, 0], [3, 4]]]
 
 

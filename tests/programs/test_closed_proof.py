@@ -17,7 +17,7 @@ from wavesym.programs.closed import _largest, _segment_errors, _underflows, clos
 
 CLOSE = arb(fmpq(1002, 1000))  # the proof's second order, and a little
 # in which nothing is rounded, but what is small underflows
-EXACT = Real("exact", 8, fmpq(0), DOUBLE.smallest, DOUBLE.largest, DOUBLE.next_to)
+EXACT = Real("exact", 8, fmpq(0), DOUBLE.smallest, DOUBLE.largest, DOUBLE.next_after)
 
 
 def arrival(time, rate, powers) -> Arrival:
@@ -71,14 +71,14 @@ def test_rounding_is_what_is_counted(k, rate, after, real):
 
 def test_many_additions_are_more_than_so_many_roundings():
     """(1 + u)**n - 1, which for n u near 1/8 is 6 % more than n u."""
-    coarse = Real("coarse", 8, fmpq(1, 2**13), DOUBLE.smallest, DOUBLE.largest, DOUBLE.next_to)
+    coarse = Real("coarse", 8, fmpq(1, 2**13), DOUBLE.smallest, DOUBLE.largest, DOUBLE.next_after)
     arrivals = [NOTHING, arrival(0, 0, alone(0)), *[NOTHING] * 1000]
     count = computed(arrivals, fmpq(1), coarse.roundoff).error(coarse.roundoff, 0)
     assert count <= proved(arrivals, 1, coarse)[-1] <= fmpq(11, 10) * count
 
 
 def test_more_additions_than_half_of_1_over_u_are_refused():
-    coarse = Real("coarse", 8, fmpq(1, 64), DOUBLE.smallest, DOUBLE.largest, DOUBLE.next_to)
+    coarse = Real("coarse", 8, fmpq(1, 64), DOUBLE.smallest, DOUBLE.largest, DOUBLE.next_after)
     assert [error is None for error in proved([NOTHING] * 40, 1, coarse)] == [False] * 31 + [True] * 9
 
 
@@ -196,7 +196,7 @@ def test_a_pulse_starts_at_the_next_number_and_knows_how_late_that_is(real):
     time = fmpq(1, 3)
     form = closed_form([Signal("made", (arrival(time, fmpq(1, 10), [fmpq(1, 7), 2]),))], 1.0, real)
     ((pulse,),) = [output.pulses for output in form.outputs]
-    assert rational(real.next_to(pulse.start, 0.0)) < time <= rational(pulse.start)
+    assert rational(real.next_after(pulse.start, 0.0)) < time <= rational(pulse.start)
     late = rational(pulse.start) - time
     assert abs(rational(pulse.excess) - late) <= late * real.roundoff
     (family,) = pulse.families
@@ -207,5 +207,5 @@ def test_a_pulse_starts_at_the_next_number_and_knows_how_late_that_is(real):
 def test_it_is_checked_around_every_start_and_between(real):
     arrivals = (arrival(1, 0, [1]), arrival(fmpq(5, 2), 0, [1]))
     form = closed_form([Signal("made", arrivals), Signal("zero", ())], 3.0, real)
-    before = [real.next_to(start, 0.0) for start in (1.0, 2.5, 3.0)]
+    before = [real.next_after(start, 0.0) for start in (1.0, 2.5, 3.0)]
     assert form.check_points == sorted([0.0, 0.5, before[0], 1.0, 1.75, before[1], 2.5, 2.75, before[2], 3.0])

@@ -242,4 +242,4 @@ def test_pieces_take_no_longer_than_they_are_worth_where_a_closed_form_serves(mo
     assert chosen.name == "closed"
     assert "s, the limit where another program serves is 0.1 s (--evaluator pieces helps)" in chosen.reason
     monkeypatch.setattr(choice, "_OF_MANY", 5)
-    assert " expected where another program serves" not in choice.choose(model.shortened(fmpq(1, 100))).reason
+    assert " expected where another program serves" not in choice.choose(model.shorten(fmpq(1, 100))).reason

@@ -25,7 +25,7 @@ def made(draw):
     """Cuts of a horizon, at breakpoints that are no numbers, some with no number between them."""
     real = draw(st.sampled_from([DOUBLE, SINGLE]))
     until = rational(real.not_below(fmpq(draw(st.integers(1, 400)), draw(st.integers(1, 90)))))
-    gap = until - rational(real.next_to(float(until), 0.0))
+    gap = until - rational(real.next_after(float(until), 0.0))
     parts = draw(st.sets(st.fractions(0, 1, max_denominator=9), max_size=3))
     times = {until * rational(part) for part in parts}
     shift = gap * draw(st.sampled_from([0, 1, 2, 3])) / 10
@@ -35,7 +35,9 @@ def made(draw):
 
 def points(cuts: _Cuts, until: fmpq, real: Real) -> list[float]:
     """Numbers of the horizon: all starts, their neighbours, centres."""
-    near = {tau for start in cuts.starts for tau in (start, real.next_to(start, 0.0), real.next_to(start, np.inf))}
+    near = {
+        tau for start in cuts.starts for tau in (start, real.next_after(start, 0.0), real.next_after(start, np.inf))
+    }
     return sorted(tau for tau in near | set(cuts.centres) if tau >= 0 and rational(tau) <= until)
 
 
@@ -74,7 +76,7 @@ def test_a_centre_is_a_number_and_half_a_piece_is_no_longer_than_it_must_be(draw
 def test_an_output_that_grows_beyond_the_horizon_is_not_looked_at_there(real, until):
     """1 at the last number of the horizon, 0 before it, and 2 just after it."""
     last = rational(real.not_below(until))
-    before = rational(real.next_to(float(last), 0.0))
+    before = rational(real.next_after(float(last), 0.0))
     cuts = _Cuts([fmpq(0), before], last, 4, real)
     with ctx.workprec(300):
         piece = bisect_right(cuts.starts, float(last)) - 1
@@ -86,7 +88,7 @@ def test_an_output_that_grows_beyond_the_horizon_is_not_looked_at_there(real, un
 @both
 def test_of_a_single_number_at_the_end_only_that_is_looked_at(real):
     """Its last bit is 1, so that the middle between it and the next one is rounded to the next."""
-    last = rational(real.next_to(6.0, np.inf))
+    last = rational(real.next_after(6.0, np.inf))
     ulp = last - 6
     cuts = _Cuts([fmpq(0), last], last, 4, real)
     assert cuts.middles[-1] == last + ulp
@@ -133,7 +135,7 @@ def test_a_number_that_is_rounded_into_the_next_part_is_found():
     start = 1.9824121244677786
     cuts = _Cuts([fmpq(0), fmpq(1, 10), rational(start)], rational(3.304020207446297), 1, DOUBLE)
     grid = cuts.grid([0], [[(0.0,)] * len(cuts.centres)])
-    before = DOUBLE.next_to(start, 0.0)
+    before = DOUBLE.next_after(start, 0.0)
     assert before * grid.scale == 3.0
     assert rational(before) * rational(grid.scale) < 3 < rational(start) * rational(grid.scale)
     assert grid.starts[grid.first[3]] <= before
@@ -153,6 +155,6 @@ def test_it_is_checked_at_both_ends_of_every_piece_and_at_its_centre(real):
     cuts = _Cuts([fmpq(0), fmpq(3, 2)], fmpq(5, 2), 1, real)
     grid = cuts.grid([0], [[(0.0,)] * len(cuts.centres)])
     form = Pieces((), 2.5, real, (grid,), 1)
-    before = [real.next_to(end, 0.0) for end in cuts.starts[1:]]
+    before = [real.next_after(end, 0.0) for end in cuts.starts[1:]]
     assert before[-1] == 2.5
     assert form.check_points == sorted({*cuts.starts[:-1], *cuts.centres, *before})

@@ -37,7 +37,7 @@ def pressed(parts, until, times, steps):
 def last_numbers(until, real):
     """The last but one and the last number of a horizon."""
     last = lower(pressed(ROD, until, [0], [1])).horizon(real)
-    return Fraction(real.next_to(last, 0.0)), Fraction(last)
+    return Fraction(real.next_after(last, 0.0)), Fraction(last)
 
 
 def places(until, real):

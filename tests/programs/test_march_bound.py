@@ -56,7 +56,7 @@ def space() -> JointSpace:
 
 def test_a_state_space_is_the_law_of_its_joint() -> None:
     """Under s e^(p tau) both give (M p + C + K/p) q = s."""
-    law, made = JointLaw.of(THREE, THREE.joints[0]), space()
+    law, made = JointLaw.assemble(THREE, THREE.joints[0]), space()
     for p in (Q(1, 3), Q(7)):
         size = range(3)
         rows = [law.mass[a] * p * (a == b) + law.damping[a][b] + law.stiffness[a][b] / p for a in size for b in size]
@@ -68,7 +68,7 @@ def test_a_state_space_is_the_law_of_its_joint() -> None:
 
 def test_its_energy_is_lost_to_dashpots_and_ends_alone() -> None:
     """d/dt of sum of weights x**2 / 2 is -q C q, whatever x is."""
-    law, made = JointLaw.of(THREE, THREE.joints[0]), space()
+    law, made = JointLaw.assemble(THREE, THREE.joints[0]), space()
     for n in range(5):
         x = fmpq_mat(made.states, 1, [Q((3 * n + 2 * k) % 7 - 3, k + 1) for k in range(made.states)])
         moved, q = made.rates * x, made.shown * x

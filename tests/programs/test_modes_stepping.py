@@ -13,7 +13,7 @@ from tests.support import oscillators
 from tests.support.assembly import exact
 from tests.support.oscillators import by_exponentials, evaluator, storeys, uniform
 from wavesym.errors import UnservedError
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.modes import rounding
@@ -192,12 +192,14 @@ def test_many_records_at_once_are_what_each_is_alone():
 
 def test_loads_are_put_together_from_their_ramps():
     ramps = [("b", 1, 2), ("b", 3, -2), ("r", 3, "1/2"), ("b", 7, 5)]
-    made = linear_loads([Applied(s, exact(t), exact(w)) for s, t, w in ramps], [("a", "b"), ("s", "r")], exact(6), str)
+    made = linear_loads(
+        [AppliedLoad(s, exact(t), exact(w)) for s, t, w in ramps], [("a", "b"), ("s", "r")], exact(6), str
+    )
     assert [str(time) for time in made.times] == ["0", "1", "3"]
     assert [[str(value) for value in row] for row in made.samples] == [["0", "0"], ["0", "0"], ["4", "0"]]
     assert [str(slope) for slope in made.slopes] == ["0", "1/2"]
     with pytest.raises(UnservedError, match=r"weight=3\), and modes support no jump"):
-        linear_loads([Applied("a", exact(0), exact(3))], [("a", "b")], exact(6), str)
+        linear_loads([AppliedLoad("a", exact(0), exact(3))], [("a", "b")], exact(6), str)
 
 
 @pytest.mark.parametrize(

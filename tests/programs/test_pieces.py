@@ -57,7 +57,7 @@ def test_waves_on_windows_and_exact_tables_agree_to_30_digits(drawn, random):
             size = largest if largest > 0 else arb(1)  # 0 by symmetry, which balls on windows do not know
             for _ in range(10):
                 tau = rational(random.uniform(0, float(until)))
-                difference = tables.at(tau) - windows.at(tau)
+                difference = tables.evaluate(tau) - windows.evaluate(tau)
                 assert difference.contains(0)
                 assert difference.rad() <= size * arb(fmpq(1, 10**30))
 

@@ -46,7 +46,7 @@ def lost(given, derived):
         lines = list(assigned(LAWS, LAWS.functions, DOUBLE))
     found = in_c((text for _, text in lines), given)
     for function, value in zip(functions, found, strict=True):
-        exact = function.at(values) if isinstance(function, Ratio) else function
+        exact = function.evaluate(values) if isinstance(function, Ratio) else function
         if NORMAL <= abs(exact) <= LARGEST and not (
             np.isfinite(value) and abs(rational(float(value)) - exact) <= FEW * abs(exact)
         ):

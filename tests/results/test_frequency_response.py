@@ -474,7 +474,7 @@ def test_taylor_polynomials_enclose_a_response_and_its_slopes() -> None:
     with ctx.workprec(128):
         for middle, radius in ((2.0, 0.03), (7.5, 0.01), (11.0, 0.002)):
             ball = arb(middle, radius)
-            around = [resonance._coefficients(each, 3) for each in resonance._about(transfer, ball)]
+            around = [resonance._coefficients(each, 3) for each in resonance._power_series(transfer, ball)]
             for part in (-1, -0.5, 0.3, 1):
                 w = acb(arb(middle + part * radius))
                 here = [resonance._coefficients(each, 3) for each in transfer(acb_series([w, 1], prec=3))]

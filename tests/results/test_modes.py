@@ -212,8 +212,8 @@ def test_shapes_along_rods_are_sines_where_rods_are_cut_too(
 ) -> None:
     """Between fixed ends no node moves; and a branch."""
     held = wavesym.modes(chain("fixed", {"rod": 1}, {"rod": 1}, "fixed"), 3, points=9)
-    (line,) = held.along
-    for n, moved in enumerate(line.moved, 1):
+    (line,) = held.line_shapes
+    for n, moved in enumerate(line.displacements, 1):
         right = np.sin(n * pi * line.x / 2)
         assert moved.real / np.sign(moved.real @ right) == pytest.approx(right / np.abs(right).max(), abs=1e-12)
     monkeypatch.chdir(tmp_path)

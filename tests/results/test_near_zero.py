@@ -9,10 +9,10 @@ import wavesym
 from wavesym.errors import CostError
 from wavesym.exact.extremes import TrueExtreme, extremes
 from wavesym.programs.modes.loads import sampled_roughness
-from wavesym.results import recorded, summary
+from wavesym.results import many_records, summary
+from wavesym.results.many_records import ManyRecords, SharedModes
 from wavesym.results.near_zero import zero_within
-from wavesym.results.recorded import ManyRecords, SharedModes
-from wavesym.results.sampled import sampled_extremes
+from wavesym.results.sampling import sampled_extremes
 from wavesym.scene import Scene, lower
 
 GUN = [{"joint": True, "name": "gun"}, {"rod": 4}, "absorbing"]
@@ -125,14 +125,14 @@ def test_many_records(monkeypatch):
         tolerance="1e-4",
     )
     model = lower(scene)
-    right = recorded._extremes
+    right = many_records._extremes
 
     def noisy(*given):
         values, taus = right(*given)
         values[0, 0, 0], taus[0, 0, 0] = -1e-6 * values[0, 0, 1], 2.5
         return values, taus
 
-    monkeypatch.setattr(recorded, "_extremes", noisy)
+    monkeypatch.setattr(many_records, "_extremes", noisy)
     values = np.array([[float(each) for each in samples] + [0.0, 0.0]])
     records = ManyRecords(values, 0.0, 0.5, [sampled_roughness(values[0, 1:])], 1.0)
     found = SharedModes(model, 0.5).extremes(records)

@@ -23,10 +23,10 @@ from wavesym.mechanics.damping import Damping
 from wavesym.programs.making import make
 from wavesym.programs.modes.records import Panels
 from wavesym.programs.request import Request
-from wavesym.results import sampled, statistics, summary
+from wavesym.results import sampling, statistics, summary
 from wavesym.results.peaks import case_names
 from wavesym.results.rows import SAMPLES, own_samples
-from wavesym.results.sampled import sampled_extremes
+from wavesym.results.sampling import sampled_extremes
 from wavesym.results.summary import summarise
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import sample_comb
@@ -194,7 +194,7 @@ def test_tops_between_samples_are_found():
 
 
 def test_samples_alone_miss_them(monkeypatch):
-    monkeypatch.setattr(sampled, "_ROUNDS", 0)
+    monkeypatch.setattr(sampling, "_ROUNDS", 0)
     coarse = np.linspace(0, 6, 97)
     values, _ = sampled_extremes(coarse, waves(coarse), each)
     assert values[0, 1] < waves(np.linspace(0, 6, 600_001))[0].max() - 1e-6

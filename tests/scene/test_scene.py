@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wavesym
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.scene import Scene, builtin_names, lower
 
@@ -32,7 +32,7 @@ def scene(system: dict[str, Any], load: list[dict[str, Any]], **output: Any) -> 
     return Scene(name="s", system=system, load=load, output=WATCH | output)
 
 
-def acceleration(loads: tuple[Applied, ...], tau: Fraction) -> Fraction:
+def acceleration(loads: tuple[AppliedLoad, ...], tau: Fraction) -> Fraction:
     """The base acceleration that weights of unit steps and ramps stand for; H(0) = 1."""
     started = [load for load in loads if rational(tau) >= load.time]
     ramped = ((load, tau - fraction(load.time)) for load in started)
@@ -74,14 +74,14 @@ def test_moments_are_sorted_by_time_and_body_and_merged() -> None:
     ]
     zero, five = fmpq(0), fmpq(5)
     assert lower(scene(DRIVE, load)).loads == (
-        Applied("M2", zero, fmpq(4)),
-        Applied("M10", zero, fmpq(1)),
-        Applied("M10", five, fmpq(2)),
+        AppliedLoad("M2", zero, fmpq(4)),
+        AppliedLoad("M10", zero, fmpq(1)),
+        AppliedLoad("M10", five, fmpq(2)),
     )
 
 
 def test_a_collision_is_one_impact() -> None:
-    assert lower(Scene.from_toml("collision_m4")).loads == (Applied("impact", fmpq(0), fmpq(1)),)
+    assert lower(Scene.from_toml("collision_m4")).loads == (AppliedLoad("impact", fmpq(0), fmpq(1)),)
 
 
 def test_outputs_keep_their_order_and_are_named_as_written(tmp_path: Path) -> None:

@@ -17,12 +17,12 @@ from wavesym.systems.preset import Preset
 
 
 def _braked(roof: Family, m: Quantity, p: Parameters, x: Quantity) -> Node:
-    return replace(roof.at(x), damping=p.dashpot[m])
+    return replace(roof.node_at(x), damping=p.dashpot[m])
 
 
 def _families(m: Quantity, p: Parameters) -> tuple[Family, ...]:
     *others, roof = BUILDING_GROUND.families(m, p)
-    return (*others, replace(roof, at=partial(_braked, roof, m, p)))
+    return (*others, replace(roof, node_at=partial(_braked, roof, m, p)))
 
 
 def _indices(m: int) -> Mapping[str, range]:

@@ -12,7 +12,7 @@ from wavesym.exact.contacts.events import events
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.ball import Balls
 from wavesym.mechanics.event import ContactEvent
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
@@ -48,7 +48,7 @@ def line(parts: Sequence[tuple[Any, ...]], until: object, watched: Sequence[Prob
     points: list[Point] = []
     bars: list[Bar] = []
     links: list[Link] = []
-    applied: list[Applied] = []
+    applied: list[AppliedLoad] = []
     here: int | None = None
 
     def new(point: Point) -> int:
@@ -79,7 +79,7 @@ def line(parts: Sequence[tuple[Any, ...]], until: object, watched: Sequence[Prob
             loads = (UnitLoad(name, None, (size,)),) if size != 0 else ()
             points[here] = Point(mass, motion=motion, loads=loads, **more)
             if loads:
-                applied.append(Applied(name, q(0), q(1)))
+                applied.append(AppliedLoad(name, q(0), q(1)))
     network = Network(tuple(points), tuple(bars), tuple(links))
     probes = tuple(watched) or (seen(0),)
     return Model("line", network, tuple(applied), probes, q(until), q("1e-10"), Labels({}, (), ""))
@@ -99,7 +99,7 @@ def values(model: Model, taus: Sequence[object], bits: int = 256) -> list[list[f
     with ctx.workprec(bits):
         for probe in model.probes:
             balls = Balls(motion.segments(probe, bits))
-            found = [balls.at(q(tau)) for tau in taus]
+            found = [balls.evaluate(q(tau)) for tau in taus]
             assert all(ball.rad() < fmpq(1, 10**30) for ball in found), probe.name
             rows.append([middle(ball) for ball in found])
     return rows

@@ -130,7 +130,7 @@ def test_faults_of_a_network_are_found(fault: Callable[[Network], Network], monk
 
 
 def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    law_of = JointLaw.of
+    law_of = JointLaw.assemble
 
     def wrong(network: Network, joint: Joint) -> JointLaw:
         law = law_of(network, joint)
@@ -148,6 +148,6 @@ def test_the_matrices_are_those_of_the_engine_less_the_bars() -> None:
     network = model().network
     made = problem_of(model())
     for joint in network.joints:
-        law = JointLaw.of(network, joint)
+        law = JointLaw.assemble(network, joint)
         rows = np.ix_(joint.points, joint.points)
         assert made.stiffness[rows].tolist() == [[float(k.p) / float(k.q) for k in row] for row in law.stiffness]

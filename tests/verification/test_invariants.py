@@ -66,7 +66,7 @@ MOST = 30_000
 
 def exactly(scene, until):
     """A scene's books, its values in balls, rounded once, and what that costs."""
-    books = Balancing(lower(scene).shortened(fmpq(until)), MOST)
+    books = Balancing(lower(scene).shorten(fmpq(until)), MOST)
     assert books.struck
     response = Response(books.model)
     last = float(books.struck[-1])
@@ -180,7 +180,7 @@ def test_what_is_not_looked_at_is_said(monkeypatch):
 @pytest.mark.slow
 @FOUR
 def test_the_march_keeps_them_for_long(scene):
-    books = Balancing(lower(scene).shortened(fmpq(100)), 10 * MOST)
+    books = Balancing(lower(scene).shorten(fmpq(100)), 10 * MOST)
     made = march(books.model.tolerating(fmpq(1, 10**4)))
     evaluate = assemble(made).evaluate
     for balance in balances(books, evaluate, [output.bound * output.largest for output in made.outputs]):

@@ -125,7 +125,7 @@ def formula(
         )
         if not 0 < last <= model.until:
             raise WavesymError(f"--until: {float(until):g} is not between 0 and the horizon of the scene")
-        model = model.shortened(last)
+        model = model.shorten(last)
     if not symbolic:
         return output_formula(model, output).render(format)
     from wavesym.derivation.rate_letters import in_rates

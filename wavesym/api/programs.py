@@ -15,7 +15,7 @@ from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, sources
 
 if TYPE_CHECKING:
-    from wavesym.mechanics.loads import Applied
+    from wavesym.mechanics.loads import AppliedLoad
     from wavesym.mechanics.model import Model
     from wavesym.programs.program import Program
     from wavesym.running.model import RuntimeModel
@@ -51,7 +51,7 @@ def program(scene: Scene, request: Request, *, tested: bool = False) -> Program:
     return make(lowered, request, tested=tested)
 
 
-def _varied_loads(scene: Scene, runtime: Sequence[str]) -> tuple[tuple[str, Applied], ...]:
+def _varied_loads(scene: Scene, runtime: Sequence[str]) -> tuple[tuple[str, AppliedLoad], ...]:
     """The numbers of the loads, with their labels, where they are parameters at run time."""
     return amplitudes(scene) if "load" in runtime else ()
 
@@ -225,7 +225,7 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
 
 def scene_notes(scene: Scene) -> list[str]:
     """How the scene was read where that may surprise, and a line for a scene in which nothing happens."""
-    from wavesym.results.unexpected import without_load
+    from wavesym.results.notices import without_load
 
     lowered = lower(scene)
     return [*lowered.labels.notes, *without_load(lowered)]

@@ -92,9 +92,9 @@ def run_csv(
     Raises:
         ToleranceError, CostError: where no program will do, or it would take minutes to know what contacts do.
     """
+    from wavesym.results.notices import event_lines, outside_lines, warning_lines
     from wavesym.results.response import Response
     from wavesym.results.rows import csv_lines
-    from wavesym.results.unexpected import event_lines, outside_lines, warning_lines
 
     model = lower(scene)
     response = Response(model)
@@ -203,6 +203,6 @@ def spectrum_notes(scene: Scene, found: Spectra) -> list[str]:
 
 def unexpected_lines(scene: Scene) -> list[str]:
     """What a user might not expect: how the scene was read, no load, contacts that open early enough to matter."""
-    from wavesym.results.unexpected import warning_lines
+    from wavesym.results.notices import warning_lines
 
     return warning_lines(lower(scene))

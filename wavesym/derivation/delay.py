@@ -136,7 +136,7 @@ def _family_equations(family: Family) -> list[DelayEquation]:
     alone = exact(family.first - family.last) == 0
     x = exact(family.first) if alone else INDEX
     equations = []
-    for unknown, own, right in _at_node(family.at(x), x):
+    for unknown, own, right in _at_node(family.node_at(x), x):
         if alone:
             equations.append(DelayEquation(unknown.function, unknown.rod, own, right, unknown.rod, unknown.rod, 1))
             continue

@@ -22,7 +22,7 @@ def in_rates(symbols: SymbolicChain) -> SymbolicChain:
     names = [f"letter_{number}" for number in range(told.nvars())]
     free = Ring(names)
     letters = list(free.symbols().values())
-    found = [rate.composed(letters) for rate in rates(symbols.chain).values()]
+    found = [rate.compose(letters) for rate in rates(symbols.chain).values()]
     if any(rate.denominator for rate in found):
         return symbols
     images, inverse = list(told.gens()), letters
@@ -31,11 +31,11 @@ def in_rates(symbols: SymbolicChain) -> SymbolicChain:
         images[place] = letter.compose(*images, ctx=told)
         change = list(letters)
         change[place] = (letters[place] - Ratio(free, rest)) / Ratio(free, slope)
-        inverse = [symbol.composed(change) for symbol in inverse]
+        inverse = [symbol.compose(change) for symbol in inverse]
     ring = Ring(names, images)
     own = list(ring.symbols().values())
-    inverse = [symbol.composed(own) for symbol in inverse]
-    named = {name: ratio.composed(inverse) for name, ratio in symbols.meaning.items()}
+    inverse = [symbol.compose(own) for symbol in inverse]
+    named = {name: ratio.compose(inverse) for name, ratio in symbols.meaning.items()}
     chain = replace(symbols.chain, parameters=parameters(symbols.chain.parameters, named))
     return replace(symbols, chain=chain, ring=ring)
 

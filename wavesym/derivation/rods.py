@@ -28,7 +28,7 @@ def rod_kinds(system: System) -> tuple[RodKind, ...]:
     for family in system.families(COUNT, SYMBOLS):
         alone = exact(family.first - family.last) == 0
         x = exact(family.first) if alone else INDEX - 1
-        rod = family.at(x).right
+        rod = family.node_at(x).right
         if rod is not None:
             rod = Rod(exact(rod.tau0), exact(rod.x0), exact(rod.velocity))
             number = exact(x + 1)

@@ -12,7 +12,7 @@ from wavesym.derivation.table import Row, Table
 from wavesym.documents.latex_number import latex_number
 from wavesym.exact.tables.network_table import NetworkTable
 from wavesym.mechanics.symbolic import SymbolicChain
-from wavesym.numbers.factored import polynomial_text
+from wavesym.numbers.factorization import polynomial_text
 from wavesym.numbers.ratio import Ratio
 from wavesym.rendering import render_stream
 
@@ -68,8 +68,8 @@ def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[
     forms: dict[str, None] = {}
     for row in table.rows():
         value = row.value if isinstance(row.value, Ratio) else symbols.ring.constant(fmpq(str(row.value)))
-        told = value.factored
-        forms |= dict.fromkeys(polynomial_text(form) for form, _ in told.below)
+        told = value.factorization
+        forms |= dict.fromkeys(polynomial_text(form) for form, _ in told.denominator)
         above, below = told.parts
         fields = row._asdict() | {"rate": str(row.rate), "numerator": above, "denominator": below}
         del fields["value"]

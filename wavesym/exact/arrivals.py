@@ -108,7 +108,7 @@ class _Fronts:
             highest = _highest(self._model.sums[probe])
             for weight, reading in self._model.sums[probe]:
                 if (point := reading.point) is None:
-                    for end, way, heard in self._heard(weight, reading, highest):
+                    for end, way, heard in self._end_contributions(weight, reading, highest):
                         bar = network.bars[end.bar]
                         ends[end].append((k, way * bar.delay, heard))
                         # what a bar holds is there until something is sent into it
@@ -118,11 +118,11 @@ class _Fronts:
                         if time <= self._until:
                             sums[k][time] = (sums[k][time] + _modular(weight) * value) % _MODULUS
                 else:
-                    points[point].append((k, self._counted(weight, reading, highest)))
+                    points[point].append((k, self._velocity_weight(weight, reading, highest)))
         self._begin()
         while self._order:
             time, number = heappop(self._order)
-            sent, moved = self._joints[number].to(self._coming.pop((time, number)), time)
+            sent, moved = self._joints[number].respond(self._coming.pop((time, number)), time)
             for point, value in moved.items():
                 for k, counted in points[point]:
                     sums[k][time] = (sums[k][time] + counted * value) % _MODULUS
@@ -131,19 +131,19 @@ class _Fronts:
                     if time + delay <= self._until:
                         sums[k][time + delay] = (sums[k][time + delay] + counted * value) % _MODULUS
                 if value:
-                    self._arrive(time + network.bars[end.bar].delay, network.beyond(end), value)
+                    self._arrive(time + network.bars[end.bar].delay, network.opposite_end(end), value)
         return sums
 
-    def _counted(self, weight: fmpq, reading: Gauge, highest: int) -> int:
+    def _velocity_weight(self, weight: fmpq, reading: Gauge, highest: int) -> int:
         """What a velocity counts, times t to the `highest` power; t to the order less where it is differentiated."""
         return _modular(weight) * pow(self._t, highest - reading.order, _MODULUS) % _MODULUS
 
-    def _heard(self, weight: fmpq, reading: Gauge, highest: int) -> Iterator[tuple[End, fmpq, int]]:
+    def _end_contributions(self, weight: fmpq, reading: Gauge, highest: int) -> Iterator[tuple[End, fmpq, int]]:
         """From which ends of its bar it is read, how far away (a part of the bar), and what each wave counts."""
         over = 1 / self._network.bars[reading.rod - 1].speed if reading.quantity == "strain" else fmpq(1)
         right, left = reading.weights
-        yield End(reading.rod - 1, 0), reading.place, self._counted(weight * over * right, reading, highest)
-        yield End(reading.rod - 1, 1), 1 - reading.place, self._counted(weight * over * left, reading, highest)
+        yield End(reading.rod - 1, 0), reading.place, self._velocity_weight(weight * over * right, reading, highest)
+        yield End(reading.rod - 1, 1), 1 - reading.place, self._velocity_weight(weight * over * left, reading, highest)
 
     def _begin(self) -> None:
         """What is on its way before anything is sent: the state at tau = 0, and the loads."""
@@ -177,10 +177,10 @@ class _Answer:
         self._network = network = model.network
         self._joint = joint = network.joints[number]
         self._t = t
-        law = JointLaw.of(network, joint)
+        law = JointLaw.assemble(network, joint)
         self._law = law
         self._ends = joint_ends(network, joint)
-        self._free = [k for k, given in enumerate(law.given) if given is None]
+        self._free = [k for k, given in enumerate(law.motions) if given is None]
         rows = [[self._factor(k, b) for b in self._free] for k in self._free]
         self._inverse = _inverse(rows) if rows else None
         self._loads: dict[fmpq, dict[int, int]] = defaultdict(dict)
@@ -191,7 +191,7 @@ class _Answer:
                 for unit in network.points[point].loads:
                     if unit.source == load.source:
                         k = place[point]
-                        value = self._transformed(network.points[point].action(unit))
+                        value = self._transform(network.points[point].action(unit))
                         here = self._loads[load.time]
                         here[k] = (here.get(k, 0) + _modular(load.weight) * value) % _MODULUS
 
@@ -212,10 +212,10 @@ class _Answer:
             return (c + k * t) % _MODULUS
         return ((_modular(law.mass[a]) if a == b else 0) + c * t + k * t * t) % _MODULUS
 
-    def _transformed(self, coefficients: tuple[fmpq, ...]) -> int:
+    def _transform(self, coefficients: tuple[fmpq, ...]) -> int:
         return sum(_modular(c) * factorial(n) * pow(self._t, n, _MODULUS) for n, c in enumerate(coefficients))
 
-    def to(self, came: Mapping[End, int], time: fmpq) -> tuple[dict[End, int], dict[int, int]]:
+    def respond(self, came: Mapping[End, int], time: fmpq) -> tuple[dict[End, int], dict[int, int]]:
         """What it sends into its ends when this arrives, and the velocities of its points; as changes of both."""
         network, law, t = self._network, self._law, self._t
         rule = joint_rule()
@@ -226,7 +226,7 @@ class _Answer:
             if value := came.get(each.end, 0):
                 push[each.place] += _modular(each.force) * value
         q = {}
-        for k, given in enumerate(law.given):
+        for k, given in enumerate(law.motions):
             if given is not None:
                 start = _modular(network.points[self._joint.points[k]].velocity) if begins else 0
                 q[k] = (loads.get(k, 0) + start) % _MODULUS

@@ -25,7 +25,7 @@ from wavesym.exact.contacts.events import scheduled
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.joints.joint import SWING, JointLaw
 from wavesym.mechanics.gauge import Gauge, Sum
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 
 if TYPE_CHECKING:
@@ -121,14 +121,14 @@ class Breakpoints:
     def longest(self, number: int) -> fmpq:
         """The longest stretch of a joint on which it moves."""
         times = self.joints[number]
-        if self._still(number):
+        if self._is_at_rest(number):
             times = times[1:]
         return max((high - low for low, high in pairwise(times)), default=fmpq(0))
 
-    def _still(self, number: int) -> bool:
+    def _is_at_rest(self, number: int) -> bool:
         """Whether nothing moves on the first stretch of a joint."""
         joint = self._network.joints[number]
-        return self._network.at_rest(joint) and all(load.time > 0 for at, load in self._loaded() if at == number)
+        return self._network.at_rest(joint) and all(load.time > 0 for at, load in self._joint_loads() if at == number)
 
     def of_output(self, terms: Sum) -> Sequence[fmpq]:
         """Where a sum of readings may jump or bend, and 0; in order."""
@@ -163,11 +163,11 @@ class Breakpoints:
         network = self._network
         if not any(point.stiffness for point in network.points) and not any(link.stiffness for link in network.links):
             return {}  # told without laws, whose derivation takes SymPy
-        laws = {number: JointLaw.of(network, network.joints[number]) for number in self._last}
+        laws = {number: JointLaw.assemble(network, network.joints[number]) for number in self._last}
         return {number: law.longest for number, law in laws.items() if law.longest is not None}
 
     @cached_property
-    def _apart(self) -> fmpq:
+    def _cut_distance(self) -> fmpq:
         """How far cuts are apart, of a network with springs."""
         shortest = min(self._bearable.values())
         measure = reduce(fmpq.gcd, self._delays, fmpq(0)) or shortest
@@ -187,7 +187,7 @@ class Breakpoints:
     def _natural_parts(self) -> Sequence[fmpq]:
         """Where in a window stretches start for the sake of loads."""
         (delay,) = self._delays
-        times = {load.time for _, load in self._loaded()}
+        times = {load.time for _, load in self._joint_loads()}
         return sorted({fmpq(0), *(time - (time / delay).floor() * delay for time in times)})
 
     @cached_property
@@ -248,10 +248,10 @@ class Breakpoints:
 
     def _end(self, number: int, times: set[fmpq]) -> fmpq:
         """Later than anything that is asked of a joint, but no later than the stretches before it let it be known."""
-        end = max(times) + self._reach(number) if number in self._bearable else self._last[number] + self._apart
+        end = max(times) + self._reach(number) if number in self._bearable else self._last[number] + self._cut_distance
         return min(self._last[number] + 1, end)
 
-    def _loaded(self) -> Iterator[tuple[int, Applied]]:
+    def _joint_loads(self) -> Iterator[tuple[int, AppliedLoad]]:
         for number in self._last:
             for point in self._network.joints[number].points:
                 for unit in self._network.points[point].loads:
@@ -264,7 +264,7 @@ class Breakpoints:
         network = self._network
         found: dict[int, set[fmpq]] = {number: set() for number in self._last}
         latest: dict[int, fmpq] = {}
-        coming = [(load.time, number, False) for number, load in self._loaded()]
+        coming = [(load.time, number, False) for number, load in self._joint_loads()]
         coming += [
             (fmpq(0), number, False)
             for number in self._last
@@ -287,12 +287,14 @@ class Breakpoints:
                 heappush(coming, (time + self._reach(number), number, True))
             for end, _ in network.joints[number].ends:
                 bar = network.bars[end.bar]
-                heappush(coming, (time + bar.delay, network.joint_of[network.point_at(network.beyond(end))], False))
+                heappush(
+                    coming, (time + bar.delay, network.joint_of[network.point_at(network.opposite_end(end))], False)
+                )
         return found
 
     def _reach(self, number: int) -> fmpq:
         """How long a stretch may be until it is cut."""
-        return (self._bearable[number] / self._apart).floor() * self._apart
+        return (self._bearable[number] / self._cut_distance).floor() * self._cut_distance
 
 
 def _in_order(first: fmpq, *times: Sequence[fmpq]) -> Sequence[fmpq]:

@@ -107,7 +107,7 @@ def _of_output(motion: Motion, probe: Probe) -> tuple[Range, Averages]:
             return NOTHING, NO_AVERAGES
         ends = [*(segment.start for segment in segments[1:]), motion.until]
         stretches = list(zip(segments, ends, strict=True))
-        at_ends = (abs(segment.at(u)).lower() for segment, end in stretches for u in (_ZERO, end - segment.start))
+        at_ends = (abs(segment.evaluate(u)).lower() for segment, end in stretches for u in (_ZERO, end - segment.start))
         negligible = max(at_ends) * _NEGLIGIBLE
         pieces = [
             _Piece.from_segment(segment, end, segment is segments[-1], negligible)
@@ -160,7 +160,7 @@ class _Piece:
         """The value at its start."""
         return arb(0) if self.from_zero else arb_poly(list(self.coefficients))(arb(-1)) + arb(0, self.radius)
 
-    def at(self, t: fmpq, value: arb) -> _Candidate:
+    def candidate(self, t: fmpq, value: arb) -> _Candidate:
         """A value at t, at a double in the piece; where none is, or it is the limit at its end, at the jump behind."""
         tau = self.start + (self.end - self.start) * (1 + t) / 2
         exact = self.begin if self.from_zero and t == -1 else value
@@ -282,7 +282,7 @@ def _first(pieces: Sequence[_Piece], sign: int, low: arb, scale: arb) -> _Candid
     found: list[_Candidate] = []
     for piece in pieces:
         for value, t in _tops([sign * c for c in piece.coefficients], piece.radius, low, scale * _FLAT):
-            found.append(piece.at(t, value))
+            found.append(piece.candidate(t, value))
             low = low.max(found[-1].value.lower())
     equal = low - scale * _EQUAL
     return min((each for each in found if each.value.upper() >= equal), key=lambda each: each.order)

@@ -68,6 +68,6 @@ def light_arrivals(model: Model) -> list[fmpq | None]:
 def _begins(segments: Sequence[Segment], until: fmpq) -> fmpq | None:
     ends = [*(segment.start for segment in segments[1:]), until]
     for segment, end in zip(segments, ends, strict=True):
-        if any(segment.at((end - segment.start) * fmpq(k, 3)) != 0 for k in range(4)):
+        if any(segment.evaluate((end - segment.start) * fmpq(k, 3)) != 0 for k in range(4)):
             return segment.start
     return None

@@ -14,7 +14,7 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.arrivals import smooth_starts
 from wavesym.exact.breakpoints import Breakpoints
-from wavesym.exact.joints.enclosed import STILL, Enclosed, shift, weighted_sum
+from wavesym.exact.joints.enclosure import STILL, Enclosure, shift, weighted_sum
 from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.joints.jumps import refuse_jumps
 from wavesym.exact.joints.network_waves import LoadPolynomial, NetworkWaves, Waves
@@ -75,14 +75,14 @@ class Motion:
     def first_bits(self) -> int:
         """With fewer bits nothing would be left at the end of the horizon; whole words, up to more than is had."""
         _, swing = self._hardest
-        words = (64 + self._crossed + _CANCELLED * swing) / _WORD
+        words = (64 + self._crossing_bits + _CANCELLED * swing) / _WORD
         return int(min(max(int(words.ceil()) * _WORD, FIRST_BITS), _MOST_FIRST))
 
     @property
     def helps(self) -> str:
         """What would make `first_bits` less."""
         law, swing = self._hardest
-        if self._crossed >= _BORNE * swing:
+        if self._crossing_bits >= _BORNE * swing:
             return "a shorter horizon or longer rods"
         ways = ["heavier bodies"] * bool(law.heavy) + ["softer springs"] * law.springs
         return " or ".join(ways)
@@ -95,7 +95,7 @@ class Motion:
         """
         if not self._series:
             return self._powers
-        wanted = bits - self.first_bits + _WANTED + float(self._crossed)
+        wanted = bits - self.first_bits + _WANTED + float(self._crossing_bits)
         terms, swing = bits // 8, e * (1 + float(self._hardest[1]))
         while terms * log2(terms / swing) < wanted:
             terms += 1 + terms // 32
@@ -121,7 +121,7 @@ class Motion:
         return 1 + max((len(unit.coefficients) for unit in units), default=0)
 
     @cached_property
-    def _crossed(self) -> fmpq:
+    def _crossing_bits(self) -> fmpq:
         """The bits that crossings of bars take; none where contacts open and close and all is exact (`ExactJoint`)."""
         if not self._network.bars or (self._network.corners and not self._series):
             return fmpq(0)
@@ -130,7 +130,7 @@ class Motion:
     @cached_property
     def _hardest(self) -> tuple[JointLaw, fmpq]:
         """The joint whose series has to bear most on its longest stretch: its law, and exp(what)."""
-        laws = ((JointLaw.of(self._network, self._network.joints[n]), n) for n in self._breakpoints.joints)
+        laws = ((JointLaw.assemble(self._network, self._network.joints[n]), n) for n in self._breakpoints.joints)
         law, swing = max(
             ((law, law.fastest * self._breakpoints.longest(n)) for law, n in laws), key=lambda each: each[1]
         )
@@ -144,7 +144,7 @@ class Motion:
         with ctx.workprec(self.first_bits):
             return max(
                 (
-                    abs(known.at(w)).lower()
+                    abs(known.evaluate(w)).lower()
                     for end, wave in self.waves(self.first_bits).sent.items()
                     if (times := joints.get(joint_of[self._network.point_at(end)]))
                     for known, (start, stop) in zip(wave.stretches, pairwise([*wave.starts, times[-1]]), strict=True)
@@ -239,7 +239,7 @@ class Motion:
                 self._breakpoints.joints,
                 self._acting,
                 self.terms(bits),
-                derivatives=any(reading.order > 0 for reading in self._model.watched),
+                derivatives=any(reading.order > 0 for reading in self._model.gauges),
             )
 
 
@@ -259,10 +259,10 @@ def _segments(
     ]
     displacement = arb(0)
     for start, end in stretches:
-        acts = [(weight, Enclosed.of(load.on(start))) for weight, load in loads]
-        polynomial = _within(_sum([*_values(waves, plain, start), *acts]))
+        acts = [(weight, Enclosure.from_polynomial(load.polynomial_from(start))) for weight, load in loads]
+        polynomial = _ball_polynomial(_sum([*_values(waves, plain, start), *acts]))
         if summed:
-            integral = _within(_sum(_values(waves, summed, start))).integral() + displacement
+            integral = _ball_polynomial(_sum(_values(waves, summed, start))).integral() + displacement
             displacement = integral(arb(end - start))
             polynomial = polynomial + integral
         if start == end:  # of what begins at the end of the horizon only the first value is seen
@@ -270,12 +270,12 @@ def _segments(
         yield Segment(start, {fmpq(0): polynomial}, start == begins)
 
 
-def _within(known: Enclosed) -> arb_poly:
+def _ball_polynomial(known: Enclosure) -> arb_poly:
     """Its polynomial with its error in the first coefficient."""
     return known.polynomial + arb(0, known.error) if known.error != 0 else known.polynomial
 
 
-def _sum(parts: Iterable[tuple[fmpq, Enclosed]]) -> Enclosed:
+def _sum(parts: Iterable[tuple[fmpq, Enclosure]]) -> Enclosure:
     """A sum with factors; of what cancels nothing is left, where all of it is known exactly."""
     terms = list(parts)
     total = weighted_sum(terms)
@@ -286,7 +286,7 @@ def _sum(parts: Iterable[tuple[fmpq, Enclosed]]) -> Enclosed:
     return total
 
 
-def _values(waves: Waves, terms: Iterable[ReadingTerm], start: fmpq) -> Iterator[tuple[fmpq, Enclosed]]:
+def _values(waves: Waves, terms: Iterable[ReadingTerm], start: fmpq) -> Iterator[tuple[fmpq, Enclosure]]:
     """What sums of strains, velocities and accelerations are made of from tau = `start` on, with factors.
 
     That is the left-going wave of a rod less, or plus, the right-going one.
@@ -294,7 +294,7 @@ def _values(waves: Waves, terms: Iterable[ReadingTerm], start: fmpq) -> Iterator
     for weight, reading in terms:
         sent, points = (waves.rates, waves.accelerations) if reading.order > 0 else (waves.sent, waves.velocities)
         if reading.point is not None:
-            yield weight, shift(*points[reading.point].at(start))
+            yield weight, shift(*points[reading.point].locate(start))
             continue
         bar = waves.network.bars[reading.rod - 1]
         if reading.place in (0, 1):
@@ -303,12 +303,12 @@ def _values(waves: Waves, terms: Iterable[ReadingTerm], start: fmpq) -> Iterator
                 if waves.is_bare(end, start):
                     continue
             elif (point := waves.network.point_at(end)) in points:  # prescribed: as exact as it is given
-                yield weight * bar.ratios[end.side], shift(*points[point].at(start))
+                yield weight * bar.ratios[end.side], shift(*points[point].locate(start))
                 continue
         over = 1 / bar.speed if reading.quantity == "strain" else fmpq(1)
         right, left = reading.weights
         for factor, side, way in ((right, 0, reading.place), (left, 1, 1 - reading.place)):
-            known, offset = sent[End(reading.rod - 1, side)].at(start - way * bar.delay)
+            known, offset = sent[End(reading.rod - 1, side)].locate(start - way * bar.delay)
             yield weight * factor * over, shift(known, offset)
 
 

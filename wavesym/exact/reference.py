@@ -33,9 +33,9 @@ _MOST_KNOWN = 2048
 def beginning(model: Model) -> Model:
     """The model, or as much of its horizon as takes little time to know exactly."""
     until = model.until
-    while until > _SHORTEST and waves_size(model.shortened(until)) > _QUICK:
+    while until > _SHORTEST and waves_size(model.shorten(until)) > _QUICK:
         until = max(_SHORTEST, fmpq((3 * until / 4).floor()))
-    return model.shortened(until)
+    return model.shorten(until)
 
 
 class Reference:
@@ -77,7 +77,7 @@ class Reference:
         try:
             if self.model.network.corners:
                 return [
-                    self._as_known(source, whole, taus)
+                    self._values_to_known_accuracy(source, whole, taus)
                     for source, whole in zip(self._sources(taus), self._sources(), strict=True)
                 ]
             return [values(source, taus, self._first_bits) for source in self._sources(taus)]
@@ -87,7 +87,7 @@ class Reference:
             helps = what_helps(self.model, self.real)
             raise CostError(f"output.until: for values right to the last bit, {error} ({helps} helps)") from None
 
-    def _as_known(self, source: Source, whole: Source, taus: Sequence[float]) -> list[float]:
+    def _values_to_known_accuracy(self, source: Source, whole: Source, taus: Sequence[float]) -> list[float]:
         """Where contacts open and close, as far as it is known when they do: to 2^-200 of the largest value."""
         size = Balls(whole(self._first_bits)).largest(rational(self.tau_max))
         if not size > 0:  # it may be 0 throughout

@@ -21,7 +21,7 @@ from pydantic import (
 from wavesym.fields.numbers import Numbers, Positive
 from wavesym.fields.table import SceneTable, refusal, show, without_usual
 from wavesym.fields.titles import check_title
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.numbers.doubles import rational
 
 _LONG = 440  # characters of a load that is written out
@@ -61,7 +61,7 @@ class Load(SceneTable):
         return None
 
     @abstractmethod
-    def units(self) -> Iterator[Applied]:
+    def units(self) -> Iterator[AppliedLoad]:
         """The load as unit responses."""
 
     @property
@@ -112,19 +112,19 @@ class TimedLoad(Load):
         steps, ramps = self.lists
         return getattr(self, steps), getattr(self, ramps)
 
-    def by_list(self) -> Iterator[tuple[str, list[Applied]]]:
+    def by_list(self) -> Iterator[tuple[str, list[AppliedLoad]]]:
         """Each list that is given, by name, as unit responses."""
         for name, source, numbers in zip(self.lists, self.sources, self._numbers, strict=True):
             if numbers:
                 times = zip(self.times, numbers, strict=True)
-                yield name, [Applied(source, rational(time), rational(number)) for time, number in times]
+                yield name, [AppliedLoad(source, rational(time), rational(number)) for time, number in times]
 
-    def units(self) -> Iterator[Applied]:
+    def units(self) -> Iterator[AppliedLoad]:
         """The load as unit responses."""
         given = [(source, numbers) for source, numbers in zip(self.sources, self._numbers, strict=True) if numbers]
         for k, time in enumerate(self.times):
             for source, numbers in given:
-                yield Applied(source, rational(time), rational(numbers[k]))
+                yield AppliedLoad(source, rational(time), rational(numbers[k]))
 
     @property
     def description(self) -> str:
@@ -153,7 +153,7 @@ class SampledLoad(Load):
         """The time between samples."""
         return self.spacing
 
-    def units(self) -> Iterator[Applied]:
+    def units(self) -> Iterator[AppliedLoad]:
         """The load as unit responses."""
         return linear(Fraction(0), self.spacing, self.samples, self.sources)
 
@@ -166,12 +166,12 @@ class SampledLoad(Load):
 
 def linear(
     start: Fraction, spacing: Fraction, samples: Sequence[Fraction | fmpq], sources: tuple[str, str]
-) -> Iterator[Applied]:
+) -> Iterator[AppliedLoad]:
     """Straight lines through samples, constant after the last: a step to the first, then the changes of slope."""
     step, ramp = sources
     time, each, values = rational(start), rational(spacing), [rational(sample) for sample in samples]
-    yield Applied(step, time, values[0])
+    yield AppliedLoad(step, time, values[0])
     slope = fmpq(0)
     for k, (left, right) in enumerate(pairwise((*values, values[-1]))):
         before, slope = slope, (right - left) / each
-        yield Applied(ramp, time + k * each, slope - before)
+        yield AppliedLoad(ramp, time + k * each, slope - before)

@@ -19,7 +19,7 @@ from wavesym.errors import CostError
 from wavesym.fields.loads import Load, linear
 from wavesym.fields.numbers import Exact, Positive, exact
 from wavesym.fields.table import refusal, show
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.numbers.doubles import fraction, middle, rational
 
 SHAPES = {"sine": "frequency", "half-sine": "duration", "exponential": "duration", "ricker": "frequency"}
@@ -157,7 +157,7 @@ class ShapedLoad(Load):
         a = (arb.pi() * (t - _RICKER)) ** 2
         return (1 - 2 * a) * (-a).exp()
 
-    def units(self) -> Iterator[Applied]:
+    def units(self) -> Iterator[AppliedLoad]:
         """The load as unit responses."""
         return linear(self.start, self.step, self.polyline, self.sources)
 

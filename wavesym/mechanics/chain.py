@@ -31,7 +31,7 @@ class Chain:
     def nodes(self) -> tuple[Node, ...]:
         """The nodes at x = 0, 1, ... m. WavesymError for those that no method here serves."""
         placed = {
-            x: _exact_node(family.at(x))
+            x: _exact_node(family.node_at(x))
             for family in self.system.families(self.m, self.parameters)
             for x in range(family.first, family.last + 1, family.step)
         }
@@ -51,14 +51,14 @@ class Chain:
         return int(z + clock.tau0 + (rod - 1 - clock.x0 if function == "f" else clock.x0 - rod))
 
     @cached_property
-    def loaded(self) -> dict[str, tuple[int, UnitLoad]]:
+    def unit_loads(self) -> dict[str, tuple[int, UnitLoad]]:
         """The unit loads of the system by source, each with the node that it acts on."""
         return {load.source: (x, load) for x, node in enumerate(self.nodes) for load in node.loads}
 
     @cached_property
     def sources(self) -> tuple[str, ...]:
         """The unit loads of the system; one without any has its impact instead."""
-        return tuple(self.loaded) or ("impact",)
+        return tuple(self.unit_loads) or ("impact",)
 
 
 def _refuse(nodes: Sequence[Node]) -> None:

@@ -10,7 +10,7 @@ from flint import fmpq
 
 
 @dataclass(frozen=True)
-class Applied:
+class AppliedLoad:
     """`weight` times the unit response to `source` from `time` (in tau) on.
 
     `source` is that of a `UnitLoad` of the chain, or "impact" (a chain that its own start moves).
@@ -21,29 +21,29 @@ class Applied:
     weight: fmpq
 
     @property
-    def changes(self) -> tuple[Applied, ...]:
+    def changes(self) -> tuple[AppliedLoad, ...]:
         """What it is made of where its weight is 1."""
-        return (Applied(self.source, self.time, fmpq(1)),)
+        return (AppliedLoad(self.source, self.time, fmpq(1)),)
 
 
 @dataclass(frozen=True)
-class AppliedRecord(Applied):
+class AppliedRecord(AppliedLoad):
     """`weight` times all `samples` together, each a unit response with a weight, in the order of time."""
 
-    samples: tuple[Applied, ...]
+    samples: tuple[AppliedLoad, ...]
 
     @property
-    def changes(self) -> tuple[Applied, ...]:
+    def changes(self) -> tuple[AppliedLoad, ...]:
         """What it is made of where its weight is 1."""
         return self.samples
 
 
-def merge_loads(loads: Iterable[Applied]) -> tuple[Applied, ...]:
+def merge_loads(loads: Iterable[AppliedLoad]) -> tuple[AppliedLoad, ...]:
     """Loads of the same source and time as one, none of weight 0, sorted by time and then by source."""
     # M2 comes before M10: a shorter name is a smaller number; sorted, as an fmpq is slow to hash
     ordered = sorted(loads, key=lambda load: (load.time, len(load.source), load.source))
     summed = (
-        Applied(source, time, sum((load.weight for load in same), fmpq(0)))
+        AppliedLoad(source, time, sum((load.weight for load in same), fmpq(0)))
         for (time, source), same in groupby(ordered, key=lambda load: (load.time, load.source))
     )
     return tuple(load for load in summed if load.weight)

@@ -13,7 +13,7 @@ from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.gauge import Gauge, Sum, readings
 from wavesym.mechanics.length import LengthUnit
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import Parametrization, PartParameters
 from wavesym.mechanics.probe import Probe
@@ -60,7 +60,7 @@ class Model:
 
     name: str
     network: Network
-    loads: tuple[Applied, ...]
+    loads: tuple[AppliedLoad, ...]
     probes: tuple[Probe, ...]
     until: fmpq
     tolerance: fmpq
@@ -78,7 +78,7 @@ class Model:
         """Its numbers by name: those of a preset, or of the parts of the network."""
         return self.preset or PartParameters(self.network)
 
-    def describe_step(self, load: Applied) -> str:
+    def describe_step(self, load: AppliedLoad) -> str:
         """A step of a load, in units where there are any: how much, and when."""
         factor, unit = self.inputs.get(load.source, (fmpq(1), ""))
         when = self.clock.format(load.time) if self.clock else f"tau = {nearest(load.time):g}"
@@ -94,7 +94,7 @@ class Model:
         return {probe: readings(self.network, probe) for probe in self.probes}
 
     @cached_property
-    def watched(self) -> tuple[Gauge, ...]:
+    def gauges(self) -> tuple[Gauge, ...]:
         """All that outputs are sums of, but loads; of one that is 0 whatever moves, where it would be."""
         found = {reading: None for terms in self.sums.values() for _, reading in terms if reading.quantity != "load"}
         for probe, terms in self.sums.items():
@@ -108,14 +108,14 @@ class Model:
             raise UnservedError("system.damping: supported by modes only (write --evaluator modes, or leave it out)")
 
     @property
-    def damped(self) -> bool:
+    def is_damped(self) -> bool:
         """Whether a mode is damped, so that the whole chain can influence an output from the first instant on."""
         return self.damping is not None and self.damping.acts
 
     @property
     def whole(self) -> bool:
         """Whether nothing of the chain can be left out."""
-        return self.damped or self.endless
+        return self.is_damped or self.endless
 
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
@@ -123,9 +123,9 @@ class Model:
 
     def to_horizon(self, real: Real = DOUBLE) -> Model:
         """The same until the last tau in `real` numbers, for what compares times with `until`: it has been reached."""
-        return self.shortened(rational(self.horizon(real)))
+        return self.shorten(rational(self.horizon(real)))
 
-    def loads_until(self, until: fmpq) -> tuple[Applied, ...]:
+    def loads_until(self, until: fmpq) -> tuple[AppliedLoad, ...]:
         """The loads that begin by then."""
         return tuple(load for load in self.loads if load.time <= until)
 
@@ -134,19 +134,19 @@ class Model:
 
         A contact counts as if it were closed: it may close. What one does is asked for until the end, as an output is.
         """
-        return self._reached(until, [self.network.links[number].left for number in self.contacts(until)])
+        return self._arrival_times(until, [self.network.links[number].left for number in self.contacts(until)])
 
     def contacts(self, until: fmpq) -> tuple[int, ...]:
         """The links that are contacts and can influence an output by then."""
         if not self.network.corners:
             return ()
-        reached, network = self._reached(until), self.network
+        reached, network = self._arrival_times(until), self.network
         return tuple(n for n in network.corners if network.joint_of[network.links[n].left] in reached)
 
-    def _reached(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
+    def _arrival_times(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
         network = self.network
-        places = [(reading.rod - 1, reading.place) for reading in self.watched if reading.point is None]
-        points = [reading.point for reading in self.watched if reading.point is not None] + list(more)
+        places = [(reading.rod - 1, reading.place) for reading in self.gauges if reading.point is None]
+        points = [reading.point for reading in self.gauges if reading.point is not None] + list(more)
         distances = network.distances(places, points)
         bars = [network.bars[bar] for bar, _ in places]
         beside = {network.joint_of[point] for bar in bars for point in (bar.left, bar.right)}
@@ -162,8 +162,8 @@ class Model:
 
         A body that a wave first meets at `until` has not answered by then; a node without mass has.
         """
-        places = [(reading.rod - 1, reading.place) for reading in self.watched if reading.point is None]
-        points = [reading.point for reading in self.watched if reading.point is not None]
+        places = [(reading.rod - 1, reading.place) for reading in self.gauges if reading.point is None]
+        points = [reading.point for reading in self.gauges if reading.point is not None]
         network = self.network
 
         @cache
@@ -178,7 +178,7 @@ class Model:
 
         return self.parameters.letters(matters)
 
-    def shortened(self, until: fmpq) -> Model:
+    def shorten(self, until: fmpq) -> Model:
         """The same with an earlier end."""
         return replace(self, until=until)
 

@@ -157,21 +157,21 @@ class Network:
         """The joints, in the order of their first points."""
         leader = list(range(len(self.points)))
 
-        def of(point: int) -> int:
+        def leader_of(point: int) -> int:
             while leader[point] != point:
                 point = leader[point]
             return point
 
         for link in self.links:
-            one, other = sorted((of(link.left), of(link.right)))
+            one, other = sorted((leader_of(link.left), leader_of(link.right)))
             leader[other] = one
         members: dict[int, list[int]] = {}
         for point in range(len(self.points)):
-            members.setdefault(of(point), []).append(point)
+            members.setdefault(leader_of(point), []).append(point)
         ends: dict[int, list[tuple[End, int]]] = {first: [] for first in members}
         for number, bar in enumerate(self.bars):
             for side, point in enumerate((bar.left, bar.right)):
-                ends[of(point)].append((End(number, side), point))
+                ends[leader_of(point)].append((End(number, side), point))
         return tuple(Joint(tuple(points), tuple(ends[first])) for first, points in members.items())
 
     @cached_property
@@ -234,7 +234,7 @@ class Network:
         )
 
     @property
-    def bridged(self) -> frozenset[int]:
+    def parallel_bars(self) -> frozenset[int]:
         """The bars that springs or dashpots lie beside, between the same two points."""
         pairs = {frozenset((k.left, k.right)) for k in self.links if k.stiffness != 0 or k.damping != 0}
         return frozenset(n for n, bar in enumerate(self.bars) if frozenset((bar.left, bar.right)) in pairs)
@@ -267,7 +267,7 @@ class Network:
                 continue
             first[joint] = time
             for end, _ in self.joints[joint].ends:
-                other = self.joint_of[self.point_at(self.beyond(end))]
+                other = self.joint_of[self.point_at(self.opposite_end(end))]
                 heappush(coming, (time + self.bars[end.bar].delay, other))
         return first
 
@@ -314,7 +314,7 @@ class Network:
                 found.setdefault(point, []).append(End(number, side))
         return {point: tuple(ends) for point, ends in found.items()}
 
-    def beyond(self, end: End) -> End:
+    def opposite_end(self, end: End) -> End:
         """The other end of a bar."""
         return End(end.bar, 1 - end.side)
 
@@ -369,12 +369,12 @@ def network_of(chain: Chain) -> Network:
 
 def _point(node: Node, scale: fmpq) -> Point:
     if (node.alpha if node.left else 0) == (node.beta if node.right else 0) == 0:
-        return _prescribed(node)
+        return _prescribed_point(node)
     loads = tuple(UnitLoad(load.kind, load.number, tuple(scale * c for c in load.coefficients)) for load in node.loads)
     return Point(scale * node.inertia, scale * node.damping, velocity=_ZERO + node.velocity, loads=loads)
 
 
-def _prescribed(node: Node) -> Point:
+def _prescribed_point(node: Node) -> Point:
     """A node whose rod does not act on it: damping U_t = loads alone."""
     loads = tuple(
         UnitLoad(load.kind, load.number, tuple(c / node.damping for c in load.coefficients)) for load in node.loads

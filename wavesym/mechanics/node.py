@@ -97,7 +97,7 @@ class Family:
     first: Quantity
     last: Quantity
     step: int
-    at: Callable[[Quantity], Node]
+    node_at: Callable[[Quantity], Node]
 
 
 def single(x: Quantity, node: Callable[[], Node]) -> Family:

@@ -68,7 +68,7 @@ class Parametrization(Protocol):
             matters: whether the law of a point does.
         """
 
-    def without(self, names: Sequence[str]) -> object:
+    def fixed_part(self, names: Sequence[str]) -> object:
         """What is left of it without some lists: equal where nothing else differs."""
 
 
@@ -113,10 +113,10 @@ class SystemParameters:
         recorded = Parameters(**{k: of and _ReadLog(of, used.setdefault(k, {})) for k, of in lists.items()})
         for family in self.chain.system.families(self.chain.m, recorded):
             for x in filter(matters, range(family.first, family.last + 1, family.step)):
-                family.at(x)
+                family.node_at(x)
         return {name: dict(sorted(numbers.items())) for name, numbers in used.items()}
 
-    def without(self, names: Sequence[str]) -> object:
+    def fixed_part(self, names: Sequence[str]) -> object:
         kept = replace(self.chain.parameters, **{name: None for name in names if name in self.numbers})
         return replace(self.chain, parameters=kept)
 
@@ -174,20 +174,24 @@ class PartParameters:
         """What absorbs a rod's waves has the impedance that the rod has then."""
         base = self.base
 
-        def changed(part: Any, kind: str, number: int, **names: str) -> Any:
+        def with_values(part: Any, kind: str, number: int, **names: str) -> Any:
             labels = {key: f"{name}_{kind}_{number}" for key, name in names.items()}
             new = {key: values[label] for key, label in labels.items() if label in values}
             return replace(part, **new) if new else part
 
-        bars = [changed(bar, "bar", k, impedance="impedance", velocity="velocity") for k, bar in enumerate(base.bars)]
+        bars = [
+            with_values(bar, "bar", k, impedance="impedance", velocity="velocity") for k, bar in enumerate(base.bars)
+        ]
         points = [
-            changed(point, "point", k, mass="mass", damping="dashpot", stiffness="spring", velocity="velocity")
+            with_values(point, "point", k, mass="mass", damping="dashpot", stiffness="spring", velocity="velocity")
             for k, point in enumerate(base.points)
         ]
         for k, point in enumerate(points):
             if point.absorbing:
                 points[k] = replace(point, damping=bars[base.ends_at[k][0].bar].impedance)
-        links = [changed(link, "link", k, stiffness="spring", damping="dashpot") for k, link in enumerate(base.links)]
+        links = [
+            with_values(link, "link", k, stiffness="spring", damping="dashpot") for k, link in enumerate(base.links)
+        ]
         return Network(tuple(points), tuple(bars), tuple(links))
 
     def factors(self, values: Mapping[str, Any]) -> Factors:
@@ -196,7 +200,7 @@ class PartParameters:
     def letters(self, matters: Callable[[int], bool]) -> dict[str, dict[int, fmpq]]:
         return {}
 
-    def without(self, names: Sequence[str]) -> object:
+    def fixed_part(self, names: Sequence[str]) -> object:
         numbers = (one for name in names for one in self.numbers.get(name, ()))
         return self.network({one.label: fmpq(0) for one in numbers})
 

@@ -21,7 +21,7 @@ class Quantity:
 
     name: str
     axis: str
-    like: str
+    place_quantity: str
     order: int = 0
     words: str = ""
     title: str = ""

@@ -17,7 +17,7 @@ from flint import fmpq, fmpq_mpoly
 from wavesym.errors import SceneError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters, Quantity, System
-from wavesym.numbers.factored import polynomial_text
+from wavesym.numbers.factorization import polynomial_text
 from wavesym.numbers.ratio import Ratio, Ring
 
 
@@ -45,7 +45,7 @@ def symbolic(chain: Chain) -> SymbolicChain:
     symbols = ring.symbols()
     free = {name: symbols[same[name]] if name in same else ring.constant(_TRIVIAL[name[0]]) for name in given}
     images = _images(ring, replace(chain, parameters=parameters(chain.parameters, free)), values)
-    meaning = {name: ratio.composed(images) for name, ratio in free.items()}
+    meaning = {name: ratio.compose(images) for name, ratio in free.items()}
     return SymbolicChain(replace(chain, parameters=parameters(chain.parameters, meaning)), ring, meaning, values)
 
 
@@ -105,11 +105,11 @@ def _images(ring: Ring, chain: Chain, values: Mapping[str, fmpq]) -> list[Ratio]
     """
     images = list(ring.symbols().values())
     for (x, one), (y, other) in combinations(rates(chain).items(), 2):
-        difference = one.composed(images) - other.composed(images)
-        if difference == 0 or difference.at(values) != 0:
+        difference = one.compose(images) - other.compose(images)
+        if difference == 0 or difference.evaluate(values) != 0:
             continue
         _, factors = difference.numerator.factor()
-        relation = next(factor for factor, _ in factors if Ratio(ring, factor).at(values) == 0)
+        relation = next(factor for factor, _ in factors if Ratio(ring, factor).evaluate(values) == 0)
         place = _place(ring, relation, values)
         if place is None:
             raise SceneError(
@@ -119,7 +119,7 @@ def _images(ring: Ring, chain: Chain, values: Mapping[str, fmpq]) -> list[Ratio]
             )
         told = list(ring.symbols().values())
         told[place] = told[place] - Ratio(ring, relation) / Ratio(ring, relation.derivative(place))
-        images = [image.composed(told) for image in images]
+        images = [image.compose(told) for image in images]
     return images
 
 
@@ -130,5 +130,5 @@ def _place(ring: Ring, relation: fmpq_mpoly, values: Mapping[str, fmpq]) -> int 
     """
     slopes = [(place, relation.derivative(place)) for place, power in enumerate(relation.degrees()) if power == 1]
     constant = [place for place, slope in slopes if slope.is_constant()]
-    others = [place for place, slope in slopes if Ratio(ring, slope).at(values) != 0]
+    others = [place for place, slope in slopes if Ratio(ring, slope).evaluate(values) != 0]
     return constant[-1] if constant else next(iter(others), None)

@@ -92,7 +92,7 @@ def _tables(order: int, problem: Problem, resolution: float) -> tuple[dict[str, 
     free = ~np.isin(np.arange(problem.points), problem.prescribed)
     ratios = problem.ratios.ravel()
     before = problem.start_waves.ravel()
-    gamma = np.where(free, np.diag(problem.damping) + problem.onto**2 @ impedance, 1.0)
+    gamma = np.where(free, np.diag(problem.damping) + problem.incidence**2 @ impedance, 1.0)
     massless = ~free | (problem.mass == 0)
     over = np.where(massless, gamma, 1.0)
     terms = _terms(problem)

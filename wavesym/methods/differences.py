@@ -52,7 +52,7 @@ class Grid:
     @cached_property
     def spread(self) -> Array:
         """From the points to ends and points: (2 * bars + points, points)."""
-        return np.vstack([self.problem.onto.T, np.eye(self.problem.points)])
+        return np.vstack([self.problem.incidence.T, np.eye(self.problem.points)])
 
     @cached_property
     def start_velocity(self) -> Array:
@@ -73,12 +73,12 @@ class Grid:
 
 @dataclass(frozen=True)
 class PointSteps:
-    """The next displacements of points: `near` times what is beside ends and at points, less `past` times those a step
-    earlier, and `loads[step]`; `first` are those after the first step. `yields` and `first_yields` are what forces at
-    the points, (points, points), add to them."""
+    """The next displacements of points: `neighbours` times what is beside ends and at points, less `previous` times
+    those a step earlier, and `loads[step]`; `first` are those after the first step. `yields` and `first_yields` are
+    what forces at the points, (points, points), add to them."""
 
-    near: Array
-    past: Array
+    neighbours: Array
+    previous: Array
     loads: Array
     first: Array
     yields: Array
@@ -87,7 +87,7 @@ class PointSteps:
 
 def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
     """How points move in `steps` steps of length h."""
-    impedance, onto = np.repeat(problem.impedance, 2), problem.onto
+    impedance, onto = np.repeat(problem.impedance, 2), problem.incidence
     radiated = np.diag(onto**2 @ impedance)
     mass = np.diag(problem.mass)
     prescribed = list(problem.prescribed)
@@ -113,8 +113,8 @@ def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
     turns = np.tile([1.0, -1.0], len(problem.speed))
     strained = onto @ (np.repeat(problem.impedance * problem.speed * problem.start_strain, 2) * turns)
     return PointSteps(
-        near=solve(ahead, near, np.zeros_like(near)),
-        past=solve(ahead, inertia - damping + stiffness, still),
+        neighbours=solve(ahead, near, np.zeros_like(near)),
+        previous=solve(ahead, inertia - damping + stiffness, still),
         loads=solve(ahead, (loads[:-1] + strained).T, moved.T).T,
         first=solve(begin, h * force, moved[0]),
         yields=solve(ahead, unit, still),
@@ -142,7 +142,7 @@ class GridMotion:
             after, yields = points.first.copy(), points.first_yields
             self.now = self._grid.h * self._grid.start_velocity
         else:
-            after, yields = points.near @ self.now[self._beside] - points.past @ self._before, points.yields
+            after, yields = points.neighbours @ self.now[self._beside] - points.previous @ self._before, points.yields
             after += points.loads[self.step]
             self._padded[1:-1] = self.now
             self._past, self.now = self.now, self._padded[:-2] + self._padded[2:] - self._past

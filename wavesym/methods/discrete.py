@@ -54,7 +54,7 @@ class DiscreteModel:
         return tuple(sorted({Fraction(0), *(e.time for e in problem.events if e.time < Fraction(problem.until))}))
 
     @cached_property
-    def _loaded(self) -> list[int]:
+    def _loaded_points(self) -> list[int]:
         """The points that a load or the strain at the start acts on, or whose motion loads prescribe."""
         pulled = np.flatnonzero(self.elements.start_forces).tolist()
         return sorted({*(event.point for event in self.elements.problem.events), *pulled})
@@ -62,13 +62,13 @@ class DiscreteModel:
     @cached_property
     def _load_jumps(self) -> Array:
         """What the loads gain at events: (events, loads, KEPT)."""
-        gained = np.zeros((len(self._event_times), len(self._loaded), KEPT))
+        gained = np.zeros((len(self._event_times), len(self._loaded_points), KEPT))
         numbers = {time: k for k, time in enumerate(self._event_times)}
         for event in self.elements.problem.events:
             if event.time in numbers:
                 c0, c1, c2 = event.coefficients
-                gained[numbers[event.time], self._loaded.index(event.point), 1:] += (c0, c1, 2 * c2)
-        gained[0, :, 1] += self.elements.start_forces[self._loaded]
+                gained[numbers[event.time], self._loaded_points.index(event.point), 1:] += (c0, c1, 2 * c2)
+        gained[0, :, 1] += self.elements.start_forces[self._loaded_points]
         return gained
 
     @cached_property
@@ -78,9 +78,9 @@ class DiscreteModel:
         mass, damping, stiffness = (each.toarray() for each in (elements.mass, elements.damping, elements.stiffness))
         prescribed = elements.problem.prescribed
         free = np.setdiff1d(np.arange(size), prescribed)
-        influence, at_once = np.zeros((2, size, len(self._loaded), KEPT))
-        dragged = np.zeros((size, len(self._loaded)))
-        for load, point in enumerate(self._loaded):
+        influence, at_once = np.zeros((2, size, len(self._loaded_points), KEPT))
+        dragged = np.zeros((size, len(self._loaded_points)))
+        for load, point in enumerate(self._loaded_points):
             if point in prescribed:
                 # unknowns count from what is dragged along: the ground may go far, and drifts are small
                 shape = dragged[:, load] = elements.imposed_shape(point)
@@ -94,10 +94,10 @@ class DiscreteModel:
         momentum = -self._load_jumps[:, :, 1] @ (mass @ dragged).T[:, free]
         momentum[0] += elements.momentum[free]
         own = condensed.oscillators(self._load_jumps, momentum[:, condensed.heavy], self._ratios)
-        at_once[free] += condensed.at_once + np.tensordot(condensed.follows, own.at_once, 1)
+        at_once[free] += condensed.feedthrough + np.tensordot(condensed.follows, own.feedthrough, 1)
         shapes, inertial = np.zeros((2, size, *own.shapes.shape[1:]))
         shapes[free], inertial[free] = (np.tensordot(condensed.follows, each, 1) for each in (own.shapes, own.inertial))
-        loads = np.broadcast_to(DERIVATIVES, (len(self._loaded), KEPT, KEPT))
+        loads = np.broadcast_to(DERIVATIVES, (len(self._loaded_points), KEPT, KEPT))
         return [
             Systems(own.matrix, own.jumps, self._read(_with_derivatives(own.matrix, shapes), inertial)),
             Systems(loads, self._load_jumps, self._read(_with_derivatives(loads, at_once))),
@@ -152,7 +152,7 @@ class DiscreteModel:
         place = float(fraction(reading.place)) * self.elements.cells[bar]
         first = min(int(place), int(self.elements.cells[bar]) - 1)
         part, length, speed = place - first, float(self.elements.length[bar]), float(problem.speed[bar])
-        unknowns, factors = self.elements.along(bar)
+        unknowns, factors = self.elements.bar_unknowns(bar)
         unknowns, factors = unknowns[first : first + 2], factors[first : first + 2]
         if reading.quantity == "strain":
             # as a spring, and what balances the element's mass, whose acceleration is a line between its ends

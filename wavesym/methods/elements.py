@@ -49,7 +49,7 @@ class Elements:
         """The number of unknowns."""
         return int(self.firsts[-1])
 
-    def along(self, bar: int) -> tuple[Unknowns, Array]:
+    def bar_unknowns(self, bar: int) -> tuple[Unknowns, Array]:
         """The unknowns from one end of a bar to the other, and how many times as fast as these it moves there."""
         inside = np.arange(self.firsts[bar], self.firsts[bar + 1])
         left, right = self.problem.ends[bar]
@@ -65,7 +65,7 @@ class Elements:
     @cached_property
     def _sides(self) -> tuple[Matrix, Matrix]:
         """What moves the left and the right side of each element: (elements, unknowns)."""
-        bars = [self.along(bar) for bar in range(len(self.cells))]
+        bars = [self.bar_unknowns(bar) for bar in range(len(self.cells))]
         rows, shape = np.arange(np.sum(self.cells)), (int(np.sum(self.cells)), self.size)
         sides = []
         for part in (slice(None, -1), slice(1, None)):
@@ -196,7 +196,7 @@ def interpolate_readings(
 def _solve(problem: Problem, resolution: float) -> Evaluate:
     h = 1 / resolution
     elements = Elements(problem, np.maximum(np.rint(problem.delay / h), FEWEST).astype(int))
-    mass, damping, stiffness = _with_prescribed(elements)
+    mass, damping, stiffness = _prescribe_motion(elements)
     start = np.append(problem.velocity, np.repeat(problem.start_velocity, elements.cells - 1))
     solve = splu(csc_array(mass + h / 2 * damping + h * h / 4 * stiffness)).solve
     steps = int(np.ceil(problem.until * resolution)) + 1
@@ -233,7 +233,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
     return evaluate
 
 
-def _with_prescribed(elements: Elements) -> tuple[Matrix, Matrix, Matrix]:
+def _prescribe_motion(elements: Elements) -> tuple[Matrix, Matrix, Matrix]:
     """Mass, damping and stiffness; where the motion is prescribed the velocity is the load."""
     free = np.ones(elements.size)
     free[list(elements.problem.prescribed)] = 0.0
@@ -250,7 +250,7 @@ def _unknowns(elements: Elements, reading: Gauge) -> tuple[Unknowns, Array]:
     if reading.point is not None:
         return np.array([reading.point]), np.ones(1)
     bar = reading.rod - 1
-    unknowns, factors = elements.along(bar)
+    unknowns, factors = elements.bar_unknowns(bar)
     places, weights = stencil(reading, int(elements.cells[bar]))
     if reading.quantity == "strain":
         weights = weights / (elements.problem.speed[bar] * elements.length[bar])

@@ -32,26 +32,26 @@ Ratios = Callable[[Array], Array]
 class Oscillators:
     """x' = matrix x (batch, size, size), and coordinates as sums of x: `shapes` (coordinates, batch, size).
 
-    At event e x gains jumps[e], of shape (events, batch, size). Coordinates are `at_once` (coordinates, loads, KEPT)
-    times what is kept of the loads besides. `inertial` (as `shapes`) is the acceleration of the sums of x, with what
-    damps their modes in units of it: both are what strains a rod that has mass.
+    At event e x gains jumps[e], of shape (events, batch, size). Coordinates are `feedthrough` (coordinates, loads,
+    KEPT) times what is kept of the loads besides. `inertial` (as `shapes`) is the acceleration of the sums of x, with
+    what damps their modes in units of it: both are what strains a rod that has mass.
     """
 
     matrix: Array
     jumps: Array
     shapes: Array
-    at_once: Array
+    feedthrough: Array
     inertial: Array
 
 
 @dataclass(frozen=True)
-class Condensed:
+class CondensedSystem:
     """What is left where all that has neither mass nor dashpot follows the rest at once.
 
     Coordinates are the unknowns with mass, then those with a dashpot alone: `mass` (heavy, heavy), `damping` and
     `stiffness` (coordinates, coordinates), `influence` (coordinates, loads, KEPT). The unknowns are `follows`
-    (unknowns, coordinates) times these, and `at_once` (unknowns, loads, KEPT) times what is kept of the loads; `heavy`
-    says which have mass.
+    (unknowns, coordinates) times these, and `feedthrough` (unknowns, loads, KEPT) times what is kept of the loads;
+    `heavy` says which have mass.
     """
 
     mass: Array
@@ -59,7 +59,7 @@ class Condensed:
     stiffness: Array
     influence: Array
     follows: Array
-    at_once: Array
+    feedthrough: Array
     heavy: NDArray[np.bool_]
 
     def oscillators(self, changes: Array, momentum: Array, ratios: Ratios) -> Oscillators:
@@ -71,7 +71,7 @@ class Condensed:
             ratios: how modes are damped where no dashpot couples them.
         """
         coupled = np.any(self.damping)
-        return self._coupled(changes, momentum) if coupled else self._modal(changes, momentum, ratios)
+        return self._coupled_oscillators(changes, momentum) if coupled else self._modal(changes, momentum, ratios)
 
     def _modal(self, changes: Array, momentum: Array, ratios: Ratios) -> Oscillators:
         """x is the displacement of a mode beside what springs do as they follow a prescribed motion, its velocity
@@ -105,7 +105,7 @@ class Condensed:
         inertial[..., 0], inertial[..., 2] = -squares * shapes, shapes
         return Oscillators(matrix, jumps, in_x, at_once, inertial)
 
-    def _coupled(self, changes: Array, momentum: Array) -> Oscillators:
+    def _coupled_oscillators(self, changes: Array, momentum: Array) -> Oscillators:
         """x is the coordinates, the velocities of masses, and what is kept of the loads."""
         heavy, count, loads = len(self.mass), len(self.stiffness), changes.shape[1]
         forces = np.concatenate([-self.stiffness, -self.damping[:, :heavy], self.influence.reshape(count, -1)], axis=1)
@@ -123,7 +123,7 @@ class Condensed:
         return Oscillators(matrix[np.newaxis], jumps, shapes, np.zeros_like(self.influence), accelerations)
 
 
-def condense(mass: Array, damping: Array, stiffness: Array, influence: Array) -> Condensed:
+def condense(mass: Array, damping: Array, stiffness: Array, influence: Array) -> CondensedSystem:
     """Eliminate what has neither mass nor dashpot.
 
     Args:
@@ -147,12 +147,12 @@ def condense(mass: Array, damping: Array, stiffness: Array, influence: Array) ->
         )
     back = left @ np.linalg.solve(holding, left.T)
     follows = kept - back @ stiffness @ kept
-    return Condensed(
+    return CondensedSystem(
         mass=mass[np.ix_(heavy, heavy)],
         damping=kept.T @ damping @ kept,
         stiffness=kept.T @ stiffness @ follows,
         influence=np.tensordot(follows.T, influence, 1),
         follows=follows,
-        at_once=np.tensordot(back, influence, 1),
+        feedthrough=np.tensordot(back, influence, 1),
         heavy=heavy,
     )

@@ -107,7 +107,7 @@ class Problem:
         return np.stack([self.start_velocity - turned, self.start_velocity + turned], axis=1) / 2
 
     @cached_property
-    def onto(self) -> Array:
+    def incidence(self) -> Array:
         """What a force of 1 at each end of a bar is at the points: (points, 2 * bars), left and right ends by turns."""
         matrix = np.zeros((self.points, self.ends.size))
         matrix[self.ends.ravel(), np.arange(self.ends.size)] = self.ratios.ravel()
@@ -436,7 +436,7 @@ def _acceleration(problem: Problem, probe: Probe) -> list[tuple[float, Gauge]]:
     found: list[tuple[float, Gauge]] = []
     speeds = problem.rigid_motion(point)[0] * (ratio / float(problem.mass[point]))
     stiffness = np.repeat(problem.impedance * problem.speed, 2) * np.tile([1.0, -1.0], len(problem.speed))
-    for end, force in enumerate((speeds @ problem.onto * stiffness).tolist()):
+    for end, force in enumerate((speeds @ problem.incidence * stiffness).tolist()):
         if speeds[problem.end_points[end]]:
             found.append((force, Gauge("strain", end // 2 + 1, fmpq(end % 2))))
     unit = np.eye(problem.points)

@@ -59,7 +59,7 @@ def midpoint(ball: arb) -> float:
     return double if math.isfinite(double) else nearest(middle(ball))
 
 
-def above(ball: arb) -> float:
+def upper_double(ball: arb) -> float:
     """A double that is not below anything in a ball."""
     upper = ball.upper()
     double = midpoint(upper)
@@ -68,7 +68,7 @@ def above(ball: arb) -> float:
 
 def bound(ball: arb) -> float:
     """An upper bound to print: a double that two digits write down and that is not below anything in a ball."""
-    double = above(ball)
+    double = upper_double(ball)
     if double == 0.0 or not math.isfinite(double):
         return double
     # half of the last digit more, so that rounding to two digits goes up

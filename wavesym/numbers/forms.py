@@ -27,7 +27,7 @@ class Forms:
         self._tellings: list[Telling] = []
 
     def telling(self, form: int) -> Telling:
-        """What a form is in the symbols that a reader knows (see `factored`)."""
+        """What a form is in the symbols that a reader knows (see `factorization`)."""
         for number in range(len(self._tellings), form + 1):
             self._tellings.append(self.tell(self.forms[number]))
         return self._tellings[form]

@@ -15,7 +15,7 @@ from typing import Any
 from flint import fmpq, fmpq_mpoly
 from flint.utils.flint_exceptions import DomainError
 
-from wavesym.numbers.factored import Factored, factored
+from wavesym.numbers.factorization import Factorization, factor
 from wavesym.numbers.forms import Denominator, Forms
 
 
@@ -58,13 +58,13 @@ class Ratio:
         if not self.numerator:
             return other
         if self.denominator == other.denominator:
-            return self._reduced(self.numerator + other.numerator, self.denominator, self.denominator)
+            return self._reduce(self.numerator + other.numerator, self.denominator, self.denominator)
         common = dict(self.denominator)
         for form, exponent in other.denominator.items():
             common[form] = max(exponent, common.get(form, 0))
         # where the exponents differ nothing can cancel: one of the two numerators has been multiplied by the form
         equal = [form for form, exponent in self.denominator.items() if other.denominator.get(form) == exponent]
-        return self._reduced(self._over(common) + other._over(common), common, equal)
+        return self._reduce(self._numerator_over(common) + other._numerator_over(common), common, equal)
 
     __radd__ = __add__
 
@@ -83,8 +83,8 @@ class Ratio:
         if not isinstance(value, Ratio):
             return NotImplemented
         # forms are irreducible: one that divides the product divides the numerator that did not stand over it
-        ours = self._reduced(self.numerator, value.denominator, value.denominator)
-        theirs = self._reduced(value.numerator, self.denominator, self.denominator)
+        ours = self._reduce(self.numerator, value.denominator, value.denominator)
+        theirs = self._reduce(value.numerator, self.denominator, self.denominator)
         denominator = dict(ours.denominator)
         for form, exponent in theirs.denominator.items():
             denominator[form] = denominator.get(form, 0) + exponent
@@ -121,7 +121,7 @@ class Ratio:
         above = self.ring.product(self.denominator)
         return Ratio(self.ring, above / content, {self.ring.form(factor): int(power) for factor, power in factors})
 
-    def _over(self, common: Denominator) -> fmpq_mpoly:
+    def _numerator_over(self, common: Denominator) -> fmpq_mpoly:
         """The numerator over the `common` denominator."""
         result = self.numerator
         for form, exponent in common.items():
@@ -130,7 +130,7 @@ class Ratio:
                 result = result * self.ring.forms[form] ** missing
         return result
 
-    def _reduced(self, numerator: fmpq_mpoly, denominator: Denominator, candidates: Any) -> Ratio:
+    def _reduce(self, numerator: fmpq_mpoly, denominator: Denominator, candidates: Any) -> Ratio:
         """numerator / denominator, with the `candidates` among the forms cancelled as often as they can be."""
         if not numerator:
             return Ratio(self.ring, numerator)
@@ -146,7 +146,7 @@ class Ratio:
                     del left[form]
         return Ratio(self.ring, numerator, left)
 
-    def at(self, values: Mapping[str, fmpq]) -> fmpq:
+    def evaluate(self, values: Mapping[str, fmpq]) -> fmpq:
         """The number that this is where the symbols have `values`. ZeroDivisionError at a pole."""
         point = [values[name] for name in self.ring.told.names()]
         if self.ring.images is not None:
@@ -173,7 +173,7 @@ class Ratio:
         polynomials = [self.numerator, *(self.ring.forms[form] for form in self.denominator)]
         return {place for one in polynomials for place, power in enumerate(one.degrees()) if power}
 
-    def composed(self, images: Sequence[Ratio]) -> Ratio:
+    def compose(self, images: Sequence[Ratio]) -> Ratio:
         """This function with `images`, functions of one ring, for the names."""
         ring = images[0].ring
 
@@ -218,9 +218,9 @@ class Ratio:
         return other._order() < self._order()
 
     def __str__(self) -> str:
-        return str(self.factored)
+        return str(self.factorization)
 
     @property
-    def factored(self) -> Factored:
+    def factorization(self) -> Factorization:
         """This in lowest terms, for a reader."""
-        return factored(self.ring, self.numerator, self.denominator)
+        return factor(self.ring, self.numerator, self.denominator)

@@ -23,7 +23,7 @@ class Real:
     roundoff: fmpq
     smallest: fmpq
     largest: fmpq
-    next_to: Callable[[float, float], float]
+    next_after: Callable[[float, float], float]
 
     @property
     def least(self) -> fmpq:
@@ -45,7 +45,7 @@ class Real:
         import numpy as np  # of floats alone
 
         guess = float(np.float32(double))  # rounded twice: a neighbour may be nearer
-        near = [guess, self.next_to(guess, -math.inf), self.next_to(guess, math.inf)]
+        near = [guess, self.next_after(guess, -math.inf), self.next_after(guess, math.inf)]
         return min(near, key=lambda each: (abs(rational(each) - value), np.float32(each).view(np.uint32) & 1))
 
     def nearest_middle(self, ball: arb) -> float:
@@ -59,7 +59,7 @@ class Real:
     def not_below(self, value: fmpq) -> float:
         """The smallest number that is not below an exact one."""
         number = self.nearest(value)
-        return number if rational(number) >= value else self.next_to(number, math.inf)
+        return number if rational(number) >= value else self.next_after(number, math.inf)
 
 
 def _next_single(value: float, towards: float) -> float:

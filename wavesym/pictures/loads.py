@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from flint import fmpq
 
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Point
 from wavesym.mechanics.node import UnitLoad
@@ -17,7 +17,7 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.histories import History, Points
 from wavesym.scene.physical.scale import Scale
 
-Acting = Sequence[tuple[Applied, int]]
+Acting = Sequence[tuple[AppliedLoad, int]]
 """Loads on one node, each with the power of tau that it grows with: 0 for a step, 1 for a ramp."""
 
 

@@ -33,7 +33,7 @@ def draw(found: Modes, model: Model, lines: Lines) -> Figure:
     unit = "Hz" if found.time_unit else "per tau"
     set_title(figure, f"{found.name}: shapes of the first {min(len(found), MOST)} modes")
     for axes, each in zip(figure.subplots(len(drawn), 1, squeeze=False)[:, 0], drawn, strict=True):
-        for row, moved in zip(found.modes, each.moved, strict=False):
+        for row, moved in zip(found.modes, each.displacements, strict=False):
             axes.plot(each.x, moved.real, label=f"{row.number}: {row.hz:.4g} {unit}", linewidth=1.3)
         draw_grid(axes)
         axes.set_xlabel(axis_text(each.line, model.length))

@@ -27,7 +27,7 @@ from itertools import pairwise
 from flint import arb, arb_poly, fmpq
 
 from wavesym.derivation.increments import Increment
-from wavesym.exact.tables.ball import largest, segments, shifted
+from wavesym.exact.tables.ball import largest, segments, shift
 from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -111,7 +111,7 @@ class ClosedForm(Bounded):
         points = set(starts)
         for start, end in pairwise(starts):
             middle = self.real.nearest(rational(start) / 2 + rational(end) / 2)
-            points |= {middle, self.real.next_to(end, start)}
+            points |= {middle, self.real.next_after(end, start)}
         return sorted(points)
 
     def program(self, provenance: Provenance) -> Program:
@@ -178,7 +178,7 @@ def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]
     additions = 0
     errors: list[arb | None] = []
     for arrival, end in zip(signal.arrivals, ends, strict=True):
-        sizes, weights = (shifted(places, each, arrival.time - last) for each in (sizes, weights))
+        sizes, weights = (shift(places, each, arrival.time - last) for each in (sizes, weights))
         last = arrival.time
         for rate, powers in sorted(arrival.increment.items()):  # in the order in which programs add them
             polynomial = arb_poly([abs(arb(c)) for c in powers])

@@ -96,7 +96,7 @@ class Pieces(Bounded):
         points = {0.0, self.tau_max}
         for grid in self.grids:
             for start, end, centre in zip(grid.starts, grid.starts[1:], grid.centres, strict=False):
-                points |= {start, centre, self.real.next_to(end, 0.0)}
+                points |= {start, centre, self.real.next_after(end, 0.0)}
         return sorted(points)
 
     def program(self, provenance: Provenance) -> Program:

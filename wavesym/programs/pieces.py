@@ -340,7 +340,7 @@ class _Cuts:
 
     def __init__(self, breaks: Sequence[fmpq], until: fmpq, per_unit: int, real: Real) -> None:
         self._real = real
-        last = rational(real.next_to(real.nearest(until), float("inf")))
+        last = rational(real.next_after(real.nearest(until), float("inf")))
         exact = []
         for low, high in pairwise([*breaks, last]):
             parts = max(1, int(((high - low) * per_unit).ceil()))

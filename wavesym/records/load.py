@@ -16,7 +16,7 @@ from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 from wavesym.fields.loads import Load, linear
 from wavesym.fields.numbers import Exact, Positive, decimal_text
 from wavesym.fields.table import refusal, show
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.numbers.doubles import rational
 from wavesym.records.recording import Recorded
 
@@ -90,7 +90,7 @@ class RecordedLoad(Load):
         later._delayed = True
         return later
 
-    def units(self) -> Iterator[Applied]:
+    def units(self) -> Iterator[AppliedLoad]:
         """The load as unit responses: steps and ramps."""
         scale, end = rational(self.scale), fmpq(0)
         samples = [scale * rational(sample) for sample in self.record.samples]

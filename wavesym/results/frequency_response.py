@@ -16,7 +16,7 @@ from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymErro
 from wavesym.exact.modes.dying import undamped
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import above, midpoint, nearest
+from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.optional import require_packages
@@ -248,7 +248,7 @@ class _Points:
                 before = radii
             bits = bits * 3 // 2
         if enough:
-            return [_nearest(each) for each in found], [above(r) if r.is_finite() else nan for r in radii]
+            return [_nearest(each) for each in found], [upper_double(r) if r.is_finite() else nan for r in radii]
         raise CostError(
             f"frequency: more than {_MOST_BITS} bits at {frequency:g}, the limit is {_MOST_BITS} (fewer parts help)"
         )
@@ -276,14 +276,16 @@ def _modal(model: Model, load: HarmonicLoad, given: Vector, values: NDArray[np.c
         with ctx.workprec(_BITS_OF_MODES):
             transfer = ModalTransfer(modes, load, count)
             highest = max((angular(model, f) for f in given.tolist()), default=arb(0))
-            errors = np.array([above(each) for each in transfer.left_out(highest)])
+            errors = np.array([upper_double(each) for each in transfer.truncation_error(highest)])
             enough = np.isfinite(errors).all()
             if enough:
                 left = errors
                 for k, f in enumerate(given.tolist()):
                     found = [acb(each) for each in transfer(angular(model, f))]
                     values[:, k] = [_nearest(each) for each in found]
-                    radii = [above(each.real.rad() + each.imag.rad()) if each.is_finite() else nan for each in found]
+                    radii = [
+                        upper_double(each.real.rad() + each.imag.rad()) if each.is_finite() else nan for each in found
+                    ]
                     errors = np.fmax(errors, left + radii)
                 largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
                 enough = (errors <= tolerance * largest).all()

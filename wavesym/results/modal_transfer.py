@@ -31,17 +31,17 @@ _I = acb(0, 1)
 class ModalDrive(NamedTuple):
     """What one point is driven by.
 
-    `shares[k][n]` is l f of output k in mode n. `imposed` (None under a force) and `static` are the outputs of the
-    shape that a motion imposes, and under the load when it does not change. Of the modes left out the sum of |l f|
-    over a power of w_n is at most `left_out[k]`, with that `powers[k]`.
+    `shares[k][n]` is l f of output k in mode n. `imposed_shape` (None under a force) and `static` are the outputs of
+    the shape that a motion imposes, and under the load when it does not change. Of the modes left out the sum of |l f|
+    over a power of w_n is at most `truncation[k]`, with that `powers[k]`.
     """
 
     point: int
     coefficients: tuple[fmpq, ...]
     shares: list[list[arb]]
-    imposed: list[arb] | None
+    imposed_shape: list[arb] | None
     static: list[arb]
-    left_out: list[arb]
+    truncation: list[arb]
     powers: list[int]
 
 
@@ -59,7 +59,7 @@ class ModalTransfer:
         return self.modes.model
 
     def __call__(self, w: Quantity) -> list[Quantity]:
-        """The complex amplitudes of the outputs, without what `left_out` bounds.
+        """The complex amplitudes of the outputs, without what `truncation_error` bounds.
 
         Args:
             w: the frequency in rad per tau: a ball, or a power series of complex ones about one that is not 0.
@@ -80,24 +80,24 @@ class ModalTransfer:
                 )
                 order = ORDERS.get(probe.quantity, 0)
                 made[k] = made[k] + self._acting(each, rate, order) * moved
-                if each.imposed is not None:
-                    made[k] = made[k] + self._acting(each, rate, order - 2) * each.imposed[k]
+                if each.imposed_shape is not None:
+                    made[k] = made[k] + self._acting(each, rate, order - 2) * each.imposed_shape[k]
         return made
 
-    def left_out(self, w: arb) -> list[arb]:
+    def truncation_error(self, w: arb) -> list[arb]:
         """What all modes after the first `count` can add to the amplitude of each output; None where that is open.
 
         Args:
             w: the frequency in rad per tau; a wide ball stands for all in it.
         """
-        last, most = self._frequencies[-1], self._most_left
+        last, most = self._frequencies[-1], self._largest_remaining_ratio
         made = [arb(0) for _ in self.model.probes]
         if not last > w:
             return [arb("inf") for _ in made]
         rate = acb(0, w)
         for each in self._drives:
             acting = abs(self._acting(each, rate))
-            for k, (left, power) in enumerate(zip(each.left_out, each.powers, strict=True)):
+            for k, (left, power) in enumerate(zip(each.truncation, each.powers, strict=True)):
                 order = ORDERS.get(self.model.probes[k].quantity, 0)
                 most_of_one = last ** (power - 2) * (w * w + 2 * most * last * w) / (last * last - w * w)
                 made[k] += acting * left * most_of_one * w**order
@@ -135,7 +135,7 @@ class ModalTransfer:
         return made
 
     @property
-    def _most_left(self) -> arb:
+    def _largest_remaining_ratio(self) -> arb:
         """The greatest ratio of all modes after the first `count`."""
         assert self.model.damping is not None
         ratios = self.model.damping.ratios

@@ -17,7 +17,7 @@ from flint import arb
 
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.exact.modes.frequencies import frequencies
-from wavesym.numbers.doubles import above
+from wavesym.numbers.doubles import upper_double
 from wavesym.results.modes import is_damped
 from wavesym.scene import Scene, lower
 from wavesym.scene.outputs import NoOutput
@@ -138,12 +138,12 @@ def mode_ranges(scene: Scene, count: int, box: Mapping[str, tuple[str, str]]) ->
             raise WavesymError(
                 f"--range: the first end is above the second ({', '.join(box)}); write the lesser one first"
             )
-        rows.append(FrequencyRange(number, _below(first), above(last)))
+        rows.append(FrequencyRange(number, _lower_double(first), upper_double(last)))
     return ModeRanges(scene.name, tuple(rows), dict(box), "s" if scene.scale else None)
 
 
-def _below(value: arb) -> float:
-    return -above(-value) if value > 0 else 0.0
+def _lower_double(value: arb) -> float:
+    return -upper_double(-value) if value > 0 else 0.0
 
 
 def _angular(scene: Scene, count: int) -> list[arb]:

@@ -24,7 +24,7 @@ from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
-from wavesym.numbers.doubles import above, midpoint, nearest
+from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped import damping_ratios
 from wavesym.results.optional import require_packages
 from wavesym.results.participation import Participation, effective_mass, participations
@@ -71,7 +71,7 @@ class Modes:
     """The modes of a scene, by their frequencies; `wavesym.modes` makes it.
 
     `complete` says whether none is missed up to the last one, `why` in words; `time_unit` is "s", or None for tau.
-    `along` are the shapes along lines, where they were asked for.
+    `line_shapes` are the shapes along lines, where they were asked for.
     """
 
     name: str
@@ -81,7 +81,7 @@ class Modes:
     time_unit: str | None
     exact: tuple[Mode, ...]
     cut: Cut
-    along: tuple[LineShapes, ...] = ()
+    line_shapes: tuple[LineShapes, ...] = ()
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -110,10 +110,10 @@ class Modes:
     def json(self, *, shapes: bool = False) -> str:
         """As JSON: `modes`, `complete`, `why`, `time_unit`; complex numbers of shapes as [real, imaginary]."""
         about: dict[str, Any] = {"complete": self.complete, "why": self.why, "time_unit": self.time_unit}
-        if self.along:
+        if self.line_shapes:
             about["along"] = [
-                {"line": each.line, "x": each.x.tolist(), "shapes": [self._plain(row) for row in each.moved]}
-                for each in self.along
+                {"line": each.line, "x": each.x.tolist(), "shapes": [self._plain(row) for row in each.displacements]}
+                for each in self.line_shapes
             ]
         return json.dumps({"name": self.name, "modes": self._rows(shapes=shapes), **about}, indent=2) + "\n"
 
@@ -122,7 +122,7 @@ class Modes:
 
         Of shapes along lines a line for each place, in place of these.
         """
-        if self.along:
+        if self.line_shapes:
             return self._along_csv()
         lines = []
         for mode, row in zip(self.modes, self._rows(shapes=False), strict=True):
@@ -140,8 +140,8 @@ class Modes:
         parts = [""] if real else [".real", ".imag"]
         head = ",".join(["line", "x", *(f"mode {mode.number}{part}" for mode in self.modes for part in parts)])
         lines = [head]
-        for each in self.along:
-            for x, moved in zip(each.x.tolist(), each.moved.T.tolist(), strict=True):
+        for each in self.line_shapes:
+            for x, moved in zip(each.x.tolist(), each.displacements.T.tolist(), strict=True):
                 numbers = [n for q in moved for n in ([q.real] if real else [q.real, q.imag])]
                 lines.append(",".join([each.line, *map(repr, [x, *numbers])]))
         return "\n".join(lines) + "\n"
@@ -165,12 +165,12 @@ class Modes:
             shares = ["-" if each is None else f"{each.factor:.5g}" for each in known]
             numbers = [str(mode.number), f"{mode.omega:.9g}", f"{mode.hz:.9g}", period, damping]
             rows.append([*numbers, *[mass] * massive, *shares])
-        lines = _aligned(rows)
+        lines = _align_columns(rows)
         if shapes:
             nodes = list(self.modes[0].shape)
             table = [["node", *(f"mode {mode.number}" for mode in self.modes)]]
             table += [[node, *(_shape_text(mode.shape[node]) for mode in self.modes)] for node in nodes]
-            lines += ["", *_aligned(table)]
+            lines += ["", *_align_columns(table)]
         radius = max((mode.radius for mode in self.modes), default=0.0)
         return "\n".join([*lines, "", f"right to {radius:.1e} {per}, proved; {self.why}"]) + "\n"
 
@@ -271,7 +271,7 @@ def _row(model: Model, number: int, mode: Mode, per_tau: float) -> ModeRow:
         hz=omega / (2 * pi),
         period=2 * pi / omega if omega else None,
         damping=ratio,
-        radius=above(size.rad()) / per_tau,
+        radius=upper_double(size.rad()) / per_tau,
         effective_mass=None if isinstance(w, acb) else effective_mass(model.network, mode),
         shape=_shape(model.network, mode),
         loads={} if isinstance(w, acb) else participations(model.network, mode, _largest(model.network, mode)),
@@ -310,7 +310,7 @@ def _shape(network: Network, mode: Mode) -> dict[str, complex]:
     return names
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+def _align_columns(rows: Sequence[Sequence[str]]) -> list[str]:
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in rows]
 

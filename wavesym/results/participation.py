@@ -37,7 +37,7 @@ def participations(network: Network, mode: Mode, largest: arb) -> dict[str, Part
         largest: how far the point moves that moves most.
     """
     found: dict[str, Participation] = {}
-    for number in _driven(network):
+    for number in _driven_points(network):
         point = network.points[number]
         name = point.name or point.place
         if point.motion is None:
@@ -50,7 +50,7 @@ def participations(network: Network, mode: Mode, largest: arb) -> dict[str, Part
     return found
 
 
-def _driven(network: Network) -> Iterator[int]:
+def _driven_points(network: Network) -> Iterator[int]:
     """The points that loads act on, and those whose motion is prescribed."""
     for number, point in enumerate(network.points):
         if point.motion != "fixed" and (point.motion is not None or point.loads):

@@ -18,7 +18,7 @@ from flint import acb, acb_series, arb, ctx
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.modes.harmonic import Quantity
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import above, midpoint
+from wavesym.numbers.doubles import midpoint, upper_double
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
@@ -130,8 +130,8 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Peaks:
                 unit=probe.unit,
                 frequency=low if each.at is None else min(max(midpoint(each.at / per), low), high),
                 amplitude=inf if each.pole else midpoint(each.square.sqrt()),
-                low=-above(each.rest - each.square.sqrt()) if each.square > each.rest**2 else 0.0,
-                high=inf if each.pole else above((each.square * (1 + _SHARE)).sqrt() + each.rest),
+                low=-upper_double(each.rest - each.square.sqrt()) if each.square > each.rest**2 else 0.0,
+                high=inf if each.pole else upper_double((each.square * (1 + _SHARE)).sqrt() + each.rest),
             )
             for probe, each in zip(model.probes, found, strict=True)
         ]
@@ -246,7 +246,7 @@ def _squares(transfer: Transfers, w: arb) -> list[tuple[arb, arb, arb]]:
         sizes = (abs(acb(value)) for value in transfer(w))
         return [(size * size, arb(0), arb(0)) for size in sizes]
     made = []
-    for value in _about(transfer, w):
+    for value in _power_series(transfer, w):
         c = _coefficients(value, 3)
         re, im = [each.real for each in c], [each.imag for each in c]
         made.append(
@@ -259,7 +259,7 @@ def _squares(transfer: Transfers, w: arb) -> list[tuple[arb, arb, arb]]:
     return made
 
 
-def _about(transfer: Transfers, w: arb) -> list[Quantity]:
+def _power_series(transfer: Transfers, w: arb) -> list[Quantity]:
     """The transfer functions, their slopes and half their second derivatives on all of a ball, as power series.
 
     What has poles is a numerator over a divisor, which have none: each is a Taylor polynomial about the middle, and a
@@ -308,7 +308,7 @@ def _transfers(model: Model, load: HarmonicLoad, last: arb) -> Iterator[tuple[Tr
     modes, count = UndampedModes(model), _FIRST_MODES
     while count <= _MOST_MODES:
         transfer = ModalTransfer(modes, load, count)
-        yield transfer, transfer.left_out(last)
+        yield transfer, transfer.truncation_error(last)
         count *= 4
-    if not transfer.left_out(last)[0].is_finite():
+    if not transfer.truncation_error(last)[0].is_finite():
         raise CostError(f"--to: {count} modes lie below it, the limit is {_MOST_MODES} (a lower frequency helps)")

@@ -35,7 +35,7 @@ class Response:
     """
 
     model: Model
-    _taken: list[Program] = field(default_factory=list, init=False, repr=False, compare=False)
+    _programs: list[Program] = field(default_factory=list, init=False, repr=False, compare=False)
 
     @cached_property
     def _reference(self) -> Reference:
@@ -68,9 +68,9 @@ class Response:
 
         Many values may need one where a few do not.
         """
-        if not self._taken:
+        if not self._programs:
             self._values([])
-        return self._taken[0] if self._taken else None
+        return self._programs[0] if self._programs else None
 
     @cached_property
     def events(self) -> tuple[ContactEvent, ...]:
@@ -104,12 +104,12 @@ class Response:
         return out.reshape(len(self.outputs), *taus.shape)
 
     def _values(self, taus: Sequence[float]) -> ArrayLike:
-        if not self._taken:
+        if not self._programs:
             try:
                 return self._reference.values(taus)
             except (CostError, UnservedError) as error:
-                self._taken.append(_program(self.model, error))
-        return self._taken[0].evaluate(taus)
+                self._programs.append(_program(self.model, error))
+        return self._programs[0].evaluate(taus)
 
 
 def _program(model: Model, error: WavesymError) -> Program:

@@ -33,7 +33,7 @@ class LineShapes:
 
     line: str
     x: NDArray[np.float64]
-    moved: NDArray[np.complex128]
+    displacements: NDArray[np.complex128]
 
 
 def line_shapes(modes: Sequence[Mode], pieces: Cut, model: Model, lines: Lines, points: int) -> tuple[LineShapes, ...]:
@@ -55,7 +55,7 @@ def line_shapes(modes: Sequence[Mode], pieces: Cut, model: Model, lines: Lines, 
         raise WavesymError(f"--points: {points} is not from 2 to {MOST}")
     length = float(model.length.size) if model.length else 1.0
     some = {name: stations for name, stations in lines.items() if stations[-1].x}
-    found = {name: [_along(mode, pieces, stations, points) for mode in modes] for name, stations in some.items()}
+    found = {name: [_sample_line(mode, pieces, stations, points) for mode in modes] for name, stations in some.items()}
     made = []
     largest = [max((moved[k][1] for moved in found.values()), key=_size) for k in range(len(modes))]
     scales = np.array([moved[np.argmax(np.abs(moved))] or 1.0 for moved in largest])[:, None]
@@ -69,7 +69,7 @@ def _size(moved: NDArray[np.complex128]) -> float:
     return float(np.abs(moved).max())
 
 
-def _along(
+def _sample_line(
     mode: Mode, pieces: Cut, stations: tuple[Station, ...], points: int
 ) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
     """Places along a line and how far they move."""

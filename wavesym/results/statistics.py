@@ -11,7 +11,7 @@ from math import nan
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from wavesym.results.summary import OutputSummary, When
+    from wavesym.results.summary import OutputSummary, OutputTime
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Statistic:
     heading: str
     about: str
     value: Callable[[OutputSummary], float] | None = None
-    when: Callable[[OutputSummary], When | None] | None = None
+    when: Callable[[OutputSummary], OutputTime | None] | None = None
     reached: Callable[[OutputSummary], bool] = lambda _: True
     runtime: bool = False
 

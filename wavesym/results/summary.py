@@ -22,7 +22,7 @@ from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.results.optional import require_packages
 from wavesym.results.response import Response
-from wavesym.results.sampled import sampled_extremes
+from wavesym.results.sampling import sampled_extremes
 from wavesym.results.statistics import STATISTICS
 from wavesym.results.stepping import describe_step, sample_program, spacing
 
@@ -32,7 +32,7 @@ _MOST_SAMPLES = 8_000_000
 _MOST_DRIFTS = 50  # rods in which the largest is looked for, though nobody asked for them
 
 
-class When(NamedTuple):
+class OutputTime(NamedTuple):
     """`tau`, and the `time` in the scene's unit; None where it has none."""
 
     tau: float
@@ -52,7 +52,7 @@ class Peak:
     """
 
     value: float
-    at: When
+    at: OutputTime
     reached: bool = True
 
 
@@ -65,7 +65,7 @@ class OutputSummary:
     unit: str
     min: Peak
     max: Peak
-    arrival: When | None
+    arrival: OutputTime | None
     mean: float = 0.0
     rms: float = 0.0
     residual: float = 0.0
@@ -213,7 +213,9 @@ class _Extremes(NamedTuple):
 
 def _solve_extremes(models: Sequence[Model], samples: Sequence[float] | None) -> tuple[Model, _Extremes]:
     """The extremes of the first of some models that can be solved, exactly rather than by a program, and that model."""
-    methods = [_exact, _searched] if samples is None else [lambda model: _extremes_at(model, np.asarray(samples))]
+    methods = (
+        [_exact, _search_extremes] if samples is None else [lambda model: _extremes_at(model, np.asarray(samples))]
+    )
     *attempts, last = [(method, model) for method in methods for model in models]
     for method, model in attempts:
         with suppress(CostError, UnservedError, ToleranceError):
@@ -263,11 +265,11 @@ def _peak(model: Model, found: TrueExtreme) -> Peak:
     return Peak(found.value, instant(model, found.tau), found.reached)
 
 
-def instant(model: Model, tau: float, exact: fmpq | None = None) -> When:
+def instant(model: Model, tau: float, exact: fmpq | None = None) -> OutputTime:
     """A tau, and the scene's time then."""
     if model.clock is None:
-        return When(tau, None)
-    return When(tau, nearest((rational(tau) if exact is None else exact) * model.clock.per_tau))
+        return OutputTime(tau, None)
+    return OutputTime(tau, nearest((rational(tau) if exact is None else exact) * model.clock.per_tau))
 
 
 def _extremes_at(model: Model, taus: Numbers) -> _Extremes:
@@ -277,11 +279,11 @@ def _extremes_at(model: Model, taus: Numbers) -> _Extremes:
     ranges = _ranges(*sampled_extremes(taus, values, bound=response.error_bound))
     made = response.program
     how = f"the values{f' of {made.evaluator}' if made else ''} at {taus.size} samples"
-    averaged = _averaged(values, np.ones(taus.size))
+    averaged = _averages(values, np.ones(taus.size))
     return _Extremes(ranges, averaged, response.error_bound, made is None or made.proved, how, made)
 
 
-def _searched(model: Model) -> _Extremes:
+def _search_extremes(model: Model) -> _Extremes:
     """The extremes of the program that `auto` takes, looked for between many samples."""
     program = make(model)
     step = spacing(model)
@@ -294,7 +296,7 @@ def _searched(model: Model) -> _Extremes:
     taus, values = sample_program(model, program, step)
     ranges = _ranges(*sampled_extremes(taus, values, program.each, program.error_bound))
     how = f"{program.evaluator} at {taus.size} samples, {describe_step(model, step)}, then refined"
-    return _Extremes(ranges, _averaged(values, _trapezoids(taus)), program.error_bound, False, how, program)
+    return _Extremes(ranges, _averages(values, _trapezoids(taus)), program.error_bound, False, how, program)
 
 
 def _trapezoids(taus: Numbers) -> Numbers:
@@ -303,7 +305,7 @@ def _trapezoids(taus: Numbers) -> Numbers:
     return np.asarray((steps[:-1] + steps[1:]) / 2 if taus.size > 1 else np.ones(1))
 
 
-def _averaged(values: Numbers, weights: Numbers) -> list[tuple[float, float, float]]:
+def _averages(values: Numbers, weights: Numbers) -> list[tuple[float, float, float]]:
     """Of each row the mean and the root mean square, with weights, and the last value."""
     means, squares = (np.average(each, axis=1, weights=weights) for each in (values, values**2))
     return list(zip(means.tolist(), np.sqrt(squares).tolist(), values[:, -1].tolist(), strict=True))

@@ -16,7 +16,7 @@ _NEARER = 8  # times, in the second look at a top
 
 
 @dataclass(frozen=True)
-class Closely:
+class SuspectSteps:
     """What is looked at, each an array over steps: the `group` that it is one of, the `step` and the `output`, the
     `sign` of what is high, how long the step is, and what is known `inside` it (steps, numbers)."""
 
@@ -28,7 +28,7 @@ class Closely:
     inside: Numbers
 
 
-def tops(response: RecordResponse, steps: Closely, points: int) -> tuple[Numbers, Numbers]:
+def tops(response: RecordResponse, steps: SuspectSteps, points: int) -> tuple[Numbers, Numbers]:
     """Of each group, in order, the greatest value times its sign, as it is, and when, since records begin."""
     values = _signed_values(response, steps, points)
     before, here, after = values[:, :-2], values[:, 1:-1], values[:, 2:]
@@ -44,22 +44,22 @@ def tops(response: RecordResponse, steps: Closely, points: int) -> tuple[Numbers
     apart, values = length / (points - 1), values[row]
     s, value = point * apart, values[each, point]
 
-    def looked(at: Numbers) -> Numbers:
+    def signed_response(at: Numbers) -> Numbers:
         return sign * response.at(inside, at, output)
 
     near = np.clip(point, 1, points - 2)
     shift = _vertex(values[each, near - 1], values[each, near], values[each, near + 1])
     finer = apart / _NEARER
     middle = np.clip((near + shift) * apart, finer, length - finer)
-    trio = [looked(middle + k * finer) for k in (-1, 0, 1)]
+    trio = [signed_response(middle + k * finer) for k in (-1, 0, 1)]
     last = middle + _vertex(*trio) * finer
-    for at, found in ((middle, trio[1]), (last, looked(last))):
+    for at, found in ((middle, trio[1]), (last, signed_response(last))):
         better = found > value
         value, s = np.where(better, found, value), np.where(better, at, s)
     return sign * value, steps.step[row] * response.spacing + s
 
 
-def _signed_values(response: RecordResponse, steps: Closely, points: int) -> Numbers:
+def _signed_values(response: RecordResponse, steps: SuspectSteps, points: int) -> Numbers:
     """Values times their sign at equally spaced instants of each step, its ends included: (steps, points)."""
     made = np.empty((len(steps.step), points))
     for length in np.unique(steps.length).tolist():

@@ -123,7 +123,9 @@ class Transfer:
         total: list[Quantity] = [acb(0) for _ in self.model.probes]
         for point, coefficients in self.load.drives:
             motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
-            for k, (probe, moved) in enumerate(zip(self.model.probes, self._displaced(point, w), strict=True)):
+            for k, (probe, moved) in enumerate(
+                zip(self.model.probes, self._undifferentiated_outputs(point, w), strict=True)
+            ):
                 order = ORDERS.get(probe.quantity, 0) - motion
                 total[k] = total[k] + drive(coefficients, rate, order) * moved
         return total
@@ -144,15 +146,15 @@ class Transfer:
             made.append(driven * output_amplitude(self.model.network, probe, amplitudes))
         return made, amplitudes.divisor
 
-    def _displaced(self, point: int, w: Quantity) -> list[Quantity]:
+    def _undifferentiated_outputs(self, point: int, w: Quantity) -> list[Quantity]:
         """The outputs, not yet differentiated in time, under a unit force on a point, or its unit displacement."""
         if self._rayleigh is None:
-            return self._undamped(point, w)
+            return self._undamped_outputs(point, w)
         first, second, ratio = self._rayleigh
         a, b = 2 * ratio * first * second / (first + second), 2 * ratio / (first + second)
         lag = w * (_I * b) + 1
         square = (w * w - w * (_I * a)) / lag
-        moved = self._undamped(point, square.sqrt())
+        moved = self._undamped_outputs(point, square.sqrt())
         if self.model.network.points[point].motion is None:
             made = [each / lag for each in moved]
             if self._rigid is None:
@@ -162,12 +164,12 @@ class Transfer:
             share = shape(point) / mass
             rigid_part = [share * self._of_shape(probe, shape) for probe in self.model.probes]
             return [each + r / (square * lag) - r / (w * w) for each, r in zip(made, rigid_part, strict=True)]
-        imposed = self._undamped(point, arb(0))
+        imposed = self._undamped_outputs(point, arb(0))
         # w^2/(v^2 (1 + i b w)), also at 0
         share_of_w = w / (w - _I * a)
         return [u + (each - u) * share_of_w for each, u in zip(moved, imposed, strict=True)]
 
-    def _undamped(self, point: int, w: Quantity) -> list[Quantity]:
+    def _undamped_outputs(self, point: int, w: Quantity) -> list[Quantity]:
         amplitudes = self._harmonic.driven(point, w)
         return [output_amplitude(self.model.network, probe, amplitudes) for probe in self.model.probes]
 

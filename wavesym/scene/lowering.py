@@ -16,7 +16,7 @@ from wavesym.fields.loads import Load, SampledLoad, TimedLoad
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
-from wavesym.mechanics.loads import Applied, AppliedRecord, merge_loads
+from wavesym.mechanics.loads import AppliedLoad, AppliedRecord, merge_loads
 from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import SystemParameters
@@ -176,19 +176,19 @@ def _shape_notes(scene: Scene) -> Iterator[str]:
             yield f"load[{k}]: {load.shape} {load.sampling}, one every {_spacing(scene, load)}"
 
 
-def _loads(scene: Scene) -> tuple[Applied, ...]:
+def _loads(scene: Scene) -> tuple[AppliedLoad, ...]:
     """The loads, summed; sorted by time, and each source at a time once."""
     if not scene.system.load_kinds:
-        return (Applied("impact", fmpq(0), fmpq(1)),)
+        return (AppliedLoad("impact", fmpq(0), fmpq(1)),)
     return merge_loads(unit for load in scene.load for unit in load.units())
 
 
-def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
+def amplitudes(scene: Scene) -> tuple[tuple[str, AppliedLoad], ...]:
     """The numbers of the loads in the order of the scene, each with what it is called; zeros too.
 
     Of a load that has samples it is one, the factor of all of them: 1.
     """
-    found: list[tuple[str, Applied]] = []
+    found: list[tuple[str, AppliedLoad]] = []
     for label, load in zip(load_names(scene), scene.load, strict=True):
         if not isinstance(load, TimedLoad):
             samples = AppliedRecord(load.sources[0], fmpq(0), fmpq(1), merge_loads(load.units()))

@@ -18,7 +18,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.modes.loads import Roughness, sampled_roughness
 from wavesym.records.load import RecordedLoad
-from wavesym.results.recorded import ManyRecords, SharedModes
+from wavesym.results.many_records import ManyRecords, SharedModes
 from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.scene import Scene, lower
 from wavesym.scene.paths import changed

@@ -33,7 +33,7 @@ class RuntimeCase:
         """That of a scene. WavesymError where it has no such fields, or cannot be served."""
         model, given = lower(scene), amplitudes(scene) if "load" in names else ()
         own = free_network(model, names, given).fields
-        rest = model.parameters.without(names)
+        rest = model.parameters.fixed_part(names)
         bare = replace(model, network=Network((), ()), preset=None)
         called = [(field.name, field.labels, field.units) for field in own]
         timed = [(load.source, load.time) for _, load in given]

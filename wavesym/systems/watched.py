@@ -42,7 +42,7 @@ class Watching:
         text = show(WrittenDecimal(position.written))
         if quantity == "drift":
             return self._rod(position, text)
-        place = self.system.located(position, QUANTITIES[quantity].like, self.loads)
+        place = self.system.located(position, QUANTITIES[quantity].place_quantity, self.loads)
         if quantity == "relative":
             self._refuse_groundless(text)
         return place

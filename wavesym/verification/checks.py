@@ -69,7 +69,7 @@ def peaks(known: ReferenceOutputs) -> list[Outcome]:
         found = extremes(known.model)
         near = {each.tau: _doubles(each.tau) for pair in found for each in pair}
         taus = sorted({tau for some in near.values() for tau in some})
-        further = known.model.shortened(rational(max(known.until, taus[-1])))  # and just behind the horizon
+        further = known.model.shorten(rational(max(known.until, taus[-1])))  # and just behind the horizon
         rows = Reference(further).values(taus)
     except WavesymError as refusal:
         return refused_outcomes(known, "beyond", f"no proved extremes to compare ({refusal})")

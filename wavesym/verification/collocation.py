@@ -197,8 +197,8 @@ class _Integration:
         self._rule = gauss(found.points)
         self._looked = self._rule.interpolation(_LOOKED)
         impedance = np.repeat(problem.impedance, 2)
-        self._damping = problem.damping + np.diag(problem.onto**2 @ impedance)
-        self._arriving_force = 2 * problem.onto * impedance
+        self._damping = problem.damping + np.diag(problem.incidence**2 @ impedance)
+        self._arriving_force = 2 * problem.incidence * impedance
         self._u, self._q = np.zeros(problem.points), problem.velocity.copy()
         self._open = problem.gaps > 0
         self._same = Fraction(SAME) * max(problem.delays) if len(problem.gaps) else Fraction(0)

@@ -24,7 +24,7 @@ from flint import fmpq
 from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load, TimedLoad
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
@@ -123,7 +123,7 @@ def independent_model(scene: Scene, model: Model) -> Model:
         model: what it was lowered to; its horizon, tolerance, damping and units are taken as they are.
     """
     sketch = _sketch(scene.system)
-    loads: list[Applied] = []
+    loads: list[AppliedLoad] = []
     units: dict[int, list[UnitLoad]] = {}
     for number, load in enumerate(scene.load):
         point, size = sketch.push(load)
@@ -132,7 +132,7 @@ def independent_model(scene: Scene, model: Model) -> Model:
             UnitLoad(kind, None, (*[fmpq(0)] * power, rational(size))) for power, kind in enumerate(kinds)
         )
         loads += [
-            Applied(kind, rational(time), rational(value))
+            AppliedLoad(kind, rational(time), rational(value))
             for time, *values in changes(load)
             for kind, value in zip(kinds, values, strict=True)
         ]

@@ -116,7 +116,7 @@ class Balancing:
         self.cuts = np.array([float(cut) for cut in self._cuts(fronts, self.struck)])
         self.model = model.watching(seen)
         if self.struck:
-            self.model = self.model.shortened(rational(self.struck[-1]))
+            self.model = self.model.shorten(rational(self.struck[-1]))
 
     def balances(self, evaluate: Evaluate, errors: Sequence[float] | None = None) -> tuple[Balance, ...]:
         """The balances of momentum and energy, as `evaluate` has the watched model, and what contacts must keep.
@@ -203,7 +203,7 @@ class _Books:
         unit = np.eye(3 * size + ends)
         self._q, self._u, self._strain, self._load = np.split(unit, [size, 2 * size, 2 * size + ends])
         sign = np.tile([1.0, -1.0], len(problem.delays))
-        self._v = problem.onto.T @ self._q
+        self._v = problem.incidence.T @ self._q
         self._force = (sign * np.repeat(problem.impedance, 2))[:, np.newaxis] * self._strain  # of ends on their points
         self._coming = (self._v - sign[:, np.newaxis] * self._strain) / 2  # into the bar at each end
         self._resisted = problem.damping @ self._q + problem.stiffness @ self._u
@@ -250,7 +250,7 @@ class _Books:
         """By how much energy is not what was there and what came."""
         problem, free = self._problem, self._free
         work = self._q.T @ (free[:, np.newaxis] * self._load) - self._q.T @ problem.damping @ self._q
-        reaction = self._resisted - problem.onto @ self._force - problem.parting.T @ self._push
+        reaction = self._resisted - problem.incidence @ self._force - problem.parting.T @ self._push
         work += self._q.T @ ((1 - free)[:, np.newaxis] * reaction)
         return self._balance(self.stored, self._all.form(work), self.initial_energy)
 
@@ -279,7 +279,7 @@ class _Books:
         problem, (points, bars) = self._problem, self._counted
         counted, moving = points * self._free * self._unheld, bars * problem.impedance
         stored = self._content(1, moving) + self._ends.sums(counted * problem.mass @ self._q)
-        across = counted @ problem.onto - np.repeat(bars, 2)  # 0 but where prescribed motion holds
+        across = counted @ problem.incidence - np.repeat(bars, 2)  # 0 but where prescribed motion holds
         rate = self._all.sums(counted @ (self._load - self._resisted) + across @ self._force)
         before = counted * problem.mass @ problem.velocity + moving * self._delays @ problem.start_velocity
         return self._balance(stored, rate, float(before))
@@ -300,7 +300,7 @@ class _Books:
         """What contacts push with, (contacts, rows): what points without mass need to be in balance."""
         problem = self._problem
         light = (problem.mass == 0) & problem.is_free
-        acting = self._load + problem.onto @ self._force - self._resisted
+        acting = self._load + problem.incidence @ self._force - self._resisted
         return np.asarray(-np.linalg.pinv(problem.parting[:, light].T) @ acting[light])
 
     def contacts(self, largest: float) -> Within:

@@ -194,7 +194,7 @@ def _with_parameters(
     yield from model_values(built, f"{name}, C", own, taus, known.until)
     yield from functions_of_parameters(built, f"{name}, C", own, others, taus, known.until)
     instants = np.unique([*[tau for tau in known.taus if np.float32(tau) == tau][::_SOME], *even_taus(known.until)])
-    method = collocation_method(changed.shortened(known.model.until), known.until, instants.tolist())
+    method = collocation_method(changed.shorten(known.model.until), known.until, instants.tolist())
     if isinstance(method, str):
         yield ProgramValues(f"{name}, C, others", taus, np.empty(0), [], [], refused=method)
         return

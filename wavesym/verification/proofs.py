@@ -77,7 +77,7 @@ def _laws(system: System) -> tuple[Law, ...]:
 
 def _node(family: Family) -> tuple[Node, Expr]:
     x = exact(family.first) if exact(family.first - family.last) == 0 else INDEX
-    return family.at(x), x
+    return family.node_at(x), x
 
 
 def _leaving(node: Node, x: Expr) -> list[tuple[str, Expr]]:

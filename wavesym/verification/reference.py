@@ -65,7 +65,7 @@ class ReferenceOutputs:
     @property
     def integrated(self) -> Model:
         """What integrators start from, as far as it is known."""
-        return self.model if self.independent is None else self.independent.shortened(self.model.until)
+        return self.model if self.independent is None else self.independent.shorten(self.model.until)
 
     @property
     def names(self) -> list[str]:

@@ -65,8 +65,8 @@ def alone(network: Network, number: int) -> LoneJoint:
 def _write(points: list[Point], bars: list[Bar], links: list[Link]) -> LoneJoint:
     network = Network((*points, Point(_NONE)), tuple(bars), tuple(links))
     ends = tuple(end for end in network.joints[-1].ends)
-    near = Joint(tuple(range(len(points))), tuple((network.beyond(end), _near(bars[end.bar])) for end, _ in ends))
-    return LoneJoint(network, near, JointLaw.of(network, near))
+    near = Joint(tuple(range(len(points))), tuple((network.opposite_end(end), _near(bars[end.bar])) for end, _ in ends))
+    return LoneJoint(network, near, JointLaw.assemble(network, near))
 
 
 def _near(bar: Bar) -> int:

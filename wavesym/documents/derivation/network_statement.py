@@ -159,8 +159,8 @@ class _Author:
         """M q' + C q + K u = sum of 2 n Z a + F, row by row; what is prescribed, as it is."""
         law = made.law
         for i in range(len(law.mass)):
-            if law.given[i] is not None:
-                prime = "'" if law.given[i] == "acceleration" else ""
+            if law.motions[i] is not None:
+                prime = "'" if law.motions[i] == "acceleration" else ""
                 yield self._balanced([(Integer(1), self.n.indexed("q", i + 1) + prime)], self._force(made, i))
                 continue
             own = [(_expression(law.mass[i]), self.n.indexed("q", i + 1) + "'")]
@@ -184,7 +184,7 @@ class _Author:
         """What points whose motion is prescribed do to another, through springs and dashpots."""
         law = made.law
         for letter, matrix in (("q", law.damping), ("u", law.stiffness)):
-            for j, given in enumerate(law.given):
+            for j, given in enumerate(law.motions):
                 if given not in (None, "fixed") and matrix[i][j] != 0:
                     yield -_expression(matrix[i][j]), self.n.indexed(letter, j + 1)
 

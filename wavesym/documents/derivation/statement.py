@@ -195,7 +195,7 @@ class _Author:
             x = exact(family.first) if alone else INDEX
             where = self.w.range(family.first, family.last, family.step)
             for at in self.w.places(family.first, family.last, family.step):
-                yield Entry(f"x = {self.n.expression(at(x))}{where}", tuple(write(family.at(x), x, at)))
+                yield Entry(f"x = {self.n.expression(at(x))}{where}", tuple(write(family.node_at(x), x, at)))
 
     def _rods(self, system: System) -> Iterator[Entry]:
         for kind in rod_kinds(system):

@@ -64,7 +64,7 @@ def joints(model: Model) -> Listing:
     for number in model.joints_in_reach(rational(model.horizon())):
         joint = model.network.joints[number]
         points = Display([_point_name(model, point) for point in joint.points], _point_names(model, joint))
-        law = _polynomial(JointLaw.of(model.network, joint))
+        law = _polynomial(JointLaw.assemble(model.network, joint))
         rows.append({"joint": number, "points": points, "ends": len(joint.ends), "law": law})
     return Listing("joints", "Joints in the light cone: the points and ends of rods that move together", rows, ("law",))
 
@@ -81,7 +81,7 @@ def joint_laws(model: Model) -> Listing:
     rows: list[dict[str, Plain | Display]] = []
     for number in model.joints_in_reach(until):
         joint = model.network.joints[number]
-        law = JointLaw.of(model.network, joint)
+        law = JointLaw.assemble(model.network, joint)
         mass = [[m if a == b else fmpq(0) for b in range(len(law.mass))] for a, m in enumerate(law.mass)]
         rows.append(
             {

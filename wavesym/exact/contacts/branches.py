@@ -17,7 +17,7 @@ from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
 from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
-from wavesym.exact.joints.enclosed import UNIT, Enclosed, add_terms
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, add_terms
 from wavesym.numbers.doubles import middle
 
 
@@ -138,7 +138,7 @@ class Contact(Corner):
             return _positive(moved.pushes[self.link], low, moved.length, resolution)
         rate = moved.rates[self.link]
         if self.exact is not None and rate.exact is not None:
-            gap = Enclosed.of(rate.exact.integral() + self.exact)
+            gap = Enclosure.from_polynomial(rate.exact.integral() + self.exact)
             return _positive(gap, low, moved.length, resolution)
         if not self.wide and low == 0:  # it opens: as long as it grows it is open
             grows = _positive(rate, low, moved.length, resolution)
@@ -146,7 +146,7 @@ class Contact(Corner):
                 return grows
             low = grows.length
         error = (rate.error * arb(moved.length)).upper()
-        return _positive(Enclosed(rate.polynomial.integral() + self.gap, error), low, moved.length, resolution)
+        return _positive(Enclosure(rate.polynomial.integral() + self.gap, error), low, moved.length, resolution)
 
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether its branch is certainly right on all of a short stretch."""
@@ -163,7 +163,7 @@ class Contact(Corner):
         else:
             self._grow(moved.rates[self.link], length)
 
-    def _grow(self, rate: Enclosed, length: fmpq) -> None:
+    def _grow(self, rate: Enclosure, length: fmpq) -> None:
         h = arb(length)
         gap = rate.polynomial.integral()(h) + self.gap + arb(0, (rate.error * h).upper())
         if self.exact is not None and rate.exact is not None:
@@ -258,7 +258,7 @@ class Friction(Corner):
         if self.link in moved.closed:
             self.rate = arb(0)
             return
-        self.rate = moved.rates[self.link].at(length)
+        self.rate = moved.rates[self.link].evaluate(length)
         if self.link in moved.vague:
             self.sign, self.closed = 0, False
 
@@ -272,28 +272,28 @@ class Friction(Corner):
         self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed
         self._decided = Branch(self.closed, self.sign)
 
-    def _margins(self, moved: JointStretch) -> list[Enclosed]:
+    def _margins(self, moved: JointStretch) -> list[Enclosure]:
         """What is left of the limit either way."""
         force = moved.pushes[self.link]
         return [add_terms([(self.limit, UNIT), (fmpq(way), force)]) for way in (1, -1)]
 
-    def _forward(self, moved: JointStretch) -> Enclosed:
+    def _forward(self, moved: JointStretch) -> Enclosure:
         """How fast it goes the way it slides."""
         return add_terms([(fmpq(sliding_sign(self.link, moved.sliding)), moved.rates[self.link])])
 
 
-def _middles(known: Enclosed) -> fmpq_poly:
+def _middles(known: Enclosure) -> fmpq_poly:
     """The polynomial that is the middle of what is known."""
     return fmpq_poly([middle(c) for c in known.polynomial.coeffs()])
 
 
-def _without_start(known: Enclosed) -> Enclosed:
+def _without_start(known: Enclosure) -> Enclosure:
     """A function with the signs of the middle of what is known, which is not 0 at the start."""
     powers = [c.mid() for c in known.polynomial.coeffs()]
-    return Enclosed(arb_poly(powers[1:] if powers and powers[0] == 0 else powers), arb(0))
+    return Enclosure(arb_poly(powers[1:] if powers and powers[0] == 0 else powers), arb(0))
 
 
-def _begins_bearable(force: Enclosed) -> bool:
+def _begins_bearable(force: Enclosure) -> bool:
     """Whether it is certainly not negative just after the start."""
     if force.least is not None and sign_after(force.least, fmpq(0)) >= 0:
         return True
@@ -303,7 +303,7 @@ def _begins_bearable(force: Enclosed) -> bool:
     )
 
 
-def _begins_to_grow(rate: Enclosed) -> bool:
+def _begins_to_grow(rate: Enclosure) -> bool:
     """Whether it is certainly positive just after the start."""
     return all(
         _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
@@ -316,7 +316,7 @@ def _gap_within(gap: arb) -> arb:
     return gap if gap >= 0 else arb(0).union(gap.upper().max(arb(0)))
 
 
-def _positive(known: Enclosed, low: fmpq, high: fmpq, resolution: fmpq) -> BranchEnd | None:
+def _positive(known: Enclosure, low: fmpq, high: fmpq, resolution: fmpq) -> BranchEnd | None:
     """Up to where a function that starts well is certainly not negative; None: all the way."""
     if known.exact is None:
         if known.least is not None and first_fall(known.least, low, high) is None:
@@ -329,7 +329,7 @@ def _positive(known: Enclosed, low: fmpq, high: fmpq, resolution: fmpq) -> Branc
                 return None
         end = positive_until(known.polynomial, known.error, low, high, resolution)
         return None if end is None else BranchEnd(end, _spread(known, end))
-    if known.over(arb(low).union(arb(high))) > 0:
+    if known.evaluate_on(arb(low).union(arb(high))) > 0:
         return None
     fall = first_fall(known.exact, low, high)
     if not isinstance(fall, tuple):
@@ -341,11 +341,11 @@ def _positive(known: Enclosed, low: fmpq, high: fmpq, resolution: fmpq) -> Branc
     return BranchEnd(before, fmpq(0))
 
 
-def _begins_positive(known: Enclosed) -> bool:
-    return known.at(fmpq(0)) > 0 or (known.onset is not None and known.onset.sign() > 0)
+def _begins_positive(known: Enclosure) -> bool:
+    return known.evaluate(fmpq(0)) > 0 or (known.onset is not None and known.onset.sign() > 0)
 
 
-def _spread(known: Enclosed, x: fmpq) -> fmpq:
+def _spread(known: Enclosure, x: fmpq) -> fmpq:
     """How far off the place is where a function comes to 0; 0 where that is not known."""
     slope = abs(known.polynomial.derivative()(arb(x))).lower()
     if not slope > 0:
@@ -353,12 +353,12 @@ def _spread(known: Enclosed, x: fmpq) -> fmpq:
     return middle(2 * (known.error + known.polynomial(arb(x)).rad()) / slope)
 
 
-def _range(known: Enclosed, length: fmpq) -> arb:
+def _range(known: Enclosure, length: fmpq) -> arb:
     """All values on a stretch."""
-    return known.over(arb(0).union(arb(length)))
+    return known.evaluate_on(arb(0).union(arb(length)))
 
 
-def _is_not_negative(known: Enclosed, length: fmpq) -> bool:
+def _is_not_negative(known: Enclosure, length: fmpq) -> bool:
     """Whether a force is certainly not negative on a stretch."""
     if known.least is not None and first_fall(known.least, fmpq(0), length) is None:
         return True

@@ -53,8 +53,8 @@ class Cluster:
     @classmethod
     def from_law(cls, law: JointLaw, points: Sequence[int], touches: Mapping[int, Touch], closed: Closed) -> Cluster:
         """From the law of the joint with all contacts open. WavesymError where two rigid bodies would touch."""
-        rigid = [k for k in points if law.given[k] is not None]
-        heavy = [k for k in points if law.given[k] is None and law.mass[k] != 0]
+        rigid = [k for k in points if law.motions[k] is not None]
+        heavy = [k for k in points if law.motions[k] is None and law.mass[k] != 0]
         ways: dict[int, list[tuple[int, fmpq]]] = {k: [] for k in points}
         inside = [n for n in closed if touches[n].left in ways]
         for n in inside:
@@ -65,7 +65,7 @@ class Cluster:
 
         def sticks(point: int) -> bool:
             """Whether it is held by the ground."""
-            return law.given[leaders[members[point][0]]] == "fixed"
+            return law.motions[leaders[members[point][0]]] == "fixed"
 
         for leader in chain(rigid, heavy, points):
             if leader not in members:
@@ -82,7 +82,7 @@ class Cluster:
                 side, sign = [k for k, _ in _moving(touch.left, cut)], fmpq(-1)
             pushes[n] = [(k, sign * members[k][1] / members[touch.right][1]) for k in side]
         local = {k: n for n, k in enumerate(points)}
-        grouped = law.among(points).group([members[k] for k in points], [local[k] for k in leaders])
+        grouped = law.restrict(points).group([members[k] for k in points], [local[k] for k in leaders])
         return cls(tuple(points), grouped, pushes, tuple(k for k in heavy if k not in leaders))
 
     @property
@@ -96,7 +96,7 @@ class Cluster:
 
         A body alone that presses on a contact is let die away as it does: the sign of its force stays known.
         """
-        return () if self.pushes and len(self.law.mass) == 1 and not self.law.springs else Relaxation.all(self.law)
+        return () if self.pushes and len(self.law.mass) == 1 and not self.law.springs else Relaxation.separate(self.law)
 
     def leader(self, group: int) -> int:
         """The point that a group moves like."""

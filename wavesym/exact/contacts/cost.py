@@ -14,7 +14,7 @@ from flint import fmpq
 from wavesym.errors import CostError
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch
 from wavesym.exact.joints.fronts import front_sources, front_times
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
 
@@ -33,7 +33,7 @@ _GROWN, _MOST_FRONTS = 1024, 100_000
 class Cost:
     """Counts the stretches of joints as they begin. CostError where there are too many, or would be by the end."""
 
-    def __init__(self, network: Network, loads: Sequence[Applied], last: Mapping[int, fmpq]) -> None:
+    def __init__(self, network: Network, loads: Sequence[AppliedLoad], last: Mapping[int, fmpq]) -> None:
         self._network, self._loads, self._last = network, loads, last
         self._until = max(last.values(), default=fmpq(0))
         self._starts: list[fmpq] = []

@@ -7,7 +7,7 @@ from typing import cast
 
 from flint import acb, arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
-from wavesym.exact.joints.enclosed import Enclosed, shorten
+from wavesym.exact.joints.enclosure import Enclosure, shorten
 from wavesym.numbers.doubles import middle
 
 _COARSE = 64  # bits that do, where the interval is no shorter than this part of the whole
@@ -26,7 +26,7 @@ class _Course:
     def __init__(self, p: arb_poly, error: arb, high: fmpq) -> None:
         self.p, self.error, self._high = p, error, high
         with ctx.workprec(_COARSE):
-            self._rough = shorten(Enclosed(p * arb(1), error), high)
+            self._rough = shorten(Enclosure(p * arb(1), error), high)
 
     def sign_on(self, a: fmpq, b: fmpq) -> tuple[bool, int]:
         """As `_sign_on`."""
@@ -65,7 +65,7 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
     return None
 
 
-def shortfall(known: Enclosed, high: fmpq) -> arb:
+def shortfall(known: Enclosure, high: fmpq) -> arb:
     """How far below 0 a function may be on [0, high]: 0 where it is certainly not."""
     if known.exact is not None and first_fall(known.exact, fmpq(0), high) is None:
         return arb(0)
@@ -86,7 +86,7 @@ def shortfall(known: Enclosed, high: fmpq) -> arb:
     return worst
 
 
-def certain_fall(known: Enclosed, low: fmpq, high: fmpq, resolution: fmpq) -> tuple[fmpq, fmpq] | None:
+def certain_fall(known: Enclosure, low: fmpq, high: fmpq, resolution: fmpq) -> tuple[fmpq, fmpq] | None:
     """Since when a function that is positive at `low`, or nearly, may be negative, and from where it certainly is.
 
     None where it is certainly negative nowhere before `high`. Both are the same where its sign changes at a rational.
@@ -114,7 +114,7 @@ def certain_fall(known: Enclosed, low: fmpq, high: fmpq, resolution: fmpq) -> tu
     return None
 
 
-def certain_rise(known: Enclosed, high: fmpq, resolution: fmpq) -> fmpq | None:
+def certain_rise(known: Enclosure, high: fmpq, resolution: fmpq) -> fmpq | None:
     """From where on, about, a function that is not certainly positive at 0 is; None where that is nowhere soon.
 
     0 where it is at once, or nothing of it is unknown.

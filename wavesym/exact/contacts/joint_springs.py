@@ -10,7 +10,7 @@ from flint import arb, arb_poly, fmpq, fmpq_poly
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding
 from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, sliding_sign
 from wavesym.exact.contacts.springs import CornerSpring, SpringState, acting_motion, idle_motion, yielding_motion
-from wavesym.exact.joints.enclosed import UNIT, Enclosed, Terms, add_terms, scale_terms
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, Terms, add_terms, scale_terms
 from wavesym.exact.joints.joint import JointMotion
 from wavesym.mechanics.network import Network
 
@@ -61,7 +61,7 @@ class JointSprings:
                 constant = spring.pull(sign) if sign else fmpq(0)
             spring.add_pull(forces, [(constant, UNIT)] if constant != 0 else [])
             if (force := unknown.get(n, arb(0))) != 0:
-                spring.add_pull(forces, [(fmpq(1), Enclosed(arb_poly(), force))])
+                spring.add_pull(forces, [(fmpq(1), Enclosure(arb_poly(), force))])
 
     def strain(
         self,
@@ -93,15 +93,15 @@ class JointSprings:
     @staticmethod
     def _stretch(
         spring: CornerSpring, state: SpringState, among: Sequence[int], displacements: Displacements
-    ) -> Enclosed:
+    ) -> Enclosure:
         """That of a spring that acts."""
         if not isinstance(displacements, JointMotion):
             apart = displacements[spring.right] - spring.ratio * displacements[spring.left]
-            return Enclosed.of(apart + state.shift_known)
+            return Enclosure.from_polynomial(apart + state.shift_known)
         series = dict(zip(among, displacements.places, strict=True))
         polynomial = arb_poly(series[spring.right]) - arb(spring.ratio) * arb_poly(series[spring.left])
-        error = (displacements.strained / arb(spring.stiffness).sqrt()).upper()
-        return Enclosed(polynomial + arb(state.shift_known), error)
+        error = (displacements.spring_error / arb(spring.stiffness).sqrt()).upper()
+        return Enclosure(polynomial + arb(state.shift_known), error)
 
     def wrong_forces(self, moved: JointStretch) -> dict[int, arb]:
         """How wrong the force of each may be on a stretch, as the true motion may be on another branch."""

@@ -8,7 +8,7 @@ from flint import arb, fmpq
 
 from wavesym.exact.contacts.cluster import Closed, Sliding
 from wavesym.exact.contacts.springs import SpringMotion, SpringState
-from wavesym.exact.joints.enclosed import Enclosed, Terms
+from wavesym.exact.joints.enclosure import Enclosure, Terms
 
 MOST_SWING = fmpq(20)
 """A series is begun anew where it would have to bear more than exp(this): few bits cancel in it then."""
@@ -56,10 +56,10 @@ class JointStretch:
     vague: Closed
     sliding: Sliding
     velocities: dict[int, Terms]
-    sends: dict[int, Enclosed] = field(default_factory=dict)
+    sends: dict[int, Enclosure] = field(default_factory=dict)
     state: dict[int, PointState] = field(default_factory=dict)
-    rates: dict[int, Enclosed] = field(default_factory=dict)
-    pushes: dict[int, Enclosed] = field(default_factory=dict)
+    rates: dict[int, Enclosure] = field(default_factory=dict)
+    pushes: dict[int, Enclosure] = field(default_factory=dict)
     bare: set[int] = field(default_factory=set)
     known: set[int] = field(default_factory=set)
     strained: dict[int, SpringMotion] = field(default_factory=dict)

@@ -12,7 +12,7 @@ from flint import ctx, fmpq
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.search import Change, Search, UndecidedError, lasting
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replayed
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
 
@@ -47,7 +47,7 @@ class Schedule:
 
 
 @lru_cache(maxsize=4)
-def schedule(network: Network, loads: tuple[Applied, ...], last: tuple[tuple[int, fmpq], ...]) -> Schedule:
+def schedule(network: Network, loads: tuple[AppliedLoad, ...], last: tuple[tuple[int, fmpq], ...]) -> Schedule:
     """What happens at the joints, each until its last instant.
 
     CostError where it would take minutes, GrazingError where no number of bits tells what a contact does.
@@ -56,7 +56,9 @@ def schedule(network: Network, loads: tuple[Applied, ...], last: tuple[tuple[int
 
 
 @lru_cache(maxsize=16)
-def first_opening(network: Network, loads: tuple[Applied, ...], last: tuple[tuple[int, fmpq], ...]) -> Change | None:
+def first_opening(
+    network: Network, loads: tuple[AppliedLoad, ...], last: tuple[tuple[int, fmpq], ...]
+) -> Change | None:
     """The first opening of any contact; what comes after it is not looked at. None where there is none.
 
     CostError, GrazingError as in `schedule`.
@@ -65,7 +67,7 @@ def first_opening(network: Network, loads: tuple[Applied, ...], last: tuple[tupl
 
 
 @lru_cache(maxsize=1)
-def waves(network: Network, loads: tuple[Applied, ...], known: Schedule, bits: int) -> TouchingWaves:
+def waves(network: Network, loads: tuple[AppliedLoad, ...], known: Schedule, bits: int) -> TouchingWaves:
     """The waves of what is scheduled, with so many bits; the last ones are kept for whoever asks again."""
     with ctx.workprec(bits):
         if bits <= known.bits:
@@ -74,7 +76,7 @@ def waves(network: Network, loads: tuple[Applied, ...], known: Schedule, bits: i
 
 
 def _attempt(
-    network: Network, loads: Sequence[Applied], last: tuple[tuple[int, fmpq], ...], follow: Callable[[Search], T]
+    network: Network, loads: Sequence[AppliedLoad], last: tuple[tuple[int, fmpq], ...], follow: Callable[[Search], T]
 ) -> T:
     """What a search finds with as many bits as it takes."""
     tried: list[int] = []

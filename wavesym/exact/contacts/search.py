@@ -21,7 +21,7 @@ from wavesym.exact.contacts.course import Course, Doubt
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, SwingError
 from wavesym.exact.contacts.spring_branches import OneSided, Yielding
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 
 # an instant is known this closely, in shortest delays
@@ -72,7 +72,9 @@ class Search:
     UndecidedError where bits do not show what a contact does.
     """
 
-    def __init__(self, network: Network, loads: Sequence[Applied], last: Mapping[int, fmpq], relaxing: bool) -> None:
+    def __init__(
+        self, network: Network, loads: Sequence[AppliedLoad], last: Mapping[int, fmpq], relaxing: bool
+    ) -> None:
         shortest = network.shortest
         self.waves = TouchingWaves(network, last, loads)
         self.changes: list[Change] = []
@@ -93,7 +95,7 @@ class Search:
         """Whether what decays fast has been left out somewhere."""
         return any(joint.has_relaxed for joint in self.waves.joints.values())
 
-    def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> Course:
+    def _course(self, number: int, last: fmpq, loads: Sequence[AppliedLoad]) -> Course:
         network, joint = self._network, self._network.joints[number]
         far = [network.bars[end.bar].delay for end, _ in joint.ends]
         moving = self.waves.joints[number]
@@ -262,7 +264,7 @@ class Search:
         network = self._network
         begun = self.waves.record(course.number, start, moved)
         for (end, _), new in zip(network.joints[course.number].ends, begun, strict=True):
-            other = self.courses.get(network.joint_of[network.point_at(network.beyond(end))])
+            other = self.courses.get(network.joint_of[network.point_at(network.opposite_end(end))])
             time = start + network.bars[end.bar].delay
             if new and other is not None and time <= other.last:
                 heappush(other.breakpoints, time)

@@ -14,7 +14,7 @@ from wavesym.exact.contacts.branches import Branch, BranchEnd, Corner
 from wavesym.exact.contacts.crossing import TINY, certain_fall, certain_rise, sign_after
 from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
 from wavesym.exact.contacts.springs import CornerSpring
-from wavesym.exact.joints.enclosed import Enclosed
+from wavesym.exact.joints.enclosure import Enclosure
 
 _CLOSE = 64  # resolutions: a stretch is not shortened to less
 _NEAR = arb(2) ** -64
@@ -62,7 +62,7 @@ class _SpringCorner(Corner):
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Know its stretch at the end of one of time."""
-        self.stretch = moved.strained[self.link].stretch.at(length)
+        self.stretch = moved.strained[self.link].stretch.evaluate(length)
 
     @property
     def branch(self) -> Branch:
@@ -122,7 +122,7 @@ class Yielding(_SpringCorner):
         return all(_begins(guard, moved.length) or leaning(guard, moved.length, 1) > 0 for guard in guards)
 
 
-def _begins(guard: Enclosed, length: fmpq) -> bool:
+def _begins(guard: Enclosure, length: fmpq) -> bool:
     """Whether a guard is more than 0 at the start, if only its middle, or does not become negative just after it."""
     return bool(guard.polynomial[0].mid() > 0) or leaning(guard, length) >= 0
 
@@ -132,7 +132,7 @@ def _well_below(value: arb, limit: arb) -> bool:
     return bool(value + (abs(value) + abs(limit)) * _NEAR < limit)
 
 
-def leaning(known: Enclosed, length: fmpq, first: int = 0) -> int:
+def leaning(known: Enclosure, length: fmpq, first: int = 0) -> int:
     """The sign just after the start: of the first power, from `first` on, that is more than rounding; else 0."""
     if known.exact is not None:
         return sign_after(fmpq_poly([fmpq(0)] * first + known.exact.coeffs()[first:]), fmpq(0))

@@ -19,7 +19,7 @@ from typing import Protocol
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.crossing import shortfall
-from wavesym.exact.joints.enclosed import UNIT, Enclosed, Terms, add_terms
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, Terms, add_terms
 from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import middle
 
@@ -129,13 +129,13 @@ class SpringMotion:
     Of what yields, where its limit is not reached for certain at the start, `reach` is positive as soon as it is.
     """
 
-    stretch: Enclosed
-    guards: tuple[Enclosed, ...]
+    stretch: Enclosure
+    guards: tuple[Enclosure, ...]
     limit: fmpq | None = None
-    reach: Enclosed | None = None
+    reach: Enclosure | None = None
 
     @property
-    def clears(self) -> tuple[Enclosed, ...]:
+    def clears(self) -> tuple[Enclosure, ...]:
         """What is soon positive for certain, where it is not at the start."""
         return self.guards if self.reach is None else (*self.guards, self.reach)
 
@@ -143,9 +143,14 @@ class SpringMotion:
         """Its state at the end of a stretch, as if it did not act any more."""
         if self.stretch.exact is not None:
             return SpringState.from_exact(self.stretch.exact(length))
-        if self.limit is not None and self.reach is not None and self.reach.at(length) > 0 and self.excess(length) == 0:
+        if (
+            self.limit is not None
+            and self.reach is not None
+            and self.reach.evaluate(length) > 0
+            and self.excess(length) == 0
+        ):
             return SpringState.from_exact(self.limit)
-        return SpringState(self.stretch.at(length), None)
+        return SpringState(self.stretch.evaluate(length), None)
 
     def excess(self, length: fmpq) -> arb:
         """How far a guard may be below 0."""
@@ -155,7 +160,7 @@ class SpringMotion:
         return most
 
 
-def acting_motion(spring: CornerSpring, stretch: Enclosed) -> SpringMotion:
+def acting_motion(spring: CornerSpring, stretch: Enclosure) -> SpringMotion:
     """A spring that acts, or holds."""
     if spring.side != 0:
         return SpringMotion(stretch, (add_terms([(fmpq(spring.side), stretch), (-spring.gap, UNIT)]),))
@@ -164,24 +169,24 @@ def acting_motion(spring: CornerSpring, stretch: Enclosed) -> SpringMotion:
     return SpringMotion(stretch, guards)
 
 
-def idle_motion(spring: CornerSpring, state: SpringState, rate: Enclosed, length: fmpq) -> SpringMotion:
+def idle_motion(spring: CornerSpring, state: SpringState, rate: Enclosure, length: fmpq) -> SpringMotion:
     """A spring on one side that does not act, and gets longer at a `rate`."""
     if state.exact is not None and rate.exact is not None:
-        stretch = Enclosed.of(rate.exact.integral() + state.exact)
+        stretch = Enclosure.from_polynomial(rate.exact.integral() + state.exact)
     else:
         error = (rate.error * arb(length) + state.unknown).upper()
-        stretch = Enclosed(rate.polynomial.integral() + state.stretch.mid(), error)
+        stretch = Enclosure(rate.polynomial.integral() + state.stretch.mid(), error)
     return SpringMotion(stretch, (add_terms([(spring.gap, UNIT), (fmpq(-spring.side), stretch)]),))
 
 
-def yielding_motion(spring: CornerSpring, state: SpringState, sign: int, rate: Enclosed, length: fmpq) -> SpringMotion:
+def yielding_motion(spring: CornerSpring, state: SpringState, sign: int, rate: Enclosure, length: fmpq) -> SpringMotion:
     """A spring that yields one way, and gets longer at a `rate`."""
     limit = spring.most[0 if sign > 0 else 1]
     off = abs(state.stretch - arb(limit)).upper() if state.exact != limit else arb(0)
-    stretch = Enclosed(arb_poly([arb(limit).mid()]), (off + abs(arb(limit) - arb(limit).mid())).upper())
+    stretch = Enclosure(arb_poly([arb(limit).mid()]), (off + abs(arb(limit) - arb(limit).mid())).upper())
     forward = add_terms([(fmpq(sign), rate)])
     if off == 0:
-        return SpringMotion(Enclosed.of(fmpq_poly([limit])), (forward,))
+        return SpringMotion(Enclosure.from_polynomial(fmpq_poly([limit])), (forward,))
     error = (forward.error * arb(length)).upper()
-    reach = Enclosed(forward.polynomial.integral() - off, error)
+    reach = Enclosure(forward.polynomial.integral() - off, error)
     return SpringMotion(stretch, (forward,), limit, reach)

@@ -18,11 +18,11 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, connected_sets
 from wavesym.exact.contacts.joint_springs import JointSprings
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
-from wavesym.exact.joints.enclosed import STILL, UNIT, Enclosed, Onset, Terms, add_terms, collect, scale_terms
+from wavesym.exact.joints.enclosure import STILL, UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
 from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
 from wavesym.exact.joints.network_waves import LoadPolynomial
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 
 _ONE = fmpq(1)
@@ -34,17 +34,17 @@ _MISSED = 16  # bits: what has died away is that much more than rounding errors,
 class SteadyJoint(ABC):
     """A joint as time goes on, at the working precision; whether what decays fast has been left out."""
 
-    def __init__(self, network: Network, number: int, loads: Sequence[Applied]) -> None:
+    def __init__(self, network: Network, number: int, loads: Sequence[AppliedLoad]) -> None:
         joint = network.joints[number]
         place = {point: k for k, point in enumerate(joint.points)}
-        self.law = JointLaw.of(network, joint)
+        self.law = JointLaw.assemble(network, joint)
         self.touches = {
             n: Touch(place[link.left], place[link.right], link.ratio, link.friction)
             for n, link in enumerate(network.links)
             if link.has_corner and not link.is_spring_with_corner and link.left in place
         }
         self.springs = JointSprings(network, place)
-        self._law_of: Callable[[Closed], JointLaw] = cache(lambda springs: JointLaw.of(network, joint, springs))
+        self._law_of: Callable[[Closed], JointLaw] = cache(lambda springs: JointLaw.assemble(network, joint, springs))
         self._clusters: dict[tuple[Closed, Closed], list[Cluster]] = {}
         self._loads = [LoadPolynomial(network, point, loads) for point in joint.points]
         self._ends = joint_ends(network, joint)
@@ -66,7 +66,7 @@ class SteadyJoint(ABC):
 
     def move(
         self,
-        arriving: Sequence[Enclosed],
+        arriving: Sequence[Enclosure],
         start: fmpq,
         length: fmpq,
         closed: Closed,
@@ -97,7 +97,7 @@ class SteadyJoint(ABC):
 
     def _move(
         self,
-        arriving: Sequence[Enclosed],
+        arriving: Sequence[Enclosure],
         start: fmpq,
         length: fmpq,
         closed: Closed,
@@ -107,7 +107,7 @@ class SteadyJoint(ABC):
         unknown: Mapping[int, arb],
     ) -> JointStretch:
         """The same, where forces of springs with a corner are `unknown` by so much."""
-        acting = [load.on(start) for load in self._loads]
+        acting = [load.polynomial_from(start) for load in self._loads]
         forces = self._add_friction(forces_on(self._ends, arriving, acting), sliding)
         self.springs.add_pulls(forces, closed, sliding, self._state, unknown)
         result = JointStretch(length, closed, vague, sliding, {})
@@ -145,11 +145,11 @@ class SteadyJoint(ABC):
             result[touch.left] = [*result[touch.left], (-against * touch.ratio, UNIT)]
         return result
 
-    def _outgoing(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
+    def _outgoing(self, number: int, velocities: Mapping[int, Terms], wave: Enclosure) -> Enclosure:
         end = self._ends[number]
         return add_terms(outgoing_terms(end, velocities[end.place], wave))
 
-    def _end_force(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Terms:
+    def _end_force(self, number: int, velocities: Mapping[int, Terms], wave: Enclosure) -> Terms:
         """What is sent less what arrives: up to a factor, what acts on the end."""
         end = self._ends[number]
         return [*outgoing_terms(end, velocities[end.place], wave), (fmpq(-1), wave)]
@@ -172,7 +172,7 @@ class SteadyJoint(ABC):
         self,
         cluster: Cluster,
         result: JointStretch,
-        arriving: Sequence[Enclosed],
+        arriving: Sequence[Enclosure],
         forces: Sequence[Terms],
         acting: Sequence[fmpq_poly],
     ) -> None:
@@ -194,7 +194,7 @@ class SteadyJoint(ABC):
             q = scatter(law, pushed, prescribed_terms(law, prescribed))
             result.state |= self._stopped(cluster)
         elif (exact := self._move_exactly(cluster, pushed, prescribed)) is not None:
-            q = [[(_ONE, Enclosed.of(p))] for p in exact]
+            q = [[(_ONE, Enclosure.from_polynomial(p))] for p in exact]
             places = {
                 k: ratio * exact[group].integral() + self._state[k].place
                 for k, (group, ratio) in zip(points, law.moves, strict=True)
@@ -223,12 +223,14 @@ class SteadyJoint(ABC):
         for k in cluster.stuck:
             if (unknown := result.state.get(k, self._state[k]).unknown) != 0:
                 slow = (2 * unknown / arb(self.law.mass[k])).sqrt().upper()
-                result.velocities[k] = [(_ONE, Enclosed(arb_poly(), slow))]
+                result.velocities[k] = [(_ONE, Enclosure(arb_poly(), slow))]
         for n, push in cluster.pushes.items():
             pull = self._pull(cluster, push, result.velocities, forces)
             if places is not None:
                 pull += [
-                    (factor * self.law.stiffness[k][j], Enclosed.of(places[j])) for k, factor in push for j in points
+                    (factor * self.law.stiffness[k][j], Enclosure.from_polynomial(places[j]))
+                    for k, factor in push
+                    for j in points
                 ]
             result.pushes[n] = add_terms(pull)
             if motion is not None:
@@ -242,7 +244,7 @@ class SteadyJoint(ABC):
             touch = self.touches[n]
             for k in {touch.left, touch.right} & set(cluster.stuck):
                 force = result.pushes[n]
-                excess = abs(force.at(fmpq(0))).max(abs(force.at(result.length))) - arb(touch.friction)
+                excess = abs(force.evaluate(fmpq(0))).max(abs(force.evaluate(result.length))) - arb(touch.friction)
                 if touch.friction == 0 or not excess.upper() > 0:
                     continue
                 more = (excess.upper() * arb(result.length)) ** 2 / (2 * arb(self.law.mass[k]))
@@ -253,11 +255,11 @@ class SteadyJoint(ABC):
         self,
         cluster: Cluster,
         motion: JointMotion,
-        waves: Sequence[Enclosed],
+        waves: Sequence[Enclosure],
         prescribed: Sequence[fmpq_poly],
         length: fmpq,
         relaxing: bool | None,
-    ) -> tuple[fmpq, list[Enclosed]]:
+    ) -> tuple[fmpq, list[Enclosure]]:
         """The rate at which a cluster moves when what decays fast has died away, and its velocities."""
         longest = max(wave.polynomial.length() for wave in waves)
         if relaxing is None:
@@ -305,9 +307,9 @@ class SteadyJoint(ABC):
         cluster: Cluster,
         pushed: Sequence[Terms],
         prescribed: Sequence[fmpq_poly],
-        velocities: Sequence[Enclosed],
+        velocities: Sequence[Enclosure],
         length: fmpq,
-    ) -> Sequence[Enclosed]:
+    ) -> Sequence[Enclosure]:
         """The velocities of groups, with how they begin, where that is known."""
         if (known := self._exact_state(cluster)) is None:
             return velocities
@@ -320,7 +322,7 @@ class SteadyJoint(ABC):
             ([known[leader][0] for leader in cluster.law.leaders], [u for _, u in known]),
             forces,
             [Onset(p) for p in prescribed],
-            [abs(each.over(span)).upper() for each in velocities],
+            [abs(each.evaluate_on(span)).upper() for each in velocities],
             length,
         )
         return [replace(each, onset=onset) for each, onset in zip(velocities, begin, strict=True)]
@@ -341,20 +343,20 @@ class SteadyJoint(ABC):
         return terms
 
     def _add_springs(
-        self, cluster: Cluster, push: Sequence[tuple[int, fmpq]], motion: JointMotion, force: Enclosed
-    ) -> Enclosed:
+        self, cluster: Cluster, push: Sequence[tuple[int, fmpq]], motion: JointMotion, force: Enclosure
+    ) -> Enclosure:
         """With what springs do."""
         springs = [(factor, self._spring(cluster, motion, k)) for k, factor in push if self._elastic(k)]
         return add_terms([(_ONE, force), *springs])
 
-    def _spring(self, cluster: Cluster, motion: JointMotion, k: int) -> Enclosed:
+    def _spring(self, cluster: Cluster, motion: JointMotion, k: int) -> Enclosure:
         """What springs pull at a point on a stretch."""
         if not self._elastic(k):
             return STILL
         polynomial = arb_poly()
         for j, series in zip(cluster.points, motion.places, strict=True):
             polynomial += arb(self.law.stiffness[k][j]) * arb_poly(series)
-        return Enclosed(polynomial, (arb(self.law.stiffness[k][k]).sqrt() * motion.strained).upper())
+        return Enclosure(polynomial, (arb(self.law.stiffness[k][k]).sqrt() * motion.spring_error).upper())
 
     # in balls
 
@@ -388,7 +390,7 @@ class SteadyJoint(ABC):
     def _state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
         leaders = dict(zip(cluster.law.leaders, motion.velocity, strict=True))
         return {
-            k: PointState(leaders.get(n, arb(0)), motion.displacement[n], None, motion.unknown)
+            k: PointState(leaders.get(n, arb(0)), motion.displacement[n], None, motion.unknown_energy)
             for n, k in enumerate(cluster.points)
         }
 
@@ -402,7 +404,7 @@ def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
 
 
 def prescribed_terms(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:
-    return {a: [(_ONE, Enclosed.of(p))] for a, p in enumerate(prescribed) if law.given[a] is not None}
+    return {a: [(_ONE, Enclosure.from_polynomial(p))] for a, p in enumerate(prescribed) if law.motions[a] is not None}
 
 
 def rate_terms(touch: Touch, velocities: Mapping[int, Terms]) -> Terms:

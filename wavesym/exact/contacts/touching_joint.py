@@ -17,7 +17,7 @@ from flint import arb, arb_poly, fmpq, fmpq_poly
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, subsets
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.steady_joint import SteadyJoint, group_forces, prescribed_terms, rate_terms, series_terms
-from wavesym.exact.joints.enclosed import Enclosed, Terms, add_terms, one_at_each_instant, scale_terms, with_bounds
+from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, one_at_each_instant, scale_terms, with_bounds
 from wavesym.exact.joints.joint import JointLaw, scatter
 
 _ONE = fmpq(1)
@@ -32,7 +32,7 @@ class TouchingJoint(SteadyJoint):
         self,
         cluster: Cluster,
         result: JointStretch,
-        arriving: Sequence[Enclosed],
+        arriving: Sequence[Enclosure],
         forces: Sequence[Terms],
         acting: Sequence[fmpq_poly],
     ) -> None:
@@ -54,7 +54,7 @@ class TouchingJoint(SteadyJoint):
             for k in points:
                 pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
             found = self._try_every_choice(points, closed, vague, known, arriving, pulls, span)
-            largest = {n: found.pushes[n].over(span).upper().max(arb(0)) for n in pressing}
+            largest = {n: found.pushes[n].evaluate_on(span).upper().max(arb(0)) for n in pressing}
             if all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
                 break
             bounds |= {n: (largest[n] * arb(1 + _SLACK)).upper() for n in pressing}
@@ -74,7 +74,7 @@ class TouchingJoint(SteadyJoint):
         result: JointStretch,
         closed: Closed,
         vague: Closed,
-        arriving: Sequence[Enclosed],
+        arriving: Sequence[Enclosure],
         forces: Sequence[Terms],
     ) -> None:
         """What is sent is on one side of what would be, were all vague contacts open: they push, and never pull."""
@@ -114,15 +114,15 @@ class TouchingJoint(SteadyJoint):
         closed: Closed,
         vague: Closed,
         known: Mapping[int, Terms],
-        arriving: Sequence[Enclosed],
+        arriving: Sequence[Enclosure],
         pulls: Sequence[Terms],
         span: arb,
     ) -> JointStretch:
         """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points."""
-        velocities: dict[int, list[Enclosed]] = {k: [] for k in points}
-        sends: dict[int, list[Enclosed]] = {n: [] for n, end in enumerate(self._ends) if end.place in points}
-        rates: dict[int, list[Enclosed]] = {}
-        pushes: dict[int, list[Enclosed]] = {}
+        velocities: dict[int, list[Enclosure]] = {k: [] for k in points}
+        sends: dict[int, list[Enclosure]] = {n: [] for n, end in enumerate(self._ends) if end.place in points}
+        rates: dict[int, list[Enclosure]] = {}
+        pushes: dict[int, list[Enclosure]] = {}
         for chosen, sliding in self._branches(vague):
             cluster = Cluster.from_law(self.law, points, self.touches, closed | chosen)
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
@@ -169,7 +169,7 @@ class TouchingJoint(SteadyJoint):
         """Whether what rubs has no side without mass, so that it slides no other way at once."""
         touch = self.touches[n]
         return touch.friction != 0 and all(
-            self.law.mass[k] != 0 or self.law.given[k] is not None for k in (touch.left, touch.right)
+            self.law.mass[k] != 0 or self.law.motions[k] is not None for k in (touch.left, touch.right)
         )
 
     def _add_pushes(self, forces: Sequence[Terms], bounds: Mapping[int, arb]) -> list[Terms]:
@@ -177,9 +177,9 @@ class TouchingJoint(SteadyJoint):
         result = list(forces)
         for n, bound in bounds.items():
             half = (bound / 2).upper()
-            between = Enclosed(arb_poly([half]), half)
+            between = Enclosure(arb_poly([half]), half)
             if self.touches[n].friction != 0:
-                between = Enclosed(arb_poly([0]), bound)
+                between = Enclosure(arb_poly([0]), bound)
             result[self.touches[n].right] = [*result[self.touches[n].right], (_ONE, between)]
             result[self.touches[n].left] = [*result[self.touches[n].left], (-self.touches[n].ratio, between)]
         return result

@@ -14,9 +14,9 @@ from flint import fmpq, fmpq_poly
 from wavesym.exact.contacts.cluster import Closed, Sliding
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.touching_joint import TouchingJoint
-from wavesym.exact.joints.enclosed import Enclosed, add_terms
+from wavesym.exact.joints.enclosure import Enclosure, add_terms
 from wavesym.exact.joints.network_waves import SentWave, Waves
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import End, Network
 
 
@@ -33,7 +33,7 @@ class Stage:
 class TouchingWaves(Waves):
     """The waves of some joints, moved stretch by stretch from outside."""
 
-    def __init__(self, network: Network, joints: Iterable[int], loads: Sequence[Applied]) -> None:
+    def __init__(self, network: Network, joints: Iterable[int], loads: Sequence[AppliedLoad]) -> None:
         super().__init__(network)
         self.joints = {number: TouchingJoint(network, number, loads) for number in joints}
         self._bare: dict[End, list[tuple[fmpq, bool]]] = {
@@ -74,7 +74,7 @@ class TouchingWaves(Waves):
         return same
 
     @staticmethod
-    def _kept(wave: SentWave, start: fmpq, new: Enclosed) -> bool:
+    def _kept(wave: SentWave, start: fmpq, new: Enclosure) -> bool:
         if wave.starts and wave.starts[-1] == start:
             wave.stretches[-1] = new
             return False
@@ -94,7 +94,7 @@ def _goes_on(old: fmpq_poly, by: fmpq, new: fmpq_poly) -> bool:
 
 
 def replayed(
-    network: Network, stages: Mapping[int, Sequence[Stage]], ends: Mapping[int, fmpq], loads: Sequence[Applied]
+    network: Network, stages: Mapping[int, Sequence[Stage]], ends: Mapping[int, fmpq], loads: Sequence[AppliedLoad]
 ) -> TouchingWaves:
     """The waves at the working precision, where the stages of all joints are known."""
     waves = TouchingWaves(network, stages, loads)

@@ -14,7 +14,7 @@ from math import factorial, inf
 
 from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.joints.enclosed import ORDER, Onset
+from wavesym.exact.joints.enclosure import ORDER, Onset
 from wavesym.exact.joints.joint import JointLaw, motion_series
 
 # powers beyond those of what acts, in which a motion that is a polynomial must have come to its end
@@ -74,7 +74,7 @@ def onsets(
 def _orders(law: JointLaw, forces: Sequence[float], prescribed: Sequence[float]) -> list[int]:
     """How many powers of each velocity follow from those that are known: each mass or spring in between adds one."""
     size = range(len(law.mass))
-    orders = [prescribed[k] if law.given[k] is not None else inf for k in size]
+    orders = [prescribed[k] if law.motions[k] is not None else inf for k in size]
 
     def pulled(k: int) -> float:
         """What is known of what acts on a group, but for groups without mass."""
@@ -108,7 +108,7 @@ def _derivatives(
     found = list(sizes)
     for j in range(max(orders) + 1):
         for k in size:
-            if law.given[k] is not None:
+            if law.motions[k] is not None:
                 now[k] = prescribed[k].derivative(j, length)
             elif k in heavy:
                 now[k] = heavy[k]

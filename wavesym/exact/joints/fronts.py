@@ -8,11 +8,11 @@ from math import lcm
 
 from flint import fmpq
 
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 
 
-def front_sources(network: Network, loads: Iterable[Applied], joints: Iterable[int]) -> list[tuple[fmpq, int]]:
+def front_sources(network: Network, loads: Iterable[AppliedLoad], joints: Iterable[int]) -> list[tuple[fmpq, int]]:
     """The instants at which something begins at joints: a load, and at 0 what does not stay as it is."""
     acting, found = list(loads), []
     for number in joints:
@@ -39,7 +39,9 @@ def front_times(
     delays = [int(bar.delay * unit) for bar in network.bars]
     latest = {number: int((tau * unit).floor()) for number, tau in last.items()}
     beside = {
-        number: [(delays[end.bar], network.joint_of[network.point_at(network.beyond(end))]) for end, _ in joint.ends]
+        number: [
+            (delays[end.bar], network.joint_of[network.point_at(network.opposite_end(end))]) for end, _ in joint.ends
+        ]
         for number, joint in enumerate(network.joints)
         if number in last
     }

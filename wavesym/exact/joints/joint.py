@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
 from wavesym.derivation.exact_rule import joint_rule
-from wavesym.exact.joints.enclosed import Enclosed, Terms, scale_terms, weighted_sum
+from wavesym.exact.joints.enclosure import Enclosure, Terms, scale_terms, weighted_sum
 from wavesym.mechanics.network import End, Joint, Network
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ SWING = 24
 
 @dataclass(frozen=True)
 class JointLaw:
-    """M, C and K of a joint's points, in their order; `given` are those whose motion is prescribed.
+    """M, C and K of a joint's points, in their order; `motions` says which move as prescribed.
 
     Where contacts are closed rows are those of groups of points, and so are the columns of C; those of K are points.
     `members` has the group of each point and how fast the point moves in it, `leaders` the point that a group moves
@@ -64,13 +64,13 @@ class JointLaw:
     mass: tuple[fmpq, ...]
     damping: tuple[tuple[fmpq, ...], ...]
     stiffness: tuple[tuple[fmpq, ...], ...]
-    given: tuple[str | None, ...]
+    motions: tuple[str | None, ...]
     members: tuple[tuple[int, fmpq], ...] = ()
     leaders: tuple[int, ...] = ()
     elastic: tuple[tuple[fmpq, ...], ...] = ()
 
     @classmethod
-    def of(cls, network: Network, joint: Joint, acting: Collection[int] | None = None) -> JointLaw:
+    def assemble(cls, network: Network, joint: Joint, acting: Collection[int] | None = None) -> JointLaw:
         """Assembled from points, links and rod ends, each as it is derived.
 
         Of springs with a corner those `acting` (the numbers of their links) are in it; all of them, where that is None.
@@ -105,13 +105,13 @@ class JointLaw:
             tuple(point.motion for point in points),
         )
 
-    def among(self, points: Sequence[int]) -> JointLaw:
+    def restrict(self, points: Sequence[int]) -> JointLaw:
         """The law of some points that nothing connects with the others."""
         return JointLaw(
             tuple(self.mass[k] for k in points),
             tuple(tuple(self.damping[k][j] for j in points) for k in points),
             tuple(tuple(self.stiffness[k][j] for j in points) for k in points),
-            tuple(self.given[k] for k in points),
+            tuple(self.motions[k] for k in points),
         )
 
     def group(self, members: Sequence[tuple[int, fmpq]], leaders: Sequence[int]) -> JointLaw:
@@ -127,7 +127,7 @@ class JointLaw:
                 tuple(sum((x * self.stiffness[k][j] for k, x in row), fmpq(0)) for j in range(len(members)))
                 for row in of
             ),
-            tuple(self.given[k] for k in leaders),
+            tuple(self.motions[k] for k in leaders),
             tuple(members),
             tuple(leaders),
             self.stiffness,
@@ -155,12 +155,12 @@ class JointLaw:
     @cached_property
     def heavy(self) -> tuple[int, ...]:
         """Points with mass that are free to move."""
-        return tuple(k for k, mass in enumerate(self.mass) if mass != 0 and self.given[k] is None)
+        return tuple(k for k, mass in enumerate(self.mass) if mass != 0 and self.motions[k] is None)
 
     @cached_property
     def light(self) -> tuple[int, ...]:
         """Points without mass that are free to move."""
-        return tuple(k for k, mass in enumerate(self.mass) if mass == 0 and self.given[k] is None)
+        return tuple(k for k, mass in enumerate(self.mass) if mass == 0 and self.motions[k] is None)
 
     @cached_property
     def springs(self) -> bool:
@@ -172,7 +172,7 @@ class JointLaw:
         """A rate that no motion of the joint exceeds by much: what its series must bear."""
         rates = [fmpq(0)]
         for k, mass in enumerate(self.mass):
-            if self.given[k] is None:
+            if self.motions[k] is None:
                 stiff = sum(map(abs, self.stiffness[k]), fmpq(0))
                 rates.append(
                     sum(map(abs, self.damping[k]), fmpq(0)) / mass + isqrt(int((stiff / mass).ceil()))
@@ -193,7 +193,7 @@ class JointLaw:
         return fmpq_mat(size, size, [self.damping[a][b] for a in self.light for b in self.light]).inv()
 
     @cached_property
-    def absorbed(self) -> dict[int, fmpq]:
+    def absorption(self) -> dict[int, fmpq]:
         """What takes energy from each point with mass, at least: c_k of q'S q >= sum of c_k q_k^2, where positive.
 
         S is C on those points, less what points without mass take of it as they follow: its Schur complement.
@@ -230,16 +230,16 @@ def joint_ends(network: Network, joint: Joint) -> tuple[JointEnd, ...]:
     return tuple(found)
 
 
-def forces_on(ends: Sequence[JointEnd], arriving: Sequence[Enclosed], loads: Sequence[fmpq_poly]) -> list[Terms]:
+def forces_on(ends: Sequence[JointEnd], arriving: Sequence[Enclosure], loads: Sequence[fmpq_poly]) -> list[Terms]:
     """What acts on each point of a joint: loads, and the waves that arrive."""
     load = joint_rule().load
-    forces: list[Terms] = [[(load, Enclosed.of(each))] if each.length() else [] for each in loads]
+    forces: list[Terms] = [[(load, Enclosure.from_polynomial(each))] if each.length() else [] for each in loads]
     for each, wave in zip(ends, arriving, strict=True):
         forces[each.place].append((each.force, wave))
     return forces
 
 
-def outgoing_terms(end: JointEnd, velocity: Terms, wave: Enclosed) -> Terms:
+def outgoing_terms(end: JointEnd, velocity: Terms, wave: Enclosure) -> Terms:
     """What an end sends when a wave arrives: n q - a."""
     return [*scale_terms(velocity, end.ratio), (fmpq(-1), wave)]
 
@@ -261,21 +261,21 @@ class JointMotion:
     """A joint as time goes on: where its points are and how fast, and the energy of what is not known of that.
 
     Velocities are those of groups. `places` are the coefficients of the points' displacements on the last stretch;
-    what springs make of these is off by at most sqrt(K_kk) `strained` at point k. Where it `decays`, the error of a
+    what springs make of these is off by at most sqrt(K_kk) `spring_error` at point k. Where it `decays`, the error of a
     body alone is taken to decay as the body does, which matters only where signs of what is left are asked for.
     """
 
     law: JointLaw
     velocity: list[arb]
     displacement: list[arb]
-    unknown: arb = field(default_factory=lambda: arb(0))
+    unknown_energy: arb = field(default_factory=lambda: arb(0))
     places: list[list[arb]] = field(default_factory=list)
-    strained: arb = field(default_factory=lambda: arb(0))
+    spring_error: arb = field(default_factory=lambda: arb(0))
     decays: bool = False
 
     def move(
-        self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
-    ) -> list[Enclosed]:
+        self, forces: Sequence[Enclosure], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
+    ) -> list[Enclosure]:
         """The velocities of the points on a stretch, in so many terms; afterwards the joint is at its end.
 
         `prescribed` are the velocities of the points whose motion is given, exact.
@@ -283,25 +283,25 @@ class JointMotion:
         return self.follow(*self._series(forces, prescribed, terms), forces, length)
 
     def follow(
-        self, q: list[list[arb]], u: list[list[arb]], forces: Sequence[Enclosed], length: fmpq
-    ) -> list[Enclosed]:
+        self, q: list[list[arb]], u: list[list[arb]], forces: Sequence[Enclosure], length: fmpq
+    ) -> list[Enclosure]:
         """The same along any series of the velocities of groups and the displacements of points, its integrals.
 
-        How far it begins from where the joint is has to be among what is `unknown`.
+        How far it begins from where the joint is has to be among `unknown_energy`.
         """
         errors = self._errors(forces, q, u, length)
-        result = [Enclosed(arb_poly(c), e) for c, e in zip(q, errors, strict=True)]
+        result = [Enclosure(arb_poly(c), e) for c, e in zip(q, errors, strict=True)]
         self.places, h = u, arb(length)
         self.round([arb_poly(c)(h) for c in q], [arb_poly(c)(h) for c in u] if self.law.springs else [])
         return result
 
     def accelerations(
         self,
-        forces: Sequence[Enclosed],
-        rates: Sequence[Enclosed],
-        velocities: Sequence[Enclosed],
+        forces: Sequence[Enclosure],
+        rates: Sequence[Enclosure],
+        velocities: Sequence[Enclosure],
         prescribed: Sequence[fmpq_poly],
-    ) -> list[Enclosed]:
+    ) -> list[Enclosure]:
         """The derivatives of the `velocities` that `move` found for the last stretch.
 
         Args:
@@ -311,16 +311,20 @@ class JointMotion:
             prescribed: the velocities of the points whose motion is given.
         """
         law = self.law
-        found = {k: Enclosed.of(each.derivative()) for k, each in enumerate(prescribed) if law.given[k] is not None}
+        found = {
+            k: Enclosure.from_polynomial(each.derivative())
+            for k, each in enumerate(prescribed)
+            if law.motions[k] is not None
+        }
         for k in law.heavy:
             share = 1 / law.mass[k]
             slow = [(-share * c, velocities[b]) for b, c in enumerate(law.damping[k])]
             places = self.places if law.springs else [[]] * len(law.mass)
             sprung = [
-                (-share * c, Enclosed(arb_poly(u), arb(0))) for c, u in zip(law.stiffness[k], places, strict=True)
+                (-share * c, Enclosure(arb_poly(u), arb(0))) for c, u in zip(law.stiffness[k], places, strict=True)
             ]
             total = weighted_sum([(share, forces[k]), *slow, *sprung])
-            strained = arb(share) * arb(law.stiffness[k][k]).sqrt() * self.strained
+            strained = arb(share) * arb(law.stiffness[k][k]).sqrt() * self.spring_error
             found[k] = replace(total, error=(total.error + strained).upper())
         right = [
             weighted_sum(
@@ -337,7 +341,7 @@ class JointMotion:
         return [found[k] for k in range(len(law.mass))]
 
     def relax(
-        self, relaxation: Relaxation, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
+        self, relaxation: Relaxation, forces: Sequence[Enclosure], prescribed: Sequence[fmpq_poly], terms: int
     ) -> tuple[list[list[arb]], list[list[arb]], arb]:
         """The series without what decays fast, as `follow` takes it, and the energy of what it leaves out."""
         velocities, places = relaxation.series(
@@ -364,8 +368,8 @@ class JointMotion:
 
     def lose(self, energy: arb) -> None:
         """Know less of the joint, by so much energy."""
-        root = self.unknown.sqrt() + energy.sqrt()
-        self.unknown = (root * root).upper()
+        root = self.unknown_energy.sqrt() + energy.sqrt()
+        self.unknown_energy = (root * root).upper()
 
     def round(self, velocity: Sequence[arb], displacement: Sequence[arb]) -> None:
         """Go on from the middles of balls; what rounding loses there is energy not known."""
@@ -376,7 +380,7 @@ class JointMotion:
         self.lose(self.energy(*around))
 
     def _series(
-        self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
+        self, forces: Sequence[Enclosure], prescribed: Sequence[fmpq_poly], terms: int
     ) -> tuple[list[list[arb]], list[list[arb]]]:
         """The coefficients of q and u: middles, whatever rounding made of them."""
         acting, given = self._inputs(forces, prescribed, terms)
@@ -387,13 +391,13 @@ class JointMotion:
 
     @staticmethod
     def _inputs(
-        forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
+        forces: Sequence[Enclosure], prescribed: Sequence[fmpq_poly], terms: int
     ) -> tuple[list[arb_poly], list[arb_poly]]:
         """The middles of forces, in so many terms, and prescribed velocities."""
         acting = [arb_poly([c.mid() for c in force.polynomial.coeffs()[:terms]]) for force in forces]
         return acting, [arb_poly([arb(c) for c in each.coeffs()]) for each in prescribed]
 
-    def _errors(self, forces: Sequence[Enclosed], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
+    def _errors(self, forces: Sequence[Enclosure], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
         """What the velocities may be off by, at most, on the stretch; and the energy of it at the end."""
         law = self.law
         h = arb(length)
@@ -412,12 +416,12 @@ class JointMotion:
             more = sum((abs(arb(law.damping[k][b])) * t for b, t in zip(law.light, through, strict=True)), arb(0))
             square = (defect[k] + more) ** 2
             delta += square / arb(law.mass[k])
-            if k in law.absorbed:
-                absorbed += square / (4 * arb(law.absorbed[k]))
+            if k in law.absorption:
+                absorbed += square / (4 * arb(law.absorption[k]))
             else:
                 kept += square / arb(law.mass[k])
         rho = _dot(light, through) / 4 if light else arb(0)
-        before = (2 * self.unknown / arb(law.mass[law.heavy[0]])).sqrt() if law.heavy else arb(0)
+        before = (2 * self.unknown_energy / arb(law.mass[law.heavy[0]])).sqrt() if law.heavy else arb(0)
         kappa = sum(
             (
                 abs(arb(law.group_stiffness[a][b])) * one * other
@@ -429,10 +433,10 @@ class JointMotion:
         ).sqrt()
         added = (rho * h).sqrt().min(kappa * h / arb(2).sqrt())
         # the energy E grows as E' <= sum of d_k |q_k| - c_k q_k^2 <= sum of d_k^2/(4 c_k) + sqrt(2 E sum of d_k^2/M_k)
-        slowed = (self.unknown + absorbed * h).sqrt() + kept.sqrt() * h / arb(2).sqrt()
-        root = ((self.unknown.sqrt() + delta.sqrt() * h / arb(2).sqrt()).min(slowed) + added).upper()
-        self.unknown = (root * root).upper()
-        self.strained = speed = (root * arb(2).sqrt()).upper()
+        slowed = (self.unknown_energy + absorbed * h).sqrt() + kept.sqrt() * h / arb(2).sqrt()
+        root = ((self.unknown_energy.sqrt() + delta.sqrt() * h / arb(2).sqrt()).min(slowed) + added).upper()
+        self.unknown_energy = (root * root).upper()
+        self.spring_error = speed = (root * arb(2).sqrt()).upper()
         errors = {k: (speed / arb(law.mass[k]).sqrt()).upper() for k in law.heavy}
         if len(law.mass) == 1 and law.heavy and not law.springs and law.damping[0][0] != 0:
             (k,) = law.heavy  # a body alone comes to rest
@@ -441,7 +445,7 @@ class JointMotion:
             after = errors[k]
             if self.decays:
                 after = after.min((before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held).upper())
-            self.unknown = (arb(law.mass[k]) * after**2 / 2).upper()
+            self.unknown_energy = (arb(law.mass[k]) * after**2 / 2).upper()
         right = []
         for k in law.light:
             value = defect[k] + speed * arb(law.group_stiffness[k][k]).sqrt()
@@ -485,7 +489,7 @@ def motion_series(
         slow = [(number(c), q[b]) for b, c in enumerate(law.damping[k]) if c != 0 and b not in without]
         return slow + [(number(c), u[b]) for b, c in enumerate(law.stiffness[k]) if c != 0]
 
-    given = [(q[k], prescribed[k]) for k in size if law.given[k] is not None]
+    given = [(q[k], prescribed[k]) for k in size if law.motions[k] is not None]
     light = [(forces[k], pulls(k, law.light)) for k in law.light]
     found = [(q[k], [number(law.inverse[row, b]) for b in range(len(light))]) for row, k in enumerate(law.light)]
     heavy = [(k, q[k], forces[k], pulls(k), number(law.mass[k])) for k in law.heavy]
@@ -497,11 +501,11 @@ def motion_series(
             series.append(known[n])
         for k, series, *_ in heavy:
             series.append(last[k])
-        right = [_less(force[n], pulled, n) for force, pulled in light]
+        right = [_subtract_pulls(force[n], pulled, n) for force, pulled in light]
         for series, shares in found:
             series.append(kept(_dot(shares, right)))
         for k, _, force, pulled, mass in heavy:
-            last[k] = kept(_less(force[n], pulled, n) / (mass * (n + 1)))
+            last[k] = kept(_subtract_pulls(force[n], pulled, n) / (mass * (n + 1)))
         for places, series, ratio in moves:
             places.append(kept(ratio * series[n] / (n + 1)))
 
@@ -523,7 +527,7 @@ def _dot(one: Sequence[Number], other: Sequence[Number]) -> Number:
     return total
 
 
-def _less(value: Number, pulls: Sequence[tuple[Number, Sequence[Number]]], n: int) -> Number:
+def _subtract_pulls(value: Number, pulls: Sequence[tuple[Number, Sequence[Number]]], n: int) -> Number:
     """A power of a force without what pulls."""
     for factor, series in pulls:
         value -= factor * series[n]

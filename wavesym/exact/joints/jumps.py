@@ -17,7 +17,7 @@ from wavesym.derivation.exact_rule import joint_rule
 from wavesym.errors import WavesymError
 from wavesym.exact.joints.joint import JointLaw, joint_ends
 from wavesym.mechanics.gauge import Gauge
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Network
 
@@ -37,7 +37,7 @@ def refuse_jumps(model: Model, until: fmpq) -> None:
         )
     fronts = _fronts(model)
     for probe, reading in readings:
-        if (found := fronts.first(reading)) is not None and found[0] <= until:
+        if (found := fronts.first_front(reading)) is not None and found[0] <= until:
             cause = "the chain starts with a jump of velocity" if found[1] is None else model.describe_step(found[1])
             raise WavesymError(
                 f"output.acceleration: {probe.name}: a front with a jump of velocity can pass there ({cause}) "
@@ -50,31 +50,31 @@ class _Fronts:
     """When a jump first leaves each end, and each point first jumps; with the load that makes it, None at the start."""
 
     network: Network
-    sent: Mapping[End, tuple[fmpq, Applied | None]]
-    moved: Mapping[int, tuple[fmpq, Applied | None]]
+    end_fronts: Mapping[End, tuple[fmpq, AppliedLoad | None]]
+    point_fronts: Mapping[int, tuple[fmpq, AppliedLoad | None]]
 
-    def first(self, reading: Gauge) -> tuple[fmpq, Applied | None] | None:
+    def first_front(self, reading: Gauge) -> tuple[fmpq, AppliedLoad | None] | None:
         """When one first passes what is read, if it does."""
         if reading.point is not None:
-            return self.moved.get(reading.point)
+            return self.point_fronts.get(reading.point)
         if reading.place in (0, 1):
-            return self.moved.get(self.network.point_at(End(reading.rod - 1, int(reading.place))))
+            return self.point_fronts.get(self.network.point_at(End(reading.rod - 1, int(reading.place))))
         delay, coming = self.network.bars[reading.rod - 1].delay, []
         for side, way in ((0, reading.place), (1, 1 - reading.place)):
-            if (end := End(reading.rod - 1, side)) in self.sent:
-                coming.append((self.sent[end][0] + way * delay, self.sent[end][1]))
+            if (end := End(reading.rod - 1, side)) in self.end_fronts:
+                coming.append((self.end_fronts[end][0] + way * delay, self.end_fronts[end][1]))
         return min(coming, key=lambda each: each[0], default=None)
 
 
 def _fronts(model: Model) -> _Fronts:
     network = model.network
     answers = [_Answer(network, number) for number in range(len(network.joints))]
-    sent: dict[End, tuple[fmpq, Applied | None]] = {}
-    moved: dict[int, tuple[fmpq, Applied | None]] = {}
+    sent: dict[End, tuple[fmpq, AppliedLoad | None]] = {}
+    moved: dict[int, tuple[fmpq, AppliedLoad | None]] = {}
     count = 0
-    coming: list[tuple[fmpq, int, End, Applied | None]] = []
+    coming: list[tuple[fmpq, int, End, AppliedLoad | None]] = []
 
-    def leave(time: fmpq, cause: Applied | None, jumps: Mapping[int, fmpq], waves: Mapping[End, fmpq]) -> None:
+    def leave(time: fmpq, cause: AppliedLoad | None, jumps: Mapping[int, fmpq], waves: Mapping[End, fmpq]) -> None:
         nonlocal count
         for point, jump in jumps.items():
             if jump != 0 and (point not in moved or time < moved[point][0]):
@@ -86,15 +86,15 @@ def _fronts(model: Model) -> _Fronts:
     for answer in answers:
         leave(_ZERO, None, *answer.start())
         for load, acts in answer.loads(model):
-            leave(load.time, load, *answer.to({}, acts))
+            leave(load.time, load, *answer.respond({}, acts))
     while coming:
         time, _, end, cause = heappop(coming)
         if end in sent:
             continue
         sent[end] = time, cause
-        there = network.beyond(end)
+        there = network.opposite_end(end)
         answer = answers[network.joint_of[network.point_at(there)]]
-        leave(time + network.bars[end.bar].delay, cause, *answer.to({there: fmpq(1)}, {}))
+        leave(time + network.bars[end.bar].delay, cause, *answer.respond({there: fmpq(1)}, {}))
     return _Fronts(network, sent, moved)
 
 
@@ -107,9 +107,9 @@ class _Answer:
 
     @cached_property
     def _law(self) -> JointLaw:
-        return JointLaw.of(self._network, self._joint)
+        return JointLaw.assemble(self._network, self._joint)
 
-    def loads(self, model: Model) -> Iterator[tuple[Applied, dict[int, fmpq]]]:
+    def loads(self, model: Model) -> Iterator[tuple[AppliedLoad, dict[int, fmpq]]]:
         """The first load of each source that jumps here, and what it does to which point."""
         for point in self._joint.points:
             for unit in self._network.points[point].loads:
@@ -131,13 +131,13 @@ class _Answer:
             for point in self._joint.points
             if points[point].mass != 0 or points[point].motion is not None
         }
-        moved, sent = self.to(held, kept)
+        moved, sent = self.respond(held, kept)
         return (
             {point: q - points[point].velocity for point, q in moved.items()},
             {end: wave - network.bars[end.bar].initial_wave(end.side) for end, wave in sent.items()},
         )
 
-    def to(self, waves: Mapping[End, fmpq], acts: Mapping[int, fmpq]) -> tuple[dict[int, fmpq], dict[End, fmpq]]:
+    def respond(self, waves: Mapping[End, fmpq], acts: Mapping[int, fmpq]) -> tuple[dict[int, fmpq], dict[End, fmpq]]:
         """How points and the waves that are sent jump when waves arrive, and loads jump.
 
         `acts` has forces on points that are free and have no mass, of the others velocities.

@@ -9,9 +9,9 @@ from heapq import heapify, heappop, heappush
 
 from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.joints.enclosed import (
+from wavesym.exact.joints.enclosure import (
     STILL,
-    Enclosed,
+    Enclosure,
     collect,
     round_to_precision,
     shift,
@@ -20,7 +20,7 @@ from wavesym.exact.joints.enclosed import (
     weighted_sum,
 )
 from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import End, Joint, Network
 
 # on a stretch that is shorter a few powers are enough
@@ -32,19 +32,19 @@ class SentWave:
     """The wave sent into a bar from one of its ends, stretch by stretch."""
 
     starts: list[fmpq] = field(default_factory=list)
-    stretches: list[Enclosed] = field(default_factory=list)
-    _asked: int = 0
+    stretches: list[Enclosure] = field(default_factory=list)
+    _place: int = 0
 
-    def at(self, tau: fmpq) -> tuple[Enclosed, fmpq]:
+    def locate(self, tau: fmpq) -> tuple[Enclosure, fmpq]:
         """The stretch that tau is in, and how long after its start. (Mostly the one asked for last, or the next.)"""
-        starts, place = self.starts, self._asked
+        starts, place = self.starts, self._place
         if tau < starts[place]:
             place = bisect_right(starts, tau, hi=place) - 1
         elif place + 1 < len(starts) and starts[place + 1] <= tau:
             place = bisect_right(starts, tau, lo=place + 1, hi=min(place + 3, len(starts))) - 1
-            if place == self._asked + 2:
+            if place == self._place + 2:
                 place = bisect_right(starts, tau, lo=place) - 1
-        self._asked = place
+        self._place = place
         return self.stretches[place], tau - starts[place]
 
     def round_to_precision(self, last: fmpq) -> SentWave:
@@ -72,7 +72,7 @@ class Waves:
         for number, bar in enumerate(network.bars):
             for side in (0, 1):
                 held = bar.initial_wave(side)
-                constant = Enclosed.of(fmpq_poly([held])) if held != 0 else STILL
+                constant = Enclosure.from_polynomial(fmpq_poly([held])) if held != 0 else STILL
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
         shown = {network.point_at(end) for end in self.sent if network.bars[end.bar].ratios[end.side] == 1}
         self.velocities = {
@@ -86,16 +86,16 @@ class Waves:
         """Whether nothing acts at an end of a bar from an instant on, so that it is not strained."""
         return self.network.is_free(end)
 
-    def arriving(self, number: int, start: fmpq, length: fmpq | None = None) -> list[Enclosed]:
+    def arriving(self, number: int, start: fmpq, length: fmpq | None = None) -> list[Enclosure]:
         """What comes to the ends at a joint from an instant on, in the time since then (and for so long)."""
         return self._arriving(self.sent, number, start, length)
 
     def _arriving(
         self, sent: Mapping[End, SentWave], number: int, start: fmpq, length: fmpq | None = None
-    ) -> list[Enclosed]:
+    ) -> list[Enclosure]:
         waves = []
         for end, _ in self.network.joints[number].ends:
-            known, offset = sent[self.network.beyond(end)].at(start - self.network.bars[end.bar].delay)
+            known, offset = sent[self.network.opposite_end(end)].locate(start - self.network.bars[end.bar].delay)
             if length is None:
                 waves.append(shift(known, offset))
             elif length < _BRIEF:
@@ -112,7 +112,7 @@ class NetworkWaves(Waves):
         self,
         network: Network,
         breakpoints: Mapping[int, Sequence[fmpq]],
-        loads: Sequence[Applied],
+        loads: Sequence[AppliedLoad],
         terms: int,
         *,
         derivatives: bool = False,
@@ -152,8 +152,8 @@ class NetworkWaves(Waves):
         points: Mapping[int, SentWave],
         joint: Joint,
         start: fmpq,
-        waves: Sequence[Enclosed],
-        velocities: Sequence[Enclosed],
+        waves: Sequence[Enclosure],
+        velocities: Sequence[Enclosure],
     ) -> None:
         """What a joint sends from `start` on, and how the points move that no bar shows."""
         for (end, _), wave in zip(joint.ends, waves, strict=True):
@@ -166,10 +166,10 @@ class NetworkWaves(Waves):
 
 
 class _MovingJoint:
-    def __init__(self, network: Network, joint: Joint, loads: Sequence[Applied]) -> None:
+    def __init__(self, network: Network, joint: Joint, loads: Sequence[AppliedLoad]) -> None:
         self._ends = joint_ends(network, joint)
         self._motion = JointMotion(
-            JointLaw.of(network, joint),
+            JointLaw.assemble(network, joint),
             [arb(network.points[point].velocity) for point in joint.points],
             [arb(0)] * len(joint.points),
         )
@@ -177,12 +177,12 @@ class _MovingJoint:
         law = self._motion.law
         self._scatters = not (law.heavy or law.springs) and len(law.light) == len(joint.points)
 
-    def sends(self, arriving: Sequence[Enclosed], start: fmpq, length: fmpq, terms: int) -> list[Enclosed]:
+    def sends(self, arriving: Sequence[Enclosure], start: fmpq, length: fmpq, terms: int) -> list[Enclosure]:
         """What goes back into the ends on a stretch.
 
         Where nothing has mass or springs factors are exact, so that an absorbing end sends back exactly 0.
         """
-        self._acting = acting = [load.on(start) for load in self._loads]
+        self._acting = acting = [load.polynomial_from(start) for load in self._loads]
         forces = forces_on(self._ends, arriving, acting)
         if self._scatters:
             moving = scatter(self._motion.law, forces, {})
@@ -196,8 +196,8 @@ class _MovingJoint:
         ]
 
     def derivatives(
-        self, sent: Sequence[Enclosed], arriving: Sequence[Enclosed], rates: Sequence[Enclosed]
-    ) -> tuple[list[Enclosed], list[Enclosed]]:
+        self, sent: Sequence[Enclosure], arriving: Sequence[Enclosure], rates: Sequence[Enclosure]
+    ) -> tuple[list[Enclosure], list[Enclosure]]:
         """Those of what was `sent` last, and of the points' velocities, from what arrived and its `rates`.
 
         A derivative is not told by a polynomial that is near a function: where it is not the function itself, the law
@@ -219,16 +219,16 @@ class _MovingJoint:
         ], moving
 
 
-def _derivative(known: Enclosed) -> Enclosed:
+def _derivative(known: Enclosure) -> Enclosure:
     """That of a polynomial."""
     exact = known.exact
-    return Enclosed(known.polynomial.derivative(), arb(0), None if exact is None else exact.derivative())
+    return Enclosure(known.polynomial.derivative(), arb(0), None if exact is None else exact.derivative())
 
 
 class LoadPolynomial:
     """What acts on a point (or prescribes its velocity), as an exact polynomial in the time since some instant."""
 
-    def __init__(self, network: Network, point: int, loads: Sequence[Applied]) -> None:
+    def __init__(self, network: Network, point: int, loads: Sequence[AppliedLoad]) -> None:
         here = network.points[point]
         units = {unit.source: fmpq_poly(list(here.action(unit))) for unit in here.loads}
         self._coming = sorted(
@@ -239,7 +239,7 @@ class LoadPolynomial:
         begin = here.velocity if here.motion is not None else fmpq(0)
         self._since, self._total = fmpq(0), fmpq_poly([begin])
 
-    def on(self, start: fmpq) -> fmpq_poly:
+    def polynomial_from(self, start: fmpq) -> fmpq_poly:
         """From `start` on; instants come in order."""
         self._total = self._total(fmpq_poly([start - self._since, 1]))
         self._since = start

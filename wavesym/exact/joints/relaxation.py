@@ -49,17 +49,17 @@ class Relaxation:
     slow: fmpq
     fast: fmpq
     _heavy: tuple[int, ...]
-    _sprung: bool
+    _has_springs: bool
     _generator: arb_mat
-    _driven: arb_mat
+    _input: arb_mat
     _inverse: arb_mat
     _quasistatic: arb_mat
     _projector: arb_mat
     _read: arb_mat
-    _through: arb_mat
+    _feedthrough: arb_mat
 
     @classmethod
-    def all(cls, law: JointLaw) -> tuple[Relaxation, ...]:
+    def separate(cls, law: JointLaw) -> tuple[Relaxation, ...]:
         """One for each gap between rates of a law above which all decays, the one with the slowest rates first."""
         if len(law.moves) > _POINTS or not (law.heavy or law.springs):
             return ()
@@ -98,12 +98,12 @@ class Relaxation:
             law.heavy,
             law.springs,
             _generator=_round(generator),
-            _driven=_round(driven),
+            _input=_round(driven),
             _inverse=_round(inverse),
             _quasistatic=_round(quasistatic),
             _projector=_round(projector),
             _read=arb_mat(read),
-            _through=arb_mat(through),
+            _feedthrough=arb_mat(through),
         )
 
     def serves(self, length: fmpq, terms: int) -> bool:
@@ -120,19 +120,21 @@ class Relaxation:
     ) -> tuple[list[list[arb]], list[arb]]:
         """The coefficients of the velocities of groups, and the displacements of points at the start."""
         inputs = arb_mat([[each[n] for n in range(terms)] for each in (*forces, *prescribed)])
-        driven, quasistatic = (self._driven * inputs).mid(), (self._quasistatic * inputs).mid()
+        driven, quasistatic = (self._input * inputs).mid(), (self._quasistatic * inputs).mid()
         size = self._generator.nrows()
-        state = [velocity[k] for k in self._heavy] + (list(displacement) if self._sprung else [])
+        state = [velocity[k] for k in self._heavy] + (list(displacement) if self._has_springs else [])
         slow = [(self._projector * _column(state)).mid()]
         for n in range(terms - 1):
-            slow.append(((self._generator * slow[n] + _at(driven, n)) * (arb(1) / (n + 1))).mid())
+            slow.append(((self._generator * slow[n] + _matrix_column(driven, n)) * (arb(1) / (n + 1))).mid())
         fast = [arb_mat(size, 1)] * (terms + 1)
         for n in reversed(range(terms)):
-            fast[n] = (self._inverse * fast[n + 1] * (n + 1) - _at(quasistatic, n)).mid()
+            fast[n] = (self._inverse * fast[n + 1] * (n + 1) - _matrix_column(quasistatic, n)).mid()
         found = [(slow[n] + fast[n]).mid() for n in range(terms)]
         states = arb_mat([[each[k, 0] for each in found] for k in range(size)])
-        velocities = (self._read * states + self._through * inputs).mid()
-        places = [states[len(self._heavy) + k, 0] for k in range(len(displacement))] if self._sprung else displacement
+        velocities = (self._read * states + self._feedthrough * inputs).mid()
+        places = (
+            [states[len(self._heavy) + k, 0] for k in range(len(displacement))] if self._has_springs else displacement
+        )
         return [list(row) for row in velocities.tolist()], list(places)
 
 
@@ -145,35 +147,35 @@ def _column(values: Sequence[arb]) -> arb_mat:
     return arb_mat([[value] for value in values])
 
 
-def _at(matrix: arb_mat, n: int) -> arb_mat:
+def _matrix_column(matrix: arb_mat, n: int) -> arb_mat:
     return arb_mat([[matrix[k, n]] for k in range(matrix.nrows())])
 
 
 def _system(law: JointLaw) -> tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat]:
     """A, B, Q and S of the law; inputs are forces on all groups, and the prescribed velocities of all."""
     groups, points = len(law.mass), len(law.moves) if law.springs else 0
-    size, given = len(law.heavy) + points, [a for a in range(groups) if law.given[a] is not None]
+    size, given = len(law.heavy) + points, [a for a in range(groups) if law.motions[a] is not None]
     wide = size + 2 * groups  # columns: state, forces, prescribed velocities
 
     def unit(column: int) -> list[fmpq]:
         return [fmpq(int(n == column)) for n in range(wide)]
 
-    def added(terms: Sequence[tuple[fmpq, list[fmpq]]]) -> list[fmpq]:
+    def combine(terms: Sequence[tuple[fmpq, list[fmpq]]]) -> list[fmpq]:
         return [sum((factor * row[n] for factor, row in terms if factor != 0), fmpq(0)) for n in range(wide)]
 
     velocity = {a: unit(row) for row, a in enumerate(law.heavy)} | {a: unit(size + groups + a) for a in given}
     sprung = {a: [(-law.stiffness[a][k], unit(len(law.heavy) + k)) for k in range(points)] for a in range(groups)}
     known = list(velocity.items())
     right = {
-        a: added([(fmpq(1), unit(size + a)), *sprung[a], *((-law.damping[a][c], row) for c, row in known)])
+        a: combine([(fmpq(1), unit(size + a)), *sprung[a], *((-law.damping[a][c], row) for c, row in known)])
         for a in law.light
     }
     for row, a in enumerate(law.light):
-        velocity[a] = added([(law.inverse[row, n], right[b]) for n, b in enumerate(law.light)])
+        velocity[a] = combine([(law.inverse[row, n], right[b]) for n, b in enumerate(law.light)])
     moving = [
         [
             x / law.mass[a]
-            for x in added(
+            for x in combine(
                 [(fmpq(1), unit(size + a)), *sprung[a], *((-law.damping[a][c], row) for c, row in velocity.items())]
             )
         ]

@@ -59,7 +59,7 @@ class DampedSpectrum:
 
     def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
         self._cuts = [cut(network, places)]
-        if not network.bridged:  # where cuts would make rings
+        if not network.parallel_bars:  # where cuts would make rings
             self._cuts.append(cut(network, places, aside=True))
 
     @property

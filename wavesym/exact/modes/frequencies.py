@@ -69,7 +69,7 @@ class Spectrum:
     def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
         refuse_damped(network)
         self._cuts = [cut(network, places)]
-        if not network.bridged:  # where cuts would make rings
+        if not network.parallel_bars:  # where cuts would make rings
             self._cuts.append(cut(network, places, aside=True))
         self._found: list[Mode] = []
 
@@ -88,7 +88,7 @@ class Spectrum:
         except CoincidenceError as error:
             if not self._cuts[1:]:
                 beside = " (a mass, however small, at an end of the rod with a spring beside it helps)"
-                helps = beside if self.cut.network.bridged else " (take pieces or march)"
+                helps = beside if self.cut.network.parallel_bars else " (take pieces or march)"
                 raise UnservedError(f"system: {error}, which modes cannot tell apart{helps}") from None
             del self._cuts[0]
             self._found = []

@@ -33,7 +33,7 @@ class Segment:
     from_zero: bool = False
     vague: bool = False
 
-    def at(self, u: fmpq | arb) -> arb:
+    def evaluate(self, u: fmpq | arb) -> arb:
         """The value, a ball, at a point or on an interval."""
         local = arb(u)
         if self.from_zero and local == 0:
@@ -47,7 +47,7 @@ class Segment:
         )
 
 
-def shifted(rates: Iterable[fmpq], polynomials: Iterable[arb_poly], by: fmpq) -> list[arb_poly]:
+def shift(rates: Iterable[fmpq], polynomials: Iterable[arb_poly], by: fmpq) -> list[arb_poly]:
     """sum exp(-g (u + by)) P_g(u + by), as polynomials in u. Coefficients that are not negative stay so."""
     later = arb_poly([arb(by), 1])
     pairs = zip(rates, polynomials, strict=True)
@@ -71,7 +71,7 @@ def _segments(signal: Signal) -> Iterator[Segment]:
     last = None
     for arrival in signal.arrivals:
         if last is not None:
-            families = shifted(places, families, arrival.time - last)
+            families = shift(places, families, arrival.time - last)
         for rate, powers in arrival.increment.items():
             if (place := places.setdefault(rate, len(places))) == len(families):
                 families.append(arb_poly())
@@ -97,7 +97,7 @@ class Balls:
         """A lower bound of the largest absolute value up to `until`, from the ends of segments and points between."""
         ends = [*self._starts[1:], until] if self._starts else []
         points = [
-            segment.at((end - segment.start) * fmpq(k, 4))
+            segment.evaluate((end - segment.start) * fmpq(k, 4))
             for segment, end in zip(self.segments, ends, strict=True)
             for k in range(5)
         ]
@@ -108,12 +108,12 @@ class Balls:
         ends = [*self._starts[1:], until]
         for segment, end in zip(self.segments, ends, strict=True):
             if not segment.vague:
-                yield abs(segment.at(arb(0).union(arb(end - segment.start)))).upper()
+                yield abs(segment.evaluate(arb(0).union(arb(end - segment.start)))).upper()
 
-    def at(self, tau: fmpq) -> arb:
+    def evaluate(self, tau: fmpq) -> arb:
         """The value at tau; at a jump the one to the right of it."""
         place = bisect_right(self._starts, tau) - 1
-        return self.segments[place].at(tau - self._starts[place]) if place >= 0 else arb(0)
+        return self.segments[place].evaluate(tau - self._starts[place]) if place >= 0 else arb(0)
 
 
 def values(
@@ -135,7 +135,7 @@ def values(
         balls = Balls(source(bits))
         results = []
         for tau in exact:
-            value = balls.at(tau)
+            value = balls.evaluate(tau)
             double = rounded_ball(value)
             if double is None:
                 if not value.rad() < negligible:

@@ -38,7 +38,7 @@ def departures(
                 arriving[arrived] = wave
         for end, wave in answer(number, time, arriving):
             yield time, end, wave
-            there = network.beyond(end)
+            there = network.opposite_end(end)
             other = network.joint_of[network.point_at(there)]
             late = time + network.bars[end.bar].delay
             if last is None or (other in last and late <= last[other]):
@@ -53,6 +53,6 @@ def reachable(network: Network, begun: Iterable[End], passes: Callable[[int], Ma
         end = coming.pop()
         if end not in found:
             found.add(end)
-            there = network.beyond(end)
+            there = network.opposite_end(end)
             coming += passes(network.joint_of[network.point_at(there)])[there]
     return found

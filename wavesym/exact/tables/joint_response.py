@@ -83,7 +83,7 @@ class JointResponse:
 @cache
 def joint_polynomial(law: JointLaw) -> fmpq_poly:
     """The determinant of M s + C + K/s of the free points, times the powers of s that clear the fractions."""
-    determinant, _ = _inverted(law)
+    determinant, _ = _invert(law)
     cleared = 0
     while cleared < len(_free(law)) and determinant[cleared] == 0:
         cleared += 1
@@ -103,7 +103,7 @@ def joint_response(law: JointLaw) -> JointResponse:
     """The partial fractions. ValueError where the polynomial does not split over the rationals."""
     if rates(law) is None:
         raise ValueError("the polynomial of the joint does not split")
-    determinant, adjugate = _inverted(law)
+    determinant, adjugate = _invert(law)
     free = _free(law)
     direct: dict[tuple[int, int], fmpq] = {}
     poles: dict[fmpq, list[dict[tuple[int, int], fmpq]]] = {}
@@ -150,7 +150,7 @@ def _free(law: JointLaw) -> tuple[int, ...]:
 
 
 @cache
-def _inverted(law: JointLaw) -> tuple[fmpq_poly, list[list[fmpq_poly]]]:
+def _invert(law: JointLaw) -> tuple[fmpq_poly, list[list[fmpq_poly]]]:
     """The determinant and the adjugate of M s^2 + C s + K of the free points, by elimination without fractions.
 
     For s > 0 the matrix is positive definite, so that no pivot is 0.
@@ -170,12 +170,14 @@ def _inverted(law: JointLaw) -> tuple[fmpq_poly, list[list[fmpq_poly]]]:
         for i in range(size):
             if i != k:
                 factor = rows[i][k]
-                rows[i] = [_divided(pivot[k] * x - factor * y, last) for x, y in zip(rows[i], pivot, strict=True)]
+                rows[i] = [
+                    _divide_exactly(pivot[k] * x - factor * y, last) for x, y in zip(rows[i], pivot, strict=True)
+                ]
         last = pivot[k]
     return last, [row[size:] for row in rows]
 
 
-def _divided(above: fmpq_poly, below: fmpq_poly) -> fmpq_poly:
+def _divide_exactly(above: fmpq_poly, below: fmpq_poly) -> fmpq_poly:
     return divmod(above, below)[0]
 
 

@@ -38,7 +38,7 @@ class NetworkJoints:
     @cache  # noqa: B019 - as long as this object
     def law(self, number: int) -> JointLaw:
         """M, C and K."""
-        return JointLaw.of(self.network, self.network.joints[number])
+        return JointLaw.assemble(self.network, self.network.joints[number])
 
     def response(self, number: int) -> JointResponse:
         """What a joint answers. UnservedError, with its polynomial, where that does not split over the rationals."""

@@ -18,11 +18,11 @@ from wavesym.derivation.exact_rule import joint_rule
 from wavesym.derivation.increments import Increment, add, combine, integrate, trimmed
 from wavesym.derivation.table import Function, Part, Row, table_rows
 from wavesym.derivation.table_size import refuse_size
-from wavesym.exact.tables.foreseen import Foreseen
+from wavesym.exact.tables.forecast import Forecast
 from wavesym.exact.tables.fronts import departures
 from wavesym.exact.tables.network_joints import START, NetworkJoints, unit_at
 from wavesym.mechanics.gauge import Gauge, readings
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import End, Network
 from wavesym.mechanics.probe import Probe
 
@@ -43,7 +43,7 @@ class RuledNetwork:
     def __init__(self, network: Network) -> None:
         self.network = network
         self.joints = NetworkJoints(network)
-        self.foreseen = Foreseen(self.joints)
+        self.forecast = Forecast(self.joints)
 
     def parts(self, reading: Gauge) -> tuple[Part, ...]:
         """dU/dx = (g' - f')/speed, dU/dtau = f' + g' + v, each wave as late as it comes from its end."""
@@ -66,11 +66,11 @@ class RuledNetwork:
             held = bar.strain if reading.quantity == "strain" else bar.velocity
         return trimmed({fmpq(0): {-1: [fmpq(0), held], 0: [held], 1: []}[reading.order]})
 
-    def acting_loads(self, loads: Sequence[Applied]) -> Sequence[Applied]:
+    def acting_loads(self, loads: Sequence[AppliedLoad]) -> Sequence[AppliedLoad]:
         """The loads, and the start where anything moves then."""
-        return [Applied(START, fmpq(0), fmpq(1)), *loads] if START in self.joints.sources else loads
+        return [AppliedLoad(START, fmpq(0), fmpq(1)), *loads] if START in self.joints.sources else loads
 
-    def arrivals(self, probes: Sequence[Probe], loads: Sequence[Applied], until: fmpq) -> int:
+    def arrivals(self, probes: Sequence[Probe], loads: Sequence[AppliedLoad], until: fmpq) -> int:
         """How many increments all loads but the first of each source bring to outputs, at most."""
         sums = (readings(self.network, probe) for probe in probes)
         parts = [part for terms in sums for _, one in terms if one.quantity != "load" for part in self.parts(one)]
@@ -79,7 +79,7 @@ class RuledNetwork:
         total = 0
         for source in {load.source for load in later}:
             left = until - first[source]
-            times = self.foreseen.times(source, self._last({part.function: left - part.delay for part in parts}))
+            times = self.forecast.times(source, self._last({part.function: left - part.delay for part in parts}))
             gained = {function_of(end): each for end, each in times.items()}
             for load in later:
                 if load.source == source:
@@ -96,7 +96,7 @@ class RuledNetwork:
         """
         last = self._last(reach)
         if most is not None:
-            refuse_size(self.foreseen.size(source, last, most, asked), asked, most, "fewer parts")
+            refuse_size(self.forecast.size(source, last, most, asked), asked, most, "fewer parts")
         found: dict[Function, list[tuple[fmpq, Increment]]] = {function: [] for function in reach}
 
         def answer(number: int, time: fmpq, waves: Mapping[End, Increment]) -> Iterator[tuple[End, Increment]]:
@@ -109,7 +109,7 @@ class RuledNetwork:
                         parts.append((fmpq(-1), {fmpq(0): [self.network.points[point].velocity]}))
                     if gained := combine(parts):
                         found[watched].append((time, gained))
-            return self._sent(number, acts, waves, velocities)
+            return self._outgoing_waves(number, acts, waves, velocities)
 
         begun = [number for number in self.joints.acting_joints(source) if number in last]
         for time, end, wave in departures(self.network, begun, answer, last):
@@ -145,7 +145,7 @@ class RuledNetwork:
                 add(forces[k], {fmpq(0): [self.network.bars[end.bar].initial_wave(1 - end.side)]}, factor)
         for k, point in enumerate(self.network.points[number] for number in joint.points):
             unit = {fmpq(0): [point.velocity]} if source == START else unit_at(point, source)
-            if law.given[k] is not None:
+            if law.motions[k] is not None:
                 given[k] = unit
             elif source == START:
                 pushes[k] = law.mass[k] * point.velocity
@@ -155,11 +155,11 @@ class RuledNetwork:
             for other in (*law.heavy, *law.light):
                 add(forces[other], velocity, -law.damping[other][k])
                 add(forces[other], integrate(velocity), -law.stiffness[other][k])
-        free = {k: trimmed(force) for k, force in forces.items() if law.given[k] is None}
+        free = {k: trimmed(force) for k, force in forces.items() if law.motions[k] is None}
         moved = self.joints.response(number).velocities(free, pushes)
         return {joint.points[k]: trimmed(velocity) for k, velocity in {**moved, **given}.items()}
 
-    def _sent(
+    def _outgoing_waves(
         self, number: int, source: str, waves: Mapping[End, Increment], velocities: Mapping[int, Increment]
     ) -> Iterator[tuple[End, Increment]]:
         """n q - a, beyond what the bar holds."""
@@ -203,6 +203,6 @@ def network_table(network: Network, intervals: int | None, until: fmpq, most: fl
     for source in ruled.joints.sources:
         reach = dict.fromkeys(every, until)
         if intervals is not None:
-            reach = {function_of(end): time for end, time in ruled.foreseen.nth(source, intervals).items()}
+            reach = {function_of(end): time for end, time in ruled.forecast.nth(source, intervals).items()}
         responses[source] = ruled.responses(source, reach, most, asked)
     return NetworkTable(network, responses)

@@ -21,7 +21,7 @@ from wavesym.exact.joints.jumps import refuse_jumps
 from wavesym.exact.tables.network_joints import unit_at
 from wavesym.exact.tables.network_table import RuledNetwork
 from wavesym.mechanics.gauge import readings
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
@@ -70,7 +70,7 @@ def refuse_many(model: Model, most: float) -> None:
 def signals_at(
     ruled: RuledNetwork,
     probes: Sequence[Probe],
-    loads: Sequence[Applied],
+    loads: Sequence[AppliedLoad],
     until: fmpq,
     most: float = inf,
 ) -> tuple[Signal, ...]:

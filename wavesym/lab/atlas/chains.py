@@ -83,7 +83,7 @@ def _radii(known: Truth, found: tuple[ContactEvent, ...]) -> list[float]:
     with ctx.workprec(BITS):
         starts = [segment.start for segment in segments]
         places = [bisect_right(starts, tau) - 1 for tau in after]
-        return [float(segments[k].at(tau - starts[k]).rad()) for k, tau in zip(places, after, strict=True)]
+        return [float(segments[k].evaluate(tau - starts[k]).rad()) for k, tau in zip(places, after, strict=True)]
 
 
 def _errors_so_far(panel: str, known: Truth, found: tuple[ContactEvent, ...]) -> Iterator[AtlasPoint]:

@@ -18,7 +18,7 @@ from wavesym.lab.atlas.attempts import Truth, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import atlas_scene
 from wavesym.methods.advice import springs as solve_springs
-from wavesym.methods.every import METHODS
+from wavesym.methods.catalogue import METHODS
 from wavesym.methods.problem import Method
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import march

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.lab.stream import own_samples, stream
-from wavesym.methods.every import METHODS
+from wavesym.methods.catalogue import METHODS
 from wavesym.methods.problem import Method, Problem
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS

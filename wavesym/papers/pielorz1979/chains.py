@@ -140,12 +140,12 @@ def _of_unequal_rods(m: Quantity, p: Parameters) -> tuple[Family, ...]:
 
     def unequal(family: Family) -> Family:
         def node_at(x: Quantity) -> Node:
-            node = family.at(x)
+            node = family.node_at(x)
             left = p.inertia[x] if node.left else 0
             right = p.inertia[x + 1] if node.right else 0
             return replace(node, alpha=node.alpha * left, beta=node.beta * right)
 
-        return replace(family, at=node_at)
+        return replace(family, node_at=node_at)
 
     return tuple(map(unequal, COLLISION.families(m, p)))
 

@@ -112,7 +112,7 @@ def _check_index(known: bool) -> None:
 
 def unit_of_moment(chain: Chain, body: int) -> fmpq:
     """What a unit of moment does to a body of a drive, along positive rotation, by its node. KeyError without one."""
-    _, unit = chain.loaded[f"M{body}"]
+    _, unit = chain.unit_loads[f"M{body}"]
     (value,) = unit.coefficients
     return -fmpq(value) if body == len(chain.nodes) else fmpq(value)
 

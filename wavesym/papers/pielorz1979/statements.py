@@ -15,7 +15,7 @@ from wavesym.derivation.delay import delay_equations
 from wavesym.derivation.table import Function
 from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.network import network_of
 from wavesym.mechanics.probe import Probe
@@ -101,7 +101,7 @@ def _runs(words: Words) -> Iterator[Case]:
     """A rod that a load reaches from the left hears first the wave that runs to the right."""
     for exact in (drive(2), drive(3), uneven_building(3)):
         for source, response in exact.responses.items():
-            x, _ = exact.chain.loaded[source]
+            x, _ = exact.chain.unit_loads[source]
             for rod in range(1, exact.m + 1):
                 leaves = {}
                 for name in "fg":
@@ -190,7 +190,7 @@ def _first_opening(velocities: tuple[int, ...]) -> arb:
     """When the first contact opens."""
     exact = meeting(velocities)
     probes = tuple(Probe(f"strain@{x}", "strain", x, fmpq(1)) for x in range(2, exact.m, 2))
-    impact = (Applied("impact", fmpq(0), fmpq(1)),)
+    impact = (AppliedLoad("impact", fmpq(0), fmpq(1)),)
     network = network_of(exact.chain)
     model = Model("meeting", network, impact, probes, fmpq(UNTIL), fmpq(1), Labels({}, (), ""))
     ends = contact_ends(model)

@@ -10,7 +10,7 @@ from itertools import pairwise
 from flint import fmpq
 
 from wavesym.errors import SpacingError
-from wavesym.mechanics.loads import Applied, merge_loads
+from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.programs.march.plan import readable
@@ -31,16 +31,18 @@ class RecordLoad:
     samples: tuple[fmpq, ...]
 
     @property
-    def hat(self) -> tuple[Applied, ...]:
+    def hat(self) -> tuple[AppliedLoad, ...]:
         """A load that is 0 at tau = 0, 1 at `spacing` and 0 from twice that on."""
-        return tuple(Applied(self.ramp, k * self.spacing, weight / self.spacing) for k, weight in enumerate((1, -2, 1)))
+        return tuple(
+            AppliedLoad(self.ramp, k * self.spacing, weight / self.spacing) for k, weight in enumerate((1, -2, 1))
+        )
 
 
 @dataclass(frozen=True)
 class SplitLoads:
     """`rest` and `records` are the loads of a model together."""
 
-    rest: tuple[Applied, ...]
+    rest: tuple[AppliedLoad, ...]
     records: tuple[RecordLoad, ...]
 
 
@@ -76,7 +78,7 @@ def still(model: Model, load: RecordLoad) -> Model:
     return replace(model, preset=None, network=network, loads=load.hat, spacing=None)
 
 
-def _record(step: str, ramp: str, loads: Sequence[Applied], until: fmpq) -> tuple[RecordLoad, list[Applied]]:
+def _record(step: str, ramp: str, loads: Sequence[AppliedLoad], until: fmpq) -> tuple[RecordLoad, list[AppliedLoad]]:
     """A record that does not jump, and what it differs by: at each jump that, which goes back to 0 within a spacing."""
     times = sorted({load.time for load in loads})
     begin = times[0]
@@ -94,10 +96,10 @@ def _record(step: str, ramp: str, loads: Sequence[Applied], until: fmpq) -> tupl
         slope += bends.get(begin + k * spacing, _ZERO)
         value += jumps.get(begin + k * spacing, _ZERO) + slope * spacing
         samples.append(value)
-    back: list[Applied] = []
+    back: list[AppliedLoad] = []
     for time, jump in jumps.items():
         down = jump / spacing
-        back += [Applied(step, time, jump), Applied(ramp, time, -down), Applied(ramp, time + spacing, down)]
+        back += [AppliedLoad(step, time, jump), AppliedLoad(ramp, time, -down), AppliedLoad(ramp, time + spacing, down)]
     return RecordLoad(ramp, begin, spacing, tuple(samples)), back
 
 

@@ -206,8 +206,8 @@ def size_of(plan: MarchPlan, track: int) -> float:
     )
     network = plan.model.network
     reached = list(plan.model.joints_in_reach(rational(plan.tau_max)))
-    law = JointLaw.of(network, network.joints[reached[number]])
-    free = [k for k, given in enumerate(law.given) if given is None]
+    law = JointLaw.assemble(network, network.joints[reached[number]])
+    free = [k for k, given in enumerate(law.motions) if given is None]
     held = [law.damping[a][b] + (law.mass[a] if a == b else 0) for a in free for b in free]
     at = free.index(point)
     return _ABOVE * sqrt(nearest(fmpq_mat(len(free), len(free), held).inv()[at, at] * (5 + 2 * plan.step)))

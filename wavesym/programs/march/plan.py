@@ -211,7 +211,7 @@ def march_plan(
     until = rational(tau_max)
     reached = model.joints_in_reach(until)
     modelled = {end for number in reached for end, _ in network.joints[number].ends}
-    bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.watched if read.point is None})
+    bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.gauges if read.point is None})
     step = _step([network.bars[bar].delay for bar in bars])
     track_of = {End(bar, side): 2 * k + side for k, bar in enumerate(bars) for side in (0, 1)}
     tracks = [
@@ -220,7 +220,7 @@ def march_plan(
         for side in (0, 1)
     ]
     loads = _Loads(model, until, reached)
-    shown = sorted({read.point for read in model.watched if read.point is not None})
+    shown = sorted({read.point for read in model.gauges if read.point is not None})
     point_of = {point: len(tracks) + k for k, point in enumerate(shown)}
     tracks += [Track(0, _ZERO, _ZERO, network.points[point].motion is not None) for point in shown]
     pushed = {read.point for terms in model.sums.values() for _, read in terms if read.quantity == "load"}
@@ -235,7 +235,7 @@ def march_plan(
         watched = [(k, point) for k, point in enumerate(joint.points) if point in point_of]
         ports = (*laws.ports, *(Port(k, _ZERO, _ONE, _ZERO) for k, _ in watched))
         sends = (*(track_of[end] for end, _ in joint.ends), *(point_of[point] for _, point in watched))
-        arrive = (*(track_of[network.beyond(end)] for end, _ in joint.ends), *(silent for _ in watched))
+        arrive = (*(track_of[network.opposite_end(end)] for end, _ in joint.ends), *(silent for _ in watched))
         forces = tuple(loads.numbers.get(point, -1) for point in joint.points)
         marched.append(MarchedJoint(replace(laws, ports=ports), arrive, sends, forces))
     marched += [MarchedJoint(SHOWN, (silent,), (track,), (loads.numbers[point],)) for point, track in load_of.items()]

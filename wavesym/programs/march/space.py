@@ -200,7 +200,7 @@ def joint_space(network: Network, joint: Joint) -> JointSpace:
 
 def joint_rows(network: Network, joint: Joint) -> JointRows:
     """The same, also where numbers of the network are functions."""
-    law = JointLaw.of(network, joint)
+    law = JointLaw.assemble(network, joint)
     size = len(joint.points)
     heavy, light = law.heavy, law.light
     springs = list(_springs(network, joint, law))
@@ -209,7 +209,7 @@ def joint_rows(network: Network, joint: Joint) -> JointRows:
     shown, passed = _zeros(size, states), _zeros(size, size)
     for n, k in enumerate(heavy):
         shown[k][n] = fmpq(1)
-    for k, motion in enumerate(law.given):
+    for k, motion in enumerate(law.motions):
         if motion is not None:
             passed[k][k] = fmpq(1)
     pulls = _zeros(size, states)  # of the springs, on the points
@@ -276,12 +276,12 @@ def _springs(network: Network, joint: Joint, law: JointLaw) -> Iterator[tuple[fm
     """Each spring that a free point feels, and how much longer it becomes with each point."""
     place = {point: k for k, point in enumerate(joint.points)}
     for point, k in place.items():
-        if (stiffness := network.points[point].stiffness) != 0 and law.given[k] is None:
+        if (stiffness := network.points[point].stiffness) != 0 and law.motions[k] is None:
             yield stiffness, {k: fmpq(1)}
     for link in network.links:
         if link.left in place and link.stiffness != 0:
             a, b = place[link.left], place[link.right]
-            if a != b and any(law.given[k] is None for k in (a, b)):
+            if a != b and any(law.motions[k] is None for k in (a, b)):
                 yield link.stiffness, {a: -link.ratio, b: fmpq(1)}
 
 

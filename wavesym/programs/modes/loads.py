@@ -13,7 +13,7 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.numbers.doubles import nearest
 
 Numbers = NDArray[np.float64]
@@ -66,7 +66,10 @@ class LinearLoads:
 
 
 def linear_loads(
-    loads: Sequence[Applied], sources: Sequence[tuple[str, str]], until: fmpq, describe: Callable[[Applied], str]
+    loads: Sequence[AppliedLoad],
+    sources: Sequence[tuple[str, str]],
+    until: fmpq,
+    describe: Callable[[AppliedLoad], str],
 ) -> LinearLoads:
     """Loads j made of unit steps and ramps, whose names are sources[j], as far as they act by `until`.
 

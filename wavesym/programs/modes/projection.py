@@ -102,7 +102,7 @@ def _load_powers(point: Point, coefficients: Sequence[fmpq]) -> list[fmpq]:
 def places(model: Model) -> tuple[tuple[int, fmpq], ...]:
     """Where bars are to be cut so that all outputs are at points. UnservedError where that makes a ring."""
     for probe in model.probes:
-        if 0 < probe.place < 1 and probe.rod - 1 in model.network.bridged:
+        if 0 < probe.place < 1 and probe.rod - 1 in model.network.parallel_bars:
             raise UnservedError(
                 f"output: {probe.name} is inside a rod with a spring or dashpot beside it, which modes do not "
                 "support (write a place at its ends, or take pieces or march)"

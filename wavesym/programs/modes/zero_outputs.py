@@ -51,7 +51,7 @@ def _is_zero(model: Model, probe: Probe, acting: Sequence[tuple[int, fmpq]]) -> 
         places = [(bar, fmpq(0)), (bar, fmpq(1))]
     if probe.quantity == "relative":
         points.append(ground(network))
-    if model.damped:
+    if model.is_damped:
         return False
     away = network.distances(places, points)
     return bool(acting) and not any(time + away[network.joint_of[point]] < model.until for point, time in acting)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
@@ -33,7 +33,7 @@ _MOST_WINDOWS = 20_000
 
 
 def runtime_program(
-    model: Model, request: Request, amplitudes: Sequence[tuple[str, Applied]], *, tested: bool = False
+    model: Model, request: Request, amplitudes: Sequence[tuple[str, AppliedLoad]], *, tested: bool = False
 ) -> Program:
     """The program of a model whose parameters `request.runtime` are given at run time.
 
@@ -48,7 +48,7 @@ def runtime_program(
 
 
 def sets_program(
-    model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]] = (), precision: str = "double"
+    model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, AppliedLoad]] = (), precision: str = "double"
 ) -> Program:
     """The same for sets that are computed here, where there is memory for bodies as light as `LIGHTEST`."""
     request = Request(precision=precision, runtime=tuple(names), kappa_max=LIGHTEST)
@@ -56,7 +56,7 @@ def sets_program(
 
 
 def _program(
-    model: Model, request: Request, amplitudes: Sequence[tuple[str, Applied]], tolerance: fmpq, real: Real
+    model: Model, request: Request, amplitudes: Sequence[tuple[str, AppliedLoad]], tolerance: fmpq, real: Real
 ) -> Program:
     free = free_network(model, request.runtime, amplitudes)
     chosen = "load" in request.runtime

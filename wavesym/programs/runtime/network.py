@@ -15,7 +15,7 @@ from hashlib import sha256
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.mechanics.loads import Applied, AppliedRecord
+from wavesym.mechanics.loads import AppliedLoad, AppliedRecord
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import Factors
@@ -70,7 +70,7 @@ class FreeNetwork:
     factors: Factors
 
 
-def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]]) -> FreeNetwork:
+def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, AppliedLoad]]) -> FreeNetwork:
     """The fields that `names` ask for, in the order of the scene: points, then rods, then what links points; those of
     a named system are its own.
 
@@ -122,7 +122,7 @@ def unit_of(model: Model, name: str) -> ParameterUnit:
     return ParameterUnit(*model.inputs[name]) if name in model.inputs else PLAIN
 
 
-def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
+def unit_of_load(model: Model, load: AppliedLoad) -> ParameterUnit:
     """That of an amplitude: of a step, or of a ramp per unit of time; the factor of a record has none."""
     if model.clock is None or isinstance(load, AppliedRecord):
         return PLAIN

@@ -19,7 +19,7 @@ from flint import fmpq, fmpq_poly
 
 from wavesym.errors import UnservedError
 from wavesym.exact.arrivals import identically_zero
-from wavesym.mechanics.loads import Applied, AppliedRecord, merge_loads
+from wavesym.mechanics.loads import AppliedLoad, AppliedRecord, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Point
 from wavesym.numbers.doubles import rational
@@ -111,7 +111,7 @@ class RuntimePlan:
         return [n for n, s in enumerate(self.strands) if s.output == output and s.start <= at < s.start + 2 * s.half]
 
 
-def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real: Real) -> RuntimePlan:
+def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], real: Real) -> RuntimePlan:
     """The plan of a chain; each of `loads` has an amplitude.
 
     CostError as for a march, UnservedError as `ordered_events`.
@@ -120,7 +120,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real
     acting = [[change for change in load.changes if change.time <= until] for load in loads]
     # as if each weighed 1, so that none of them is left out
     changes = {(change.time, change.source) for load in acting for change in load}
-    units = tuple(Applied(source, time, fmpq(1)) for time, source in sorted(changes))
+    units = tuple(AppliedLoad(source, time, fmpq(1)) for time, source in sorted(changes))
     # which points loads act on is all that counts of them here
     points = zip(free.network.points, model.network.points, strict=True)
     network = replace(free.network, points=tuple(replace(point, loads=own.loads) for point, own in points))
@@ -146,7 +146,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real
 
 
 def _events(
-    plan: MarchPlan, free: FreeNetwork, acting: Sequence[Sequence[Applied]], sizes: Sequence[fmpq]
+    plan: MarchPlan, free: FreeNetwork, acting: Sequence[Sequence[AppliedLoad]], sizes: Sequence[fmpq]
 ) -> Iterator[LoadEvent]:
     places = {panel.start: number for number, panel in enumerate(plan.panels)}
     for force, number in enumerate(plan.pushed):
@@ -183,13 +183,15 @@ def _strands(plan: MarchPlan, output_terms: Sequence[tuple[int, OutputTerm]]) ->
         yield Strand(output, start, half, tuple(terms))
 
 
-def as_one_load(model: Model) -> list[Applied]:
+def as_one_load(model: Model) -> list[AppliedLoad]:
     """All loads of a model, none of which has an amplitude of its own."""
     loads = tuple(load for load in model.loads if load.source != "impact")
     return [AppliedRecord(loads[0].source, loads[0].time, fmpq(1), loads)] if loads else []
 
 
-def load_changes(changes: Sequence[Applied], powers: Mapping[str, fmpq_poly]) -> Iterator[tuple[fmpq, int, fmpq, bool]]:
+def load_changes(
+    changes: Sequence[AppliedLoad], powers: Mapping[str, fmpq_poly]
+) -> Iterator[tuple[fmpq, int, fmpq, bool]]:
     """When a load changes, which power, how much of it, and whether it replaces what acts: at each change all that acts
     is said again, so that nothing adds up.
     """
@@ -216,7 +218,7 @@ def ordered_events(events: Iterable[LoadEvent]) -> tuple[LoadEvent, ...]:
     return found
 
 
-def zero_outputs(model: Model, loads: Sequence[Applied], real: Real) -> list[bool]:
+def zero_outputs(model: Model, loads: Sequence[AppliedLoad], real: Real) -> list[bool]:
     """Whether each output of a model that has the numbers drawn is 0 up to the horizon, whatever `loads` amount to.
 
     Of each source the first is enough: others do the same later.
@@ -225,7 +227,7 @@ def zero_outputs(model: Model, loads: Sequence[Applied], real: Real) -> list[boo
     first: dict[str, fmpq] = {}
     for change in (change for load in loads for change in load.changes if change.time <= until):
         first[change.source] = min(change.time, first.get(change.source, until))
-    acting = (Applied(source, time, drawn_number(source)) for source, time in first.items())
+    acting = (AppliedLoad(source, time, drawn_number(source)) for source, time in first.items())
     return identically_zero(replace(model, loads=tuple(sorted(acting, key=lambda load: load.time))), until)
 
 

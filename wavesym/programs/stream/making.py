@@ -14,7 +14,7 @@ from math import inf, isfinite, log
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError, ToleranceError
-from wavesym.mechanics.loads import Applied, merge_loads
+from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
 from wavesym.numbers.reals import REALS, Real
@@ -176,11 +176,11 @@ def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValue
     count = int((last / panel).floor())
     late = _INSIDE * panel if plan.breakpoints >= len(plan.march.panels) else fmpq(0)
     jumps = [(k, j, leap(k, j)) for k in range(count) for j in range(len(plan.inputs)) if k % 5 == (2 * j) % 5]
-    applied = [Applied(plan.inputs[j].source, k * panel + late, rise / plan.inputs[j].size) for k, j, rise in jumps]
+    applied = [AppliedLoad(plan.inputs[j].source, k * panel + late, rise / plan.inputs[j].size) for k, j, rise in jumps]
     looked = [(k + _PLACES[k % len(_PLACES)]) * panel for k in range(count)]
     taus = [nearest(tau) for tau in looked]
     own = merge_loads(applied) if plan.inputs else model.loads
-    tested = replace(model.shortened(last), loads=own, endless=False)
+    tested = replace(model.shorten(last), loads=own, endless=False)
     found = reference_values(tested, program.real, taus)
     columns = dict(zip(found.taus, zip(*found.values, strict=True), strict=True))
     rows, now, time = [], [fmpq(0)] * len(plan.inputs), fmpq(0)

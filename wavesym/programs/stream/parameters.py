@@ -96,7 +96,7 @@ class FreeStream:
         return {label: value for field in self.fields for label, value in zip(field.labels, field.values, strict=True)}
 
     def _number(self, function: Any) -> fmpq:
-        return function.at(self._values) if isinstance(function, Ratio) else function
+        return function.evaluate(self._values) if isinstance(function, Ratio) else function
 
     def _joint(self, joint: MarchedJoint) -> MarchedJoint:
         rows = joint.space

@@ -19,7 +19,7 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import RAMPS
@@ -140,9 +140,9 @@ def inputs_of(model: Model, sources: Sequence[str]) -> tuple[Input, ...]:
     return tuple(Input(source, *model.inputs.get(source, (_ONE, ""))) for source in chosen)
 
 
-def steps_of(inputs: Sequence[Input]) -> tuple[Applied, ...]:
+def steps_of(inputs: Sequence[Input]) -> tuple[AppliedLoad, ...]:
     """Steps of all inputs at tau = 0."""
-    return tuple(Applied(given.source, _ZERO, _ONE) for given in sorted(inputs, key=lambda given: given.source))
+    return tuple(AppliedLoad(given.source, _ZERO, _ONE) for given in sorted(inputs, key=lambda given: given.source))
 
 
 def stream_plan(

@@ -25,7 +25,7 @@ from wavesym.systems import PHYSICAL, SYSTEMS, ExplicitChain, SystemTable, Writt
 from wavesym.systems.dimensionless import DimensionlessSystem
 from wavesym.systems.place import read_titled_place
 
-_LENGTHS = {each.name for each in QUANTITIES.values() if each.like}
+_LENGTHS = {each.name for each in QUANTITIES.values() if each.place_quantity}
 """Outputs whose places are lengths on a chain; a drift counts rods."""
 
 

@@ -38,7 +38,7 @@ def sampled_extremes(
     at = (both >= both.max(axis=2, keepdims=True) - equal[:, :, None]).argmax(axis=2)
     best, when = np.take_along_axis(both, at[:, :, None], axis=2)[:, :, 0], taus[at]
     if each is not None and taus.size > 2:
-        for found, tau in _refined(each, taus, _tops(both)):
+        for found, tau in _refine(each, taus, _tops(both)):
             better = found > best + equal
             best[better], when[better] = found[better], tau[better]
     best = best * [-1.0, 1.0] + 0.0
@@ -66,7 +66,7 @@ def _neighbours(taus: Numbers) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return np.maximum(before, 0), np.minimum(after, taus.size - 1)
 
 
-def _refined(each: Evaluate, taus: Numbers, tops: NDArray[np.intp]) -> Iterator[tuple[Numbers, Numbers]]:
+def _refine(each: Evaluate, taus: Numbers, tops: NDArray[np.intp]) -> Iterator[tuple[Numbers, Numbers]]:
     """Of ever finer samples around the `tops` the highest values, top by top, (outputs, sides), and their tau."""
     before, after = _neighbours(taus)
     low, high = taus[before[tops]], taus[after[tops]]

@@ -23,17 +23,17 @@ _POINT = (3, -7, 5, 11, -13, 17, -19, 23, 29, -31, 37, -41)
 Factor = tuple[fmpq_mpoly, int]  # a polynomial with coprime integers, and its exponent, at least 1
 
 
-class Factored(NamedTuple):
-    """content * prod above / prod below in lowest terms; all factors irreducible, of positive leading coefficient."""
+class Factorization(NamedTuple):
+    """content * prod numerator / prod denominator in lowest terms, of irreducible factors that lead positively."""
 
     content: fmpq
-    above: Sequence[Factor]
-    below: Sequence[Factor]
+    numerator: Sequence[Factor]
+    denominator: Sequence[Factor]
 
     @property
     def parts(self) -> tuple[str, str]:
         """Numerator and denominator as text that Python reads as well."""
-        return _product(int(self.content.p), self.above), _product(int(self.content.q), self.below)
+        return _product(int(self.content.p), self.numerator), _product(int(self.content.q), self.denominator)
 
     def __str__(self) -> str:
         above, below = self.parts
@@ -44,10 +44,10 @@ class Factored(NamedTuple):
         return f"{above}/({below})" if below.strip("_0123456789" + ascii_letters) else f"{above}/{below}"
 
 
-def factored(ring: Forms, numerator: fmpq_mpoly, denominator: Denominator) -> Factored:
+def factor(ring: Forms, numerator: fmpq_mpoly, denominator: Denominator) -> Factorization:
     """A rational function in the symbols that its ring is told in."""
     if not numerator:
-        return Factored(fmpq(0), (), ())
+        return Factorization(fmpq(0), (), ())
     content, known, rest = _factors(ring, numerator, denominator)
     powers = known | {form: -power for form, power in denominator.items()}
     exponents = [0] * ring.told.nvars()
@@ -62,7 +62,7 @@ def factored(ring: Forms, numerator: fmpq_mpoly, denominator: Denominator) -> Fa
     for symbol, exponent in zip(ring.told.gens(), exponents, strict=True):
         if exponent:
             (above if exponent > 0 else below).append((symbol, abs(exponent)))
-    return Factored(content, above, below)
+    return Factorization(content, above, below)
 
 
 def _factors(ring: Forms, numerator: fmpq_mpoly, denominator: Denominator) -> tuple[fmpq, dict[int, int], list[Factor]]:
@@ -72,7 +72,7 @@ def _factors(ring: Forms, numerator: fmpq_mpoly, denominator: Denominator) -> tu
     known = {form: int(power) for form, power in enumerate(monomial.degrees()) if power}
     for number in range(len(ring.names), len(ring.forms)):
         if number not in denominator:
-            power, rest = _divided(rest, ring.forms[number])
+            power, rest = _divide_out(rest, ring.forms[number])
             if power:
                 known[number] = power
     content = _content(rest)
@@ -89,7 +89,7 @@ def _factors(ring: Forms, numerator: fmpq_mpoly, denominator: Denominator) -> tu
     return content, known, found
 
 
-def _divided(polynomial: fmpq_mpoly, form: fmpq_mpoly) -> tuple[int, fmpq_mpoly]:
+def _divide_out(polynomial: fmpq_mpoly, form: fmpq_mpoly) -> tuple[int, fmpq_mpoly]:
     """How often a form divides a polynomial, and what is left."""
     power = 0
     try:

@@ -71,7 +71,7 @@ class Onset:
 
 
 @dataclass(frozen=True)
-class Enclosed:
+class Enclosure:
     """A function on a stretch: |function - polynomial| <= error.
 
     `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
@@ -82,13 +82,13 @@ class Enclosed:
     polynomial: arb_poly
     error: arb
     exact: fmpq_poly | None = None
-    choices: tuple[Enclosed, ...] = ()
+    choices: tuple[Enclosure, ...] = ()
     onset: Onset | None = None
     least: fmpq_poly | None = None
     most: fmpq_poly | None = None
 
     @property
-    def bounded(self) -> bool:
+    def has_bounds(self) -> bool:
         """Whether such bounds are known."""
         return self.least is not None or self.most is not None
 
@@ -103,25 +103,25 @@ class Enclosed:
         return self.onset if self.exact is None else Onset(self.exact)
 
     @classmethod
-    def of(cls, exact: fmpq_poly) -> Enclosed:
+    def from_polynomial(cls, exact: fmpq_poly) -> Enclosure:
         """A polynomial that is known."""
         below = arb(exact.denom())  # fractions would be reduced one by one, which takes long where they are long
         return cls(arb_poly([arb(c) / below for c in exact.numer().coeffs()]), arb(0), exact)
 
-    def at(self, w: fmpq) -> arb:
+    def evaluate(self, w: fmpq) -> arb:
         """An enclosure of its value."""
         value = self.polynomial(arb(w))
         return value + arb(0, self.error) if self.error != 0 else value
 
-    def over(self, span: arb) -> arb:
+    def evaluate_on(self, span: arb) -> arb:
         """An enclosure of all values on a part of the stretch."""
         return self.polynomial(span) + arb(0, self.error)
 
 
-STILL = Enclosed(arb_poly(), arb(0), fmpq_poly())
-UNIT = Enclosed.of(fmpq_poly([1]))
+STILL = Enclosure(arb_poly(), arb(0), fmpq_poly())
+UNIT = Enclosure.from_polynomial(fmpq_poly([1]))
 
-Terms = list[tuple[fmpq, Enclosed]]
+Terms = list[tuple[fmpq, Enclosure]]
 """A sum with exact factors."""
 
 
@@ -135,7 +135,7 @@ def combine(terms: Sequence[tuple[fmpq, Onset]]) -> Onset:
     return Onset(total, tuple(sorted(rests.items())))
 
 
-def weighted_sum(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
+def weighted_sum(terms: Sequence[tuple[fmpq, Enclosure]]) -> Enclosure:
     """A sum with exact factors; what has the factor 0 is not in it."""
     polynomial, error = arb_poly(), arb(0)
     for factor, known in terms:
@@ -149,7 +149,7 @@ def weighted_sum(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
             size = arb(factor)
             polynomial += size * known.polynomial
             error += abs(size) * known.error
-    return Enclosed(polynomial, error.upper())
+    return Enclosure(polynomial, error.upper())
 
 
 def scale_terms(terms: Terms, factor: fmpq) -> Terms:
@@ -157,7 +157,7 @@ def scale_terms(terms: Terms, factor: fmpq) -> Terms:
     return [(factor * each, known) for each, known in terms] if factor != 0 else []
 
 
-def add_terms(terms: Terms) -> Enclosed:
+def add_terms(terms: Terms) -> Enclosure:
     """A sum with exact factors; exact where all of it is. What is in it twice is one."""
     counted = collect(terms)
     number = prod(len(known.choices) or 1 for _, known in counted)
@@ -174,24 +174,24 @@ def add_terms(terms: Terms) -> Enclosed:
 def collect(terms: Terms) -> Terms:
     """Each known function once, and none whose factors cancel."""
     factors: dict[int, fmpq] = {}
-    parts: dict[int, Enclosed] = {}
+    parts: dict[int, Enclosure] = {}
     for factor, known in terms:
         parts[id(known)] = known
         factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
     return [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
 
 
-def _add(terms: Terms) -> Enclosed:
+def _add(terms: Terms) -> Enclosure:
     exact = fmpq_poly()
     for factor, known in terms:
         if known.exact is None:
-            if not any(other.onset or other.bounded for _, other in terms):
+            if not any(other.onset or other.has_bounds for _, other in terms):
                 return weighted_sum(terms)
             begin = [(factor, begins) for factor, known in terms if (begins := known.begins) is not None]
             onset = combine(begin) if len(begin) == len(terms) else None
             return with_bounds(weighted_sum(terms), onset, *_bounds(terms))
         exact += factor * known.exact
-    return Enclosed.of(exact)
+    return Enclosure.from_polynomial(exact)
 
 
 def _bounds(terms: Terms) -> tuple[fmpq_poly | None, fmpq_poly | None]:
@@ -204,16 +204,16 @@ def _bounds(terms: Terms) -> tuple[fmpq_poly | None, fmpq_poly | None]:
     return found[0], found[1]
 
 
-def with_bounds(hull: Enclosed, onset: Onset | None, least: fmpq_poly | None, most: fmpq_poly | None) -> Enclosed:
+def with_bounds(hull: Enclosure, onset: Onset | None, least: fmpq_poly | None, most: fmpq_poly | None) -> Enclosure:
     """What is within a hull, with what else is known of it."""
     if onset is None and least is None and most is None:
         return hull
     return replace(hull, onset=onset, least=least, most=most)
 
 
-def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
+def _one_of(hull: Enclosure, functions: Sequence[Enclosure]) -> Enclosure:
     """What is within a hull and, at each instant, one of some functions; those that are known count once."""
-    different: list[Enclosed] = []
+    different: list[Enclosure] = []
     for each in functions:
         if each.exact is None or all(each.exact != other.exact for other in different):
             different.append(each)
@@ -222,39 +222,39 @@ def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
     return replace(hull, choices=tuple(different) if len(different) <= _CHOICES else ())
 
 
-def one_at_each_instant(functions: Sequence[Enclosed], span: arb) -> Enclosed:
+def one_at_each_instant(functions: Sequence[Enclosure], span: arb) -> Enclosure:
     """One of these at each instant: all their values on a stretch."""
-    hull = functions[0].over(span)
+    hull = functions[0].evaluate_on(span)
     for known in functions[1:]:
-        hull = hull.union(known.over(span))
+        hull = hull.union(known.evaluate_on(span))
     return _one_of(
-        Enclosed(arb_poly([hull.mid()]), hull.rad()),
+        Enclosure(arb_poly([hull.mid()]), hull.rad()),
         [each for known in functions for each in known.choices or (known,)],
     )
 
 
-def shift(known: Enclosed, by: fmpq) -> Enclosed:
+def shift(known: Enclosure, by: fmpq) -> Enclosure:
     """The same function in the time since an instant that is `by` later."""
-    if by == 0 or (known.polynomial.length() <= 1 and not known.choices and not known.bounded):
+    if by == 0 or (known.polynomial.length() <= 1 and not known.choices and not known.has_bounds):
         return known
     if known.exact is not None:
-        return Enclosed.of(known.exact(fmpq_poly([by, 1])))
+        return Enclosure.from_polynomial(known.exact(fmpq_poly([by, 1])))
     choices = tuple(shift(each, by) for each in known.choices)
     least, most = _shift_bounds(known, by)
-    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices, None, least, most)
+    return Enclosure(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices, None, least, most)
 
 
-def _shift_bounds(known: Enclosed, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+def _shift_bounds(known: Enclosure, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
     least, most = (None if p is None else p(fmpq_poly([by, 1])) for p in (known.least, known.most))
     return least, most
 
 
-def round_to_precision(known: Enclosed, length: fmpq) -> Enclosed:
+def round_to_precision(known: Enclosure, length: fmpq) -> Enclosure:
     """The same at the working precision, without powers that count for nothing on a stretch."""
-    return shorten(Enclosed(known.polynomial * arb(1), known.error, known.exact), length)
+    return shorten(Enclosure(known.polynomial * arb(1), known.error, known.exact), length)
 
 
-def shorten(known: Enclosed, length: fmpq) -> Enclosed:
+def shorten(known: Enclosure, length: fmpq) -> Enclosure:
     """Without the highest powers, as far as they count for less on a stretch than the last bit of the first ones."""
     powers = known.polynomial.coeffs()
     if known.exact is not None or len(powers) < 2:
@@ -272,7 +272,7 @@ def shorten(known: Enclosed, length: fmpq) -> Enclosed:
     return replace(known, polynomial=arb_poly(powers[:count]), error=(known.error + rest).upper())
 
 
-def shift_briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
+def shift_briefly(known: Enclosure, by: fmpq, length: fmpq) -> Enclosure:
     """The same as `later` on a short stretch: Taylor's first powers, and what the others can add."""
     terms = 2 + ctx.prec // 64
     if known.exact is not None or known.polynomial.length() <= terms:
@@ -285,4 +285,4 @@ def shift_briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
     span = here.union(arb(by + length))
     rest = abs(derivative(span) * share) * arb(length) ** (terms - 1)
     least, most = _shift_bounds(known, by)
-    return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices, None, least, most)
+    return Enclosure(arb_poly(powers), (known.error + rest).upper(), None, choices, None, least, most)

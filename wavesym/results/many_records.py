@@ -2,7 +2,7 @@
 
 Outputs are known at the samples and halfway between, by `RecordResponse`. How far they bend there tells how much higher
 a top in between may be; the steps that may have the highest one are looked at closely (`tops`). Nothing of that is
-proved, as in `sampled`. That the modes are enough is: for each record.
+proved, as in `sampling`. That the modes are enough is: for each record.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from wavesym.programs.modes.loads import Roughness, scaled_roughness
 from wavesym.programs.modes.records import RecordResponse
 from wavesym.programs.modes.truncation import ModalModel
 from wavesym.results.near_zero import zero_within
-from wavesym.results.tops import Closely, Numbers, Places, tops
+from wavesym.results.tops import Numbers, Places, SuspectSteps, tops
 
 _PARTS = 2
 _PER_STEP, _PER_CROSSING = 16, 4  # samples of a closer look, as of `stepping`
@@ -186,7 +186,7 @@ def _extremes(response: RecordResponse, model: Model, begin: float, records: Num
     places, row = np.unique(record * records.shape[1] + step, return_inverse=True)
     inside = response.inside(samples, known, *np.divmod(places, records.shape[1]))
     group = (record * outputs + output) * 2 + side
-    best, when = tops(response, Closely(group, step, output, 2.0 * side - 1.0, length, inside[row]), points)
+    best, when = tops(response, SuspectSteps(group, step, output, 2.0 * side - 1.0, length, inside[row]), points)
     values, taus = np.zeros((len(records), outputs, 2)), np.full((len(records), outputs, 2), begin)
     which = np.unique(group)
     values.ravel()[which] = best

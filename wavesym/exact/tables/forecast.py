@@ -25,7 +25,7 @@ Shape = Mapping[fmpq, int]
 """How many powers there are at each rate."""
 
 
-class Foreseen:
+class Forecast:
     """What is known of responses before they are made."""
 
     def __init__(self, joints: NetworkJoints) -> None:
@@ -103,7 +103,7 @@ class Foreseen:
         law, response, ends = self._joints.law(number), self._joints.response(number), self._joints.ends(number)
         found: dict[End, set[End]] = {each.end: set() for each in ends}
         for (end, j, _, force), (other, i, ratio, _) in product(ends, repeat=2):
-            if law.given[j] is not None:
+            if law.motions[j] is not None:
                 goes = end == other
             else:
                 at_once = ratio * response.direct.get((i, j), fmpq(0)) * force
@@ -119,7 +119,7 @@ class Foreseen:
             return {each.end for each in ends}
         law, points = joints.law(number), joints.network.joints[number].points
         acted = {k for k, point in enumerate(points) if unit_at(joints.network.points[point], source)}
-        moved = {k for k in acted if law.given[k] is not None}
+        moved = {k for k in acted if law.motions[k] is not None}
         held = (
             other for k in moved for other in range(len(points)) if law.damping[other][k] or law.stiffness[other][k]
         )

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from wavesym.derivation.rate_letters import in_rates
 from wavesym.derivation.table import full_table
 from wavesym.mechanics.symbolic import generic
-from wavesym.numbers import factored as module
-from wavesym.numbers.factored import irreducible
+from wavesym.numbers import factorization as module
+from wavesym.numbers.factorization import irreducible
 from wavesym.systems.building import BUILDING_FORCE
 from wavesym.systems.drive import DRIVE
 
@@ -50,14 +50,14 @@ def wrong(symbols, intervals):
     for row in full_table(symbols.chain, intervals, fmpq(0)).rows():
         if not hasattr(row.value, "ring"):
             continue
-        told = row.value.factored
-        again = [factor.factor()[1] for factor, _ in (*told.above, *told.below)]
+        told = row.value.factorization
+        again = [factor.factor()[1] for factor, _ in (*told.numerator, *told.denominator)]
         itself = all(len(one) == 1 and one[0][1] == 1 for one in again)
-        shared = any(above == below for above, _ in told.above for below, _ in told.below)
+        shared = any(above == below for above, _ in told.numerator for below, _ in told.denominator)
         if (
             not itself
             or shared
-            or any(one[0][0] != f for one, (f, _) in zip(again, (*told.above, *told.below), strict=True))
+            or any(one[0][0] != f for one, (f, _) in zip(again, (*told.numerator, *told.denominator), strict=True))
         ):
             found.append(row)
     return found
