@@ -186,7 +186,6 @@ def test_the_rest_of_a_spring_on_the_wrong_side_is_seen(monkeypatch: pytest.Monk
     [
         ({"spring": 4, "only": "up"}, r'only: "up" is not a side; write "push" or "pull"'),
         ({"dashpot": 4, "only": "push"}, r"only: a law of a spring, and there is none; write spring = K too"),
-        ({"spring": 4, "dashpot": 1, "yield": 2}, r"dashpot: not beside a spring with yield"),
         ({"spring": 4, "gap": 1}, r"gap: of one side alone; write only"),
         ({"spring": 4, "gap": [1, 0]}, r"gap: a list is not in order"),
         ({"spring": 4, "yield": [1, -2]}, r"yield: a list has a negative number"),
