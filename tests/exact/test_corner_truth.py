@@ -14,6 +14,7 @@ from tests.support.piecewise import PiecewiseChain
 from tests.support.series import Unclear
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.events import events
+from wavesym.exact.contacts.losses import losses
 from wavesym.exact.reference import Reference
 from wavesym.scene import Scene, lower
 
@@ -57,6 +58,13 @@ def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None) ->
                 exact = made.value(*probe.name.split("@"), Fraction(tau))
                 if not abs(exact - arb(value)) <= abs(arb(value)) * arb(2) ** -53 + arb("1e-24"):
                     faults.append(f"{probe.name} at {tau}: {value}, not {exact}")
+    with ctx.workprec(BITS):
+        for loss in losses(model):
+            here = (loss.link.place.rstrip("+-"), loss.link.law)
+            taken = zip(made.corners, made.dissipated(), strict=True)
+            true = [energy for (place, law), energy in taken if (place.rstrip("+-"), law) == here]
+            if not any(abs(loss.dissipated - energy) <= CLOSE for energy in true):
+                faults.append(f"at {here}: {loss.dissipated} dissipated, not {true}")
     return faults
 
 

@@ -86,6 +86,11 @@ class PiecewiseChain:
 
     # what it found
 
+    @property
+    def corners(self) -> list[tuple[str, str]]:
+        """The place of each link with a corner, and what has it."""
+        return [(corner.place, corner.subject) for corner in self._made.corners]
+
     def value(self, quantity: str, place: object, tau: Fraction) -> arb:
         """At tau (at a jump: after it)."""
         with ctx.workprec(BITS):

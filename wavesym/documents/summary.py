@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
+from wavesym.results.link_losses import Measured
 from wavesym.results.statistics import STATISTICS, Statistic, cells, headings, number_text
 from wavesym.results.summary import OutputSummary, Summary
 
@@ -26,7 +27,17 @@ def _json(summary: Summary) -> str:
         }
         for output in summary.outputs
     ]
-    return json.dumps({"outputs": outputs, "bound": summary.bound}, indent=2) + "\n"
+    links = [
+        {
+            "place": link.place,
+            "law": link.law,
+            "set": link.set._asdict(),
+            "dissipated": link.dissipated._asdict(),
+        }
+        for link in summary.links or ()
+    ]
+    lost = {"links": links} if links else {}
+    return json.dumps({"outputs": outputs, **lost, "bound": summary.bound}, indent=2) + "\n"
 
 
 def _statistic(statistic: Statistic, output: OutputSummary) -> float | dict[str, float | None] | None:
@@ -48,7 +59,15 @@ def _lines(summary: Summary) -> Iterable[str]:
     if (drift := summary.largest_drift) is not None:
         peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
         yield f"largest drift: {drift.label}, {number_text(peak.value)}{unit} at {number_text(peak.at.in_scene_time)}"
+    for link in summary.links or ():
+        yield f"{link.law} at {link.place}: set {_measured(link.set)}, dissipated {_measured(link.dissipated)}"
+    if summary.links is None:
+        yield "sets and what is dissipated would cost too much (a shorter horizon helps)"
     yield f"{summary.how}: {summary.certain}"
+
+
+def _measured(found: Measured) -> str:
+    return f"{number_text(found.value)} {found.unit}".rstrip()
 
 
 def _row(output: OutputSummary) -> tuple[str, ...]:

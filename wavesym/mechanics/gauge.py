@@ -94,7 +94,7 @@ def _parts(network: Network, probe: Probe) -> Iterator[ReadingTerm]:
             yield ReadingTerm(-_ONE, Gauge("displacement", probe.rod, _ZERO))
         case "relative":
             yield ReadingTerm(_ONE, Gauge("displacement", probe.rod, probe.place, probe.point))
-            yield ReadingTerm(-_ONE, _at_point("displacement", network, ground(network)))
+            yield ReadingTerm(-_ONE, gauge_at("displacement", network, ground(network)))
         case _:
             yield ReadingTerm(_ONE, here)
 
@@ -112,8 +112,8 @@ def _forces_on(network: Network, point: int, before: int | None = None) -> Itera
         pull = (1, -1)[side] * bar.ratios[side] * bar.impedance * bar.speed
         yield ReadingTerm(pull, Gauge("strain", number + 1, fmpq(side)))
     body = network.points[point]
-    yield ReadingTerm(-body.damping, _at_point("velocity", network, point))
-    yield ReadingTerm(-body.stiffness, _at_point("displacement", network, point))
+    yield ReadingTerm(-body.damping, gauge_at("velocity", network, point))
+    yield ReadingTerm(-body.stiffness, gauge_at("displacement", network, point))
     for number, link in enumerate(network.links):
         if point not in (link.left, link.right) or number == before:
             continue
@@ -127,14 +127,14 @@ def _forces_on(network: Network, point: int, before: int | None = None) -> Itera
             continue
         pull = link.ratio if point == link.left else -_ONE
         for factor, quantity in ((link.damping, "velocity"), (link.stiffness, "displacement")):
-            yield ReadingTerm(pull * factor, _at_point(quantity, network, link.right))
-            yield ReadingTerm(-pull * factor * link.ratio, _at_point(quantity, network, link.left))
+            yield ReadingTerm(pull * factor, gauge_at(quantity, network, link.right))
+            yield ReadingTerm(-pull * factor * link.ratio, gauge_at(quantity, network, link.left))
     if body.loads:
         yield ReadingTerm(_ONE, Gauge("load", 0, _ZERO, point))
 
 
-def _at_point(quantity: str, network: Network, point: int) -> Gauge:
-    """Of a point, at the end of a rod that moves as it does where there is one."""
+def gauge_at(quantity: str, network: Network, point: int) -> Gauge:
+    """That of a point, at the end of a rod that moves as it does where there is one."""
     for number, side in network.ends_at.get(point, ()):
         if network.bars[number].ratios[side] == 1:
             return Gauge(quantity, number + 1, fmpq(side))

@@ -20,6 +20,7 @@ from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import midpoint, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
+from wavesym.results.link_losses import LinkSummary, link_summaries
 from wavesym.results.optional import require_packages
 from wavesym.results.response import Response
 from wavesym.results.sampling import sampled_extremes
@@ -89,7 +90,8 @@ class Summary:
     `bound` is that of the error of values, relative to each output's largest. Where it is `proved` that no value lies
     beyond an extreme it holds for the extremes, else only for what outputs are at these instants. `how` says how they
     were found. `largest_drift` is that of the rod, of all in the main line, whose drift is the largest; None where it
-    was not asked for, cannot be had, or no rod changes. `time_unit` is None for a scene without units.
+    was not asked for, cannot be had, or no rod changes. `time_unit` is None for a scene without units. `links` are
+    those with friction and the springs that yield; None where they would cost too much.
     """
 
     name: str
@@ -99,6 +101,7 @@ class Summary:
     how: str
     time_unit: str | None
     largest_drift: OutputSummary | None = None
+    links: tuple[LinkSummary, ...] | None = ()
 
     def __getitem__(self, name: str) -> OutputSummary:
         found = next((output for output in self.outputs if output.name == name), None)
@@ -184,6 +187,7 @@ def summary_and_program(
         found.how,
         model.clock.unit if model.clock else None,
         _largest(every),
+        link_summaries(model),
     )
     return summary, found.program
 

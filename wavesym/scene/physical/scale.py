@@ -146,7 +146,7 @@ class Scale:
 
     @property
     def parts(self) -> dict[str, tuple[Fraction, str]]:
-        """What a dimensionless 1 of the numbers of a chain's parts is: in SI base units, and velocities as results."""
+        """What a dimensionless 1 of a chain's parts is: in SI units, what moves and how fast in those of results."""
         stiffness = self.force / self.displacement
         turned = self.kind == "torsional"
         mass, spring, dashpot = ("kg*m^2", "N*m/rad", "N*m*s/rad") if turned else ("kg", "N/m", "N*s/m")
@@ -156,6 +156,8 @@ class Scale:
             "dashpot": (stiffness * self.seconds, dashpot),
             "impedance": (stiffness * self.seconds, dashpot),
             "velocity": (self.factor("velocity", 1), self.unit("velocity")),
+            "displacement": (self.factor("displacement", 1), self.unit("displacement")),
+            "energy": (self.force * self.displacement, "J"),
         }
 
     @property

@@ -1,0 +1,79 @@
+"""What links lose where they rub or yield, against closed forms."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from flint import arb, fmpq
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wavesym
+from wavesym.exact.contacts.losses import losses
+from wavesym.mechanics.model import Model
+from wavesym.scene import Scene, lower
+
+SMALL = st.fractions(Fraction(1, 4), 4, max_denominator=8)
+PART = st.fractions(Fraction(1, 8), Fraction(7, 8), max_denominator=8)
+
+
+def exact(value: Fraction) -> arb:
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def chain(parts: list[Any], until: Fraction) -> Model:
+    output = {"until": until, "tolerance": 1e-9, "displacement": ["a"]}
+    return lower(Scene(name="lossy", system={"type": "chain", "parts": parts}, output=output))
+
+
+@given(far=SMALL, speed=SMALL, limit=SMALL, part=PART)
+def test_what_slides_to_rest_loses_what_its_spring_does_not_take(
+    far: Fraction, speed: Fraction, limit: Fraction, part: Fraction
+) -> None:
+    """It comes so far: m v^2 / 2 = R d + K d^2 / 2, and stays there, as K d is a part of R."""
+    stiffness = part * limit / far
+    mass = (2 * limit * far + stiffness * far**2) / speed**2
+    block = {"mass": mass, "velocity": speed, "friction": limit, "name": "a"}
+    (found,) = losses(chain([block, {"spring": stiffness}, "fixed"], 2 * far / speed + 1))
+    assert found.dissipated.overlaps(exact(limit * far))
+    assert found.dissipated.rad() < 1e-30
+    assert found.set.overlaps(exact(far))
+
+
+@given(mass=SMALL, speed=SMALL, stiffness=SMALL, part=PART)
+def test_what_a_spring_yields_is_the_energy_that_it_does_not_give_back(
+    mass: Fraction, speed: Fraction, stiffness: Fraction, part: Fraction
+) -> None:
+    """R is a part of what the spring would take, K s^2 / 2 = m v^2 / 2; as it holds, R^2 / (2 K) is left in it."""
+    swing = Fraction(float(mass / stiffness) ** 0.5).limit_denominator(1000)
+    limit = part * speed * swing * stiffness
+    body = {"mass": mass, "velocity": speed, "name": "a"}
+    yields = {"spring": stiffness, "yield": [100, limit]}
+    (found,) = losses(chain([body, yields, "fixed"], 2 * swing + mass * speed / limit))
+    energy = mass * speed**2 / 2 - limit**2 / (2 * stiffness)
+    assert found.dissipated.overlaps(exact(energy))
+    assert found.dissipated.rad() < 1e-30
+    assert found.set.overlaps(exact(-energy / limit))
+
+
+def test_a_summary_tells_sets_in_units(tmp_path: Any) -> None:
+    path = tmp_path / "slab.toml"
+    path.write_text(
+        """
+name = "slab"
+[units]
+length = "mm"
+[system]
+type = "chain"
+parts = [{ mass = "2 kg", velocity = "3 m/s", friction = "4 N", name = "slab" }, { spring = "1 N/m" }, "fixed"]
+[output]
+until = "2 s"
+displacement = ["slab"]
+"""
+    )
+    (link,) = wavesym.summary(Scene.from_toml(str(path))).links or ()
+    stops = 34**0.5 - 4  # 9 J = 4 N s + 1 N/m s^2 / 2
+    assert link.dissipated == (pytest.approx(4 * stops, rel=1e-15), "J")
+    assert link.set == (pytest.approx(1000 * stops, rel=1e-15), "mm")

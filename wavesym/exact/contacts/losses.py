@@ -1,0 +1,85 @@
+"""What links lose where they slide or yield: their force then is constant, so that only how far they went is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+from flint import arb, ctx, fmpq
+
+from wavesym.exact.contacts.events import scheduled
+from wavesym.exact.contacts.joint_stretch import sliding_sign
+from wavesym.exact.contacts.touching_waves import Stage
+from wavesym.exact.motion import Motion
+from wavesym.exact.tables.ball import Balls
+from wavesym.mechanics.gauge import gauge_at
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Link
+from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import rational
+
+
+@dataclass(frozen=True)
+class LinkLoss:
+    """A link that rubs or yields: how far that took it until the end, `set`, and the energy `dissipated`, as balls."""
+
+    link: Link
+    set: arb
+    dissipated: arb
+
+
+def losses(model: Model) -> tuple[LinkLoss, ...]:
+    """Those of all links with friction or a spring that yields that can reach an output, up to the horizon.
+
+    CostError, GrazingError as in `events`.
+    """
+    until = rational(model.horizon())
+    links = {n: model.network.links[n] for n in model.contacts(until)}
+    losing = {n: link for n, link in links.items() if link.friction != 0 or link.limits is not None}
+    known = scheduled(model, until) if losing else None
+    if known is None:
+        return ()
+    probes = {point: _displacement(model, point) for link in losing.values() for point in (link.left, link.right)}
+    motion = Motion(model.watching([*model.probes, *probes.values()]), until)
+    with ctx.workprec(bits := motion.first_bits):
+        where = {point: Balls(motion.segments(probe, bits)) for point, probe in probes.items()}
+        found = []
+        for n, link in losing.items():
+            slides = _slides(n, known.stages[model.network.joint_of[link.left]], until)
+            found.append(_loss(link, slides, _Stretch(where[link.left], where[link.right], link.ratio)))
+        return tuple(found)
+
+
+class _Stretch(NamedTuple):
+    """How much longer a link is than at tau = 0, by the displacements of its ends."""
+
+    left: Balls
+    right: Balls
+    ratio: fmpq
+
+    def at(self, tau: fmpq) -> arb:
+        return self.right.at(tau) - arb(self.ratio) * self.left.at(tau)
+
+
+def _displacement(model: Model, point: int) -> Probe:
+    at = gauge_at("displacement", model.network, point)
+    return Probe(f"displacement of {point}", "displacement", at.rod, at.place, at.point)
+
+
+def _slides(number: int, stages: Sequence[Stage], until: fmpq) -> list[tuple[int, fmpq, fmpq]]:
+    """Which way a link slides or yields, from when to when."""
+    ends = [*(stage.start for stage in stages), until]
+    stretches = zip(stages, pairwise(ends), strict=True)
+    return [(sign, low, high) for stage, (low, high) in stretches if (sign := sliding_sign(number, stage.sliding))]
+
+
+def _loss(link: Link, slides: list[tuple[int, fmpq, fmpq]], stretch: _Stretch) -> LinkLoss:
+    pull, push = link.limits or (link.friction, link.friction)
+    total, work = arb(0), arb(0)
+    for sign, low, high in slides:
+        moved = stretch.at(high) - stretch.at(low)
+        total += moved
+        work += sign * (pull if sign > 0 else push) * moved
+    return LinkLoss(link, total, work)

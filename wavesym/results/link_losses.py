@@ -1,0 +1,58 @@
+"""What links lose where they rub or yield, as a summary tells it: the permanent set, and the energy dissipated."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from flint import fmpq
+
+from wavesym.errors import CostError
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import midpoint
+
+_PLAIN = (fmpq(1), "")
+
+
+class Measured(NamedTuple):
+    """A `value` in a `unit`, which is empty for what has none."""
+
+    value: float
+    unit: str
+
+
+class LinkSummary(NamedTuple):
+    """A link with friction, or a spring that yields (`law`), at a `place` as the scene calls it.
+
+    `set` is how far it slid or yielded until the end of the horizon, lengthening it (or, of friction, along x) where
+    that is positive; `dissipated` the energy that this took. Both are right to rounding.
+    """
+
+    place: str
+    law: str
+    set: Measured
+    dissipated: Measured
+
+
+def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
+    """Those of a model's links that can reach an output; None where that would cost too much.
+
+    GrazingError where no number of bits tells what a link does.
+    """
+    if not model.network.corners:
+        return ()
+    from wavesym.exact.contacts.losses import losses  # how contacts touch: few scenes have any
+
+    stretch, energy = (model.inputs.get(name, _PLAIN) for name in ("displacement", "energy"))
+    try:
+        found = losses(model)
+    except CostError:
+        return None
+    return tuple(
+        LinkSummary(
+            each.link.place,
+            each.link.law,
+            Measured(midpoint(each.set * stretch[0]), stretch[1]),
+            Measured(midpoint(each.dissipated * energy[0]), energy[1]),
+        )
+        for each in found
+    )
