@@ -14,7 +14,7 @@ from tests.support.piecewise import PiecewiseChain
 from tests.support.series import Unclear
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.events import events
-from wavesym.exact.contacts.losses import losses
+from wavesym.exact.losses import losses
 from wavesym.exact.reference import Reference
 from wavesym.scene import Scene, lower
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wavesym
-from wavesym.exact.contacts.losses import losses
+from wavesym.exact.losses import losses
 from wavesym.mechanics.model import Model
 from wavesym.scene import Scene, lower
 

@@ -40,7 +40,7 @@ def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
     """
     if not model.network.corners:
         return ()
-    from wavesym.exact.contacts.losses import losses  # how contacts touch: few scenes have any
+    from wavesym.exact.losses import losses  # how contacts touch: few scenes have any
 
     stretch, energy = (model.inputs.get(name, _PLAIN) for name in ("displacement", "energy"))
     try:
