@@ -59,8 +59,8 @@ class _Stretch(NamedTuple):
     right: Balls
     ratio: fmpq
 
-    def at(self, tau: fmpq) -> arb:
-        return self.right.at(tau) - arb(self.ratio) * self.left.at(tau)
+    def evaluate(self, tau: fmpq) -> arb:
+        return self.right.evaluate(tau) - arb(self.ratio) * self.left.evaluate(tau)
 
 
 def _displacement(model: Model, point: int) -> Probe:
@@ -79,7 +79,7 @@ def _loss(link: Link, slides: list[tuple[int, fmpq, fmpq]], stretch: _Stretch) -
     pull, push = link.limits or (link.friction, link.friction)
     total, work = arb(0), arb(0)
     for sign, low, high in slides:
-        moved = stretch.at(high) - stretch.at(low)
+        moved = stretch.evaluate(high) - stretch.evaluate(low)
         total += moved
         work += sign * (pull if sign > 0 else push) * moved
     return LinkLoss(link, total, work)
