@@ -74,7 +74,7 @@ generated: install
 
 # docs/published.md: what others printed, beside what is computed
 published: install
-	$(BIN)/python -m tools.published
+	$(BIN)/python -m tools.published_numbers
 
 # the pictures of examples/, drawn anew by the commands of their pages
 examples: install

@@ -366,9 +366,9 @@ def test_the_readme_says_how_to_start_on_its_first_screen() -> None:
 
 
 def test_the_numbers_of_the_readme_are_those_of_the_bench() -> None:
-    from tools.front_page import BEGIN, END, measured
+    from tools.front_page import BEGIN, END, measurement_rows
 
-    assert "\n".join([BEGIN, *measured(), END]) in document("README.md")
+    assert "\n".join([BEGIN, *measurement_rows(), END]) in document("README.md")
 
 
 def test_no_source_names_a_document_that_is_not_here() -> None:

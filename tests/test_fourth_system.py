@@ -18,7 +18,7 @@ from wavesym.errors import WavesymError
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Bar, Point
 from wavesym.numbers.doubles import rational
-from wavesym.running.compiled import compiled, imported
+from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import Scene, lower
 from wavesym.systems import SYSTEMS
 from wavesym.verification.collocation import integrate
@@ -69,12 +69,12 @@ def test_its_programs_are_those_of_an_integrator_that_is_not_derived(kind):
     model = lower(scene())
     made = files(model, "all", kind)
     taus = [0.0, 0.3, 1.1, 2.0, 2.6, 3.7, 5.2, 6.9, 7.0]
-    found = imported(made["tower.py"], "tower").evaluate(np.array(taus))
+    found = import_text(made["tower.py"], "tower").evaluate(np.array(taus))
     motion = integrate(problem_of(model), 7.0, 16)
     for probe, values in zip(model.probes, found, strict=True):
-        truth = motion.at(probe, taus)
+        truth = motion.evaluate(probe, taus)
         assert np.max(np.abs(values - truth)) < 1e-6 * np.max(np.abs(truth))
-    with compiled(made, len(model.probes)) as program:
+    with compile_files(made, len(model.probes)) as program:
         assert program.selftest() == 0
 
 
@@ -82,7 +82,7 @@ def test_without_its_dashpot_the_integrator_sees_it():
     model = lower(scene())
     free = lower(scene().with_({"system.dashpot[0]": "1e-9"}))
     values = [wavesym.evaluator(each)(6.9)[2] for each in (scene(), scene().with_({"system.dashpot[0]": "1e-9"}))]
-    truth = [integrate(problem_of(each), 7.0, 16).at(each.probes[2], [6.9])[0] for each in (model, free)]
+    truth = [integrate(problem_of(each), 7.0, 16).evaluate(each.probes[2], [6.9])[0] for each in (model, free)]
     assert abs(values[0] - values[1]) > 0.05
     assert np.allclose(values, truth, rtol=1e-5)
 

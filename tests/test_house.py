@@ -62,7 +62,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 
         monkeypatch.setattr(room, name, counting)
 
-    count(lowering, "_lowered", "lower")
+    count(lowering, "_build_model", "lower")
     count(chain, "_exact_node", "nodes")
     count(reference.Reference, "__init__", "exact values")
     count(summaries, "extremes_and_averages", "exact extremes")

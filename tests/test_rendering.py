@@ -10,7 +10,7 @@ from jinja2 import UndefinedError, meta
 
 import wavesym
 from wavesym.numbers.reals import DOUBLE
-from wavesym.rendering import _environment, _used, render
+from wavesym.rendering import _environment, _template_names, render
 from wavesym.targets.literals import c_literals, lines, literal
 
 TEMPLATES = Path(wavesym.__file__).parents[1] / "templates"
@@ -58,5 +58,5 @@ def test_what_a_template_takes_is_what_jinja_finds(path):
     """Noted while it is compiled, for every template that there is: in macros, loops and what is included, too."""
     name = path.relative_to(TEMPLATES).as_posix()
     tree = _environment().parse(path.read_text(encoding="utf-8"))
-    included = frozenset().union(*(_used(other) for other in meta.find_referenced_templates(tree)))
-    assert _used(name) == meta.find_undeclared_variables(tree) | included
+    included = frozenset().union(*(_template_names(other) for other in meta.find_referenced_templates(tree)))
+    assert _template_names(name) == meta.find_undeclared_variables(tree) | included

@@ -82,6 +82,6 @@ def test_axe_finds_nothing_on_pages_of_the_site(tmp_path: Path) -> None:
 
 def test_examples_in_docstrings_are_code() -> None:
     pytest.importorskip("griffe")
-    from tools.docstrings import fenced
+    from tools.docstrings import fence_examples
 
-    assert fenced("A.\n\n>>> 1 + 1\n2\n\nB.\n") == "A.\n\n```pycon\n>>> 1 + 1\n2\n```\n\nB.\n"
+    assert fence_examples("A.\n\n>>> 1 + 1\n2\n\nB.\n") == "A.\n\n```pycon\n>>> 1 + 1\n2\n```\n\nB.\n"

@@ -10,7 +10,7 @@ from griffe import Extension, Object
 EXAMPLE = re.compile(r"(?:^>>> .*\n?)(?:^(?!\s*$).*\n?)*", re.MULTILINE)
 
 
-def fenced(text: str) -> str:
+def fence_examples(text: str) -> str:
     """A docstring whose paragraphs that begin with `>>>` stand between fences."""
     return EXAMPLE.sub(lambda found: f"```pycon\n{found[0].rstrip()}\n```\n", text)
 
@@ -21,4 +21,4 @@ class Examples(Extension):  # type: ignore[misc]  # griffe comes with the extra 
     def on_object(self, *, obj: Object, **_: Any) -> None:
         """Rewrite the docstring of one object before it is parsed."""
         if obj.docstring:
-            obj.docstring.value = fenced(obj.docstring.value)
+            obj.docstring.value = fence_examples(obj.docstring.value)

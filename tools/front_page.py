@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 import wavesym
 from wavesym.pictures.saving import save
-from wavesym.pictures.style import colours, draw_grid, new_figure, set_title, styled
+from wavesym.pictures.style import colours, draw_grid, new_figure, set_title, with_style
 
 ROOT = Path(__file__).parents[1]
 PICTURE = ROOT / "docs" / "waves.svg"
@@ -77,7 +77,7 @@ def finite_elements(times: Numbers) -> Numbers:
     return np.array(found)
 
 
-@styled
+@with_style
 def picture() -> Figure:
     """Place by time on the left, the force at one place on the right."""
     places = [round((k + 0.5) / (_COLUMNS / 2), 6) for k in range(_COLUMNS)]
@@ -112,7 +112,7 @@ def picture() -> Figure:
     return figure
 
 
-@styled
+@with_style
 def chart() -> Figure:
     """Error against time a value, in one panel."""
     figure = new_figure(4.4)
@@ -139,7 +139,7 @@ def bench_rows() -> list[Mapping[str, str]]:
         return list(csv.DictReader(file))
 
 
-def measured() -> list[str]:
+def measurement_rows() -> list[str]:
     """The lines of a table: what `make bench` measured of the building B, and of a new set of its parameters."""
     rows = bench_rows()
     page = (ROOT / "bench" / "README.md").read_text(encoding="utf-8")
@@ -170,7 +170,7 @@ def main() -> None:
     """Draw both, and write the numbers."""
     save(picture(), PICTURE)
     save(chart(), CHART)
-    lines = measured()
+    lines = measurement_rows()
     page = ROOT / "README.md"
     text = page.read_text(encoding="utf-8")
     before, _, rest = text.partition(BEGIN)

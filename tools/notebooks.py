@@ -41,14 +41,14 @@ def write_page(notebook: Any, page: Path) -> None:
 
     resources = {"output_files_dir": f"{page.stem}_files"}
     text, found = MarkdownExporter().from_notebook_node(notebook, resources=resources)
-    page.write_text(typeset(described(text)), encoding="utf-8")
+    page.write_text(typeset(describe_pictures(text)), encoding="utf-8")
     for name, picture in found["outputs"].items():
         path = page.parent / name
         path.parent.mkdir(exist_ok=True)
         path.write_bytes(picture)
 
 
-def described(text: str) -> str:
+def describe_pictures(text: str) -> str:
     """Markdown in which a picture is described by the heading that it stands under, and HTML stays where it is."""
     lines, heading = [], ""
     for line in text.splitlines():

@@ -13,27 +13,27 @@ from pathlib import Path
 class Difference:
     """Between files as they should be, by path, and those that are `found`."""
 
-    made: Mapping[Path, str]
-    found: Iterable[Path]
+    texts: Mapping[Path, str]
+    paths: Iterable[Path]
 
     def report(self, command: Sequence[str]) -> str:
         """What is changed, missing or orphaned, with diffs, and what mends it; empty where there is nothing.
 
         `command` writes the files anew; orphans must be removed.
         """
-        found = set(self.found)
-        orphans = sorted(str(path) for path in found - self.made.keys())
+        found = set(self.paths)
+        orphans = sorted(str(path) for path in found - self.texts.keys())
         lines: list[str] = []
         stale = False
-        for path in sorted(self.made.keys() | found):
-            if path not in self.made:
+        for path in sorted(self.texts.keys() | found):
+            if path not in self.texts:
                 lines.append(f"orphaned: {path}\n")
                 continue
             old = path.read_bytes() if path in found else b""
-            if path not in found or old != self.made[path].encode():
+            if path not in found or old != self.texts[path].encode():
                 stale = True
                 lines.append(f"{'changed' if path in found else 'missing'}: {path}\n")
-                lines += _diff(old.decode("utf-8", "backslashreplace"), self.made[path], str(path))
+                lines += _diff(old.decode("utf-8", "backslashreplace"), self.texts[path], str(path))
         mending = [["rm", "--", *orphans]] * bool(orphans) + [list(command)] * stale
         if mending:
             lines.append(f"to mend: {' && '.join(map(shlex.join, mending))}\n")

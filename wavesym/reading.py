@@ -20,7 +20,7 @@ def read_bytes(path: str | PathLike[str], wanted: str) -> tuple[str, bytes]:
     path = os.fspath(path)
     file = "<stdin>" if path == "-" else path
     try:
-        content = _limited(path)
+        content = _read_limited(path)
     except OSError as error:
         raise SceneError(f"{error.strerror}; write {wanted}", file=file) from None
     except ValueError:  # a 0 byte in the path
@@ -42,7 +42,7 @@ def read_text(path: str | PathLike[str], wanted: str) -> tuple[str, str]:
     return file, text
 
 
-def _limited(path: str) -> bytes:
+def _read_limited(path: str) -> bytes:
     """The file's bytes, or one more than the limit: a device or a pipe need not end.
 
     What a kernel makes while it is read (/proc/kmsg) may never come, and says that it holds nothing: so it is not read.

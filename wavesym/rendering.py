@@ -74,7 +74,7 @@ def render(template: str, context: DataclassInstance) -> str:
 def render_stream(template: str, context: DataclassInstance) -> Iterator[str]:
     """The same, piece by piece."""
     given: dict[str, Any] = {field.name: getattr(context, field.name) for field in fields(context)}
-    used = _used(template)
+    used = _template_names(template)
     if used != given.keys():
         raise ValueError(f"{template}: unused {sorted(given.keys() - used)}, missing {sorted(used - given.keys())}")
     return _environment().get_template(template).generate(given)
@@ -88,8 +88,8 @@ def text_of(file: str) -> str:
 
 
 @cache
-def _used(template: str) -> frozenset[str]:
+def _template_names(template: str) -> frozenset[str]:
     """The names that a template, or one that it includes, takes from outside."""
     environment = _environment()
     environment.get_template(template)
-    return frozenset(environment.taken[template]).union(*map(_used, environment.included[template]))
+    return frozenset(environment.taken[template]).union(*map(_template_names, environment.included[template]))

@@ -44,7 +44,7 @@ def write_whole(files: Mapping[Path, Content]) -> None:
         for place, path in sorted(asked.items()):  # in one order, so that no two wait for each other
             with _name_errors(path), suppress(FileExistsError):  # no folder: that is said where the draft is made
                 place.parent.mkdir(parents=True, exist_ok=True)
-            alone.enter_context(_alone(place))
+            alone.enter_context(_lock(place))
         try:
             for place, path in asked.items():
                 drafts[place] = place.with_name(f".{place.name}.{secrets.token_hex(8)}.part")
@@ -68,7 +68,7 @@ def traces(folder: Path) -> Iterator[tuple[Path, Path]]:
 
 
 @contextmanager
-def _alone(place: Path) -> Iterator[None]:
+def _lock(place: Path) -> Iterator[None]:
     """No other writer of a file, and no traces of earlier ones."""
     path = place.with_name(f".{place.name}.writing")
     lock = FileLock(path, fallback_to_soft=False)

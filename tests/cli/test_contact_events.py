@@ -16,7 +16,7 @@ from tests.support.generated import files
 from wavesym.cli import main
 from wavesym.documents.inspection.document import inspection
 from wavesym.exact.reference import Reference
-from wavesym.running.compiled import compiled, imported
+from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import Scene, lower
 
 # Doyen, Ern, Piperno 2011: E = 900, rho = 1, L = 10, g = 10, h0 = 5, seen from the falling bar
@@ -61,7 +61,7 @@ def test_the_header_the_manifest_and_the_module() -> None:
     assert read["contact_end"] == {}
     assert "#define DROP_EVENTS 4\n" in made["drop.h"]
     agreed([tuple(found) for found in re.findall(rf"^/\* {LINE.pattern} \*/$", made["drop.h"], re.MULTILINE)])
-    module = imported(made["drop.py"], "drop")
+    module = import_text(made["drop.py"], "drop")
     assert [(x, kind) for x, kind, _ in module.EVENTS] == [row[:2] for row in KNOWN]
     assert [tau for *_, tau in module.EVENTS] == pytest.approx([float(tau) for *_, tau in KNOWN], rel=1e-15)
 
@@ -75,8 +75,8 @@ def test_the_programs_go_through_events() -> None:
     assert height == pytest.approx([15 / 4, 5 / 3, 40 / 9, 40 / 9, 40 / 9, 0, 0, 0], abs=1e-13)
     made = files(lower(scene()), "all")
     largest = np.abs(response(np.linspace(0, 5, 501))).max(axis=1)
-    module = imported(made["drop.py"], "drop")
-    with compiled(made, len(response.outputs)) as program:
+    module = import_text(made["drop.py"], "drop")
+    with compile_files(made, len(response.outputs)) as program:
         for values in (program(taus), module.evaluate(np.array(taus))):
             assert np.all(np.abs(values - true).max(axis=1) <= module.ERROR_BOUND * largest * 1.01)
         assert program.selftest() == 0
@@ -154,7 +154,7 @@ def test_contacts_without_events_are_counted(tmp_path: Path) -> None:
     made = files(lower(still), "all")
     assert "#define STILL_EVENTS 0\n" in made["still.h"]
     assert json.loads(made["still.json"])["events"] == []
-    assert imported(made["still.py"], "still").EVENTS == []
+    assert import_text(made["still.py"], "still").EVENTS == []
 
 
 @pytest.mark.parametrize(

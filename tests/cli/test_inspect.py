@@ -415,7 +415,7 @@ def test_layout() -> None:
 )
 def test_a_linear_factor_as_one_writes_it(linear: tuple[int, int], expected: str) -> None:
     constant, slope = map(fmpq, linear)
-    assert laws._in(Linear(constant, slope), "g") == expected
+    assert laws._linear_text(Linear(constant, slope), "g") == expected
 
 
 def test_the_options_are_the_stages() -> None:

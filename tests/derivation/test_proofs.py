@@ -37,9 +37,9 @@ def changed(e: DelayEquation):
     """The equation with one thing turned at a time: a sign, a lag, a load and its power, the own rate."""
     waves, loads = list(e.right.waves.items()), list(e.right.loads.items())
     for wave, operator in waves[:1]:
-        yield replace(e, right=e.right.without(wave) + Line({wave: Operator(-operator.a, -operator.b)}))
+        yield replace(e, right=e.right.drop(wave) + Line({wave: Operator(-operator.a, -operator.b)}))
     for wave, operator in waves[-1:]:
-        yield replace(e, right=e.right.without(wave) + Line({wave._replace(lag=wave.lag + 1): operator}))
+        yield replace(e, right=e.right.drop(wave) + Line({wave._replace(lag=wave.lag + 1): operator}))
     for load, value in loads[:1]:
         yield replace(e, right=e.right + Line({}, {load: value}))
         yield replace(e, right=e.right + Line({}, {load._replace(power=load.power + 1): value}))

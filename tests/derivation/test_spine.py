@@ -64,7 +64,7 @@ def test_on_a_stretch_powers_go_up():
     own = stretch_law(node_law()).own
     k = Symbol("k", integer=True, nonnegative=True)
     assert own.same == DAMPING + ALPHA / 2 + BETA / 2
-    assert (own.raised - INERTIA * (k + 1)).expand() == 0
+    assert (own.next_power - INERTIA * (k + 1)).expand() == 0
 
 
 def test_a_rod_end_is_a_dashpot_and_a_force():

@@ -16,7 +16,7 @@ from wavesym.cli import main
 from wavesym.derivation import numbers
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.numbers import symbol
-from wavesym.documents.derivation.joint_kinds import alone, kinds, values
+from wavesym.documents.derivation.joint_kinds import isolate_joint, kinds, values
 from wavesym.documents.derivation.network_statement import MOST_SYMBOLIC, network_statement, symbolic_polynomial
 from wavesym.documents.derivation.notation import Text
 from wavesym.exact.joints.joint import JointLaw
@@ -127,7 +127,7 @@ def test_the_law_in_symbols_is_that_in_numbers(table: dict[str, Any]) -> None:
     assert sorted(number for kind in found for number in kind.numbers) == list(range(len(network.joints)))
     for kind in found:
         for number in kind.numbers:
-            made = alone(network, number)
+            made = isolate_joint(network, number)
             assert made.law == JointLaw.assemble(network, network.joints[number])
             free = len(made.law.heavy) + len(made.law.light)
             if not 0 < free <= MOST_SYMBOLIC:

@@ -16,7 +16,7 @@ from tests.support.chains import chains
 from tests.support.generated import files
 from tests.support.laplace import Laplace, Terms
 from wavesym.exact.reference import Reference
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.scene import lower
 
 UNTIL = 3
@@ -92,7 +92,7 @@ def missed(table: dict[str, Any], tolerance: str = "1e-10") -> float:
     """By how much of its printed bound the generated NumPy program is wrong, at worst."""
     scene = wavesym.Scene(**{**table, "output": {**table["output"], "tolerance": tolerance}})
     terms = expected(scene, table)
-    made = imported(files(lower(scene), "numpy", "pieces")[f"{scene.name}.py"], "made")
+    made = import_text(files(lower(scene), "numpy", "pieces")[f"{scene.name}.py"], "made")
     taus = instants(terms, scene.output.until, 6)
     assert float(tolerance) >= made.ERROR_BOUND
     worst = 0.0

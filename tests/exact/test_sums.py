@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, assume, given, settings
 import wavesym
 from tests.support.chains import chains
 from tests.support.drawn import loads, systems
-from wavesym.derivation.increments import Increment, add, start, trimmed
+from wavesym.derivation.increments import Increment, add, start, trim
 from wavesym.errors import CostError
 from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.motion import Motion
@@ -40,7 +40,7 @@ def derived(increment: Increment) -> Increment:
     for rate, powers in increment.items():
         add(found, {rate: [k * c for k, c in enumerate(powers)][1:]})
         add(found, {rate: powers}, -rate)
-    return trimmed(found)
+    return trim(found)
 
 
 def gains(signal: Signal) -> dict[fmpq, Increment]:
@@ -53,7 +53,7 @@ def total(parts: Mapping[Signal, fmpq]) -> dict[fmpq, Increment]:
     for signal, factor in parts.items():
         for arrival in signal.arrivals:
             add(found.setdefault(arrival.time, {}), arrival.increment, factor)
-    return {time: kept for time, increment in found.items() if (kept := trimmed(increment))}
+    return {time: kept for time, increment in found.items() if (kept := trim(increment))}
 
 
 class Frozen(Signal):

@@ -22,7 +22,7 @@ def quietly(_):
 
 def served(family, curve="pieces"):
     """The points of a curve that would be used; none of them breaks its promise."""
-    points = [point for point in family.points if point.curve == curve and not point.refused]
+    points = [point for point in family.points if point.curve == curve and not point.refusal]
     assert all(point.error <= min(point.bound, TOLERANCE) + ROUNDED for point in points)
     return points
 
@@ -58,7 +58,7 @@ def test_a_spring_swings_as_it_should(ratio):
     taus = np.linspace(0.1, 1.9, 7)
     begin = np.array([0, 0, 0, 0, 1.0])
     truth = np.array([(expm(matrix * tau) @ begin)[:2] for tau in taus]).T
-    program = make(lower(evaluators.sprung(ratio)), Request(evaluator="pieces"))
+    program = make(lower(evaluators.sprung_masses(ratio)), Request(evaluator="pieces"))
     np.testing.assert_allclose(program.evaluate(taus)[1:], truth, rtol=0, atol=3e-10)
 
 
@@ -83,7 +83,7 @@ def test_dashpots():
 
 def test_a_dropped_bar_meets_the_ground_when_it_should():
     """In its own frame: gap 1/2, acceleration 1/9, so 3; a wave there and back, 2; free, a whole period is 16."""
-    found = events(lower(chains.dropped(40)))
+    found = events(lower(chains.dropped_bar(40)))
     instants = [3, 5, 11, 13]
     assert [event.double for event in found] == [at + 16 * k for k in range(3) for at in instants if at + 16 * k <= 40]
     assert chains.widths(found) == [0.0] * len(found)
@@ -104,11 +104,11 @@ def test_every_refusal_has_its_reason():
     panels = {name: (scene, places[:2]) for name, (scene, places) in chains.REFUSALS.items()}
     family = chains.refusals(quietly, panels)
     assert len(served(family)) == 8
-    assert all(math.isnan(point.error) <= bool(point.refused) for point in family.points)
+    assert all(math.isnan(point.error) <= bool(point.refusal) for point in family.points)
 
 
 @pytest.mark.slow
 def test_knots_without_end_are_refused_in_no_time():
     scene, places = chains.REFUSALS["horizon, lengths 1, 1.414213562 and 1.732050808"]
     family = chains.refusals(quietly, {"horizon": (scene, places[-1:])})
-    assert "fronts meet joints" in family.curve("horizon", "pieces")[0].refused
+    assert "fronts meet joints" in family.curve("horizon", "pieces")[0].refusal

@@ -84,7 +84,7 @@ def test_samples_are_those_that_are_judged_where_the_horizon_is_no_double():
     assert lower(scene).horizon() != float(scene.output.until)
     one = next(subject for subject in subjects(scene, 301) if subject.language == "NumPy")
     judged = taus(_Judge(scene).known.until, 301, "double")
-    np.testing.assert_array_equal(one.sample(), one.at(judged))
+    np.testing.assert_array_equal(one.sample(), one.evaluate(judged))
 
 
 SHAKEN = Scene(

@@ -79,10 +79,10 @@ def test_damping_as_drawn():
 
 
 def of_elements(ratio, panel=modal.ALL):
-    scene = modal.shaken(
+    scene = modal.shaken_building(
         modal.SPACING, modal.SAMPLES, modal.TOLERANCE, modal.damping_of(panel, ratio), drift=[1], relative=[2]
     )
-    return lower(scene), modal.extrapolated(lower(scene))
+    return lower(scene), modal.extrapolate(lower(scene))
 
 
 def test_what_is_extrapolated_is_right_within_its_own_curve():
@@ -107,10 +107,10 @@ def test_a_ratio_that_is_off_is_seen(panel):
 
 def check_spacings(family):
     assert not broken_promises(family)
-    assert not any(point.refused for point in family.curve("", "modes"))
+    assert not any(point.refusal for point in family.curve("", "modes"))
     for march, hat in zip(family.curve("", "march"), family.curve("", "march of one hat"), strict=True):
-        assert bool(march.refused) == (march.x > 16)
-        assert bool(hat.refused) == (hat.x > 10**6)
+        assert bool(march.refusal) == (march.x > 16)
+        assert bool(hat.refusal) == (hat.x > 10**6)
         assert not hat.error > 1e-13
 
 
@@ -118,7 +118,7 @@ def check_spacings(family):
 def test_spacings_as_drawn():
     family = modal.spacings(quietly)
     check_spacings(family)
-    assert "different remainders" in family.curve("", "march")[-1].refused
+    assert "different remainders" in family.curve("", "march")[-1].refusal
 
 
 def test_so_many_samples_are_a_whole_number_of_rods():

@@ -17,8 +17,8 @@ def check(family):
     errors, estimates = ([point for point in family.points if point.curve == name] for name in ("error", "estimate"))
     assert [point.x for point in errors] == [point.x for point in estimates]
     for error, estimate in zip(errors, estimates, strict=True):
-        if error.refused:
-            assert error.refused == "bodies too light"
+        if error.refusal:
+            assert error.refusal == "bodies too light"
             assert not error.error <= 1
         else:
             assert error.error <= error.bound < 1e-6
@@ -29,7 +29,7 @@ def check(family):
 @pytest.mark.slow
 def test_against_kappa():
     errors = check(runtime.by_kappa(quietly, [Fraction(1, 1000), Fraction(3), Fraction(1000)], [1]))
-    assert [bool(point.refused) for point in errors] == [False, False, True]
+    assert [bool(point.refusal) for point in errors] == [False, False, True]
 
 
 @pytest.mark.slow

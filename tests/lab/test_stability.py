@@ -20,7 +20,7 @@ from wavesym.lab.atlas import evaluators, other_methods
 from wavesym.lab.atlas.attempts import ROUNDED, truth
 from wavesym.lab.atlas.drawing import draw
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, to_csv
-from wavesym.lab.atlas.scenes import TOLERANCE, aimed, atlas_scene, drive
+from wavesym.lab.atlas.scenes import TOLERANCE, atlas_scene, drive, with_tolerance
 from wavesym.methods import characteristics, differences, discrete, elements, laplace
 from wavesym.methods.advice import springs
 from wavesym.pictures.saving import save
@@ -40,7 +40,7 @@ def of(family, curve, valued=True):
 def broken_promises(family):
     """Points whose error is above what was proved, and points that would be used and have no good value."""
     above = [point for point in family.points if point.error > point.bound + ROUNDED]
-    wrong = [point for point in family.points if not point.refused and not point.error <= TOLERANCE]
+    wrong = [point for point in family.points if not point.refusal and not point.error <= TOLERANCE]
     return above + wrong
 
 
@@ -55,8 +55,8 @@ def test_reflections():
     family = evaluators.reflections(quietly, kappas=[Fraction(1, 2)], counts=(1, 5, 10, 30))
     assert not broken_promises(family)
     assert closed_fails(family)
-    assert not any(point.refused for point in of(family, "pieces"))
-    assert [bool(point.refused) for point in of(family, "closed")] == [False, False, True, True]
+    assert not any(point.refusal for point in of(family, "pieces"))
+    assert [bool(point.refusal) for point in of(family, "closed")] == [False, False, True, True]
 
 
 @pytest.mark.slow
@@ -67,13 +67,13 @@ def test_reflections_as_drawn():
         closed = family.curve(panel, "closed")
         assert closed[0].error < 1e-15
         assert closed[-1].error > 1e3
-        assert not any(point.refused for point in family.curve(panel, "pieces"))
+        assert not any(point.refusal for point in family.curve(panel, "pieces"))
         assert max(point.error for point in family.curve(panel, "march")) < TOLERANCE
 
 
 def check_gaps(family):
     assert not broken_promises(family)
-    assert not any(point.refused for point in of(family, "pieces"))
+    assert not any(point.refusal for point in of(family, "pieces"))
     for panel in family.panels:
         *near, merged = family.curve(panel, "closed")
         assert max(point.error for point in near if not math.isnan(point.error)) > 1e3
@@ -113,14 +113,14 @@ def test_extreme_kappa():
     family = evaluators.kappa(quietly, exponents=(-6, 0, 2, 6))
     assert not broken_promises(family)
     assert all(math.isnan(point.error) for point in of(family, "march", valued=False) if point.x == 1e6)
-    assert [point.refused for point in of(family, "closed")][1:] == ["", "", ""]
+    assert [point.refusal for point in of(family, "closed")][1:] == ["", "", ""]
 
 
 @pytest.mark.slow
 def test_extreme_kappa_as_drawn():
     family = evaluators.kappa(quietly)
     assert not broken_promises(family)
-    assert not any(point.refused for point in of(family, "pieces"))
+    assert not any(point.refusal for point in of(family, "pieces"))
 
 
 # the limit kappa -> 0
@@ -196,7 +196,7 @@ def test_other_methods_as_drawn():
 
 def guarded(until, kappa="1/2", tolerance="1e-10"):
     scene = drive([Fraction(kappa)], [1, 2], until)
-    return aimed(scene, Fraction(tolerance))
+    return with_tolerance(scene, Fraction(tolerance))
 
 
 @pytest.mark.parametrize(

@@ -92,8 +92,8 @@ OPEN = {"type": "collision", "m": 4, "kappa": ["1/10", "1/5"], "velocity": [1, "
 def test_contacts_that_open_need_waves():
     given = found(Scene(name="scene", system=OPEN, output={"until": 5, "velocity": ["1/2"]}))
     assert given.enough == "waves"
-    assert all("contact that opens and closes" in candidate.refused for candidate in given.candidates)
-    assert json.loads(given.json())["models"]["massless"] == {"refused": given.candidates[0].refused}
+    assert all("contact that opens and closes" in candidate.refusal for candidate in given.candidates)
+    assert json.loads(given.json())["models"]["massless"] == {"refused": given.candidates[0].refusal}
     assert "contact" in given.text()
 
 
@@ -104,7 +104,7 @@ def test_rods_alone_have_no_masses_on_springs():
         Scene(name="scene", system={"type": "chain", "parts": parts}, load=load, output={"until": 5, "velocity": ["2"]})
     )
     massless, consistent = given.candidates
-    assert "parts without mass; write a mass or a support" in massless.refused
+    assert "parts without mass; write a mass or a support" in massless.refusal
     assert consistent.worst > 0.1
 
 

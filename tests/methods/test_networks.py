@@ -10,7 +10,7 @@ import pytest
 from wavesym.api import evaluator
 from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
-from wavesym.lab.chart.subjects import left_out
+from wavesym.lab.chart.subjects import unsupported_methods
 from wavesym.methods import characteristics, differences, discrete, elements, laplace
 from wavesym.methods.catalogue import METHODS
 from wavesym.scene import Scene, lower
@@ -168,7 +168,7 @@ def test_a_line_of_equal_rods_is_taken_by_all(method, monkeypatch):
 
 def test_who_does_not_take_a_chain_says_so():
     why = "a spring, or a dashpot between points, is not supported by characteristics; take another method"
-    assert list(left_out(SCENES["springs and dashpots"])) == [
+    assert list(unsupported_methods(SCENES["springs and dashpots"])) == [
         f"{method.name}: system: {why}" for method in CHARACTERISTICS
     ]
 
@@ -176,7 +176,7 @@ def test_who_does_not_take_a_chain_says_so():
 def test_delays_without_a_measure_are_refused_by_grids():
     """A step would be 1/1001 of the longest delay."""
     nearly = scene([{"mass": 1, "name": "a"}, {"rod": 1}, {"mass": 1}, {"rod": "1.001"}], load=STEP, velocity=["a"])
-    assert [line.partition(":")[0] for line in left_out(nearly)] == [
+    assert [line.partition(":")[0] for line in unsupported_methods(nearly)] == [
         method.name for method in (*CHARACTERISTICS, differences.METHOD)
     ]
     with pytest.raises(UnservedError, match="a common measure of 1/1e\\+03 of the longest; write lengths"):

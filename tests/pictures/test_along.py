@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 
 import wavesym
 from wavesym.mechanics.loads import AppliedLoad
-from wavesym.pictures.along import Along, Band, Spot, along, cells, limit
 from wavesym.pictures.envelope_values import envelope, extremes
+from wavesym.pictures.line_histories import Band, LineHistories, Spot, cells, limit, line_histories
 from wavesym.pictures.loads import load_histories, stretches
-from wavesym.pictures.page.png import SHADES, colours, shaded
+from wavesym.pictures.page.png import SHADES, colours, encode_png
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.scene import Scene, lower
 
@@ -35,7 +35,7 @@ def exact(scene: Scene, quantity: str, places: list[str], taus: np.ndarray) -> n
 
 
 def test_floors_and_storeys_are_those_of_outputs() -> None:
-    relative, drift = along(GROUND, lower(GROUND))
+    relative, drift = line_histories(GROUND, lower(GROUND))
     assert [spot.position for spot in drift.bands[0].spots] == ["1", "2", "3"]
     at = relative.taus[::37]
     floors = exact(GROUND, "displacement", ["0", "1", "2", "3"], at)
@@ -57,7 +57,7 @@ def test_numbers_from_units_may_be_longer_than_text() -> None:
         output={"until": "50 ms", "strain": [0]},
     )
     assert len(str(scene.load[0].b[0])) > 100
-    _, drift = along(scene, lower(scene))
+    _, drift = line_histories(scene, lower(scene))
     at = drift.taus[::37]
     found = exact(scene, "drift", ["1", "2"], at)
     assert np.allclose(drift.bands[0].values[:, ::37], found, rtol=0, atol=ALLOWED * np.max(np.abs(found)))
@@ -65,7 +65,7 @@ def test_numbers_from_units_may_be_longer_than_text() -> None:
 
 def test_strains_run_from_end_to_end_of_each_rod() -> None:
     drive = Scene.from_toml("drive_m1")
-    _, strain = along(drive, lower(drive))
+    _, strain = line_histories(drive, lower(drive))
     written = [spot.position for spot in strain.bands[0].spots]
     assert (written[0], written[-1]) == ("0+", "1-")
     assert strain.bands[0].spots[0].low == 0
@@ -78,17 +78,17 @@ def test_strains_run_from_end_to_end_of_each_rod() -> None:
 def test_sides_that_are_one_place_are_asked_for_once() -> None:
     """A contact that counts as closed has one strain and one velocity, and stands for both of its sides."""
     collision = Scene.from_toml("collision_m4")
-    for quantity in along(collision, lower(collision)):
+    for quantity in line_histories(collision, lower(collision)):
         spots = quantity.bands[0].spots
         assert [spot.low for spot in spots[1:]] == [spot.high for spot in spots[:-1]]
         assert sum(spot.x == 2 for spot in spots) == 1
         assert np.isnan(quantity.bands[0].values).any(), "what comes after its opening is formal"
 
 
-def fabricated(values: np.ndarray) -> tuple[Along, Band]:
+def fabricated(values: np.ndarray) -> tuple[LineHistories, Band]:
     spots = tuple(Spot(str(k), str(k), k, k - 0.5, k + 0.5) for k in range(len(values)))
     band = Band("", spots, values)
-    return Along("strain", "", np.linspace(0, 1, values.shape[1]), (band,), None), band
+    return LineHistories("strain", "", np.linspace(0, 1, values.shape[1]), (band,), None), band
 
 
 @settings(max_examples=40, deadline=None)
@@ -154,7 +154,7 @@ def test_loads_are_the_sums_that_scenes_state() -> None:
 def test_cells_are_pixels(tmp_path: Path) -> None:
     """Read by a decoder of its own: shades from the least to the greatest, and one for what is no number."""
     values = np.array([[-5.0, -1, 0], [0.1, 1, np.nan]])
-    data = shaded(values, -1.0, 1.0, signed=True)
+    data = encode_png(values, -1.0, 1.0, signed=True)
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     start = data.index(b"IDAT") + 4
     size = int.from_bytes(data[start - 8 : start - 4], "big")

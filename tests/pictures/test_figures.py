@@ -27,7 +27,7 @@ from wavesym.pictures.labels import Curve
 
 @pytest.fixture(scope="module")
 def records() -> Mapping[str, Record]:
-    return {id: record for number in figures.FIGURES for id, record in figures.judged(number).items()}
+    return {id: record for number in figures.FIGURES for id, record in figures.figure_verdicts(number).items()}
 
 
 def _in_place(axes: Axes, curves: list[Curve], size: float) -> None:
@@ -39,7 +39,7 @@ def redrawn() -> dict[int, Figure]:
     """The figures, with names written on what they name: where they are put is tested elsewhere, and takes long."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(panels, "label", _in_place)
-        return {number: figures.redrawn(number) for number in figures.FIGURES}
+        return {number: figures.redraw_figure(number) for number in figures.FIGURES}
 
 
 @pytest.fixture(scope="module")
@@ -224,7 +224,7 @@ def test_published(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("number", figures.FIGURES)
 def test_names_and_numbers_keep_clear_of_each_other(number: int) -> None:
-    figure = figures.redrawn(number)
+    figure = figures.redraw_figure(number)
     assert texts_keep_clear(figure)
     renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
     page = figure.bbox

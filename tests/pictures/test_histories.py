@@ -31,7 +31,7 @@ pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure
 
 from wavesym.pictures import panels
-from wavesym.pictures.panels import PlotPanel, draw, isolated_vertices, jumps, notes, stacked, thinned
+from wavesym.pictures.panels import PlotPanel, draw, isolated_vertices, jumps, notes, stack_panels, thin_polyline
 from wavesym.pictures.saving import save
 
 THIRDS = Scene(
@@ -251,8 +251,8 @@ def test_curves_differ_in_grey() -> None:
 
 def test_a_thinned_polyline_keeps_its_corners() -> None:
     points = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 5.0), (2.0, 5.0), (3.0, 5.0), (4.0, 0.0)])
-    assert thinned(points, 5).tolist() == points[[0, 1, 2, 4, 5]].tolist()
-    assert thinned(points[:1], 5).tolist() == points[:1].tolist()
+    assert thin_polyline(points, 5).tolist() == points[[0, 1, 2, 4, 5]].tolist()
+    assert thin_polyline(points[:1], 5).tolist() == points[:1].tolist()
 
 
 def test_names_hang_where_a_curve_is_alone() -> None:
@@ -263,7 +263,7 @@ def test_names_hang_where_a_curve_is_alone() -> None:
 
 
 def test_history_of_a_load_needs_no_scene() -> None:
-    figure = stacked([PlotPanel("load", (History(Probe("a", "load", 1, fmpq(0)), (RAMP,)),))], 1.0, ["title"])
+    figure = stack_panels([PlotPanel("load", (History(Probe("a", "load", 1, fmpq(0)), (RAMP,)),))], 1.0, ["title"])
     assert [text.get_text() for text in figure.axes[0].texts] == ["a"]
     assert History(Probe("a", "load", 1, fmpq(0)), (RAMP,)).formal == inf
 

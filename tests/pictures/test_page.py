@@ -27,7 +27,7 @@ from wavesym.pictures.page import small
 from wavesym.pictures.page.curves import HEIGHT, Grid
 from wavesym.pictures.page.document import _bound, page
 from wavesym.pictures.page.headline import _value
-from wavesym.pictures.page.said import SaidTable
+from wavesym.pictures.page.page_tables import PageTable
 from wavesym.pictures.page.small import LARGEST, first_rows, first_text, fitting
 from wavesym.pictures.page.structure import structure
 from wavesym.programs.making import make
@@ -114,7 +114,7 @@ def test_a_page_is_thinned_until_it_is_small() -> None:
     assert len(fitting(lambda columns: columns, lambda columns: "\u2212" * LARGEST, 100).encode()) > LARGEST
     assert first_text("a" * 40_000 + "b" * 5).endswith("aa\n... and 5 characters more, left out to keep the page small")
     assert first_text("ab") == "ab"
-    table = SaidTable(("Output",), tuple((str(k),) for k in range(300)), ("How",))
+    table = PageTable(("Output",), tuple((str(k),) for k in range(300)), ("How",))
     assert first_rows(table).rows == table.rows[:250]
     assert first_rows(table).notes[1].startswith("The first 250 of 300 outputs")
 

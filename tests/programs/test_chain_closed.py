@@ -22,7 +22,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.choice import attempt, choose
 from wavesym.programs.closed import ClosedForm, closed_form
-from wavesym.running.compiled import compiled, imported
+from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import Scene, lower
 
 UNTIL = 3
@@ -65,7 +65,7 @@ def test_numpy_keeps_its_bound(table: dict[str, Any], precision: str) -> None:
         raise
     (text,) = program_files(model, form, "numpy").values()
     taus = instants(form)
-    assert worst(table, form, imported(text, "made").evaluate(np.array(taus)), taus) <= 1
+    assert worst(table, form, import_text(text, "made").evaluate(np.array(taus)), taus) <= 1
 
 
 @pytest.mark.parametrize("table", [STEPPED, LINKED], ids=["stepped", "linked"])
@@ -75,7 +75,7 @@ def test_c_keeps_its_bound_and_its_self_test(table: dict[str, Any]) -> None:
     form = choose(model, "closed").evaluator
     assert isinstance(form, ClosedForm)
     taus = instants(form)
-    with compiled(files(model, "c", "closed"), len(model.probes)) as program:
+    with compile_files(files(model, "c", "closed"), len(model.probes)) as program:
         assert program.selftest() == 0
         assert worst(short, form, program(taus), taus) <= 1
 
@@ -85,7 +85,7 @@ def test_c_in_single_precision() -> None:
     model = lower(Scene(**short))
     made = files(model, "c", "closed", "single")
     assert "float" in made["stepped.c"]
-    with compiled(made, len(model.probes)) as program:
+    with compile_files(made, len(model.probes)) as program:
         assert program.selftest() == 0
 
 
@@ -97,7 +97,7 @@ def test_a_bound_that_is_false_is_seen() -> None:
     (text,) = program_files(model, wrong, "numpy").values()
     taus = instants(form)
     table = {**STEPPED, "output": {**STEPPED["output"], "until": 4}}
-    assert worst(table, form, imported(text, "made").evaluate(np.array(taus)), taus) > 1
+    assert worst(table, form, import_text(text, "made").evaluate(np.array(taus)), taus) > 1
 
 
 def _larger(signal: Signal) -> Signal:

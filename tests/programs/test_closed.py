@@ -15,7 +15,7 @@ from wavesym.errors import ToleranceError
 from wavesym.exact.tables.ball import segments, values
 from wavesym.exact.tables.signal import signals
 from wavesym.programs.closed import closed_form
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.scene import lower
 
 
@@ -72,7 +72,7 @@ def test_a_front_between_two_doubles_counts_from_the_upper_one():
     assert Fraction(below) < Fraction(1, 3)
     assert response(below)[0] == 0.0
     assert response(np.nextafter(below, 1))[0] == 1.0  # strain a / kappa_0
-    module = imported(files(lower(scene), "numpy")["front.py"], "made")
+    module = import_text(files(lower(scene), "numpy")["front.py"], "made")
     assert module.evaluate(below)[0] == 0.0
     assert module.evaluate(np.nextafter(below, 1))[0] == 1.0
 
@@ -82,7 +82,7 @@ def test_an_output_that_is_zero_throughout_is_exactly_zero():
     load = [{"times": [0], "a": [1], "b": [0]}]
     scene = wavesym.Scene(name="calm", system=system, load=load, output={"until": 2, "strain": [0.5, 3.5]})
     made = files(lower(scene), "all")
-    module = imported(made["calm.py"], "made")
+    module = import_text(made["calm.py"], "made")
     assert (module.evaluate(np.linspace(0, 2, 9))[1] == 0.0).all()
     assert (wavesym.evaluator(scene)(np.linspace(0, 2, 9))[1] == 0.0).all()
     assert module.ERROR_BOUND > 0

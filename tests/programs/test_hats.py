@@ -32,7 +32,7 @@ from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judge_march, march
 from wavesym.programs.march.plan import readable
 from wavesym.programs.schemes.hats import ShiftedHats
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.scene import Scene, lower
 from wavesym.verification.collocation import integrate
 from wavesym.verification.problem import problem_of
@@ -305,7 +305,7 @@ def test_there_is_numpy_and_no_c() -> None:
         program_files(model, replace(found, refusal="load: many (NumPy or run, helps)"), "c")
     text = numpy_text(model, found)
     taus = looked_at(found, 8)
-    assert np.array_equal(imported(text, "every").evaluate(taus), program(model, found).evaluate(taus))
+    assert np.array_equal(import_text(text, "every").evaluate(taus), program(model, found).evaluate(taus))
 
 
 # layers of 51 ms and twice 34 ms on rock that has no end, under samples 20 ms apart

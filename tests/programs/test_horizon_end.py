@@ -21,7 +21,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice, pieces
 from wavesym.programs.closed import closed_form
-from wavesym.running.compiled import compiled, imported
+from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import lower
 
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
@@ -102,9 +102,9 @@ def test_a_pulse_counts_from_its_arrival_not_from_the_next_number():
     made = files(lower(scene), "all", "closed")
     truth = Truth(scene, scene.output.until)
     taus = np.linspace(1000 / 3 + 1e-9, 333.333334, 20).tolist()
-    with compiled(made, 1) as program:
-        found = [program(taus)[0], imported(made["ramp.py"], "made").evaluate(taus)[0]]
-    allowed = arb(imported(made["ramp.py"], "made").ERROR_BOUND) * truth.largest(0, scene.output.until)[1]
+    with compile_files(made, 1) as program:
+        found = [program(taus)[0], import_text(made["ramp.py"], "made").evaluate(taus)[0]]
+    allowed = arb(import_text(made["ramp.py"], "made").ERROR_BOUND) * truth.largest(0, scene.output.until)[1]
     for values in found:
         for tau, value in zip(taus, values.tolist(), strict=True):
             assert abs(truth.value(0, Fraction(tau)) - arb(value)) <= allowed

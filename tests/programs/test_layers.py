@@ -14,7 +14,7 @@ from tests.support.parting import Rod, Struck
 from wavesym.exact.motion import Motion
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import attempt
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.scene import Scene, lower
 
 # a specimen in two steps: cut from the bars, and of another material, with the digits that SI units leave
@@ -70,7 +70,7 @@ def test_crossings_of_thin_layers_cost_no_digits(specimen: list[dict[str, Any]],
     assert tried.form
     assert not tried.refusal
     taus = tried.form.check_points[::3]
-    found = imported(numpy_text(model, tried.form), "layers").evaluate(np.array(taus))
+    found = import_text(numpy_text(model, tried.form), "layers").evaluate(np.array(taus))
     true = truth(model, taus, end)
     assert len(set(true[-1])) > 50
     sizes = np.abs(true).max(axis=1)

@@ -29,7 +29,7 @@ from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import March, march
 from wavesym.programs.march.plan import march_plan
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER
-from wavesym.running.compiled import compiled
+from wavesym.running.compilation import compile_files
 from wavesym.scene import Scene, lower
 from wavesym.verification.collocation import integrate
 from wavesym.verification.problem import problem_of
@@ -167,8 +167,8 @@ def test_long_horizons_agree_with_direct_integration() -> None:
     taus = np.random.default_rng(1).uniform(0, 60, 200)
     coarse, fine = (integrate(problem_of(model), made.tau_max, points) for points in (8, 16))
     for probe, row in zip(model.probes, program(model, made).evaluate(taus), strict=True):
-        expected = fine.at(probe, taus.tolist())
-        error = np.abs(expected - coarse.at(probe, taus.tolist())).max()
+        expected = fine.evaluate(probe, taus.tolist())
+        error = np.abs(expected - coarse.evaluate(probe, taus.tolist())).max()
         assert np.abs(row - expected).max() <= error + 1e-12 * np.abs(expected).max()
 
 
@@ -225,7 +225,7 @@ def check_arrived(scene, evaluator, language) -> None:
     else:
         sources = program_files(model, made, "c")
         sources[f"{scene.name}_selftest.c"] = "int main(void)\n{\n    return 0;\n}\n"
-        with compiled(sources, 1) as run:
+        with compile_files(sources, 1) as run:
             (values,) = run(taus)
     errors = [
         abs(truth.value(0, Fraction(tau)) - fmpq(*value.as_integer_ratio()))

@@ -24,7 +24,7 @@ from wavesym.programs.modes import evaluator
 from wavesym.programs.modes.evaluator import modes
 from wavesym.programs.request import Request
 from wavesym.results.response import Response
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.running.native import library
 from wavesym.scene import lower
 from wavesym.targets.files import files
@@ -229,7 +229,7 @@ def test_c_takes_the_samples_of_the_scene_and_numpy_has_them(tmp_path):
     program = make(lower(scene()), Request(evaluator="modes"), tested=True)
     made = files(program, "all")
     assert "--evaluator modes" in made["shaken.h"]
-    module = imported(made["shaken.py"], "shaken")
+    module = import_text(made["shaken.py"], "shaken")
     taus = np.linspace(-1, 13, 80)
     np.testing.assert_array_equal(module.evaluate(taus), program.evaluate(taus))
     right = module.evaluate(np.arange(17) * 5 / 7)
@@ -300,7 +300,7 @@ def test_a_stream_takes_loads_in_units_of_results(name):
     values = streamed(program, made, [size * sample for sample in SAMPLES])
     taus = program.constants["spacing"] * np.arange(len(SAMPLES))
     inside = taus <= program.tau_max
-    right = imported(made["shaken.py"], "shaken").evaluate(taus[inside])
+    right = import_text(made["shaken.py"], "shaken").evaluate(taus[inside])
     np.testing.assert_allclose(values[:, inside], right, rtol=0, atol=1e-11 * np.abs(right).max())
 
 

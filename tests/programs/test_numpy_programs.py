@@ -11,7 +11,7 @@ import wavesym
 from tests.support.generated import files
 from tests.support.truth import Truth
 from wavesym.programs.choice import choose
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.scene import lower
 
 EVALUATORS = ["closed", "pieces"]
@@ -32,7 +32,7 @@ def drive(until, tolerance):
 @pytest.mark.parametrize("evaluator", EVALUATORS)
 def test_the_last_single_of_the_horizon_has_a_value(until, evaluator):
     """Which is not the double of the same digits."""
-    module = imported(files(lower(drive(until, "1/2")), "numpy", evaluator, "single")["drive.py"], "made")
+    module = import_text(files(lower(drive(until, "1/2")), "numpy", evaluator, "single")["drive.py"], "made")
     assert module.TAU_MAX == float(np.float32(module.TAU_MAX)) != float(until)
     for tau in (
         module.TAU_MAX,
@@ -53,7 +53,7 @@ def test_values_do_not_depend_on_order_or_shape(evaluator, precision):
     """Sorted or not, alone or together, evenly or nearly all of them on one piece: each is within the bound."""
     scene = drive(6, "1e-9" if precision == "double" else "1e-2")
     form = choose(lower(scene), evaluator, precision).evaluator
-    module = imported(files(lower(scene), "numpy", evaluator, precision)["drive.py"], "made")
+    module = import_text(files(lower(scene), "numpy", evaluator, precision)["drive.py"], "made")
     kind = np.float64 if precision == "double" else np.float32
     truth = Truth(scene, Fraction(6))
     random = np.random.default_rng(3)
@@ -78,7 +78,7 @@ def test_values_do_not_depend_on_order_or_shape(evaluator, precision):
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("evaluator", EVALUATORS)
 def test_only_what_is_out_of_range_is_no_number(evaluator, precision):
-    module = imported(files(lower(drive(6, "1e-2")), "numpy", evaluator, precision)["drive.py"], "made")
+    module = import_text(files(lower(drive(6, "1e-2")), "numpy", evaluator, precision)["drive.py"], "made")
     taus = np.array([3, -1, 0, 7, 6, np.nan, -0.0, 2, -1e-30, np.inf, 5])
     found = module.evaluate(taus)
     np.testing.assert_array_equal(np.isnan(found), [[not 0 <= tau <= 6 for tau in taus]] * 2)

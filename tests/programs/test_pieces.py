@@ -19,7 +19,7 @@ from wavesym.exact.tables.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.programs import pieces
 from wavesym.programs.choice import attempt, choose
-from wavesym.running.compiled import compiled, imported
+from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import lower
 
 SCENES = {
@@ -81,7 +81,7 @@ def test_no_error_is_above_the_bound(drawn, asked, random):
     )
     reference = Reference(lower(drawn))
     expected = np.array(reference.values(taus))
-    found = imported(numpy_text(lower(drawn), form), "drawn").evaluate(np.array(taus))
+    found = import_text(numpy_text(lower(drawn), form), "drawn").evaluate(np.array(taus))
     for output, size, row, true in zip(form.outputs, reference.largest(), found, expected, strict=True):
         # the reference itself is rounded; `size` is a lower bound that the proof did not use
         assert np.abs(row - true).max() <= (output.bound + 2.0**-53) * max(float(size.mid()), np.abs(true).max()), (
@@ -95,12 +95,12 @@ def test_the_bound_is_met_and_is_near_the_error(name, count):
     """Three scenes at 1e-14: the proved bound holds at random tau and all edges, and is at most 50 times the error."""
     chosen = scene(name)
     made = files(lower(chosen), "all", "pieces")
-    module = imported(made[f"{name}.py"], name)
+    module = import_text(made[f"{name}.py"], name)
     assert module.ERROR_BOUND <= 1e-14
     _, form, _ = choose(lower(chosen), "pieces")
     taus = np.sort(np.concatenate([np.random.default_rng(7).uniform(0, form.tau_max, count), form.check_points]))
     expected = np.array(Reference(lower(chosen)).values(taus.tolist()))
-    with compiled(made, len(form.outputs)) as program:
+    with compile_files(made, len(form.outputs)) as program:
         values = program(taus.tolist())
         assert program.selftest() == 0
         _, sampled = program.sample(0.0, form.tau_max / 1000, 1001)
@@ -109,7 +109,7 @@ def test_the_bound_is_met_and_is_near_the_error(name, count):
     assert worst <= module.ERROR_BOUND * (1 + 1e-2)  # the sampled largest value may be a little low
     assert 50 * worst >= module.ERROR_BOUND
     steps = [k * (form.tau_max / 1000) for k in range(1001)]
-    with compiled(made, len(form.outputs)) as program:
+    with compile_files(made, len(form.outputs)) as program:
         np.testing.assert_array_equal(np.isnan(sampled), np.isnan(program(steps)))
         np.testing.assert_allclose(sampled, program(steps), rtol=0, atol=2 * module.ERROR_BOUND * largest.max())
 
@@ -120,13 +120,13 @@ def test_a_changed_coefficient_fails_the_self_test():
     numbers = [n for n in re.findall(r"-?\d\.\d+(?:e-?\d+)?", table[1]) if abs(float(n)) > 0.5]
     for number in numbers[:: len(numbers) // 5]:
         wrong = made["C.c"].replace(number, repr(float(number) * (1 + 1e-9)), 1)
-        with compiled({**made, "C.c": wrong}, 1) as program:
+        with compile_files({**made, "C.c": wrong}, 1) as program:
             assert program.selftest() == 1, number
 
 
 def test_sample_keeps_to_the_rules_out_of_range():
     made = files(lower(scene("B", "1e-8")), "c", "pieces")
-    with compiled(made, 4) as program:
+    with compile_files(made, 4) as program:
         assert program.sample(0.0, 1.0, 0)[0] == 0
         for tau0, step, count in (
             (-3.0, 0.01, 3000),

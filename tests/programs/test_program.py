@@ -9,7 +9,7 @@ from wavesym.numbers.reals import REALS
 from wavesym.programs import making
 from wavesym.programs.choice import choose
 from wavesym.programs.schemes import SCHEMES
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.scene import Scene, lower
 
 COLLISION = Scene(
@@ -31,7 +31,7 @@ each_program = pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
 def made(name, evaluator, precision):
     model = lower(SCENES[name])
     chosen = choose(model, evaluator, precision)
-    return making.program(model, chosen.evaluator), imported(numpy_text(model, chosen.evaluator), "both")
+    return making.program(model, chosen.evaluator), import_text(numpy_text(model, chosen.evaluator), "both")
 
 
 def same(one, other):

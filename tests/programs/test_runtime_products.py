@@ -13,7 +13,7 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.making import runtime_program
 from wavesym.scene import lower
-from wavesym.targets.c.runtime import assigned, multiplied, slopes
+from wavesym.targets.c.runtime import assignments, products, slopes
 
 LINKED = wavesym.Scene(
     name="linked",
@@ -43,7 +43,7 @@ def lost(given, derived):
         lines = [line for _, of in slopes(LAWS, LAWS.functions, DOUBLE) for line in of]
     else:
         functions = [function for of in LAWS.functions.values() for function in of]
-        lines = list(assigned(LAWS, LAWS.functions, DOUBLE))
+        lines = list(assignments(LAWS, LAWS.functions, DOUBLE))
     found = in_c((text for _, text in lines), given)
     for function, value in zip(functions, found, strict=True):
         exact = function.evaluate(values) if isinstance(function, Ratio) else function
@@ -56,7 +56,7 @@ def lost(given, derived):
 
 def accepted(given, derived):
     """Whether what is multiplied on the way is a number with all its digits."""
-    sizes = np.abs(in_c(multiplied(LAWS, LAWS.every_slope if derived else LAWS.every, DOUBLE), given))
+    sizes = np.abs(in_c(products(LAWS, LAWS.every_slope if derived else LAWS.every, DOUBLE), given))
     return bool(np.all((sizes >= np.finfo(np.float64).tiny) & np.isfinite(sizes)))
 
 

@@ -18,7 +18,7 @@ from wavesym.mechanics.model import Model
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import march
-from wavesym.running.compiled import compiled, imported
+from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import Scene, lower
 
 Values = NDArray[np.float64]
@@ -117,11 +117,11 @@ def test_c_and_numpy_are_one(name: str, kind: str) -> None:
     taus = instants(reference)
     made = files(given, "all", kind)
     bounds = [output.bound for output in choose(given, kind).evaluator.outputs]
-    with compiled(made, len(given.probes)) as built:
+    with compile_files(made, len(given.probes)) as built:
         c = np.array(built(taus.tolist()))
         assert built.selftest() == 0
     assert missed(c, reference, taus, bounds) <= 1
-    assert missed(imported(made[f"{given.name}.py"], given.name).evaluate(taus), reference, taus, bounds) <= 1
+    assert missed(import_text(made[f"{given.name}.py"], given.name).evaluate(taus), reference, taus, bounds) <= 1
     header = made[f"{given.name}.h"]
     assert f"{given.name.upper()}_ACCELERATION_{'FIRST' if name == 'chain' else '1'} =" in header
     assert "strains, velocities, displacements, accelerations, forces, drifts" in header

@@ -96,7 +96,7 @@ def test_models_at_run_time():
     scene = chain(RINGING, 5, [load], strain=["0", "2"], velocity=["0", "1"], displacement=["1"])
     model = wavesym.model(scene, runtime=["mass"])
     peaks = model.peaks(mass=[[0.5], [0.25], [0.125], [-1]])
-    raw = model._engine.peaks(model._given({"mass": [[0.5], [0.25], [0.125], [-1]]})).values
+    raw = model._engine.peaks(model._parameter_rows({"mass": [[0.5], [0.25], [0.125], [-1]]})).values
     noise = (raw[:3, :, ::2] != 0) & (np.abs(raw[:3, :, ::2]) < 1e-12)
     assert noise.any()
     for found, tau, side in ((peaks.min, peaks.tau_min, 0), (peaks.max, peaks.tau_max, 1)):

@@ -26,7 +26,7 @@ from tests.support.generated import files
 from tests.support.scenes import as_toml, scenes
 from tests.support.truth import Truth
 from wavesym.errors import CostError, RangeError, ToleranceError
-from wavesym.running.compiled import FLAGS, imported
+from wavesym.running.compilation import FLAGS, import_text
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
 
@@ -166,7 +166,7 @@ def _said(error: Exception) -> str:
 
 
 def _in_numpy(made: dict[str, str], scene: Scene, exam: Exam) -> Iterator[tuple[NDArray[np.floating], Values]]:
-    yield exam.taus, imported(made[f"{scene.name}.py"], scene.name).evaluate(exam.taus)
+    yield exam.taus, import_text(made[f"{scene.name}.py"], scene.name).evaluate(exam.taus)
 
 
 def _in_c(

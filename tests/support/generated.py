@@ -12,7 +12,9 @@ from wavesym.targets import files as written
 
 def files(model: Model, language: str = "c", *request: object, **named: object) -> dict[str, str]:
     """All files of the program that is asked for by a `Request` of these fields."""
-    return written.files(making.make(model, Request(*request, **named), tested=written.tested(language)), language)
+    return written.files(
+        making.make(model, Request(*request, **named), tested=written.has_selftest(language)), language
+    )
 
 
 def program_files(model: Model, form: Made, language: str, *, tested: bool = False) -> dict[str, str]:

@@ -185,7 +185,7 @@ def as_toml(scene: Scene) -> str:
     lines += ["", "[output]", f"until = {_number(output.until)}", f"tolerance = {_number(output.tolerance)}"]
     for quantity in ("strain", "velocity", "displacement"):
         if watched := getattr(output, quantity):
-            lines.append(f"{quantity} = {json.dumps([place.written for place in watched])}")
+            lines.append(f"{quantity} = {json.dumps([place.text for place in watched])}")
     return "\n".join(lines) + "\n"
 
 

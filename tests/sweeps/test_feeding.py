@@ -90,14 +90,14 @@ def sweep(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[SweepPlan, B
 
 
 def fed(crew: Crew, parts: Batches, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, BatchValues]]:
-    waits = cluster._Sent.next_done
+    waits = cluster._TaskQueue.next_result
 
     def next_done(sent: cluster._Sent) -> Any:
         crew.finish_one()
         return waits(sent)
 
     with monkeypatch.context() as patch:
-        patch.setattr(cluster._Sent, "next_done", next_done)
+        patch.setattr(cluster._TaskQueue, "next_result", next_done)
         return list(cluster.on_workers(crew, crew.plan, parts, [(k, None) for k in range(len(parts))]))
 
 

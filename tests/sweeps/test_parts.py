@@ -93,7 +93,7 @@ def swept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Clie
         def connected(*_: Any) -> Iterator[Any]:
             yield client
 
-        monkeypatch.setattr(cluster, "connected", connected)
+        monkeypatch.setattr(cluster, "connect", connected)
         run(SWEEP, tmp_path / "out", Computing(scheduler="fake"), **options)
         return client
 

@@ -22,7 +22,7 @@ from wavesym.errors import SceneError, WavesymError
 from wavesym.sweeps import running
 from wavesym.sweeps.marks import BatchMark
 from wavesym.sweeps.running import run
-from wavesym.sweeps.sealed import DamagedError
+from wavesym.sweeps.sealed_files import DamagedError
 from wavesym.sweeps.status import status
 from wavesym.sweeps.store import Store
 

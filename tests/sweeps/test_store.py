@@ -27,7 +27,7 @@ from wavesym.errors import WavesymError
 from wavesym.pictures.page.sweep import sweep_page
 from wavesym.sweeps import running, work
 from wavesym.sweeps.running import run
-from wavesym.sweeps.sealed import DamagedError, _seal
+from wavesym.sweeps.sealed_files import DamagedError, _seal
 from wavesym.sweeps.status import status
 from wavesym.sweeps.store import NAME
 from wavesym.sweeps.values import CaseValues

@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.builds import LANGUAGES, SOURCES, STRICT, built, needs_binutils, sections, source
 from tests.support.patience import first_always
-from wavesym.running.compiled import FLAGS
+from wavesym.running.compilation import FLAGS
 from wavesym.running.toolchain import CompilerError, at_hand, compiler
 
 KNOWN = ("gcc", "clang", "ziglang")

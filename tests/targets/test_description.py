@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.generated import files
 from wavesym.cli import main
-from wavesym.running.compiled import FLAGS, imported
+from wavesym.running.compilation import FLAGS, import_text
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
 from wavesym.targets.description import constants
@@ -36,7 +36,7 @@ def test_a_row_is_that_of_its_name_in_c_and_in_numpy(tmp_path):
     scene = building(PUSH, displacement=[2], strain=["1+", "0.5"], velocity=[1])
     made = files(lower(scene), "all")
     rows = {"DISPLACEMENT_2": "displacement@2", "STRAIN_1_PLUS": "strain@1+", "STRAIN_0_5": "strain@0.5"}
-    module = imported(made["made.py"], "made")
+    module = import_text(made["made.py"], "made")
     program = "".join(f"    puts(made_output_name[MADE_{row}]);\n" for row in rows)
     main_c = f'#include "made.h"\n#include <stdio.h>\nint main(void)\n{{\n{program}    return 0;\n}}\n'
     for file, text in {**made, "main.c": main_c}.items():

@@ -15,7 +15,7 @@ from wavesym.programs.making import program
 from wavesym.programs.schemes import SCHEMES
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene, lower
-from wavesym.targets.c.tables import declared, tables_text
+from wavesym.targets.c.tables import table_declarations, tables_text
 
 C = Path(__file__).parents[2] / "templates" / "c"
 KERNELS = sorted(path.relative_to(C).as_posix() for path in C.rglob("*.c"))
@@ -47,7 +47,9 @@ def test_a_kernel_is_c_as_it_stands(kernel, precision):
 )
 def test_tables_are_what_their_header_declares(kernel, name):
     """No table more, none less, each of its type; what NumPy reads is among them, in their order."""
-    items = [item for paragraph in declared(f"{kernel}/tables.h") for item in paragraph if isinstance(item, tuple)]
+    items = [
+        item for paragraph in table_declarations(f"{kernel}/tables.h") for item in paragraph if isinstance(item, tuple)
+    ]
     types = {table: type for type, table in items}
     model = lower(Scene.from_toml(name))
     made = program(model, choose(model, kernel).evaluator).tables

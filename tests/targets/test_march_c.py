@@ -24,7 +24,7 @@ from wavesym.programs.making import make
 from wavesym.programs.march.evaluator import march
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
-from wavesym.running.compiled import FLAGS, compiled, imported
+from wavesym.running.compilation import FLAGS, compile_files, import_text
 from wavesym.running.toolchain import at_hand, compiler
 from wavesym.scene import Scene, lower
 from wavesym.targets import files as written
@@ -74,7 +74,7 @@ def scene_of(name) -> Scene:
 def test_c_passes_its_self_test(name, real, compiler, monkeypatch) -> None:
     monkeypatch.setenv("CC", shlex.join(compiler.command))
     model = lower(scene_of(name))
-    with compiled(program_files(model, march(model, real), "c", tested=True), len(model.probes)) as program:
+    with compile_files(program_files(model, march(model, real), "c", tested=True), len(model.probes)) as program:
         assert program.selftest() == 0
 
 
@@ -82,11 +82,11 @@ def test_c_passes_its_self_test(name, real, compiler, monkeypatch) -> None:
 def test_c_is_numpy_and_sample_is_eval(name) -> None:
     model = lower(scene_of(name))
     made = march(model)
-    module = imported(numpy_text(model, made), scene_of(name).name)
+    module = import_text(numpy_text(model, made), scene_of(name).name)
     end = made.tau_max
     taus = [0.0, 1 / 3, 0.9999, 1.0, 2.5, 2.4999999999999996, 0.7 * end, np.nextafter(end, 0), end]
     taus += [-1.0, end + 0.1, np.nan]
-    with compiled(program_files(model, made, "c", tested=True), len(model.probes)) as program:
+    with compile_files(program_files(model, made, "c", tested=True), len(model.probes)) as program:
         assert program.names == module.OUTPUTS
         values = program(taus)
         expected = module.evaluate(taus)
@@ -201,7 +201,7 @@ def test_samples_are_values_whichever_way_they_go(tmp_path: Path) -> None:
 def test_numpy_computes_what_the_program_does() -> None:
     """The generated module, bit for bit."""
     of = chain("double")
-    module = imported(of.made["every.py"], "every")
+    module = import_text(of.made["every.py"], "every")
     assert np.array_equal(module.evaluate(of.taus), of.program.evaluate(of.taus))
     assert np.isnan(module.evaluate([-1.0, np.nextafter(2, 3), np.nan])).all()
     assert module.evaluate(np.zeros((2, 0))).shape == (9, 2, 0)

@@ -13,7 +13,7 @@ from flint import fmpq, fmpq_poly
 from tests.support.generated import numpy_text, program_files
 from wavesym.programs.march.bound import reading_weights
 from wavesym.programs.march.evaluator import march
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
 
@@ -128,7 +128,7 @@ def missed(read):
 
 
 def in_numpy(text):
-    module = imported(text, "made")
+    module = import_text(text, "made")
     scheme = module._PROGRAM
     assert scheme.deepest == 1
 

@@ -9,14 +9,14 @@ import pytest
 
 from tests.support.builds import SOURCES, scene
 from tests.support.generated import files
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.scene import lower
 
 
 @pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
 def test_what_is_out_of_range_is_nan_without_a_warning(evaluator: str, precision: str) -> None:
     made = files(lower(scene("range", "1e-9" if precision == "double" else "1e-2")), "numpy", evaluator, precision)
-    module = imported(made["range.py"], "made")
+    module = import_text(made["range.py"], "made")
     outside = [-np.inf, -1e30, -1e-30, np.nextafter(np.float32(6), np.float32(7)), 1e30, np.inf, np.nan]
     inside = [0.0, 1.5, 6.0]
     with warnings.catch_warnings():

@@ -20,7 +20,7 @@ from tests.support.builds import scene
 from tests.support.generated import files
 from tests.support.truth import Truth
 from wavesym.programs import reference_values
-from wavesym.running.compiled import FLAGS
+from wavesym.running.compilation import FLAGS
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from flint import fmpq
 
-from tools.bench import equal_degree, recorded, report
-from tools.bench.equal_degree import Fitted, at_degree, fitted, ratios
+from tools.bench import equal_degree, record_response, report
+from tools.bench.equal_degree import FittedPieces, at_degree, fit_pieces, ratios
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.contacts.events import events
 from wavesym.numbers.doubles import rational
@@ -42,24 +42,24 @@ def test_three_lengths_cost_their_knots():
 
 def test_a_chain_is_fitted_to_a_degree(monkeypatch):
     monkeypatch.setattr(equal_degree, "_DIGITS", (4, 6, 8))
-    aim = fitted(CHAINS["S"], fmpq(1, 10**6))
+    aim = fit_pieces(CHAINS["S"], fmpq(1, 10**6))
     found = at_degree(CHAINS["S"], aim.degree)
-    assert isinstance(found, Fitted)
+    assert isinstance(found, FittedPieces)
     assert found.degree == aim.degree
     assert min(aim.form.degrees) <= aim.degree <= max(aim.form.degrees)
 
 
 def test_a_scene_takes_as_long_as_itself():
     """Nothing is asserted of the time itself."""
-    one = fitted(CHAINS["S"], fmpq(1, 10**6))
+    one = fit_pieces(CHAINS["S"], fmpq(1, 10**6))
     assert all(0 < ratio < 100 for ratio in ratios(one, one, FAST))
 
 
 def test_a_record_has_rows_of_modes_and_elements(monkeypatch):
-    monkeypatch.setattr(recorded, "SAMPLES", 120)
-    monkeypatch.setattr(recorded, "medians", lambda ways, **_: [1.0] * len(ways))
-    assert len(recorded.frame().outputs) == 31
-    (_, _, error), *elements = recorded.rows()
+    monkeypatch.setattr(record_response, "SAMPLES", 120)
+    monkeypatch.setattr(record_response, "medians", lambda ways, **_: [1.0] * len(ways))
+    assert len(record_response.frame().outputs) == 31
+    (_, _, error), *elements = record_response.rows()
     assert float(error) < 1e-6
     errors = [float(error) for _, _, error in elements]
     assert errors[0] > 2 * errors[-1] > 0

@@ -11,7 +11,7 @@ from tests.test_documents import document
 from tests.tools.test_portable import Spoilt
 from tools.portable import fuzz
 from tools.portable.fuzz import FUZZED, FuzzedProgram
-from tools.portable.page import between
+from tools.portable.page import marked_text
 from wavesym.running.toolchain import CompilerError
 
 COMPILER = next(filter(shutil.which, ("gcc", "cc", *fuzz.CLANGS)), None)
@@ -23,14 +23,14 @@ pytestmark = pytest.mark.skipif(not COMPILER, reason="no gcc, no clang here")
 
 def replayed(program: FuzzedProgram, folder: Path) -> str:
     """What comes of the bytes that were kept for a driver, with sanitizers where the compiler has them."""
-    files = fuzz.unpacked(fuzz.CORPUS, program.driver, folder / "kept")
+    files = fuzz.unpack_corpus(fuzz.CORPUS, program.driver, folder / "kept")
     assert len(files) > 12
     assert COMPILER
     try:
         run = fuzz.replayer(program, COMPILER, folder)
     except CompilerError:
         run = fuzz.replayer(program, COMPILER, folder, ())
-    return fuzz.replayed(run, files)
+    return fuzz.replay(run, files)
 
 
 @pytest.mark.parametrize(
@@ -88,9 +88,11 @@ def test_what_is_broken_on_purpose_is_seen(fault, tmp_path):
 
 def test_the_page_says_what_was_fuzzed():
     """For minutes each, and nothing was found."""
-    rows = [line.strip("| ").split(" | ") for line in between(document("docs/portability.md"), "fuzz").splitlines()[4:]]
+    rows = [
+        line.strip("| ").split(" | ") for line in marked_text(document("docs/portability.md"), "fuzz").splitlines()[4:]
+    ]
     assert [row[0] for row in rows] == [program.subject.name for program in FUZZED]
-    assert [row[1] for row in rows] == [f"`{program.subject.asked}`" for program in FUZZED]
+    assert [row[1] for row in rows] == [f"`{program.subject.generate_command}`" for program in FUZZED]
     assert min(int(row[3]) for row in rows) >= 200
     assert [row[5] for row in rows] == ["0"] * len(rows)
 
@@ -101,5 +103,5 @@ def test_a_fuzzer_finds_a_fault_by_itself(tmp_path):
     name, right, wrong = BREAKS["an index before the first"]
     program = BY_NAME[name]._replace(subject=Spoilt(BY_NAME[name].subject, right, wrong))
     found = fuzz.fuzz(program, fuzz.fuzzer(), tmp_path, tmp_path / "nothing", 30)
-    assert any(sanitizer in found.found for sanitizer in ("AddressSanitizer", "runtime error"))
-    assert "bytes " in found.found
+    assert any(sanitizer in found.finding for sanitizer in ("AddressSanitizer", "runtime error"))
+    assert "bytes " in found.finding

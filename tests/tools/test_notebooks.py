@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from tests.test_documents import LINK, ROOT
-from tools.notebooks import NOTEBOOKS, described, execute, write_pages
+from tools.notebooks import NOTEBOOKS, describe_pictures, execute, write_pages
 
 
 def test_a_picture_is_described_by_its_heading() -> None:
-    assert described("# A\n![png](a.png)\n## B\n![png](b.png)\n") == "# A\n![A](a.png)\n## B\n![B](b.png)\n"
-    assert described("<p>a</p><img alt='b'>") == "<div><p>a</p><img alt='b'></div>\n"
+    assert describe_pictures("# A\n![png](a.png)\n## B\n![png](b.png)\n") == "# A\n![A](a.png)\n## B\n![B](b.png)\n"
+    assert describe_pictures("<p>a</p><img alt='b'>") == "<div><p>a</p><img alt='b'></div>\n"
 
 
 @pytest.mark.parametrize("source", sorted(NOTEBOOKS.glob("*.py")), ids=lambda source: source.stem)

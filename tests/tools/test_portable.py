@@ -14,9 +14,9 @@ import pytest
 from tests.support.builds import STRICT, needs_binutils, needs_zig
 from tests.test_documents import document
 from tools.portable import misra, prove, targets
+from tools.portable.answers import cached_answer
 from tools.portable.external import absent
-from tools.portable.kept import kept
-from tools.portable.page import between, put, table
+from tools.portable.page import marked_text, put, table
 from tools.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.running.toolchain import CompilerError, compiler
 
@@ -80,7 +80,7 @@ NOT_PROVED = {
 
 def rows_of(name, head):
     """The lines of a table on the page, by the first line of which it is found."""
-    found = between(document(PAGE), name).partition(table(head, []))[2].partition("\n\n")[0]
+    found = marked_text(document(PAGE), name).partition(table(head, []))[2].partition("\n\n")[0]
     return [line.strip("| ").split(" | ") for line in found.splitlines()]
 
 
@@ -128,7 +128,7 @@ def test_a_table_takes_the_place_of_the_one_before(tmp_path: Path):
     page = tmp_path / "page.txt"
     page.write_text("a\n<!-- written by `make prove` -->\nold\n<!-- end -->\nb\n")
     put(page, "prove", table(("x", "y"), [("1", "2")]))
-    assert between(page.read_text(), "prove") == "| x | y |\n| --- | --- |\n| 1 | 2 |\n"
+    assert marked_text(page.read_text(), "prove") == "| x | y |\n| --- | --- |\n| 1 | 2 |\n"
     assert page.read_text().startswith("a\n")
     assert page.read_text().endswith("-->\nb\n")
     with pytest.raises(ValueError, match="misra"):
@@ -137,7 +137,7 @@ def test_a_table_takes_the_place_of_the_one_before(tmp_path: Path):
 
 def test_a_finding_that_nobody_reviewed_is_told():
     found = [misra.MisraFinding("10.4", "a.c:1", ""), misra.MisraFinding("21.3", "a.c:2", "f")]
-    assert misra.unreviewed(found, {"10.4": "so"}) == ["a.c:2, f: 21.3 is not kept, and no deviation says why"]
+    assert misra.unreviewed_findings(found, {"10.4": "so"}) == ["a.c:2, f: 21.3 is not kept, and no deviation says why"]
 
 
 def test_a_finding_is_in_the_function_around_it():
@@ -157,7 +157,7 @@ def test_an_answer_is_asked_for_once_unless_the_question_changes(tmp_path):
     asked = []
 
     def ask(question, answer, **how):
-        return kept(tmp_path / "new", question, lambda: asked.append(question) or answer, **how)
+        return cached_answer(tmp_path / "new", question, lambda: asked.append(question) or answer, **how)
 
     assert (ask(["a", "b"], [1, "x"]), ask(["a", "b"], [2]), ask(["ab"], [3])) == ([1, "x"], [1, "x"], [3])
     assert asked == [["a", "b"], ["ab"]]
@@ -208,7 +208,7 @@ def test_the_prover_sees_what_is_wrong(subject, right, wrong, tmp_path):
 @pytest.mark.slow
 def test_nothing_undefined_is_found_in_one_program(tmp_path):
     found = prove.verdict(written(PIECES, tmp_path), 1, "gcc_x86_64", tmp_path)
-    assert (found.alarms, found.told) == (0, [])
+    assert (found.alarms, found.alarm_texts) == (0, [])
 
 
 @needs_checker
@@ -216,21 +216,21 @@ def test_nothing_undefined_is_found_in_one_program(tmp_path):
 def test_what_the_checker_finds_was_reviewed(tmp_path):
     found = [finding for subject in CHECKED for finding in misra.findings(subject, tmp_path)]
     assert found
-    assert misra.unreviewed(found, misra.deviations()) == []
+    assert misra.unreviewed_findings(found, misra.deviations()) == []
 
 
 @needs_checker
 @pytest.mark.slow
 def test_the_checker_sees_a_rule_that_is_broken(tmp_path):
     found = misra.findings(Spoilt(PIECES, INCLUDED, f"{INCLUDED}\n#include <stdio.h>"), tmp_path)
-    assert misra.unreviewed(found, misra.deviations())
+    assert misra.unreviewed_findings(found, misra.deviations())
 
 
 @needs_zig
 @needs_binutils
 @pytest.mark.slow
 def test_a_program_is_taken_alone_and_its_selftest_passes(tmp_path):
-    size = targets.compiled(written(SINGLE, tmp_path), NATIVE, tmp_path)
+    size = targets.compile_bare(written(SINGLE, tmp_path), NATIVE, tmp_path)
     assert size.text > 0
     assert size.rodata > 0
     assert size.data == 0
@@ -252,7 +252,7 @@ def test_a_program_is_taken_alone_and_its_selftest_passes(tmp_path):
 )
 def test_what_a_small_machine_lacks_is_refused(right, wrong, tmp_path):
     with pytest.raises(CompilerError):
-        targets.compiled(written(Spoilt(SINGLE, right, wrong), tmp_path), NATIVE, tmp_path)
+        targets.compile_bare(written(Spoilt(SINGLE, right, wrong), tmp_path), NATIVE, tmp_path)
 
 
 @needs_zig
@@ -261,7 +261,7 @@ def test_what_a_small_machine_lacks_is_refused(right, wrong, tmp_path):
 def test_data_that_can_be_written_are_refused(tmp_path):
     spoilt = Spoilt(SINGLE, "enum { GRIDS", "int pieces_single_flaw = 1;\nenum { GRIDS")
     with pytest.raises(CompilerError, match="4 bytes of data that can be written"):
-        targets.compiled(written(spoilt, tmp_path), NATIVE, tmp_path)
+        targets.compile_bare(written(spoilt, tmp_path), NATIVE, tmp_path)
 
 
 def test_programs_refuse_fast_math():

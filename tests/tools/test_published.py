@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import pytest
 
-from tools.published import PAGE, Compared, cases, compared, page
+from tools.published_numbers import PAGE, ComparedNumber, cases, compare_numbers, page
 
 
 @pytest.fixture(scope="module")
-def found() -> dict[tuple[str, int], list[Compared]]:
+def found() -> dict[tuple[str, int], list[ComparedNumber]]:
     """All numbers, computed once."""
-    return {(case["scene"], k): compared(case, each) for case in cases() for k, each in enumerate(case["numbers"])}
+    return {
+        (case["scene"], k): compare_numbers(case, each) for case in cases() for k, each in enumerate(case["numbers"])
+    }
 
 
-def test_the_page_is_what_is_computed_now(found: dict[tuple[str, int], list[Compared]]) -> None:
+def test_the_page_is_what_is_computed_now(found: dict[tuple[str, int], list[ComparedNumber]]) -> None:
     text = "".join(page(lambda case, numbers: found[case["scene"], case["numbers"].index(numbers)]))
     assert PAGE.read_text(encoding="utf-8") == text
 
 
-def test_what_differs_has_a_reason(found: dict[tuple[str, int], list[Compared]]) -> None:
+def test_what_differs_has_a_reason(found: dict[tuple[str, int], list[ComparedNumber]]) -> None:
     for case in cases():
         for k, numbers in enumerate(case["numbers"]):
             assert all(each.same for each in found[case["scene"], k]) == ("why" not in numbers), case["scene"]
@@ -29,4 +31,4 @@ def test_what_differs_has_a_reason(found: dict[tuple[str, int], list[Compared]])
     [("10.304", 10.30449, True), ("10.304", 10.3046, False), ("11.8e6", 11849050.0, True), ("0.0008", 0.00086, False)],
 )
 def test_the_last_printed_digit_decides(printed: str, own: float, same: bool) -> None:
-    assert Compared(printed, own).same == same
+    assert ComparedNumber(printed, own).same == same

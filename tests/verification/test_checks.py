@@ -99,13 +99,13 @@ def test_beyond_that_an_integration_looks(monkeypatch):
     truth = known_outputs(lower(scene), independent_model(scene, lower(scene)))
     integrals = [outcome.integral for outcome in integrations.collocation_beyond(truth)]
     assert all(outcome.passed for outcome in compare_programs(scene, truth, integrals, [Request("march")]))
-    right_module = programs.imported
+    right_module = programs.import_text
 
     def late(text, name):
         module = right_module(text, name)
         return SimpleNamespace(evaluate=lambda tau: module.evaluate(tau) * (1 + 1e-4 * (tau > truth.until + 1)))
 
-    monkeypatch.setattr(programs, "imported", late)
+    monkeypatch.setattr(programs, "import_text", late)
     wrong = compare_programs(scene, truth, integrals, [Request("march")])
     assert [(outcome.subject, outcome.passed) for outcome in wrong] == [("march, NumPy", False), ("march, C", True)]
     assert all(compared(scene, truth, "march"))  # without an integration it is not seen

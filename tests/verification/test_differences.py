@@ -66,7 +66,7 @@ def errors(first, finer, scene, until):
 @FOUR
 def test_the_order_is_two(scene):
     first = grid(lower(scene))
-    assert first.aligned
+    assert first.is_aligned
     for coarse, fine in pairwise(errors(first, (1, 2, 4), scene, 6.0)):
         seen = fine > 1e-10
         assert np.count_nonzero(seen) > len(seen) / 2
@@ -124,7 +124,7 @@ def test_a_front_is_as_sharp_as_it_is():
 def test_fronts_off_the_grid_are_kept_away_from_and_allowed_for():
     scene = building({"times": ["517/1009"], "a": [1], "b": [0]}, base="force", strain=["1/2"], velocity=[1], until=5)
     first = grid(lower(scene))
-    assert not first.aligned
+    assert not first.is_aligned
     front = 517 / 1009 + 0.5
     assert min(abs(first.tau(k) - front) for k in first.instants(5.0)) >= 1 / first.cells
     for outcome in integrations.differences(known_outputs(lower(scene))):

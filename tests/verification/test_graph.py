@@ -80,7 +80,7 @@ def test_collocation_agrees_to_rounding() -> None:
 def test_a_grid_has_every_front_load_and_output_on_it() -> None:
     coarsest = _grid(model())
     assert coarsest.problem.measure == Fraction(1, 2)
-    assert coarsest.aligned
+    assert coarsest.is_aligned
     assert [delay / coarsest.step for delay in coarsest.problem.delays] == list(coarsest.field.cells)
     assert min(coarsest.field.cells) >= 16
 
@@ -137,7 +137,7 @@ def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
         rows = (tuple(k if a == b else -k for b, k in enumerate(row)) for a, row in enumerate(law.stiffness))
         return replace(law, stiffness=tuple(rows))
 
-    monkeypatch.setattr(JointLaw, "of", wrong)
+    monkeypatch.setattr(JointLaw, "assemble", wrong)
     right = model()
     assert any(balance.error > balance.allowed for balance in balances(right))
     assert not all(outcome.passed for outcome in differences(known_outputs(right)))

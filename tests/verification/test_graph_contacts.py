@@ -16,9 +16,9 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link, Network
 from wavesym.scene import Scene, lower
 from wavesym.verification.checks import invariants
-from wavesym.verification.collocation import Undecided, integrate
+from wavesym.verification.collocation import UndecidedError, integrate
 from wavesym.verification.integrations import (
-    Happened,
+    ContactHistory,
     _grid,
     collocation,
     compare_events,
@@ -58,11 +58,11 @@ def test_collocation_finds_when_a_bar_bounces() -> None:
     assert [change.tau for change in found.changes] == pytest.approx(BOUNCES, abs=1e-12)
     fallen = 5 - 5 * np.array([0.5, 2, 3]) ** 2
     (probe,) = bouncing().probes
-    assert (found.at(probe, [0.5, 2.0, 3.0]) + fallen).tolist() == pytest.approx([3.75, 5 / 3, 40 / 9], abs=1e-12)
+    assert (found.evaluate(probe, [0.5, 2.0, 3.0]) + fallen).tolist() == pytest.approx([3.75, 5 / 3, 40 / 9], abs=1e-12)
 
 
 def test_central_differences_find_when_a_bar_bounces() -> None:
-    made = _grid(bouncing()).struck(5.0, MANY)
+    made = _grid(bouncing()).resolve_contacts(5.0, MANY)
     assert made is not None
     stepped, found = made
     assert [change.kind for change, _ in found] == ["closes", "opens"] * 2
@@ -76,7 +76,7 @@ def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None
     small = model([body, "contact", {"rod": length, "impedance": impedance}, "fixed"], 4 * length, velocity=["0-"])
     (change,) = integrate(problem_of(small), 4.0 * length, 12, 200).changes
     assert change.tau / length == pytest.approx(3.06766764161830635, rel=1e-12)
-    stepped = _grid(small).struck(4.0 * length, MANY)
+    stepped = _grid(small).resolve_contacts(4.0 * length, MANY)
     assert stepped is not None
     ((late, slack),) = stepped[1]
     assert abs(late.tau - change.tau) <= slack
@@ -119,9 +119,9 @@ def test_a_contact_without_force_may_part_by_nothing_on_a_grid() -> None:
     parted = [outcome for outcome in outcomes if outcome.cells["tau"] == "-"]
     assert parted
     struck = [(Change(0, "opens", 8.0), 0.1)]
-    methods = {"fronts": Happened([], 0.0), "grid": Happened(struck, 0.0)}
+    methods = {"fronts": ContactHistory([], 0.0), "grid": ContactHistory(struck, 0.0)}
     verdicts = {
-        "both see it": {"fronts": Happened(struck, 0.0), "grid": Happened(struck, 0.0)},
+        "both see it": {"fronts": ContactHistory(struck, 0.0), "grid": ContactHistory(struck, 0.0)},
         "only the grid": methods,
         "the grid alone": methods | {"fronts": None},
     }
@@ -135,7 +135,7 @@ def test_too_many_fronts_are_refused_in_a_line(monkeypatch: pytest.MonkeyPatch) 
     outcomes = [*collocation(seen), *contact_changes(seen)]
     assert all(outcome.passed for outcome in outcomes)
     assert any("3 panels end at tau" in outcome.note for outcome in outcomes)
-    with pytest.raises(Undecided):
+    with pytest.raises(UndecidedError):
         integrate(problem_of(on_a_bar()), 4.7, 8, 3)
 
 

@@ -121,7 +121,7 @@ def assert_same(scene: Scene) -> None:
     until = min(float(model.until), 3.0)
     taus = np.linspace(0, until, 23)
     motion = integrate(ours, until, 16)
-    read = (np.array([motion.at(reading, taus.tolist()) for reading in made.readings]) for made in (ours, theirs))
+    read = (np.array([motion.evaluate(reading, taus.tolist()) for reading in made.readings]) for made in (ours, theirs))
     ours_out, theirs_out = (made.outputs(values, taus) for made, values in zip((ours, theirs), read, strict=True))
     np.testing.assert_allclose(ours_out, theirs_out, rtol=1e-9, atol=1e-9)  # where programs have them
 

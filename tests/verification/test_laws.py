@@ -67,7 +67,7 @@ def joint(rule: JointRule) -> JointRule:
 
 
 def factor(law: Weights) -> Weights:
-    return law._replace(raised=Linear(FACTOR * law.raised.constant, FACTOR * law.raised.slope))
+    return law._replace(next_power=Linear(FACTOR * law.next_power.constant, FACTOR * law.next_power.slope))
 
 
 def stiffness(law: HarmonicLaw) -> HarmonicLaw:

@@ -31,7 +31,7 @@ from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
 from wavesym.verification.powers import steps
 
-BY_NAME = {system.name: system for preset in presets().values() for system in (*preset.variants, *preset.beside)}
+BY_NAME = {system.name: system for preset in presets().values() for system in (*preset.variants, *preset.companions)}
 FAMILIES = [
     pytest.param(BY_NAME[name], family, id=f"{name}-{family.rate}")
     for name, families in POWERS.items()
@@ -77,7 +77,7 @@ def places(family: PowerFamily, m: int) -> Iterator[tuple[PowerRow, Function]]:
 def stated(family: PowerFamily, row: PowerRow, m: int, rod: int, n: int, body: int, source: int) -> int:
     """The formula's highest power, -1 for none; where an odd time is left for ways there and back, nothing arrives."""
     at = {COUNT: m, INDEX: rod, INTERVAL: n, BODY: body, SOURCE: source}
-    budget, since = (int(value.xreplace(at)) for value in (row.budget, row.since))
+    budget, since = (int(value.xreplace(at)) for value in (row.budget, row.start))
     arrives = since >= 0 and since % 2 == 0
     return max(-1, budget // family.period) if arrives else -1
 

@@ -72,21 +72,21 @@ def line(model: Model) -> Line:
     if not np.array_equal(problem.ends, ends) or not alike or not problem.reads_outputs:
         raise UnservedError("system: rods that differ, branches or sums given, a line of equal rods expected")
     free = ~np.isin(np.arange(problem.points), problem.prescribed)
-    alpha, beta = (np.where(free, 2 * each, 0.0) for each in _beside(problem.impedance))
+    alpha, beta = (np.where(free, 2 * each, 0.0) for each in _adjacent(problem.impedance))
     return Line(
         inertia=problem.mass,
         alpha=alpha,
         beta=beta,
         gamma=np.where(free, np.diag(problem.damping) + (alpha + beta) / 2, 1.0),
         velocity=problem.velocity,
-        before=np.stack([_beside(problem.start_waves[:, 1])[0], _beside(problem.start_waves[:, 0])[1]]),
+        before=np.stack([_adjacent(problem.start_waves[:, 1])[0], _adjacent(problem.start_waves[:, 0])[1]]),
         events=problem.events,
         readings=tuple(Reading(each.quantity, each.rod, nearest(each.place)) for each in problem.readings),
         until=problem.until,
     )
 
 
-def _beside(rods: Array) -> tuple[Array, Array]:
+def _adjacent(rods: Array) -> tuple[Array, Array]:
     """A quantity of rods (m,) at the nodes: of the rod on the left, on the right; 0 where there is none."""
     return np.append(0.0, rods), np.append(rods, 0.0)
 
@@ -139,9 +139,9 @@ class SampleGrid:
 def in_c(grid: SampleGrid, problem: Line) -> Callable[[Line], Callable[[], Array]]:
     """A call that makes samples of a set of parameters, (outputs, count); compiled for the sizes of this scene."""
     out = np.empty((grid.outputs, grid.count))
-    function = _compiled(grid, problem).parameters_to_samples
+    function = _compile(grid, problem).parameters_to_samples
 
-    def of(chosen: Line) -> Callable[[], Array]:
+    def sampler(chosen: Line) -> Callable[[], Array]:
         arguments = grid.arguments(chosen)
         where = [address(argument) for argument in arguments]
         call = [*map(ctypes.c_void_p, where), ctypes.c_size_t(grid.count), ctypes.c_void_p(address(out))]
@@ -153,14 +153,14 @@ def in_c(grid: SampleGrid, problem: Line) -> Callable[[Line], Callable[[], Array
 
         return samples
 
-    return of
+    return sampler
 
 
 def peaks_in_c(grid: SampleGrid, problems: Sequence[Line]) -> Callable[[], Array]:
     """A call that makes the least and the greatest value of each output, (sets, outputs, 2), set by set."""
     rows, out = np.empty((grid.outputs, grid.count)), np.empty((len(problems), grid.outputs, 2))
     arguments = [np.stack(each) for each in zip(*map(grid.arguments, problems), strict=True)]
-    function = _compiled(grid, problems[0]).sets_to_peaks
+    function = _compile(grid, problems[0]).sets_to_peaks
     where = [ctypes.c_void_p(address(each)) for each in (*arguments, rows, out)]
     call = [ctypes.c_size_t(len(problems)), *where[:-2], ctypes.c_size_t(grid.count), *where[-2:]]
 
@@ -172,13 +172,13 @@ def peaks_in_c(grid: SampleGrid, problems: Sequence[Line]) -> Callable[[], Array
     return peaks
 
 
-def _compiled(grid: SampleGrid, problem: Line) -> ctypes.CDLL:
+def _compile(grid: SampleGrid, problem: Line) -> ctypes.CDLL:
     """For the sizes of a scene."""
     output, node, way, sign, lag = zip(*grid.terms, strict=True)
     windows, nodes = zip(*grid.events, strict=True) if grid.events else ((), ())
     integers = {"of_output": output, "of_node": node, "of_way": way, "of_lag": lag}
     integers |= {"event_window": windows, "event_node": nodes}
-    tables = "".join(f"const int {name}[] = {{{_listed(values)}}};\n" for name, values in integers.items())
+    tables = "".join(f"const int {name}[] = {{{_list_text(values)}}};\n" for name, values in integers.items())
     sizes = {
         "NODES": problem.nodes,
         "STEPS": grid.steps,
@@ -189,11 +189,11 @@ def _compiled(grid: SampleGrid, problem: Line) -> ctypes.CDLL:
         "STRIDE": grid.stride,
         "KINK": grid.kink,
     }
-    source = _SOURCE.read_text(encoding="utf-8") + tables + f"const double of_sign[] = {{{_listed(sign)}}};\n"
+    source = _SOURCE.read_text(encoding="utf-8") + tables + f"const double of_sign[] = {{{_list_text(sign)}}};\n"
     return library(source, (*FAST, *(f"-D{name}={value}" for name, value in sizes.items())))
 
 
-def _listed(values: Sequence[float]) -> str:
+def _list_text(values: Sequence[float]) -> str:
     return ", ".join(map(str, values)) or "0"
 
 
@@ -255,7 +255,7 @@ def _top(grid: SampleGrid, values: Array) -> Array:
     two before or after it."""
     at = values.argmax(axis=-1)
 
-    def since(begin: NDArray[np.intp], way: int) -> Array:
+    def rise(begin: NDArray[np.intp], way: int) -> Array:
         """How much higher a parabola from a sample on is than it."""
         places = (np.clip(begin + k * way, 0, grid.count - 1)[..., np.newaxis] for k in range(3))
         first, one, two = (np.take_along_axis(values, place, axis=-1)[..., 0] for place in places)
@@ -264,5 +264,5 @@ def _top(grid: SampleGrid, values: Array) -> Array:
         return first + np.where(inside, rise**2 / (2 * np.where(inside, bend, 1.0)), 0.0)
 
     smooth = (at * grid.stride % grid.kink != 0) & (at + 1 < grid.count)
-    found = np.where(smooth, since(at - 1, 1), np.maximum(since(at, 1), since(at, -1)))
+    found = np.where(smooth, rise(at - 1, 1), np.maximum(rise(at, 1), rise(at, -1)))
     return np.asarray(np.maximum(found, values.max(axis=-1)))

@@ -25,7 +25,7 @@ _DIGITS = range(4, 15)
 
 
 @dataclass(frozen=True)
-class Fitted:
+class FittedPieces:
     """A scene's pieces at some tolerance, whatever its own is."""
 
     scene: Scene
@@ -52,20 +52,20 @@ class Fitted:
         return sources(program(self.model, self.form), "c")
 
 
-def fitted(scene: Scene, tolerance: fmpq) -> Fitted:
+def fit_pieces(scene: Scene, tolerance: fmpq) -> FittedPieces:
     """The pieces of a scene at a tolerance."""
     model = lower(scene).tolerating(tolerance)
     form = choose(model, "pieces").evaluator
     assert isinstance(form, Pieces)
-    return Fitted(scene, model, form)
+    return FittedPieces(scene, model, form)
 
 
-def at_degree(scene: Scene, degree: float) -> Fitted:
+def at_degree(scene: Scene, degree: float) -> FittedPieces:
     """The pieces of a scene at that tolerance of 1e-4, 1e-5, ... 1e-14 at which their degree is nearest."""
-    return min((fitted(scene, fmpq(1, 10**digits)) for digits in _DIGITS), key=lambda one: abs(one.degree - degree))
+    return min((fit_pieces(scene, fmpq(1, 10**digits)) for digits in _DIGITS), key=lambda one: abs(one.degree - degree))
 
 
-def ratios(one: Fitted, other: Fitted, flags: tuple[str, ...]) -> Iterator[float]:
+def ratios(one: FittedPieces, other: FittedPieces, flags: tuple[str, ...]) -> Iterator[float]:
     """Time a value over time a value of the `other`: with as many samples, and with as many on a piece."""
     per_piece = SAMPLES * one.count // other.count
     calls = [

@@ -30,7 +30,7 @@ _GROUP = 25  # sets that NumPy takes at once: waves of more of them do not fit i
 Peaks = Callable[[], Array]
 
 
-def varied(scene: Scene, sets: int) -> list[Scene]:
+def varied_scenes(scene: Scene, sets: int) -> list[Scene]:
     """The scenes of a sweep."""
     values = (FIRST + (LAST - FIRST) * Fraction(k, sets - 1) for k in range(sets))
     return [scene.with_({"system.kappa[1]": str(value)}) for value in values]
@@ -43,7 +43,7 @@ def kappa_of(scene: Scene) -> list[float]:
 
 def rows(scene: Scene) -> Iterator[Sequence[str]]:
     """How many sets, way, seconds, sets a second, error."""
-    scenes = varied(scene, SETS)
+    scenes = varied_scenes(scene, SETS)
     model, kappa = _model(scene), np.array([kappa_of(one) for one in scenes])
     true = best_known(scene, kappa)
     repeated = np.tile(kappa, (MANY // SETS, 1))

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from tools.bench import many_sets, panels, parameters, recorded, streamed, swept
+from tools.bench import many_sets, panels, parameters, record_response, streaming, sweeps
 from tools.bench.commands import ran
-from tools.bench.equal_degree import Fitted, at_degree, fitted, ratios
+from tools.bench.equal_degree import FittedPieces, at_degree, fit_pieces, ratios
 from tools.bench.harness import CALLS, EVERY, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.floor import floor
 from wavesym.lab.timing import least, medians
@@ -26,7 +26,7 @@ from wavesym.programs.choice import choose
 from wavesym.programs.making import make
 from wavesym.programs.piece_grid import Pieces
 from wavesym.programs.request import Request
-from wavesym.running.compiled import imported
+from wavesym.running.compilation import import_text
 from wavesym.running.native import FAST
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
@@ -139,16 +139,17 @@ def _records(folder: Path) -> Iterator[str]:
     """Records, one and many, streams, and sweeps."""
     yield "## A record"
     yield ""
-    yield f"Ten storeys, damped, 31 outputs at all {recorded.SAMPLES} samples, from the model of the scene on. Errors"
+    samples = record_response.SAMPLES
+    yield f"Ten storeys, damped, 31 outputs at all {samples} samples, from the model of the scene on. Errors"
     yield "are those of the worst output, of its largest value, against modes to a thirtieth of the tolerance (1e-6)."
     yield ""
-    yield from _table(("way", "s", "error"), recorded.rows())
+    yield from _table(("way", "s", "error"), record_response.rows())
     yield ""
     yield "## El Centro"
     yield ""
     yield "All floors of a damped steel frame: of `run`, start-up included, at all samples of the record; and of parts."
     yield ""
-    yield from _table(("what", "time", "peak MB", "modes"), streamed.rows(folder.parent / "examples" / "records"))
+    yield from _table(("what", "time", "peak MB", "modes"), streaming.rows(folder.parent / "examples" / "records"))
     yield ""
     yield "## Streams"
     yield ""
@@ -162,21 +163,21 @@ def _records(folder: Path) -> Iterator[str]:
         yield "Whole commands, start-up included: 5 storeys, damped, 3000 samples, true peaks of 16 outputs; a drive of"
         yield "three shafts to tau = 40, true peaks of three strains at 1e-6."
         yield ""
-        yield from _table(("what", "by", "s", "busy s", "peak MB"), swept.rows())
+        yield from _table(("what", "by", "s", "busy s", "peak MB"), sweeps.rows())
         yield ""
         yield "As the drive's sweep grows, over two kappa:"
         yield ""
-        yield from _table(("cases", "s", "busy s", "peak MB", "peak MB of a worker"), swept.growth())
+        yield from _table(("cases", "s", "busy s", "peak MB", "peak MB of a worker"), sweeps.growth())
         yield ""
         yield "What a sweep of records is made of; a batch is 44 of them through one structure."
         yield ""
-        yield from _table(("what", "how much"), swept.overheads())
+        yield from _table(("what", "how much"), sweeps.overheads())
     yield ""
     yield "## Many sets"
     yield ""
     yield "The peaks of that drive from kappa on, compiling apart. Grids by hand are the coarsest that keep 1e-6."
     yield ""
-    yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(swept.drive()))
+    yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(sweeps.drive()))
 
 
 def _machine() -> Iterator[str]:
@@ -207,10 +208,10 @@ def _table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> Iterator[str
 def _evaluating(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
     for label, each in given.items():
         made = files(make(lower(each), Request(evaluator="pieces")), "all")
-        module = imported(made[f"{each.name}.py"], each.name)
+        module = import_text(made[f"{each.name}.py"], each.name)
         form = choose(lower(each), "pieces").evaluator
         assert isinstance(form, Pieces)
-        outputs, degree = len(each.outputs), Fitted(each, lower(each), form).degree
+        outputs, degree = len(each.outputs), FittedPieces(each, lower(each), form).degree
         taus = np.linspace(0.0, form.tau_max, SAMPLES)
         for compiler in compilers():
             for flags in EVERY:
@@ -255,7 +256,7 @@ def _sampling(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
 
 
 def _at_equal_degree(collision: Scene, chains: dict[str, Scene]) -> Iterator[Sequence[str]]:
-    other = fitted(collision, rational(collision.output.tolerance))
+    other = fit_pieces(collision, rational(collision.output.tolerance))
     for label, chain in chains.items():
         one = at_degree(chain, other.degree)
         for compiler in compilers():
@@ -268,18 +269,18 @@ def _at_equal_degree(collision: Scene, chains: dict[str, Scene]) -> Iterator[Seq
 
 def _generating(folder: Path) -> Iterator[Sequence[str]]:
     for label in NAMED + CHAINS:
-        yield _generated(f"{label}, as above", (folder / f"{label.lower()}.toml").read_text(encoding="utf-8"))
+        yield _generate_row(f"{label}, as above", (folder / f"{label.lower()}.toml").read_text(encoding="utf-8"))
     shafts = [f"{20 + i}/40" for i in range(49)]
     discs = [f"{30 + (7 * i) % 23}/30" for i in range(50)]
     drive = {"type": "drive", "m": 49, "kappa": shafts, "inertia": discs}
     load = {"body": 1, "times": [0], "steps": [1]}
     train = scene("discs", 100, drive, [load], strain=["1/2", "49/2"], velocity=["97/2"])
-    yield _generated("drive of 50 unequal discs to tau = 100", _toml(train))
-    yield _generated("50 unequal rods, lengths 9/10 to 13/10, to tau = 50", _toml(_rods()))
+    yield _generate_row("drive of 50 unequal discs to tau = 100", _toml(train))
+    yield _generate_row("50 unequal rods, lengths 9/10 to 13/10, to tau = 50", _toml(_rods()))
     tower = {"type": "building", "m": 10, "kappa": ["1/100"] * 11, "base": "ground"}
     step = {"times": [0], "a": [1], "b": [0]}
     tall = scene("tower", 20_000, tower, [step], tolerance="1e-6", strain=["1/2"], velocity=[10])
-    yield _generated("building of 10 storeys to tau = 20 000", _toml(tall), "march")
+    yield _generate_row("building of 10 storeys to tau = 20 000", _toml(tall), "march")
     made = files(make(lower(tall), Request(evaluator="march")))
     for flags, seconds in zip(EVERY, medians([many(tall, made, flags, calls=1) for flags in EVERY]), strict=True):
         yield f"one run of its C, 10 001 samples, `{' '.join(flags)}`", f"{seconds:.3f}", "", "march"
@@ -308,7 +309,7 @@ def _rods() -> Scene:
     return scene("rods", 50, {"type": "chain", "parts": parts}, [push], velocity=["first"])
 
 
-def _generated(label: str, text: str, evaluator: str = "auto") -> Sequence[str]:
+def _generate_row(label: str, text: str, evaluator: str = "auto") -> Sequence[str]:
     """Wall time and peak memory of `wavesym generate`, start-up included, and what it chose."""
     with TemporaryDirectory() as directory:
         path = Path(directory, "scene.toml")

@@ -14,9 +14,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tools.portable import fuzz, misra, prove, targets
+from tools.portable.answers import FOLDER as KEPT
 from tools.portable.external import absent, version
-from tools.portable.kept import FOLDER as KEPT
-from tools.portable.page import between, put, table
+from tools.portable.page import marked_text, put, table
 from tools.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.writing import write_whole
 
@@ -40,23 +40,23 @@ def main(what: str, page: Path, seconds: str = "0") -> int:
         folder = Path(name)
         match what:
             case "prove":
-                made = table(prove.HEAD, _told(prove.rows(PROVED, folder, KEPT, failed)))
+                made = table(prove.HEAD, _report_rows(prove.rows(PROVED, folder, KEPT, failed)))
                 told = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
             case "misra":
-                seen = misra.every(CHECKED, folder, KEPT)
-                made = table(misra.HEAD, _told(misra.rows(seen, failed)))
+                seen = misra.all_findings(CHECKED, folder, KEPT)
+                made = table(misra.HEAD, _report_rows(misra.rows(seen, failed)))
                 write_whole({page.with_name(misra.LIST): misra.by_function(seen)})
                 told = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
             case "fuzz":
                 assert clang
                 learning = Path("build", "fuzz").resolve()  # the next run goes on with what this one has learnt
                 made = table(
-                    fuzz.HEAD, _told(fuzz.rows(fuzz.FUZZED, clang, learning, fuzz.CORPUS, int(seconds), failed))
+                    fuzz.HEAD, _report_rows(fuzz.rows(fuzz.FUZZED, clang, learning, fuzz.CORPUS, int(seconds), failed))
                 )
                 told = f"{fuzz.tool(clang)}."
             case _:
-                found = list(_told(targets.rows(COMPILED, targets.TARGETS, folder, KEPT, failed)))
-                lines = targets.status(found, targets.TARGETS, proved(page))
+                found = list(_report_rows(targets.rows(COMPILED, targets.TARGETS, folder, KEPT, failed)))
+                lines = targets.status(found, targets.TARGETS, proved_programs(page))
                 made = f"{table(targets.STATUS_HEAD, lines)}\n{table(targets.HEAD, found)}"
                 told = f"{targets.compiler()}, `-Os`."
     put(page, what, f"{told}\n\n{made}")
@@ -64,14 +64,14 @@ def main(what: str, page: Path, seconds: str = "0") -> int:
     return 1 if failed else 0
 
 
-def proved(page: Path) -> set[str]:
+def proved_programs(page: Path) -> set[str]:
     """The programs in the table of `make prove`, none of whose rows has an alarm."""
-    lines = between(page.read_text(encoding="utf-8"), "prove").splitlines()[4:]
+    lines = marked_text(page.read_text(encoding="utf-8"), "prove").splitlines()[4:]
     rows = [(line.strip("| ").split(" | ")[0], line.endswith("| 0 |")) for line in lines]
     return {name for name, _ in rows} - {name for name, fine in rows if not fine}
 
 
-def _told(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
+def _report_rows(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
     """The rows, each on standard error when it is there."""
     for row in rows:
         print(*row, sep="  ", file=sys.stderr, flush=True)

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 
-class Said(NamedTuple):
+class CommandResult(NamedTuple):
     """How a program ended (None: stopped, since it took too long), and what it printed and complained of."""
 
     status: int | None
-    out: str
+    output: str
     errors: str
 
 
@@ -23,7 +23,7 @@ def absent(*programs: str) -> list[str]:
     return [program for program in programs if not shutil.which(program)]
 
 
-def started(command: Sequence[str], folder: Path, seconds: float) -> Said:
+def run_command(command: Sequence[str], folder: Path, seconds: float) -> CommandResult:
     """Run a command in a folder, for so long at most."""
     try:
         done = subprocess.run(
@@ -37,8 +37,8 @@ def started(command: Sequence[str], folder: Path, seconds: float) -> Said:
             timeout=seconds,
         )
     except subprocess.TimeoutExpired:
-        return Said(None, "", f"{command[0]}: stopped after {seconds:g} s")
-    return Said(done.returncode, done.stdout, done.stderr)
+        return CommandResult(None, "", f"{command[0]}: stopped after {seconds:g} s")
+    return CommandResult(done.returncode, done.stdout, done.stderr)
 
 
 def version(program: str) -> str:

@@ -14,7 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from tools.portable.external import started, version
+from tools.portable.external import run_command, version
 from tools.portable.subjects import CHECKED, PortableProgram
 from wavesym.running.toolchain import CompilerError
 from wavesym.writing import write_whole
@@ -47,7 +47,7 @@ class FuzzedProgram(NamedTuple):
         """What its folder is called."""
         return f"{self.subject.name}_{self.driver}"
 
-    def called(self, folder: Path) -> list[str]:
+    def called_functions(self, folder: Path) -> list[str]:
         """What is called of it, without the program's name before it; its files are in the folder."""
         where, name = folder / self.name, self.subject.name
 
@@ -66,7 +66,7 @@ class FuzzedProgram(NamedTuple):
             (where / file).write_text(text, encoding="utf-8")
         for file in (*_SHARED, f"{self.driver}.c"):
             (where / file).write_text(
-                self.subject.spelt((_DRIVERS / file).read_text(encoding="utf-8")), encoding="utf-8"
+                self.subject.instantiate((_DRIVERS / file).read_text(encoding="utf-8")), encoding="utf-8"
             )
         return where
 
@@ -107,7 +107,7 @@ class FuzzVerdict(NamedTuple):
     """Of one run: how often the program was called, and what was found, "" for nothing."""
 
     executions: int
-    found: str
+    finding: str
 
 
 def fuzzer() -> str | None:
@@ -115,7 +115,7 @@ def fuzzer() -> str | None:
     for clang in filter(shutil.which, CLANGS):
         with TemporaryDirectory() as folder:
             (Path(folder) / "tried.c").write_text(_TRIED, encoding="utf-8")
-            made = started([clang, *_WITH_FUZZER, "tried.c", "-o", "tried"], Path(folder), _COMPILING)
+            made = run_command([clang, *_WITH_FUZZER, "tried.c", "-o", "tried"], Path(folder), _COMPILING)
         if made.status == 0:
             return clang
     return None
@@ -127,7 +127,7 @@ def inputs(corpus: Path, driver: str) -> list[bytes]:
     return [bytes.fromhex(line) for line in file.read_text(encoding="ascii").splitlines()] if file.is_file() else []
 
 
-def unpacked(corpus: Path, driver: str, folder: Path) -> list[Path]:
+def unpack_corpus(corpus: Path, driver: str, folder: Path) -> list[Path]:
     """The same as files in a folder, which is made."""
     folder.mkdir(parents=True, exist_ok=True)
     files = []
@@ -140,13 +140,13 @@ def unpacked(corpus: Path, driver: str, folder: Path) -> list[Path]:
 def fuzz(program: FuzzedProgram, clang: str, folder: Path, corpus: Path, seconds: int) -> FuzzVerdict:
     """Let libFuzzer call a program for so long, from the bytes in `corpus` on, and what it has learnt in `folder`."""
     where = program.write(folder)
-    made = started(program.command(clang, _WITH_FUZZER), where, _COMPILING)
+    made = run_command(program.command(clang, _WITH_FUZZER), where, _COMPILING)
     if made.status != 0:
         raise CompilerError(made.errors)
     (where / "learnt").mkdir(exist_ok=True)
     options = (f"-max_total_time={seconds}", f"-max_len={program.longest}", "-len_control=0", f"-timeout={_SLOWEST}")
-    unpacked(corpus, program.driver, where / "kept")
-    said = started(
+    unpack_corpus(corpus, program.driver, where / "kept")
+    said = run_command(
         ["./run", *options, "-print_final_stats=1", "learnt", "kept"], where, seconds + 2 * _SLOWEST + _COMPILING
     )
     count = re.search(r"number_of_executed_units: (\d+)", said.errors)
@@ -160,8 +160,8 @@ def keep(program: FuzzedProgram, folder: Path, corpus: Path) -> None:
     """Keep the bytes that get to lines which those in `corpus` do not get to."""
     where = folder / program.name
     with TemporaryDirectory() as name:
-        unpacked(corpus, program.driver, Path(name))
-        started(["./run", "-merge=1", "-use_counters=0", name, "learnt"], where, _COMPILING)
+        unpack_corpus(corpus, program.driver, Path(name))
+        run_command(["./run", "-merge=1", "-use_counters=0", name, "learnt"], where, _COMPILING)
         found = {file.read_bytes() for file in Path(name).iterdir()}
     lines = [f"{data.hex()}\n" for data in sorted(found, key=lambda data: (len(data), data))]
     write_whole({corpus / f"{program.driver}.hex": "".join(lines)})
@@ -175,17 +175,17 @@ def rows(
         runs = [pool.submit(fuzz, program, clang, folder, corpus, seconds) for program in programs]
         for program, run in zip(programs, runs, strict=True):
             found = run.result()
-            if found.found:
-                failed.append(f"{program.name}: {found.found}")
+            if found.finding:
+                failed.append(f"{program.name}: {found.finding}")
             else:
                 keep(program, folder, corpus)
             yield (
                 program.subject.name,
-                f"`{program.subject.asked}`",
-                ", ".join(f"`{name}`" for name in program.called(folder)),
+                f"`{program.subject.generate_command}`",
+                ", ".join(f"`{name}`" for name in program.called_functions(folder)),
                 str(seconds),
                 str(found.executions),
-                "1" if found.found else "0",
+                "1" if found.finding else "0",
             )
 
 
@@ -197,13 +197,13 @@ def tool(clang: str) -> str:
 def replayer(program: FuzzedProgram, compiler: str, folder: Path, sanitizers: Sequence[str] = SANITIZED) -> Path:
     """A program that is given files and calls what the fuzzer called with their bytes. CompilerError."""
     where = program.write(folder)
-    made = started(program.command(compiler, sanitizers, "replay.c"), where, _COMPILING)
+    made = run_command(program.command(compiler, sanitizers, "replay.c"), where, _COMPILING)
     if made.status != 0:
         raise CompilerError(made.errors)
     return where / "run"
 
 
-def replayed(run: Path, files: Sequence[Path]) -> str:
+def replay(run: Path, files: Sequence[Path]) -> str:
     """What does not hold for these bytes; "" where all does."""
-    said = started([str(run), *map(str, files)], run.parent, _COMPILING)
+    said = run_command([str(run), *map(str, files)], run.parent, _COMPILING)
     return "" if said.status == 0 else "; ".join(_SAID.findall(said.errors)) or said.errors[-500:] or f"{said.status}"

@@ -10,8 +10,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-from tools.portable.external import started, version
-from tools.portable.kept import kept
+from tools.portable.answers import cached_answer
+from tools.portable.external import run_command, version
 from tools.portable.subjects import PortableProgram
 
 TOOL = "cppcheck"
@@ -55,7 +55,7 @@ def findings(subject: PortableProgram, folder: Path) -> list[MisraFinding]:
     texts = {file: text.splitlines() for file, text in subject.files().items()}
     for file, lines in texts.items():
         (folder / file).write_text("\n".join((*lines, "")), encoding="utf-8")
-    said = started([*_COMMAND, f"{subject.name}.c"], folder, _SECONDS)
+    said = run_command([*_COMMAND, f"{subject.name}.c"], folder, _SECONDS)
     if said.status != 0:
         raise RuntimeError(f"{subject.name}: {said.errors[-500:]}")
     found = re.findall(r"^(\S+):(\d+):(\S+)$", said.errors, re.MULTILINE)
@@ -79,24 +79,24 @@ def function_at(lines: Sequence[str], number: int) -> str:
     return ""
 
 
-def every(subjects: Sequence[PortableProgram], folder: Path, kept_in: Path) -> list[MisraFinding]:
+def all_findings(subjects: Sequence[PortableProgram], folder: Path, kept_in: Path) -> list[MisraFinding]:
     """The findings in all programs, each looked at by itself."""
     tool = version(TOOL)
 
-    def of(subject: PortableProgram) -> list[MisraFinding]:
+    def findings_of(subject: PortableProgram) -> list[MisraFinding]:
         own = folder / subject.name
         own.mkdir()
         question = (tool, *_COMMAND, _FUNCTION.pattern, *subject.files().values())
-        return [MisraFinding(*found) for found in kept(kept_in, question, lambda: findings(subject, own))]
+        return [MisraFinding(*found) for found in cached_answer(kept_in, question, lambda: findings(subject, own))]
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return [finding for found in pool.map(of, subjects) for finding in found]
+        return [finding for found in pool.map(findings_of, subjects) for finding in found]
 
 
 def rows(found: Sequence[MisraFinding], failed: list[str]) -> Iterator[tuple[str, ...]]:
     """A row for each rule; findings that no deviation allows are added to `failed`, and deviations without one."""
     allowed = deviations()
-    failed += unreviewed(found, allowed)
+    failed += unreviewed_findings(found, allowed)
     counted = Counter(finding.rule for finding in found)
     failed += [
         f"rule {rule}: a deviation is listed, and there is no finding" for rule in allowed.keys() - counted.keys()
@@ -112,7 +112,7 @@ def by_function(found: Iterable[MisraFinding]) -> str:
     return "".join(f"{','.join(line)}\n" for line in (LIST_HEAD, *((*key, str(counted[key])) for key in lines)))
 
 
-def unreviewed(found: Iterable[MisraFinding], allowed: dict[str, str]) -> list[str]:
+def unreviewed_findings(found: Iterable[MisraFinding], allowed: dict[str, str]) -> list[str]:
     """The findings that no deviation allows."""
     return [
         f"{finding.place}, {finding.function or 'outside of functions'}: {finding.rule} is not kept, and no deviation "

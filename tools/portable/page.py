@@ -16,19 +16,19 @@ def table(head: Sequence[str], rows: Rows) -> str:
     return "".join(f"| {' | '.join(row)} |\n" for row in (head, ["---"] * len(head), *rows))
 
 
-def between(text: str, name: str) -> str:
+def marked_text(text: str, name: str) -> str:
     """What stands between the marks of a name. ValueError where there are none."""
-    return _found(text, name)[2]
+    return _match(text, name)[2]
 
 
 def put(page: Path, name: str, made: str) -> None:
     """Put what was made between the marks of a name, and leave all else."""
     text = page.read_text(encoding="utf-8")
-    found = _found(text, name)
+    found = _match(text, name)
     write_whole({page: text[: found.start(2)] + made + text[found.end(2) :]})
 
 
-def _found(text: str, name: str) -> re.Match[str]:
+def _match(text: str, name: str) -> re.Match[str]:
     marks = re.compile(rf"(<!-- written by `make {name}` -->\n)(.*?)(<!-- end -->)", re.DOTALL)
     found = marks.search(text)
     if found is None:

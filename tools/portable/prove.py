@@ -13,8 +13,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-from tools.portable.external import started, version
-from tools.portable.kept import kept
+from tools.portable.answers import cached_answer
+from tools.portable.external import run_command, version
 from tools.portable.subjects import PortableProgram
 
 TOOL = "frama-c"
@@ -62,24 +62,24 @@ class ProofVerdict(NamedTuple):
     alarms: int | None
     reached: int
     statements: int
-    told: list[str]
+    alarm_texts: list[str]
 
 
 def command(subject: PortableProgram) -> list[str]:
     """The prover with the options that a program needs."""
-    return [TOOL, *_OPTIONS, *(subject.spelt(option) for option in _EFFORTS[subject.effort])]
+    return [TOOL, *_OPTIONS, *(subject.instantiate(option) for option in _EFFORTS[subject.effort])]
 
 
 def verdict(subject: PortableProgram, count: int, machine: str, folder: Path) -> ProofVerdict:
     """Prove a program, whose files are in `folder`, under its driver."""
     driver = f"{subject.name}_{subject.driver}_{count}_{machine}_driver.c"
-    (folder / driver).write_text(subject.driven(count), encoding="utf-8")
-    said = started([*command(subject), "-machdep", machine, driver, f"{subject.name}.c"], folder, _SECONDS)
-    found = re.search(r"(\d+) alarms? generated", said.out)
-    covered = re.search(r"(\d+) statements reached \(out of (\d+)\)", said.out)
+    (folder / driver).write_text(subject.driver_text(count), encoding="utf-8")
+    said = run_command([*command(subject), "-machdep", machine, driver, f"{subject.name}.c"], folder, _SECONDS)
+    found = re.search(r"(\d+) alarms? generated", said.output)
+    covered = re.search(r"(\d+) statements reached \(out of (\d+)\)", said.output)
     if said.status != 0 or not found or not covered:
-        return ProofVerdict(None, 0, 0, [said.errors or said.out[-500:]])
-    told = re.findall(r"^\[eva:alarm\] (.*?): Warning:\s*(.*(?:\n  .*)*)", said.out, re.MULTILINE)
+        return ProofVerdict(None, 0, 0, [said.errors or said.output[-500:]])
+    told = re.findall(r"^\[eva:alarm\] (.*?): Warning:\s*(.*(?:\n  .*)*)", said.output, re.MULTILINE)
     alarms = [f"{place}: {' '.join(what.split())}" for place, what in told]
     return ProofVerdict(int(found[1]), int(covered[1]), int(covered[2]), alarms)
 
@@ -94,27 +94,27 @@ def rows(
         for file, text in files.items():
             (folder / file).write_text(text, encoding="utf-8")
 
-    def asked(subject: PortableProgram, machine: str, count: int) -> ProofVerdict:
-        question = (tool, *command(subject), machine, subject.driven(count), *texts[subject.name].values())
+    def ask(subject: PortableProgram, machine: str, count: int) -> ProofVerdict:
+        question = (tool, *command(subject), machine, subject.driver_text(count), *texts[subject.name].values())
 
         def answer() -> ProofVerdict:
             return verdict(subject, count, machine, folder)
 
-        return ProofVerdict(*kept(kept_in, question, answer, worth=lambda found: found.alarms is not None))
+        return ProofVerdict(*cached_answer(kept_in, question, answer, worth=lambda found: found.alarms is not None))
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         runs = [
-            [pool.submit(asked, subject, machine, count) for machine in MACHINES for count in subject.counts or (0,)]
+            [pool.submit(ask, subject, machine, count) for machine in MACHINES for count in subject.counts or (0,)]
             for subject in subjects
         ]
         for subject, run in zip(subjects, runs, strict=True):
             found = [one.result() for one in run]
             alarms = [one.alarms for one in found]
-            failed += [f"{subject.name}, {subject.driver}: {line}" for one in found for line in one.told]
+            failed += [f"{subject.name}, {subject.driver}: {line}" for one in found for line in one.alarm_texts]
             yield (
                 subject.name,
-                f"`{subject.asked}`",
-                ", ".join(f"`{name}`" for name in subject.called),
+                f"`{subject.generate_command}`",
+                ", ".join(f"`{name}`" for name in subject.called_functions),
                 ", ".join(map(str, subject.counts)) or "",
                 f"{max(one.reached for one in found)} of {max(one.statements for one in found)}",
                 "not finished" if None in alarms else str(max(one for one in alarms if one is not None)),

@@ -50,7 +50,7 @@ class PortableProgram:
         return replace(self, request=replace(self.request, precision="single"))
 
     @property
-    def asked(self) -> str:
+    def generate_command(self) -> str:
         """The command that makes it, but for name and tolerance."""
         return f"generate {self.scene}{self.request.options}"
 
@@ -60,7 +60,7 @@ class PortableProgram:
         return self.template == "closed"
 
     @property
-    def called(self) -> tuple[str, ...]:
+    def called_functions(self) -> tuple[str, ...]:
         """What the driver calls of it, without the program's name before it."""
         return tuple(dict.fromkeys(re.findall(r"\bname_(\w+)\(", self._driver)))
 
@@ -72,12 +72,12 @@ class PortableProgram:
         """NAME.h, NAME.c, NAME_selftest.c."""
         return {file: text for file, text in files(self._program()).items() if not file.endswith(".json")}
 
-    def driven(self, count: int) -> str:
+    def driver_text(self, count: int) -> str:
         """The driver for this program, as targets/c/kernel.py makes C of a kernel."""
-        text = self.spelt(self._driver.partition("\n\n")[2])
+        text = self.instantiate(self._driver.partition("\n\n")[2])
         return f'#include "{self.name}.h"\n#define COUNT {count}\n\n{text}'
 
-    def spelt(self, text: str) -> str:
+    def instantiate(self, text: str) -> str:
         """C for a program called `name`, with the name and the numbers of this one."""
         text = re.sub(r"\bname_real\b", "float" if self.request.precision == "single" else "double", text)
         return re.sub(r"\bname_", f"{self.name}_", re.sub(r"\bNAME_", f"{self.name.upper()}_", text))

@@ -13,8 +13,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
 
-from tools.portable.external import absent, started, version
-from tools.portable.kept import kept
+from tools.portable.answers import cached_answer
+from tools.portable.external import absent, run_command, version
 from tools.portable.prove import MACHINES
 from tools.portable.subjects import PortableProgram
 from wavesym.running.toolchain import CompilerError
@@ -118,10 +118,10 @@ def rows(
             where.mkdir(parents=True)
             for file, text in (*texts[subject.name].items(), ("selftest.mjs", _RUN_WASM)):
                 (where / file).write_text(text, encoding="utf-8")
-            size = compiled(subject, target, where)
+            size = compile_bare(subject, target, where)
             return ["yes", selftest(subject, target, where), *map(str, size)]
 
-        return target.name, subject.name, *kept(kept_in, question, answer)
+        return target.name, subject.name, *cached_answer(kept_in, question, answer)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         runs = [
@@ -156,14 +156,14 @@ def status(
         )
 
 
-def compiled(subject: PortableProgram, target: TargetMachine, folder: Path) -> MachineBytes:
+def compile_bare(subject: PortableProgram, target: TargetMachine, folder: Path) -> MachineBytes:
     """A program alone, compiled for a machine with nothing on it. CompilerError where that says a word, where there is
     data that can be written, where it calls what such a machine has not, and, in single precision, for doubles."""
     triple = target.hosted if subject.calls_exp else target.bare
     single = subject.request.precision == "single"
     flags = (*_STRICT, *(_NO_DOUBLES if single else ()), *target.options)
     frames = ("-Wframe-larger-than=0", "-Wno-error=frame-larger-than")  # tells the frame of each function
-    said = started(
+    said = run_command(
         [*_ZIG, "-target", triple, *flags, *frames, "-c", f"{subject.name}.c", "-o", "object"], folder, _SECONDS
     )
     warned = re.findall(r"^.*(?:warning|error): .*$", said.errors, re.MULTILINE)
@@ -181,20 +181,20 @@ def compiled(subject: PortableProgram, target: TargetMachine, folder: Path) -> M
     if size.data:
         raise CompilerError(f"{size.data} bytes of data that can be written")
     allowed = re.compile("|".join((_COPIES, _FRAMES, _INTEGERS, _FLOATS, *(() if single else (_DOUBLES,)))))
-    lacking = [name for name in undefined(folder / "object") if not allowed.fullmatch(name)]
+    lacking = [name for name in undefined_symbols(folder / "object") if not allowed.fullmatch(name)]
     if lacking and not subject.calls_exp:
         raise CompilerError(f"needs {', '.join(lacking)}")
     return size
 
 
-def undefined(file: Path) -> list[str]:
+def undefined_symbols(file: Path) -> list[str]:
     """What an object file calls of others; none is known of WebAssembly, where a self-test would not start."""
     if file.read_bytes().startswith(b"\0asm"):
         return []
-    listed = started(["nm", "-u", file.name], file.parent, _SECONDS)
+    listed = run_command(["nm", "-u", file.name], file.parent, _SECONDS)
     if listed.status != 0:
         raise CompilerError(listed.errors)
-    return [line.split()[-1] for line in listed.out.splitlines() if line.split()]
+    return [line.split()[-1] for line in listed.output.splitlines() if line.split()]
 
 
 def selftest(subject: PortableProgram, target: TargetMachine, folder: Path) -> str:
@@ -204,11 +204,11 @@ def selftest(subject: PortableProgram, target: TargetMachine, folder: Path) -> s
     if missing := absent(*(program for program in target.runner[:1] if not program.startswith("."))):
         return f"not run: no {missing[0]}"
     files = (f"{subject.name}.c", f"{subject.name}_selftest.c")
-    said = started([*_ZIG, "-target", target.hosted, *files, "-o", "selftest", "-lm"], folder, _SECONDS)
+    said = run_command([*_ZIG, "-target", target.hosted, *files, "-o", "selftest", "-lm"], folder, _SECONDS)
     if said.status == 0:
-        said = started(target.runner, folder, _SECONDS)
+        said = run_command(target.runner, folder, _SECONDS)
     if said.status != 0:
-        raise CompilerError(f"self-test: {said.out}{said.errors}")
+        raise CompilerError(f"self-test: {said.output}{said.errors}")
     return "passes"
 
 
@@ -217,7 +217,7 @@ def sections(file: Path) -> dict[str, int]:
     content = file.read_bytes()
     if content.startswith(b"\0asm"):
         return _wasm(content)
-    listed = started(["size", "-A", file.name], file.parent, _SECONDS).out
+    listed = run_command(["size", "-A", file.name], file.parent, _SECONDS).output
     words = [line.split() for line in listed.splitlines()]
     return {name: int(size) for name, size, *_ in (word for word in words if len(word) == 3 and word[1].isdigit())}
 

@@ -180,9 +180,9 @@ def check(scene: Scene, directory: str | PathLike[str] | None, request: Request,
 
 def _files(scene: Scene, directory: str | PathLike[str] | None, request: Request) -> dict[Path, str | bytes]:
     """The content of every file of a scene, by path."""
-    from wavesym.targets.files import files, tested
+    from wavesym.targets.files import files, has_selftest
 
-    made = program(scene, request, tested=not request.target and tested(request.language))
+    made = program(scene, request, tested=not request.target and has_selftest(request.language))
     folder = Path(directory or scene.name)
     if request.target:
         from wavesym.running.fmu import fmu

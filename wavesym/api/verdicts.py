@@ -58,7 +58,7 @@ def verify_derivation(watch: Callable[[list[System]], Iterable[System]] = iter) 
 
     `watch` goes through the systems as they are proved.
     """
-    from wavesym.verification.derived import derivation_report
+    from wavesym.verification.derivation_report import derivation_report
 
     return derivation_report(watch)
 

@@ -48,14 +48,14 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     with progress(f"chart {scene.name}") as line:
         from wavesym.lab.chart.drawing import draw
         from wavesym.lab.chart.measure import measure, to_csv
-        from wavesym.lab.chart.subjects import left_out
+        from wavesym.lab.chart.subjects import unsupported_methods
         from wavesym.pictures.saving import picture_format, save
         from wavesym.writing import write_whole
 
         picture_format(out)  # before the work, not after it
         measured = measure(scene, samples, line.tell)
         save(draw(scene, measured), out)
-    for each in left_out(scene):
+    for each in unsupported_methods(scene):
         click.echo(f"{scene.name}: left out: {each}", err=True)
     if table is not None:
         write_whole({table: to_csv(measured)})

@@ -69,7 +69,7 @@ def _solve_for(equation: Line, unknown: Wave) -> tuple[Operator, Line]:
     """`equation` = 0 as (own operator) unknown = right, on the clock of the unknown, own operator D + b or 1."""
     a, b = equation.waves[unknown]
     factor = a if a != 0 else b
-    right = equation.without(unknown).scale(-1 / factor).delayed(-unknown.lag)
+    right = equation.drop(unknown).scale(-1 / factor).delay(-unknown.lag)
     return Operator(exact(a / factor), exact((b / factor).expand())), right
 
 
@@ -128,7 +128,7 @@ def _at_node(node: Node, x: Expr) -> list[tuple[Wave, Operator, Line]]:
     _, continuous = _solve_for(ahead.velocity - other.velocity, ahead.outgoing)
     own, rest = _solve_for(_lawful(node, left, right, other), other.outgoing)
     if own.a == 0:
-        continuous = continuous.substituted(other.outgoing.function, other.rod, rest)
+        continuous = continuous.substitute(other.outgoing.function, other.rod, rest)
     return [(ahead.outgoing, Operator(Integer(0), Integer(1)), continuous), (other.outgoing, own, rest)]
 
 
@@ -142,14 +142,14 @@ def _family_equations(family: Family) -> list[DelayEquation]:
             continue
         # number the equation by its own rod: of the node at x = i, the right one is rod i + 1
         shift = unknown.rod - INDEX
-        place = Line({Wave(unknown.function, unknown.rod, Integer(0)): own}).renumbered(INDEX, INDEX - shift)
+        place = Line({Wave(unknown.function, unknown.rod, Integer(0)): own}).replace_index(INDEX, INDEX - shift)
         ((renumbered, operator),) = place.waves.items()
         equations.append(
             DelayEquation(
                 unknown.function,
                 renumbered.rod,
                 operator,
-                right.renumbered(INDEX, INDEX - shift),
+                right.replace_index(INDEX, INDEX - shift),
                 exact(family.first + shift),
                 exact(family.last + shift),
                 family.step,
@@ -171,7 +171,7 @@ def _without_echoes(equations: list[DelayEquation]) -> list[DelayEquation]:
             equations = [
                 other
                 if other is echo
-                else replace(other, right=other.right.substituted(echo.function, echo.rod, echo.right))
+                else replace(other, right=other.right.substitute(echo.function, echo.rod, echo.right))
                 for other in equations
             ]
     return equations

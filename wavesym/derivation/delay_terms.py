@@ -63,7 +63,7 @@ class Line:
     def __sub__(self, other: Line) -> Line:
         return self + other.scale(-1)
 
-    def delayed(self, lag: Expr) -> Line:
+    def delay(self, lag: Expr) -> Line:
         """The same line, `lag` later on every clock."""
         return Line(
             {wave._replace(lag=expand(wave.lag + lag)): operator for wave, operator in self.waves.items()},
@@ -76,31 +76,34 @@ class Line:
         assert all(s.kind == "impact" for s in self.loads)
         return Line({wave: Operator(b, Integer(0)) for wave, (_, b) in self.waves.items()})
 
-    def without(self, wave: Wave) -> Line:
+    def drop(self, wave: Wave) -> Line:
         """The rest of the line."""
         return Line({w: operator for w, operator in self.waves.items() if w != wave}, self.loads)
 
-    def substituted(self, function: str, rod: Expr, value: Line) -> Line:
+    def substitute(self, function: str, rod: Expr, value: Line) -> Line:
         """The line with `value`, which has no D, in place of every function `function` of rod `rod`."""
         result = self
         for wave, (a, b) in self.waves.items():
             if (wave.function, wave.rod) == (function, rod):
-                late = value.delayed(wave.lag)
-                result = result.without(wave) + late.scale(b)
+                late = value.delay(wave.lag)
+                result = result.drop(wave) + late.scale(b)
                 if a != 0:
                     result = result + late.differentiate().scale(a)
         return result
 
-    def renumbered(self, index: Expr, by: Expr) -> Line:
+    def replace_index(self, index: Expr, by: Expr) -> Line:
         """The line with `by` in place of the symbol `index`."""
 
-        def at(expression: Expr) -> Expr:
+        def replace(expression: Expr) -> Expr:
             return expand(expression.subs(index, by))
 
         return Line(
-            {Wave(w.function, at(w.rod), at(w.lag)): Operator(at(o.a), at(o.b)) for w, o in self.waves.items()},
             {
-                Source(s.kind, None if s.number is None else at(s.number), at(s.lag), s.power): at(value)
+                Wave(w.function, replace(w.rod), replace(w.lag)): Operator(replace(o.a), replace(o.b))
+                for w, o in self.waves.items()
+            },
+            {
+                Source(s.kind, None if s.number is None else replace(s.number), replace(s.lag), s.power): replace(value)
                 for s, value in self.loads.items()
             },
         )

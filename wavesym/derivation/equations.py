@@ -88,4 +88,4 @@ def _recurrence(law: CoefficientLaw) -> Relation:
 
 def _weighted_sum(function: str, rod: Expr, interval: Expr, w: SymbolicWeights) -> Expr:
     coefficient = COEFFICIENTS[function]
-    return w.same * coefficient[rod, interval, RATE, POWER] + w.raised * coefficient[rod, interval, RATE, POWER + 1]
+    return w.same * coefficient[rod, interval, RATE, POWER] + w.next_power * coefficient[rod, interval, RATE, POWER + 1]

@@ -65,7 +65,7 @@ def solve(own: Weights, right: Increment, jump: fmpq) -> Increment:
         closure = jump / own_jump - start(result)
         if closure != 0:
             add(result, {-s0 / s1: [closure]})
-    return trimmed(result)
+    return trim(result)
 
 
 def start(increment: Increment) -> fmpq:
@@ -73,7 +73,7 @@ def start(increment: Increment) -> fmpq:
     return sum((powers[0] for powers in increment.values()), _ZERO)
 
 
-def trimmed(increment: Increment) -> Increment:
+def trim(increment: Increment) -> Increment:
     """Without vanishing highest powers and empty rates."""
     if all(powers and powers[-1] != 0 for powers in increment.values()):
         return increment
@@ -94,7 +94,7 @@ def integrate(increment: Increment) -> Increment:
 
 def differentiate(increment: Increment) -> Increment:
     """The derivative, of an increment that does not jump: (k + 1) F[g,k+1] - g F[g,k]."""
-    return trimmed(
+    return trim(
         {
             rate: [
                 (k + 1) * after - rate * value
@@ -110,4 +110,4 @@ def combine(parts: Iterable[tuple[fmpq, Increment]]) -> Increment:
     total: Increment = {}
     for factor, part in parts:
         add(total, part, factor)
-    return trimmed(total)
+    return trim(total)

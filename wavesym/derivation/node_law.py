@@ -43,10 +43,12 @@ class NodeLaw:
             BETA: exact(node.beta if node.right else 0),
         }
 
-        def there(expression: Expr) -> Expr:
+        def substitute(expression: Expr) -> Expr:
             return expand(expression.subs(values, simultaneous=True))
 
-        return NodeLaw(Operator(*map(there, self.own)), there(self.left), there(self.right), there(self.load))
+        return NodeLaw(
+            Operator(*map(substitute, self.own)), substitute(self.left), substitute(self.right), substitute(self.load)
+        )
 
 
 def _balance(strain_left: Expr, strain_right: Expr) -> Expr:

@@ -33,10 +33,10 @@ _OWN = Symbol("q")
 
 @dataclass(frozen=True)
 class SymbolicWeights:
-    """(a D + b) on a coefficient: `same` times F[g,k] plus `raised` times F[g,k+1]; `jump` at a front."""
+    """(a D + b) on a coefficient: `same` times F[g,k] plus `next_power` times F[g,k+1]; `jump` at a front."""
 
     same: Expr
-    raised: Expr
+    next_power: Expr
     jump: Expr
 
 
@@ -136,7 +136,7 @@ class StretchLaw:
 def stretch_law(law: NodeLaw) -> StretchLaw:
     """What a node's law makes of powers: the ansatz at rate 0."""
     own = weights(law.own)
-    return StretchLaw(SymbolicWeights(own.same.subs(RATE, 0), own.raised, own.jump), law.left, law.right, law.load)
+    return StretchLaw(SymbolicWeights(own.same.subs(RATE, 0), own.next_power, own.jump), law.left, law.right, law.load)
 
 
 @cache
@@ -173,7 +173,7 @@ def factor_weights(rate: fmpq) -> Weights:
         return number(expression, {_OWN.name: rate}, None)
 
     law = _factor()
-    return Weights(_linear(law.same, RATE, value), _linear(law.raised, POWER, value), value(law.jump))
+    return Weights(_linear(law.same, RATE, value), _linear(law.next_power, POWER, value), value(law.jump))
 
 
 def coefficient_law(e: DelayEquation, interval: int) -> CoefficientLaw:
@@ -208,7 +208,7 @@ def _rule(law: CoefficientLaw, parameters: Parameters, places: Mapping[str, int]
         return number(expression, places, parameters)
 
     def exact(w: SymbolicWeights) -> Weights:
-        return Weights(_linear(w.same, RATE, value), _linear(w.raised, POWER, value), value(w.jump))
+        return Weights(_linear(w.same, RATE, value), _linear(w.next_power, POWER, value), value(w.jump))
 
     def source(kind: str, index: Expr | None) -> str:
         return kind if index is None else f"{kind}{_place(index, places)}"

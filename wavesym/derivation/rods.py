@@ -42,7 +42,7 @@ def _join_range(kinds: list[RodKind]) -> list[RodKind]:
     for alone in kinds:
         for many in kinds:
             next_to = exact(many.first - alone.last) == many.step or exact(alone.first - many.last) == many.step
-            if alone is not many and alone.number != INDEX and next_to and _at(many.rod, alone.number) == alone.rod:
+            if alone is not many and alone.number != INDEX and next_to and _rod_at(many.rod, alone.number) == alone.rod:
                 first = alone.first if exact(many.first - alone.last) == many.step else many.first
                 last = alone.last if exact(alone.first - many.last) == many.step else many.last
                 rest = [kind for kind in kinds if kind is not alone]
@@ -50,5 +50,5 @@ def _join_range(kinds: list[RodKind]) -> list[RodKind]:
     return kinds
 
 
-def _at(rod: Rod, i: Expr) -> Rod:
+def _rod_at(rod: Rod, i: Expr) -> Rod:
     return Rod(*(exact(value.subs(INDEX, i)) for value in (rod.tau0, rod.x0, rod.velocity)))

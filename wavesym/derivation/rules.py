@@ -30,7 +30,7 @@ class Weights(NamedTuple):
     """
 
     same: Linear
-    raised: Linear
+    next_power: Linear
     jump: fmpq
 
 

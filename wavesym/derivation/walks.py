@@ -42,7 +42,7 @@ class Unit(NamedTuple):
     right: int
 
 
-class Sent(NamedTuple):
+class SentPolynomials(NamedTuple):
     """The polynomials that a node sends to the left and to the right at tau = 0, 1, 2, ..."""
 
     left: list[Any]
@@ -109,13 +109,15 @@ def units(chain: Chain) -> tuple[Unit, ...]:
     return tuple(found)
 
 
-def walks(chain: Chain, unit: Unit, letters: Letters, values: Mapping[str, Any]) -> Iterator[tuple[Sent, ...]]:
+def walks(
+    chain: Chain, unit: Unit, letters: Letters, values: Mapping[str, Any]
+) -> Iterator[tuple[SentPolynomials, ...]]:
     """What the nodes send at tau = 0, 1, ..., over unit.value/s**(unit.power + 1); after each tau, all up to there.
 
     `values` are what is written for the letters: the symbols themselves, or elements of another ring.
     """
     nodes = chain.nodes
-    sent = tuple(Sent([], []) for _ in nodes)
+    sent = tuple(SentPolynomials([], []) for _ in nodes)
     scatter = [_scattering(node, x, letters, values) for x, node in enumerate(nodes)]
     zero = 0 * next(iter(values.values()))
     for tau in count():
@@ -131,12 +133,14 @@ def walks(chain: Chain, unit: Unit, letters: Letters, values: Mapping[str, Any])
         yield sent
 
 
-def walks_until(chain: Chain, unit: Unit, times: int, letters: Letters, values: Mapping[str, Any]) -> tuple[Sent, ...]:
+def walks_until(
+    chain: Chain, unit: Unit, times: int, letters: Letters, values: Mapping[str, Any]
+) -> tuple[SentPolynomials, ...]:
     """What the nodes send at tau = 0, 1, ... times - 1 (see `walks`)."""
     return next(islice(walks(chain, unit, letters, values), times - 1, None))
 
 
-def function_walks(chain: Chain, sent: Sequence[Sent], function: Function, interval: int, step: int) -> Any:
+def function_walks(chain: Chain, sent: Sequence[SentPolynomials], function: Function, interval: int, step: int) -> Any:
     """The polynomial that a wave function gains in an interval 1, 2, ... of length `step`; 0 where that is before 0."""
     tau = chain.leaves(*function, step * (interval - 1))
     node = sent[function.rod - 1].right if function.function == "f" else sent[function.rod].left

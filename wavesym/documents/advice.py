@@ -31,12 +31,12 @@ class Candidate:
 
     name: str
     differences: tuple[Discrepancy, ...] = ()
-    refused: str = ""
+    refusal: str = ""
 
     @property
     def worst(self) -> float:
         """The largest difference of a history."""
-        return inf if self.refused else max(each.history for each in self.differences)
+        return inf if self.refusal else max(each.history for each in self.differences)
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Advice:
         for each in self.candidates:
             found = zip(names, each.differences, strict=False)
             rows = [{"name": name, "history": _finite(d.history), "peak": _finite(d.peak)} for name, d in found]
-            models[each.name] = {"refused": each.refused} if each.refused else {"outputs": rows}
+            models[each.name] = {"refused": each.refusal} if each.refusal else {"outputs": rows}
         largest = [{"name": name, "unit": unit, "largest": value} for name, unit, value in self.outputs]
         models[WAVES] = {"program": self.program, "outputs": largest}
         said = {"name": self.scene, "tolerance": self.tolerance, "enough": self.enough, "instants": self.instants}
@@ -80,7 +80,7 @@ class Advice:
         yield f"{self.scene}: enough to {self.tolerance:g} of the largest value of every output: {self.enough}"
         yield ""
         for each in self.candidates:
-            yield f"  {each.name:10}  {each.refused or _MEANING[each.name]}"
+            yield f"  {each.name:10}  {each.refusal or _MEANING[each.name]}"
         if not self.outputs:
             return
         yield f"  {WAVES:10}  {self.program}"
@@ -88,7 +88,7 @@ class Advice:
         yield "How far histories and their peaks are from those of waves, in parts of the largest value,"
         yield f"at {self.instants} instants:"
         yield ""
-        compared = [each for each in self.candidates if not each.refused]
+        compared = [each for each in self.candidates if not each.refusal]
         width = max(len("output"), *(len(name) for name, *_ in self.outputs))
         heads = "".join(f"  {each.name:>12} {'peak':>8}" for each in compared)
         yield f"  {'output':{width}}  {'largest':>12}{heads}"

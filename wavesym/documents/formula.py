@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from wavesym.derivation.increments import Increment, add, integrate, trimmed
+from wavesym.derivation.increments import Increment, add, integrate, trim
 from wavesym.derivation.increments import start as begin
 from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.documents.latex_number import latex_number
@@ -76,7 +76,7 @@ class Formula:
     def _text(self) -> str:
         if not self.gains:
             return f"{self.title}\n0\n"
-        lines = [f"from tau = {g.start} on, {_since(g.start)}:\n    {_sum(g, _plain)}\n" for g in self.gains]
+        lines = [f"from tau = {g.start} on, {_clock_text(g.start)}:\n    {_sum(g, _plain)}\n" for g in self.gains]
         return f"{self.title}: the sum of\n" + "".join(lines)
 
     def _latex(self) -> str:
@@ -141,7 +141,7 @@ def _factor(value: object) -> str:
     return f"({text})" if " " in text or (not isinstance(value, fmpq) and "/" in text) else text
 
 
-def _since(since: fmpq) -> str:
+def _clock_text(since: fmpq) -> str:
     return f"w = tau - {since}" if since != 0 else "w = tau"
 
 
@@ -265,7 +265,7 @@ def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmp
         total: Increment = {}
         for weight, increment, integral in gains[time]:
             add(total, integrate(increment) if integral else increment, weight)
-        whole = trimmed(total)
+        whole = trim(total)
         if whole and not (time == model.until and begin(whole) == 0):
             made.append(Gain(time, whole))
     return _formula(model, probe, tuple(made), symbols.values)

@@ -23,44 +23,44 @@ AFTER = "0: in a straight line within one step, and for good"
 class RecordFacts:
     """A record in words: `unit` is that of its samples, `clock` that of its times, each empty where nobody says it."""
 
-    said: RecordFile
+    file: RecordFile
     unit: str
 
     @property
     def clock(self) -> str:
         """The unit of time; a physical record whose file does not say it is in seconds."""
-        return self.said.clock or ("s" if self.unit and self.said.times else "")
+        return self.file.clock or ("s" if self.unit and self.file.times else "")
 
     @cached_property
     def step(self) -> Fraction | None:
         """The time between samples. SceneError where times are uneven."""
-        return self.said.even()
+        return self.file.even()
 
     @property
-    def first(self) -> Fraction:
+    def start(self) -> Fraction:
         """The time of the first sample."""
-        return self.said.times[0] if self.said.times else Fraction(0)
+        return self.file.times[0] if self.file.times else Fraction(0)
 
     @cached_property
     def peak(self) -> int:
         """The sample that is largest, whatever its sign; the first of them."""
-        samples = self.said.samples
+        samples = self.file.samples
         return max(range(len(samples)), key=lambda k: abs(samples[k]))
 
     def time(self, k: int) -> Fraction | None:
         """The time of a sample."""
-        return None if self.step is None else self.first + k * self.step
+        return None if self.step is None else self.start + k * self.step
 
-    def when(self, time: Fraction) -> str:
+    def format_time(self, time: Fraction) -> str:
         """A time with its unit."""
         return f"{decimal_text(time)} {self.clock}".rstrip()
 
-    def peaked(self) -> str:
+    def describe_peak(self) -> str:
         """The peak with the file's digits, and when."""
         time = self.time(self.peak)
-        at = f"sample {self.peak + 1}" if time is None else self.when(time)
-        size = f"{self.said.written[self.peak].lstrip('+-')} {self.unit}".rstrip()
-        return f"{size} at {at}{', negative' * (self.said.samples[self.peak] < 0)}"
+        at = f"sample {self.peak + 1}" if time is None else self.format_time(time)
+        size = f"{self.file.written[self.peak].lstrip('+-')} {self.unit}".rstrip()
+        return f"{size} at {at}{', negative' * (self.file.samples[self.peak] < 0)}"
 
 
 def record_lines(path: Path, unit: str | None, column: str | None = None) -> tuple[RecordFile, str, list[str]]:
@@ -90,15 +90,15 @@ def record_lines(path: Path, unit: str | None, column: str | None = None) -> tup
 
 
 def _rows(told: RecordFacts) -> Iterator[tuple[str, str]]:
-    count, step = len(told.said.samples), told.step
+    count, step = len(told.file.samples), told.step
     yield "samples", str(count)
     if step is None:
         yield "spacing", "the file does not say; `spacing` in a scene does"
     else:
-        yield "spacing", told.when(step)
-        said = "" if told.said.times else " (the file does not say when; `start` in a scene does)"
-        yield "first", f"at {told.when(told.first)}{said}"
-        yield "duration", told.when((count - 1) * step)
-    yield "peak", told.peaked()
+        yield "spacing", told.format_time(step)
+        said = "" if told.file.times else " (the file does not say when; `start` in a scene does)"
+        yield "first", f"at {told.format_time(told.start)}{said}"
+        yield "duration", told.format_time((count - 1) * step)
+    yield "peak", told.describe_peak()
     yield "unit", told.unit or "the file does not say; `unit` in a scene, or --unit, does"
     yield "after it", AFTER

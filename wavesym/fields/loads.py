@@ -33,7 +33,7 @@ class Load(SceneTable):
     name: Annotated[str, PlainValidator(check_title)] = ""
 
     @model_serializer(mode="wrap")
-    def _named(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         return without_usual(handler(self), name="")
 
     @property

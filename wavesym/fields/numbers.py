@@ -52,7 +52,7 @@ def exact(value: object) -> Fraction:
         return value  # as the many samples of a record are
     text = number_text(value)
     if text is not None:
-        number = _parsed(text, value)
+        number = _parse(text, value)
     elif isinstance(value, Rational) and not isinstance(value, bool):
         number = _fraction(value)
     else:
@@ -69,7 +69,7 @@ def percentage(value: object) -> Fraction | None:
     """The ratio that text such as "5 %" writes, 1/20 here; None of anything else. Raises as `exact` does."""
     if not isinstance(value, str) or isinstance(value, WrittenDecimal) or not value.endswith("%"):
         return None
-    return _parsed(value[:-1].removesuffix(" "), value) / 100
+    return _parse(value[:-1].removesuffix(" "), value) / 100
 
 
 def _fraction(value: Rational) -> Fraction:
@@ -81,7 +81,7 @@ def _fraction(value: Rational) -> Fraction:
     return number
 
 
-def _parsed(text: str, value: object) -> Fraction:
+def _parse(text: str, value: object) -> Fraction:
     """The number that `text` writes; `value` is what the message shows where it writes none."""
     if len(text) > LONGEST:  # before anything is done with it
         raise refusal(f"{show(value)} is too long; write a number of at most {LONGEST} characters")

@@ -74,7 +74,7 @@ class ShapedLoad(Load):
             raise refusal(f"not of a {self.shape}; write {needed}", other)
         return self
 
-    def within(self, until: Fraction, tolerance: Fraction) -> Self:
+    def truncate(self, until: Fraction, tolerance: Fraction) -> Self:
         """The same load as far as it matters to a horizon and a tolerance."""
         other = self.model_copy()
         other._until, other._tolerance = until, tolerance

@@ -47,14 +47,14 @@ def advise(model: Model, tolerance: float) -> Advice:
         except UnservedError as error:
             refused[name] = str(error)
     if not histories:
-        return Advice(model.name, tolerance, tuple(Candidate(name, refused=why) for name, why in refused.items()))
+        return Advice(model.name, tolerance, tuple(Candidate(name, refusal=why) for name, why in refused.items()))
     soonest = _soonest(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
     waves = soonest.evaluate(taus)
     return Advice(
         model.name,
         tolerance,
         tuple(
-            Candidate(name, refused=refused[name])
+            Candidate(name, refusal=refused[name])
             if name in refused
             else Candidate(name, tuple(_differences(histories[name], waves)))
             for name in WEIGHTS

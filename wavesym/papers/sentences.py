@@ -139,11 +139,11 @@ def sentence_test(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Cas
         against = _pattern_data(reader, entry.right_strings[0]).get("reference", "nothing known")
         meant = _pattern_data(reader, entry.statement).get("convention")
 
-        def as_meant(reading: Reading) -> Iterator[Case]:
+        def intended_cases(reading: Reading) -> Iterator[Case]:
             words = {**reading.formula.words, **(meant["words"] if meant else {})}
             return cases_in_range(Reading(Sentence(reading.formula.pattern, words), reading.ranges))
 
-        conventions = {meant["meaning"]: as_meant} if meant else {}
+        conventions = {meant["meaning"]: intended_cases} if meant else {}
         return Test(against, cases_in_range, reader.read, reader.faults, conventions=conventions)
 
     return test

@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
-from wavesym.pictures.along import Along, Band
 from wavesym.pictures.envelope_values import envelope, extremes
 from wavesym.pictures.groups import axis_title
-from wavesym.pictures.style import BETWEEN, GREATEST, HALO, LEAST, draw_grid, new_figure, set_title, styled
+from wavesym.pictures.line_histories import Band, LineHistories
+from wavesym.pictures.style import BETWEEN, GREATEST, HALO, LEAST, draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.timescale import timescale
 
 _PANEL = 3.6  # inches
@@ -21,7 +21,7 @@ _TICKS = 11  # storeys with a number
 _ROOM = 0.6  # storeys above and below
 
 
-def description(model: Model, found: Sequence[Along]) -> str:
+def description(model: Model, found: Sequence[LineHistories]) -> str:
     """The extremes of all lines in words."""
     scale = timescale(model)
     return " ".join(
@@ -32,8 +32,8 @@ def description(model: Model, found: Sequence[Along]) -> str:
     )
 
 
-@styled
-def draw(model: Model, found: Sequence[Along]) -> Figure:
+@with_style
+def draw(model: Model, found: Sequence[LineHistories]) -> Figure:
     """Each quantity below the other, over the height of a building, or along the lines of any other chain.
 
     Args:
@@ -64,7 +64,7 @@ def draw(model: Model, found: Sequence[Along]) -> Figure:
     return figure
 
 
-def _over_height(axes: Axes, quantity: Along, band: Band) -> None:
+def _over_height(axes: Axes, quantity: LineHistories, band: Band) -> None:
     """Of a building: bars for storeys, curves from floor to floor."""
     least, greatest = envelope(band)
     x = [spot.x for spot in band.spots]
@@ -86,7 +86,7 @@ def _over_height(axes: Axes, quantity: Along, band: Band) -> None:
     axes.ticklabel_format(axis="x", scilimits=(-3, 5))
 
 
-def _along_line(axes: Axes, quantity: Along, band: Band) -> None:
+def _along_line(axes: Axes, quantity: LineHistories, band: Band) -> None:
     least, greatest = envelope(band)
     x = [spot.x for spot in band.spots]
     axes.fill_between(x, least, greatest, color=BETWEEN, linewidth=0)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wavesym.pictures.along import Along, Band
 from wavesym.pictures.histories import Points
+from wavesym.pictures.line_histories import Band, LineHistories
 from wavesym.pictures.timescale import Timescale
 from wavesym.pictures.units import unit_text
 
@@ -29,7 +29,7 @@ class BandExtreme:
         return f"{value} {self.place}, {scale.format(self.tau)}"
 
 
-def extremes(found: Along, band: Band) -> Iterator[BandExtreme]:
+def extremes(found: LineHistories, band: Band) -> Iterator[BandExtreme]:
     """The greatest and the least value."""
     for place, instant in (
         np.unravel_index(find(band.values), band.values.shape) for find in (np.nanargmax, np.nanargmin)

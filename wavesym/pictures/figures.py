@@ -34,7 +34,7 @@ from wavesym.papers.record import Record, Sentence, format_value
 from wavesym.pictures.groups import Mark, PlotPanel, axis_title
 from wavesym.pictures.histories import Histories, histories
 from wavesym.pictures.loads import load_histories
-from wavesym.pictures.panels import Instant, stacked
+from wavesym.pictures.panels import Instant, stack_panels
 from wavesym.pictures.saving import save
 from wavesym.rendering import render
 from wavesym.scene import lower
@@ -78,7 +78,7 @@ class _Page:
 
 def write_figure(directory: Path, number: int) -> list[Path]:
     """Write the figure `number` into `directory`, as .svg and .png; the paths written. OSError."""
-    made = redrawn(number)
+    made = redraw_figure(number)
     paths = [directory / f"figure_{number}.{suffix}" for suffix in ("svg", "png")]
     for path in paths:
         save(made, path)
@@ -94,7 +94,7 @@ def write_page(directory: Path) -> Path:
 
 
 @cache
-def judged(number: int) -> Mapping[str, Record]:
+def figure_verdicts(number: int) -> Mapping[str, Record]:
     """The verdicts on what the paper says of a figure."""
     said = [e for e in entries().values() if e.subject.get("figure") == number and e.kind != "caption"]
     return {record.id: record for record in records(said)}
@@ -105,21 +105,21 @@ def judged_figure(number: int) -> JudgedFigure:
     load = best_load(number)
     model = lower(figure(number).scene(load))
     title, *notes = _title(number, model, load)
-    ends = (_judged_end(record) for record in judged(number).values() if _is_end(record, number))
+    ends = (_judged_end(record) for record in figure_verdicts(number).values() if _is_end(record, number))
     return JudgedFigure(number, title, tuple(notes), (*_judged_statements(number, load), *ends))
 
 
-def redrawn(number: int) -> Figure:
+def redraw_figure(number: int) -> Figure:
     """A figure of the paper under the load of `best_load`, with the numbers of its statements."""
     load = best_load(number)
     made = histories(lower(figure(number).scene(load)))
     panels = [_panel(made, number, quantity, load) for quantity in FIGURES[number]]
     if made.model.labels.loads:
         panels.insert(0, _load(made.model))
-    ends = [record for record in judged(number).values() if _is_end(record, number)]
+    ends = [record for record in figure_verdicts(number).values() if _is_end(record, number)]
     title = [f"Fig. {number} of the paper, redrawn", f"Numbers: what section 5 says; verdicts in {PAGE}"]
     instants = [instant for record in ends for instant in _ends(record)]
-    return stacked(panels, nearest(made.model.until), title, instants=instants)
+    return stack_panels(panels, nearest(made.model.until), title, instants=instants)
 
 
 def best_load(number: int) -> TriedLoad:
@@ -179,14 +179,16 @@ def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:
 
 def _judged_statements(number: int, load: TriedLoad) -> Iterator[JudgedStatement]:
     """The statements, what each was taken to mean, and for which loads it is true."""
-    verdicts = judged(number)
+    verdicts = figure_verdicts(number)
     for id, statement in statements(number).items():
         record = verdicts[id]
         text = record.entry.statement
-        yield JudgedStatement(id.removeprefix("text."), text, record.verdict, tuple(_measured(number, load, statement)))
+        yield JudgedStatement(
+            id.removeprefix("text."), text, record.verdict, tuple(_measurements(number, load, statement))
+        )
 
 
-def _measured(number: int, load: TriedLoad, statement: Sentence) -> Iterator[str]:
+def _measurements(number: int, load: TriedLoad, statement: Sentence) -> Iterator[str]:
     found = findings(number, statement)
     yield f"{meaning(statement)}; measured: {format_value(finding(figure(number), load, statement).value)}"
     if len(found) > 1:

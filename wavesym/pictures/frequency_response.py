@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from wavesym.pictures.style import draw_grid, new_figure, set_title, styled
+from wavesym.pictures.style import draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.units import unit_text
 from wavesym.results.frequency_response import FrequencyResponse
 
 
-@styled
+@with_style
 def draw(found: FrequencyResponse) -> Figure:
     """The amplitude and the phase of each output; gaps where there is no value.
 

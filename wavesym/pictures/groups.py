@@ -63,7 +63,7 @@ def panels(histories: Histories, most: int = MOST_PANELS) -> list[PlotPanel]:
     result: list[PlotPanel] = []
     scale = timescale(histories.model)
     for quantity, shown in quantities(histories).items():
-        if stripped(shown):
+        if is_stacked(shown):
             result += _strips(shown[: most * STRIPS], scale)
             continue
         count = min(-(-len(shown) // CURVES), most)
@@ -77,7 +77,7 @@ def notes(histories: Histories, most: int = MOST_PANELS) -> list[str]:
     """What is not drawn, a line each."""
     lines = []
     for quantity, shown in quantities(histories).items():
-        drawn = most * (STRIPS if stripped(shown) else CURVES)
+        drawn = most * (STRIPS if is_stacked(shown) else CURVES)
         if len(shown) > drawn:
             lines.append(f"{quantity}: the first {drawn} of {len(shown)} outputs that move are drawn")
     if still := [history.name for history in histories.outputs if history.zero]:
@@ -120,7 +120,7 @@ def restless(history: History) -> bool:
     return int(np.count_nonzero(np.diff(np.sign(steps[steps != 0])))) > _TURNS
 
 
-def stripped(shown: Sequence[History]) -> bool:
+def is_stacked(shown: Sequence[History]) -> bool:
     """Whether curves of a quantity are drawn one under the other."""
     return len(shown) > 1 and any(restless(history) for history in shown)
 

@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
-from wavesym.pictures.along import Along, Band, cells, limit
 from wavesym.pictures.groups import axis_title, load_panel
 from wavesym.pictures.histories import History
-from wavesym.pictures.style import colours, draw_grid, new_figure, set_title, styled
+from wavesym.pictures.line_histories import Band, LineHistories, cells, limit
+from wavesym.pictures.style import colours, draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.timescale import timescale
 
 _LOAD, _PANEL = 1.3, 2.7  # inches
@@ -26,8 +26,8 @@ _COLUMNS = 600  # cells
 _NAMED = 10  # storeys with a number
 
 
-@styled
-def draw(model: Model, found: Sequence[Along], loads: Sequence[History]) -> Figure:
+@with_style
+def draw(model: Model, found: Sequence[LineHistories], loads: Sequence[History]) -> Figure:
     """A picture for each quantity and line, under the loads; colours end where all but the largest few cells do."""
     scale = timescale(model)
     until = float(found[0].taus[-1]) * scale.per_tau
@@ -58,7 +58,7 @@ def draw(model: Model, found: Sequence[Along], loads: Sequence[History]) -> Figu
     return figure
 
 
-def _frame(axes: Axes, quantity: Along, band: Band) -> None:
+def _frame(axes: Axes, quantity: LineHistories, band: Band) -> None:
     """The places, upward."""
     if quantity.storeys:
         axes.set_yticks(*zip(*band.tick_labels(_NAMED), strict=True))

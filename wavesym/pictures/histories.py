@@ -99,7 +99,7 @@ def histories(model: Model, columns: int = 1, program: Program | None = None) ->
     return Histories(
         model,
         tuple(
-            History(probe, _broken(np.column_stack([taus, row]), own), late)
+            History(probe, _split_at_fronts(np.column_stack([taus, row]), own), late)
             for probe, row, own, late in zip(model.probes, values, fronts, formal, strict=True)
         ),
         contacts,
@@ -178,7 +178,7 @@ def _instants(program: Program, columns: int, fronts: list[list[float]], formal:
     return np.unique(np.concatenate([program.instants(until / count), sudden, before, late]))
 
 
-def _broken(points: Points, fronts: list[float]) -> tuple[Points, ...]:
+def _split_at_fronts(points: Points, fronts: list[float]) -> tuple[Points, ...]:
     """A polyline in parts, between the fronts at which it jumps."""
     tau, value = points.T
     at = np.searchsorted(tau, fronts)

@@ -44,7 +44,7 @@ def label(axes: Axes, curves: Sequence[Curve], fontsize: float) -> None:
     sizes = [text.get_window_extent(renderer) for text in texts]
     inside = axes.get_window_extent(renderer)
     pixels = [np.asarray(axes.transData.transform(curve.points)) for curve in curves]
-    ink = np.vstack([_along(points) for points in pixels])
+    ink = np.vstack([_resample(points) for points in pixels])
     places: list[_Place | None] = [None] * len(curves)
     for _ in range(_ROUNDS):
         for k, (points, size) in enumerate(zip(pixels, sizes, strict=True)):
@@ -86,7 +86,7 @@ def _best(points: Points, size: Bbox, inside: Bbox, ink: Points, taken: Sequence
     return _Place(Bbox(centres[best] + np.outer((-1, 1), half)), anchors[best], float(distance[best]))
 
 
-def _along(points: Points) -> Points:
+def _resample(points: Points) -> Points:
     """Points on a polyline, every few pixels."""
     parts = [points[:1]]
     for low, high in pairwise(points):

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
-from wavesym.pictures.style import draw_grid, new_figure, set_title, styled
+from wavesym.pictures.style import draw_grid, new_figure, set_title, with_style
 from wavesym.results.modes import Modes
 from wavesym.results.shapes import line_shapes
 from wavesym.systems.station import Lines
@@ -16,7 +16,7 @@ _PANEL = 2.4  # inches
 _POINTS = 33  # of a rod
 
 
-@styled
+@with_style
 def draw(found: Modes, model: Model, lines: Lines) -> Figure:
     """The shapes of the first modes along each line of a chain, in phase and, of complex ones, a quarter later.
 

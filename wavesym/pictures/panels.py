@@ -20,7 +20,7 @@ from wavesym.pictures.groups import PlotPanel, load_panel, notes, panels, restle
 from wavesym.pictures.histories import Histories, History, Points
 from wavesym.pictures.labels import Curve, label
 from wavesym.pictures.reduction import reduce_vertices
-from wavesym.pictures.style import FONT, HALO, WIDTH, draw_grid, new_figure, styled
+from wavesym.pictures.style import FONT, HALO, WIDTH, draw_grid, new_figure, with_style
 from wavesym.pictures.timescale import Timescale, timescale
 
 CHARACTERS = 66  # in a line of text across the figure
@@ -68,11 +68,11 @@ def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     if opened:
         title.append("thin and light: the formal continuation, as if the opened contact stayed closed")
     acting = [load_panel(loads[: len(_STYLES)], _LOAD)] if loads else []
-    return stacked([*acting, *panels(histories)], until, title, instants=opened, scale=scale)
+    return stack_panels([*acting, *panels(histories)], until, title, instants=opened, scale=scale)
 
 
-@styled
-def stacked(
+@with_style
+def stack_panels(
     panels: Sequence[PlotPanel],
     until: float,
     title: Sequence[str],
@@ -81,7 +81,7 @@ def stacked(
 ) -> Figure:
     """Panels one under the other, lines of text above them; all in tau, drawn in the time of `scale`."""
     title = [part for line in title for part in wrap(line, CHARACTERS)]
-    panels, until = [_clocked(panel, scale) for panel in panels], until * scale.per_tau
+    panels, until = [_in_scene_time(panel, scale) for panel in panels], until * scale.per_tau
     instants = [replace(instant, tau=instant.tau * scale.per_tau) for instant in instants]
     gaps = [0.0 if panel.goes_on(before) else _GAP for before, panel in pairwise(panels)]
     gaps = [_GAP, *gaps]
@@ -104,7 +104,7 @@ def stacked(
     return figure
 
 
-def _clocked(panel: PlotPanel, scale: Timescale) -> PlotPanel:
+def _in_scene_time(panel: PlotPanel, scale: Timescale) -> PlotPanel:
     """A panel in the time of `scale`."""
     if not scale.unit:
         return panel
@@ -160,12 +160,12 @@ def _labels(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[C
     curves = []
     for history, (_, color) in zip(panel.histories, _STYLES, strict=False):
         others = [other.points for other in panel.histories if other is not history]
-        shape = thinned(history.points, _VERTICES)
+        shape = thin_polyline(history.points, _VERTICES)
         places = isolated_vertices(shape, others, _NEAR * (high - low))
         if len(places) == len(shape):
             curves.append(Curve(history.name, shape, color, "bold"))
         else:  # no name can hang on the rest of the curve, yet none may cover it
-            curves.append(Curve(history.name, thinned(places, _ANCHORS), color, "bold"))
+            curves.append(Curve(history.name, thin_polyline(places, _ANCHORS), color, "bold"))
             curves.append(Curve("", shape, "none", "normal"))
     curves += [Curve(mark.text, mark.points, "black", mark.weight) for mark in panel.marks]
     for instant in instants:
@@ -193,7 +193,7 @@ def jumps(history: History) -> list[tuple[Points, Points]]:
     return [(before[-1], after[0]) for before, after in pairwise(history.stretches)]
 
 
-def thinned(points: Points, count: int) -> Points:
+def thin_polyline(points: Points, count: int) -> Points:
     """The vertices of a polyline, `count` at most, that keep its shape: always the one farthest from those so far."""
     kept = [0, len(points) - 1]
     places = np.arange(len(points))

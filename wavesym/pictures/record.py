@@ -8,14 +8,14 @@ from matplotlib.figure import Figure
 
 from wavesym.documents.record import RecordFacts
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.pictures.style import MAIN, OTHER, draw_grid, new_figure, set_title, styled
+from wavesym.pictures.style import MAIN, OTHER, draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.units import unit_text
 from wavesym.records.record_file import RecordFile
 
 _HEIGHT = 3.4  # inches
 
 
-@styled
+@with_style
 def draw(said: RecordFile, unit: str) -> Figure:
     """The samples of a file over time, or by their numbers where it does not say when; and the line to 0 after them."""
     told = RecordFacts(said, unit)
@@ -29,7 +29,7 @@ def draw(said: RecordFile, unit: str) -> Figure:
     axes.plot(x[told.peak], y[told.peak], "o", color=OTHER, markersize=4)
     below = y[told.peak] < 0
     axes.annotate(
-        told.peaked(),
+        told.describe_peak(),
         (x[told.peak], y[told.peak]),
         xytext=(6, -3 if below else 3),
         textcoords="offset points",

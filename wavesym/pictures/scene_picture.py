@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 
 from wavesym.mechanics.model import Model
 from wavesym.pictures import envelope, heatmap, panels, xt
-from wavesym.pictures.along import along
 from wavesym.pictures.groups import notes
 from wavesym.pictures.histories import histories
+from wavesym.pictures.line_histories import line_histories
 from wavesym.pictures.loads import load_histories
 from wavesym.pictures.naming import with_titles
 from wavesym.scene import Scene
@@ -35,8 +35,8 @@ def draw(scene: Scene, model: Model, kind: str) -> tuple[Figure, list[str]]:
     if kind == "xt":
         return xt.draw(model, scene.system.lines, scene.physical), []
     if kind == "envelope":
-        return envelope.draw(model, along(scene, model)), []
+        return envelope.draw(model, line_histories(scene, model)), []
     if kind == "map":
-        return heatmap.draw(model, along(scene, model), load_histories(model, scene.scale)), []
+        return heatmap.draw(model, line_histories(scene, model), load_histories(model, scene.scale)), []
     made = histories(with_titles(model))
     return panels.draw(made, load_histories(model, scene.scale)), notes(made)

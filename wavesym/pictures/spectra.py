@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from wavesym.pictures.style import draw_grid, new_figure, set_title, styled
+from wavesym.pictures.style import draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.units import unit_text
 from wavesym.results.spectrum import Spectra
 
@@ -14,7 +14,7 @@ def _plain(period: float, _: float) -> str:
     return f"{period:g}" if f"{period:e}"[0] in "125" else ""
 
 
-@styled
+@with_style
 def draw(found: Spectra) -> Figure:
     """A line for each output, over the period on a logarithmic axis."""
     figure = new_figure(4.6)

@@ -37,15 +37,15 @@ class NotebookFigure(Figure):
         return content.getvalue()
 
 
-def styled(draw: Callable[P, R]) -> Callable[P, R]:
+def with_style(draw: Callable[P, R]) -> Callable[P, R]:
     """A function that draws, with the font of all pictures and without a change of the user's settings."""
 
     @wraps(draw)
-    def wrapped(*args: P.args, **keys: P.kwargs) -> R:
+    def wrapper(*args: P.args, **keys: P.kwargs) -> R:
         with mpl.rc_context(_LOOK):
             return draw(*args, **keys)
 
-    return wrapped
+    return wrapper
 
 
 def new_figure(height: float, *, constrained: bool = True) -> Figure:

@@ -25,7 +25,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.field import Field
 from wavesym.pictures.stations import open_times
-from wavesym.pictures.style import WIDTH, colours, new_figure, styled
+from wavesym.pictures.style import WIDTH, colours, new_figure, with_style
 from wavesym.pictures.timescale import timescale
 from wavesym.pictures.units import unit_text
 from wavesym.pictures.xt_nodes import draw_nodes, legend, name_rows
@@ -53,7 +53,7 @@ def description(model: Model) -> str:
     )
 
 
-@styled
+@with_style
 def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> Figure:
     """Velocity above force of all rods over the horizon, with a panel for each line.
 

@@ -44,10 +44,10 @@ def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], opened
         width = sum(item.width for item in items)
         at = -width / 2
         if station.left is None:
-            at = -_outside(items)
+            at = -_outside_width(items)
             axes.spines["left"].set_position(("outward", -at))
         elif station.right is None:
-            at = _outside(items[::-1]) - width
+            at = _outside_width(items[::-1]) - width
         for item in items:
             _draw_item(_Pen(axes, float(station.x), at + item.width / 2), item, opened, until)
             at += item.width
@@ -73,7 +73,7 @@ def _items(network: Network, station: Station) -> Iterator[_Item]:
             yield _Item(what, _MASS if what.mass or what.motion else _THIN)
 
 
-def _outside(items: Sequence[_Item]) -> float:
+def _outside_width(items: Sequence[_Item]) -> float:
     """The width of what does not lie over the rod, the last of them beside it."""
     beside = items[-1]
     touching = isinstance(beside.what, Link) and beside.what.contact
@@ -86,11 +86,11 @@ class _Pen:
 
     axes: Axes
     x: float
-    beside: float
+    beside_width: float
 
     def line(self, low: float, high: float, width: float, colour: str = "black", farther: float = 0.0) -> None:
         """`farther` is how many points more."""
-        beside = ScaledTranslation((self.beside + farther) / 72, 0, self.axes.figure.dpi_scale_trans)
+        beside = ScaledTranslation((self.beside_width + farther) / 72, 0, self.axes.figure.dpi_scale_trans)
         self.axes.plot(
             [self.x, self.x],
             [low, high],

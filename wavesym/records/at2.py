@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from fractions import Fraction
 
-from wavesym.records.record_file import MOST_SAMPLES, RecordFile, bare, damaged, decimal
+from wavesym.records.record_file import MOST_SAMPLES, RecordFile, bare, damage_error, decimal
 
 _HEADER = 4
 _NAMED = re.compile(r"NPTS *= *([0-9]+)[ ,]+DT *= *([+-]?[0-9.]+(?:[eEdD][+-]?[0-9]+)?)(.*)", re.IGNORECASE)
@@ -39,15 +39,17 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
         for place, word in enumerate(line.split(), 1):
             value = decimal(word)
             if value is None:
-                raise damaged(file, number, f"word {place} is no decimal")
+                raise damage_error(file, number, f"word {place} is no decimal")
             if len(samples) == count:
-                raise damaged(file, number, f"more numbers than the {count} of NPTS on line {_HEADER}; write as many")
+                raise damage_error(
+                    file, number, f"more numbers than the {count} of NPTS on line {_HEADER}; write as many"
+                )
             samples.append(value)
             written.append(word)
             places.append(number)
     if len(samples) < count:
         what = f"the file ends after {len(samples)} numbers of the {count} of NPTS on line {_HEADER}; write all of them"
-        raise damaged(file, places[-1] if places else _HEADER, what)
+        raise damage_error(file, places[-1] if places else _HEADER, what)
     units = (
         (_KNOWN.get(word.upper(), ""), number)
         for number, line in enumerate(lines[: _HEADER - 1], 1)
@@ -63,19 +65,19 @@ def _read_counts(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:
     """How many samples, and how far apart."""
     expected = "no NPTS and DT; write them as in NPTS=  1559, DT=   .0200 SEC"
     if len(lines) < _HEADER:
-        raise damaged(file, len(lines), f"the file ends, three lines of text and one with {expected}")
+        raise damage_error(file, len(lines), f"the file ends, three lines of text and one with {expected}")
     line = lines[_HEADER - 1].strip()
     found = _NAMED.fullmatch(line) or _BARE.fullmatch(line)
     step = decimal(found[2]) if found else None
     if found is None or step is None:
-        raise damaged(file, _HEADER, expected)
+        raise damage_error(file, _HEADER, expected)
     if step <= 0:
-        raise damaged(file, _HEADER, f"DT = {bare(found[2])} is not positive; write more than 0")
+        raise damage_error(file, _HEADER, f"DT = {bare(found[2])} is not positive; write more than 0")
     if not found[1].strip("0"):
-        raise damaged(file, _HEADER, "NPTS = 0 is no record; write at least 1")
+        raise damage_error(file, _HEADER, "NPTS = 0 is no record; write at least 1")
     clock = _clock(file, found[3])
     if len(found[1]) > 9 or int(found[1]) > MOST_SAMPLES:
-        raise damaged(file, _HEADER, f"NPTS = {bare(found[1])} is too many; write at most {MOST_SAMPLES}")
+        raise damage_error(file, _HEADER, f"NPTS = {bare(found[1])} is too many; write at most {MOST_SAMPLES}")
     return int(found[1]), step * clock
 
 
@@ -83,5 +85,5 @@ def _clock(file: str, words: str) -> Fraction:
     """How many seconds the unit behind DT is. What stands apart from it by a comma is no unit."""
     word = _NAMES.sub("", words).split(",")[0].strip(" .()[]")
     if (clock := _CLOCKS.get(word.upper())) is None:
-        raise damaged(file, _HEADER, "the unit behind DT is not known; write SEC or MSEC")
+        raise damage_error(file, _HEADER, "the unit behind DT is not known; write SEC or MSEC")
     return clock

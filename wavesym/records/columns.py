@@ -16,7 +16,7 @@ from fractions import Fraction
 from itertools import chain, islice
 from typing import NamedTuple
 
-from wavesym.records.record_file import RecordFile, bare, damaged, decimal
+from wavesym.records.record_file import RecordFile, bare, damage_error, decimal
 
 _TIMES = ("time", "t", "tau")
 _QUANTITIES = "acc|accel|acceleration|velocity|displacement|force|moment|torque"
@@ -42,11 +42,11 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
     top = list(islice(rows, 2))
     at, head = top[0] if top else (1, "")
     if max(head.count(mark) for mark in _MARKS) >= _MOST_COLUMNS:
-        raise damaged(file, at, f"more than {_MOST_COLUMNS} columns; write a column of samples and one of times")
+        raise damage_error(file, at, f"more than {_MOST_COLUMNS} columns; write a column of samples and one of times")
     mark = _mark(file, top)
     named = [_column(place, cell) for place, cell in enumerate(_cells(file, at, head, mark))]
     if all(decimal(column.header.replace(",", ".")) is not None for column in named):
-        raise damaged(file, at, "no header; write one such as time,acceleration")
+        raise damage_error(file, at, "no header; write one such as time,acceleration")
     clock = next((column for column in named if column.name.casefold() in _TIMES), None)
     below = _cells(file, *top[1], mark) if len(top) > 1 else []
     numeric = any(decimal(cell.replace(",", ".")) is not None for cell in below)
@@ -59,7 +59,7 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
     for number, row in chain(top[1:], rows):
         cells = _cells(file, number, row, mark)
         if len(cells) != len(named):
-            raise damaged(file, number, f"{len(cells)} columns, but {len(named)} in the header; write as many")
+            raise damage_error(file, number, f"{len(cells)} columns, but {len(named)} in the header; write as many")
         if clock:
             times.append(decimals.read(cells[clock.place], number, clock.place)[0])
         sample, word = decimals.read(cells[column.place], number, column.place)
@@ -67,7 +67,7 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
         written.append(word)
         places.append(number)
     if not places:
-        raise damaged(file, at, "the file ends after its header; write rows of numbers")
+        raise damage_error(file, at, "the file ends after its header; write rows of numbers")
     return RecordFile(
         file,
         f"CSV, {bare(column.header)}",
@@ -104,7 +104,7 @@ def _cells(file: str, number: int, row: str, mark: str | None) -> list[str]:
     try:
         (cells,) = csv.reader([row], delimiter=mark or ",", skipinitialspace=True, strict=True)
     except csv.Error:
-        raise damaged(file, number, "quotes inside a cell; write them around whole cells") from None
+        raise damage_error(file, number, "quotes inside a cell; write them around whole cells") from None
     return [cell.strip() for cell in cells]
 
 
@@ -122,10 +122,10 @@ class _Decimals:
         value = decimal(plain)
         if value is None:
             name = f" ({bare(self._named[place].header)})" if self._named else ""
-            raise damaged(self._file, line, f"column {place + 1}{name} is no decimal")
+            raise damage_error(self._file, line, f"column {place + 1}{name} is no decimal")
         if mark is not None and mark != self._mark:
             if self._mark is not None:
-                raise damaged(
+                raise damage_error(
                     self._file, line, f'{bare(word)} is not a number; write a decimal with "{self._mark}" as before'
                 )
             self._mark = mark
@@ -147,13 +147,13 @@ def _choose(
     others = [column for column in named if column is not clock]
     known = f" ({', '.join(bare(column.header) for column in others[:8])})" if numeric else ""
     if not others:
-        raise damaged(file, at, "only a column of times; write a column of samples")
+        raise damage_error(file, at, "only a column of times; write a column of samples")
     if wanted is None:
         if len(others) > 1:
-            raise damaged(file, at, f"{len(others)} columns of samples; write `column` to say which{known}")
+            raise damage_error(file, at, f"{len(others)} columns of samples; write `column` to say which{known}")
         return others[0]
     matching = [column for column in others if wanted in (column.header, column.name)]
     if len(matching) != 1:
         what = "no column" if not matching else f"{len(matching)} columns"
-        raise damaged(file, at, f"{what} called {bare(wanted)}; write the name of one{known}")
+        raise damage_error(file, at, f"{what} called {bare(wanted)}; write the name of one{known}")
     return matching[0]

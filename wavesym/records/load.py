@@ -39,7 +39,7 @@ class RecordedLoad(Load):
     _delayed: bool = PrivateAttr(default=False)
 
     @model_validator(mode="after")
-    def _said_once(self) -> Self:
+    def _refuse_repeated_units(self) -> Self:
         if self.record.unit or self.record.clock:
             has = " and ".join(filter(None, (self.record.clock, self.record.unit)))
             raise refusal(
@@ -47,8 +47,8 @@ class RecordedLoad(Load):
                 "scene",
                 "record",
             )
-        self._once("spacing", self.spacing, self.record.spacing)
-        self._once("start", self.start, self.record.start)
+        self._refuse_repetition("spacing", self.spacing, self.record.spacing)
+        self._refuse_repetition("start", self.start, self.record.start)
         if self.spacing is None and self.record.spacing is None:
             raise refusal("missing, and the file does not say it; write the time between samples", "spacing")
         if self._start != 0 and self._start < self.step:
@@ -57,7 +57,7 @@ class RecordedLoad(Load):
             raise refusal(f"a first sample after {steps}, but the load comes from 0; write 0, or 1 or more", key)
         return self
 
-    def _once(self, key: str, here: Fraction | None, there: Fraction | None) -> None:
+    def _refuse_repetition(self, key: str, here: Fraction | None, there: Fraction | None) -> None:
         if here is not None and there is not None and here != there:
             raise refusal(f"{decimal_text(here)}, but the file says {decimal_text(there)}; write that, or nothing", key)
 

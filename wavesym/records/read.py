@@ -10,7 +10,7 @@ from wavesym.errors import SceneError
 from wavesym.reading import read_bytes
 from wavesym.records.at2 import at2, is_at2
 from wavesym.records.columns import columns
-from wavesym.records.record_file import MOST_SAMPLES, RecordFile, damaged
+from wavesym.records.record_file import MOST_SAMPLES, RecordFile, damage_error
 
 _FORM = "a file of AT2 or CSV"
 
@@ -27,7 +27,7 @@ def read_record(path: str | PathLike[str], column: str | None = None) -> RecordF
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise damaged(file, line, f"byte 0x{content[error.start]:02x} is not UTF-8; write {_FORM}") from None
+        raise damage_error(file, line, f"byte 0x{content[error.start]:02x} is not UTF-8; write {_FORM}") from None
     if content.count(b"\n") + content.count(b"\r") > 2 * MOST_SAMPLES:
         raise SceneError(f"more lines than {MOST_SAMPLES} samples take; thin the record, or cut it", file=file)
     if not text.strip():

@@ -64,13 +64,13 @@ class RecordFile:
                     f"the time {decimal_text(time)} is not later than the {decimal_text(before)} before it; "
                     "write times in rising order"
                 )
-                raise damaged(self.file, self.lines[k], what)
+                raise damage_error(self.file, self.lines[k], what)
             if since == step and told is None:  # as up to here
                 continue
             expected = times[0] + k * step
             if told is None or abs(time - expected) > _NEAR * step:
                 what = f"the time {decimal_text(time)} should be {decimal_text(expected)}; write {_even(step, told)}"
-                raise damaged(self.file, self.lines[k], what)
+                raise damage_error(self.file, self.lines[k], what)
         return step
 
 
@@ -88,7 +88,7 @@ def _even(step: Fraction, told: Fraction | None) -> str:
     return f"samples {decimal_text(step)} apart, as the first two; of rounded times `spacing` in the scene says it"
 
 
-def damaged(file: str, line: int, what: str) -> SceneError:
+def damage_error(file: str, line: int, what: str) -> SceneError:
     """The error for what is wrong on a line of a file."""
     return SceneError(what, f"line {line}", file)
 

@@ -57,9 +57,9 @@ def _recording(value: object, info: ValidationInfo) -> Recording:
     raise refusal(f"{show(value)} is not a path; write that of a file")
 
 
-def _dumped(recording: Recording) -> dict[str, Any]:
+def _dump(recording: Recording) -> dict[str, Any]:
     return recording.model_dump(exclude_defaults=True)
 
 
-Recorded = Annotated[Recording, PlainValidator(_recording), PlainSerializer(_dumped, return_type=dict[str, Any])]
+Recorded = Annotated[Recording, PlainValidator(_recording), PlainSerializer(_dump, return_type=dict[str, Any])]
 """The path of a file in a scene; a table of what was in it when the scene is dumped."""

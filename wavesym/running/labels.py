@@ -35,7 +35,7 @@ class SetLabels:
     output_units: tuple[str, ...]
     time_unit: str | None
 
-    def labelled(self, values: Array, tau: Array, times: Array) -> Any:
+    def label_values(self, values: Array, tau: Array, times: Array) -> Any:
         """Values as an xarray.DataArray.
 
         Args:
@@ -63,7 +63,7 @@ class SetLabels:
             "tau": (axes, tau),
         }
         for name, column in varied.items():
-            coordinates[name] = (along, column, self._about(name))
+            coordinates[name] = (along, column, self._attributes(name))
         return xarray.DataArray(values, coordinates, (along, "output", *axes))
 
     def _columns(self) -> list[tuple[str, Array]]:
@@ -74,7 +74,7 @@ class SetLabels:
             for k in range(field.shape[1])
         ]
 
-    def _about(self, column: str) -> dict[str, str]:
+    def _attributes(self, column: str) -> dict[str, str]:
         name, _, number = column.partition("[")
         k = int(number[:-1]) if number else 0
         about = {"long_name": self.names[name][k], "units": self.units[name][k]}

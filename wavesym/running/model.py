@@ -139,7 +139,7 @@ class RuntimeModel:
             varied, self.labels, self.units, self.outputs, tuple(p.unit for p in self._model.probes), self.time_unit
         )
         check_horizon(instants, self.tau_max, strict=strict)
-        return labels.labelled(self._computed(instants, parameters), instants, shown)
+        return labels.label_values(self._compute(instants, parameters), instants, shown)
 
     def _instants(self, tau: ArrayLike | None, times: ArrayLike | None) -> tuple[Array, Array]:
         """Instants as tau, and in the unit of results."""
@@ -157,17 +157,17 @@ class RuntimeModel:
         """Values of all sets as a NumPy array, (sets, outputs, *tau.shape); arguments and errors are those of `run`."""
         instants = _numbers("tau", tau)
         check_horizon(instants, self.tau_max, strict=strict)
-        return self._computed(instants, parameters)
+        return self._compute(instants, parameters)
 
-    def _computed(self, instants: Array, parameters: Mapping[str, ArrayLike]) -> Array:
-        found = self._engine.values(self._given(parameters), instants.ravel())
+    def _compute(self, instants: Array, parameters: Mapping[str, ArrayLike]) -> Array:
+        found = self._engine.values(self._parameter_rows(parameters), instants.ravel())
         return found.values.reshape(len(found.values), len(self.outputs), *instants.shape)
 
     def gradients(self, tau: ArrayLike, *, strict: bool = False, **parameters: ArrayLike) -> SetGradients:
         """Values, and their derivatives by all parameters, given or not; arguments and errors are those of `run`."""
         instants = _numbers("tau", tau)
         check_horizon(instants, self.tau_max, strict=strict)
-        found = self._engine.tangents(self._given(parameters), instants.ravel())
+        found = self._engine.tangents(self._parameter_rows(parameters), instants.ravel())
         shape = (len(self.outputs), *instants.shape)
         lanes = found.values.reshape(*found.values.shape[:2], *shape)
         ends = np.cumsum([1, *map(len, self.parameters.values())])
@@ -178,7 +178,7 @@ class RuntimeModel:
 
     def peaks(self, **parameters: ArrayLike) -> SetPeaks:
         """Extremes on the whole horizon, between samples, too."""
-        given = self._given(parameters)
+        given = self._parameter_rows(parameters)
         found = self._engine.peaks(given)
         values, taus = found.values[..., ::2].copy(), found.values[..., 1::2].copy()
         zero_within(values, taus, found.estimate[:, None, None], self._first_zeros(given, values, taus, found.estimate))
@@ -213,21 +213,21 @@ class RuntimeModel:
             raise WavesymError("data: an infinite number; write finite ones, and NaN where there is none")
         misfits = self._engine.misfit(instants.ravel(), values.reshape(len(self.outputs), -1))
 
-        def of(**parameters: ArrayLike) -> Array:
-            return misfits(self._given(parameters)).values
+        def objective(**parameters: ArrayLike) -> Array:
+            return misfits(self._parameter_rows(parameters)).values
 
-        return of
+        return objective
 
     def bounds(self, **parameters: ArrayLike) -> Array:
         """Of each set and output the largest error relative to its largest value on the horizon, at most: proved.
 
         It is pessimistic by a few digits, infinite where it leaves nothing. Of shape (sets, outputs).
         """
-        return self._engine.bounds(self._given(parameters)).values
+        return self._engine.bounds(self._parameter_rows(parameters)).values
 
     def check(self, **parameters: ArrayLike) -> SetChecks:
         """Which sets are refused, and what errors the others have."""
-        found = self._engine.values(self._given(parameters), np.empty(0))
+        found = self._engine.values(self._parameter_rows(parameters), np.empty(0))
         return SetChecks(found.status, found.estimate)
 
     def __reduce__(self) -> NoReturn:
@@ -249,7 +249,7 @@ class RuntimeModel:
                 )
         return columns
 
-    def _given(self, parameters: Mapping[str, ArrayLike]) -> Array:
+    def _parameter_rows(self, parameters: Mapping[str, ArrayLike]) -> Array:
         """All fields side by side, a row for each set."""
         columns = self._fields(parameters)
         counts = {len(values) for values in columns.values() if values.ndim == 2}

@@ -76,7 +76,9 @@ class CompiledSets:
         """Of shape (sets, 1, outputs, times)."""
         sets = self._function(_VALUES, "sets", [_WHERE, _MANY, _WHERE, _WHERE, *_AT, _WHERE, _WHERE, _WHERE])
         shape = (1, self._outputs, len(tau))
-        return self._at(sets, [self._batch(), self._room(_VALUES, "model")], given, tau, no_sets(len(given), shape))
+        return self._call_at(
+            sets, [self._batch(), self._room(_VALUES, "model")], given, tau, no_sets(len(given), shape)
+        )
 
     def tangents(self, given: Array, tau: Array) -> FoundSets:
         """The values, then their derivatives by each parameter: of shape (sets, 1 + parameters, outputs, times); and as
@@ -85,17 +87,17 @@ class CompiledSets:
         tangents = self._function(_SLOPES, "sets_tangents", [_WHERE, _MANY, _WHERE, *_AT, _WHERE, _WHERE, _WHERE])
         lanes = 1 + given.shape[1]
         found = no_sets(len(given), (lanes, self._outputs, len(tau)), (lanes,))
-        return self._at(tangents, [self._room(_SLOPES, "tangent")], given, tau, found)
+        return self._call_at(tangents, [self._room(_SLOPES, "tangent")], given, tau, found)
 
     def peaks(self, given: Array) -> FoundSets:
         """Of shape (sets, outputs, 4): the least value, its tau, the greatest value, its tau."""
         peaks = self._function(_VALUES, "sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
-        return self._of_each(peaks, [self._batch(), self._room(_VALUES, "model")], given, (self._outputs, 4))
+        return self._call_for_each(peaks, [self._batch(), self._room(_VALUES, "model")], given, (self._outputs, 4))
 
     def bounds(self, given: Array) -> FoundSets:
         """The proved bound of each output, of shape (sets, outputs)."""
         bounds = self._function(_BOUNDS, "sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
-        return self._of_each(bounds, [self._room(_BOUNDS, "bounded")], given, (self._outputs,))
+        return self._call_for_each(bounds, [self._room(_BOUNDS, "bounded")], given, (self._outputs,))
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
         """What makes of `given` the sums of the squares of all misfits, of shape (sets,). `data` of shape
@@ -111,7 +113,7 @@ class CompiledSets:
         def misfits(given: Array) -> FoundSets:
             _ = numbers  # C reads them, so that they must live as long as this
             found = no_sets(len(given), ())
-            batch = _aligned(self._sizes[0])
+            batch = _aligned_memory(self._sizes[0])
             misfit(address(given), len(given), address(batch), address(kept), *_places(found))
             return found
 
@@ -126,9 +128,9 @@ class CompiledSets:
 
     def _batch(self) -> Memory | None:
         """Room for sets side by side, of each call its own, so that several may run at once; none for huge models."""
-        return _aligned(self._sizes[0]) if self._sizes[0] <= _LARGEST_BATCH else None
+        return _aligned_memory(self._sizes[0]) if self._sizes[0] <= _LARGEST_BATCH else None
 
-    def _of_each(
+    def _call_for_each(
         self,
         function: ctypes._NamedFuncPointer,
         room: Sequence[Memory | None],
@@ -139,7 +141,7 @@ class CompiledSets:
         function(address(given), len(given), *map(_place, room), *_places(found))
         return found
 
-    def _at(
+    def _call_at(
         self,
         function: ctypes._NamedFuncPointer,
         room: Sequence[Memory | None],
@@ -157,7 +159,7 @@ def _place(room: Memory | None) -> int | None:
     return None if room is None else address(room)
 
 
-def _aligned(size: int) -> Memory:
+def _aligned_memory(size: int) -> Memory:
     """Memory from a multiple of 64 bytes on."""
     memory = np.empty(size + 64, np.uint8)
     begin = -memory.ctypes.data % 64

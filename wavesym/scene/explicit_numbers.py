@@ -58,7 +58,7 @@ class Dimensionless:
 
     def position(self, position: Position) -> str:
         """Where an output is."""
-        return position.written
+        return position.text
 
 
 class InUnits(Dimensionless):
@@ -114,14 +114,14 @@ class InUnits(Dimensionless):
 
     def place(self, node: int) -> str:
         """How far along the line a node is."""
-        return json.dumps(self._along(Fraction(node)))
+        return json.dumps(self._place_text(Fraction(node)))
 
     def position(self, position: Position) -> str:
         """Where an output is, with its side."""
         assert position.x is not None  # named systems have places
-        return self._along(position.x) + {-1: "-", 0: "", 1: "+"}[position.side]
+        return self._place_text(position.x) + {-1: "-", 0: "", 1: "+"}[position.side]
 
-    def _along(self, x: Fraction) -> str:
+    def _place_text(self, x: Fraction) -> str:
         lengths = self.scale.lengths
         whole = min(int(x), len(lengths) - 1)
         return f"{decimal_text(sum(lengths[:whole], Fraction(0)) + (x - whole) * lengths[whole])} m"

@@ -68,7 +68,7 @@ def _lines(scene: Scene) -> Iterator[str]:
                 raise UnservedError(
                     'output.relative: base = "force" has no foundation that moves; write base = "ground"'
                 )
-            places = [position.written if quantity == "drift" else numbers.position(position) for position in positions]
+            places = [position.text if quantity == "drift" else numbers.position(position) for position in positions]
             yield f"{quantity} = {_list_text(map(_place, places, positions))}"
 
 
@@ -88,7 +88,7 @@ def _parts(parts: Sequence[ChainPart | str], numbers: Dimensionless) -> Iterator
                 yield '"contact"'
 
 
-def _accelerated(point: Point) -> bool:
+def _is_acceleration(point: Point) -> bool:
     """Whether a prescribed velocity is the integral of loads, which are accelerations."""
     return point.motion == "velocity" and all(not load.coefficients[0] for load in point.loads)
 
@@ -100,7 +100,7 @@ def _load(load: Load, network: Network, numbers: Dimensionless) -> Iterator[str]
     sums: dict[fmpq, list[fmpq]] = {}
     for applied in load.units():
         place, coefficients = units[applied.source]
-        if _accelerated(network.points[place]):
+        if _is_acceleration(network.points[place]):
             coefficients = tuple(k * c for k, c in enumerate(coefficients) if k)
         terms = sums.setdefault(applied.time, [fmpq(0), fmpq(0)])
         for k, c in enumerate(coefficients):

@@ -51,13 +51,13 @@ def first_text(kind: str, record: str | PathLike[str] | None = None) -> str:
         lines.append(f'unit = "{_USUAL_UNIT[kind]}"{"":18}# of its samples: the file does not say')
     if step is None:
         lines.append(f'spacing = "0.01 s"{"":14}# of its samples: the file does not say')
-        return _under(text, lines, "")
+        return _replace_samples(text, lines, "")
     begin = found.times[0] if found.times else Fraction(0)
     end = begin + (len(found.samples) - 1) * step
-    return _under(text, lines, f"{decimal_text(end)} {found.clock or 's'}")
+    return _replace_samples(text, lines, f"{decimal_text(end)} {found.clock or 's'}")
 
 
-def _under(text: str, record: list[str], until: str) -> str:
+def _replace_samples(text: str, record: list[str], until: str) -> str:
     """A scene with lines of a record in place of its own samples, until a time."""
     made: list[str] = []
     within = False

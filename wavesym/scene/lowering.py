@@ -51,33 +51,33 @@ def lower(scene: Scene, *, loads: bool = True) -> Model:
     parts = (scene.name, scene.system, scene.load, scene.output)
     kept = vars(scene).get(_KEPT)  # a copy of a scene with other parts has the model of the first
     if kept is None or any(one is not other for one, other in zip(kept.parts, parts, strict=True)):
-        kept = vars(scene)[_KEPT] = _Lowered(parts, {})
+        kept = vars(scene)[_KEPT] = _LoweredScene(parts, {})
     if True not in kept.models and loads not in kept.models:
-        kept.models[loads] = _lowered(scene if loads else _unloaded(scene))
+        kept.models[loads] = _build_model(scene if loads else _without_loads(scene))
     model = kept.models.get(True) or kept.models[loads]
     if loads:
         model.network.refuse_loss()
     return model
 
 
-class _Lowered(NamedTuple):
+class _LoweredScene(NamedTuple):
     """A model, and the parts of the scene that it was made from."""
 
     parts: tuple[object, ...]
     models: dict[bool, Model]
 
 
-def _unloaded(scene: Scene) -> Scene:
+def _without_loads(scene: Scene) -> Scene:
     """The same scene, its loads never changing: they act where they do, by nothing."""
     still = tuple(
-        load.within(Fraction(0), Fraction(1)) if isinstance(load, ShapedLoad) else load for load in scene.load
+        load.truncate(Fraction(0), Fraction(1)) if isinstance(load, ShapedLoad) else load for load in scene.load
     )
     other = scene.model_copy()
     vars(other)["load"] = still
     return other
 
 
-def _lowered(scene: Scene) -> Model:
+def _build_model(scene: Scene) -> Model:
     output = scene.output
     length = scene.physical.length if scene.physical else None
     chain, network = named_chain(scene), scene.system.network(scene.load, length)
@@ -195,7 +195,7 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, AppliedLoad], ...]:
             found.append((f"factor of the {label}, samples at {_spacing(scene, load)}", samples))
             continue
         found += [
-            (f"{name}[{k}] of the {label}, {_when(scene, load.times[k])}", unit)
+            (f"{name}[{k}] of the {label}, {_format_time(scene, load.times[k])}", unit)
             for name, units in load.by_list()
             for k, unit in enumerate(units)
         ]
@@ -221,7 +221,7 @@ def sources(scene: Scene) -> tuple[str, ...]:
     return tuple(dict.fromkeys(load.sources[0] for load in scene.load))
 
 
-def _when(scene: Scene, tau: Fraction) -> str:
+def _format_time(scene: Scene, tau: Fraction) -> str:
     return f"t = {scene.scale.clock.format(rational(tau))}" if scene.scale else f"tau = {tau}"
 
 

@@ -24,8 +24,8 @@ from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import Faults, SceneTable, WrittenDecimal, as_list, refusal, show
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.systems import SystemTable
+from wavesym.systems.output_places import OutputPlaces
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
-from wavesym.systems.watched import Watching
 
 # Beyond it even the integer part of an argument costs a double most of its digits.
 LONGEST_HORIZON = 10**9
@@ -47,11 +47,13 @@ class Observable:
     title: str = ""
 
 
-def _said(at: Position) -> str | dict[str, str]:
-    return {"at": at.written, "name": at.title} if at.title else at.written
+def _serialize_position(at: Position) -> str | dict[str, str]:
+    return {"at": at.text, "name": at.title} if at.title else at.text
 
 
-Positioned = Annotated[Position, PlainValidator(position_of), PlainSerializer(_said, return_type=str | dict[str, str])]
+Positioned = Annotated[
+    Position, PlainValidator(position_of), PlainSerializer(_serialize_position, return_type=str | dict[str, str])
+]
 Positions = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(as_list)]
 EVERY = "all"
 """In place of a list of drifts: those of all rods of the main line."""
@@ -103,14 +105,14 @@ class Output(SceneTable):
         return self
 
     @model_serializer(mode="wrap")
-    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Without new quantities that are not asked for: so scenes keep the hash that they have had."""
         said: dict[str, Any] = handler(self)
         return {key: value for key, value in said.items() if value or key not in QUANTITIES or QUANTITIES[key].usual}
 
     def of_every_rod(self, count: int) -> Self:
         """The same with a drift for each of the rods of the main line, where it says "all"."""
-        if [position.written for position in self.drift] != [EVERY]:
+        if [position.text for position in self.drift] != [EVERY]:
             return self
         return self.model_copy(update={"drift": tuple(position_of(k) for k in range(1, count + 1))})
 
@@ -124,12 +126,12 @@ class NoOutput(Output):
 def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> tuple[Observable, ...]:
     """The outputs in order, checked against the chain; raises the error of `table.refusal`."""
     seen: dict[tuple[str, Place], str] = {}
-    watching = Watching(system, loads)
+    watching = OutputPlaces(system, loads)
     found, faults = [], Faults()
     for quantity in QUANTITIES:
         positions: tuple[Position, ...] = getattr(output, quantity)
         for k, position in enumerate(positions):
-            text = show(WrittenDecimal(position.written))
+            text = show(WrittenDecimal(position.text))
             with faults.gather("output", quantity, k):
                 try:
                     place = watching.place(position, quantity)
@@ -138,7 +140,7 @@ def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> t
                 if (quantity, place) in seen:
                     raise refusal(f"{text} is the same place as {seen[quantity, place]}; write another")
                 seen[quantity, place] = text
-                name = f"{quantity}@{position.written}"
+                name = f"{quantity}@{position.text}"
                 found.append(Observable(quantity, place.x, place.side, name, place, position.title))
     faults.refuse()
     return tuple(found)

@@ -11,9 +11,9 @@ from wavesym.errors import SceneError, did_you_mean
 _STEP = re.compile(r"(?:^|\.)([A-Za-z_]+)|\[([0-9]{1,6})\]")
 
 
-def changed(fields: Mapping[str, Any], path: str, value: object) -> dict[str, Any]:
+def replace_at_path(fields: Mapping[str, Any], path: str, value: object) -> dict[str, Any]:
     """A copy of nested tables and lists with another value at a path. SceneError where the path leads nowhere."""
-    result: dict[str, Any] = _replaced(fields, steps(path), value, path)
+    result: dict[str, Any] = _replace(fields, steps(path), value, path)
     return result
 
 
@@ -36,16 +36,16 @@ def leaves(fields: object, path: str = "") -> dict[str, object]:
     return {name: value for at, each in inner for name, value in leaves(each, at).items()}
 
 
-def _replaced(inner: Any, steps: list[str | int], value: object, path: str) -> Any:
+def _replace(inner: Any, steps: list[str | int], value: object, path: str) -> Any:
     if not steps:
         return value
     step, *rest = steps
     if isinstance(step, int):
         if not isinstance(inner, list | tuple) or step >= len(inner):
             raise SceneError(f"nothing at [{step}]", path)
-        return [_replaced(each, rest, value, path) if k == step else each for k, each in enumerate(inner)]
+        return [_replace(each, rest, value, path) if k == step else each for k, each in enumerate(inner)]
     # what is new at the end of a path is judged with the whole scene
     if not isinstance(inner, Mapping) or (rest and step not in inner):
         known = inner if isinstance(inner, Mapping) else ()
         raise SceneError(f'nothing called "{step}". {did_you_mean(step, known)}'.rstrip(), path)
-    return {**inner, step: _replaced(inner.get(step), rest, value, path)}
+    return {**inner, step: _replace(inner.get(step), rest, value, path)}

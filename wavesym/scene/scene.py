@@ -31,7 +31,7 @@ from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.loads import loads
 from wavesym.scene.names import Name
 from wavesym.scene.outputs import NoOutput, Observable, Output, observables
-from wavesym.scene.paths import changed
+from wavesym.scene.paths import replace_at_path
 from wavesym.scene.physical.scale import Scale, UnitsTable
 from wavesym.scene.physical.scene import PhysicalScene, physical
 from wavesym.scene.report import ReportTable
@@ -122,7 +122,7 @@ class Scene(SceneTable):
         """
         fields = self.model_dump()
         for path, value in changes.items():
-            fields = changed(fields, path, value)
+            fields = replace_at_path(fields, path, value)
         return type(self)(**fields)
 
     def __repr__(self) -> str:
@@ -133,7 +133,7 @@ class Scene(SceneTable):
     __str__ = __repr__
 
     @model_serializer(mode="wrap")
-    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """What was said. Without units there are none to tell of: so scenes keep the hash that they have had."""
         if self._physical is not None:
             return deepcopy(self._physical.fields_in_units)
@@ -183,7 +183,7 @@ class Scene(SceneTable):
         _ = self.outputs
         if any(isinstance(load, ShapedLoad) for load in self.load):
             until, tolerance = self.output.until, self.output.tolerance
-            each = (load.within(until, tolerance) if isinstance(load, ShapedLoad) else load for load in self.load)
+            each = (load.truncate(until, tolerance) if isinstance(load, ShapedLoad) else load for load in self.load)
             vars(self)["load"] = tuple(each)
         return self
 

@@ -34,7 +34,7 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, str, dict[str, Any]]:
     `source` is a path, `-` for standard input, or the name of a built-in scene. Raises SceneError.
     """
     file, text = toml_text(source)
-    return file, text, _absolute_records(os.path.dirname(os.fspath(source)), parsed(file, text))
+    return file, text, _absolute_records(os.path.dirname(os.fspath(source)), parse_text(file, text))
 
 
 def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
@@ -99,7 +99,7 @@ def _refuse_large(file: str, text: str) -> None:
         raise SceneError(f"more than {_MOST_VALUES} values; split the scene, or thin its samples", file=file)
 
 
-def parsed(file: str, text: str) -> dict[str, Any]:
+def parse_text(file: str, text: str) -> dict[str, Any]:
     """The table in a text of TOML, decimals as they are written. SceneError, which names `file`, where it is none."""
     _refuse_large(file, text)
     try:

@@ -45,13 +45,13 @@ class Batches:
     def __len__(self) -> int:
         return prod(self.grid)
 
-    def at(self, batch: int) -> Place:
+    def place(self, batch: int) -> Place:
         """Its place in the grid."""
         return tuple(int(k) for k in np.unravel_index(batch, self.grid))
 
     def region(self, batch: int) -> tuple[slice, ...]:
         """Its cases, in each dimension."""
-        ends = zip(self.at(batch), self.chunk, self.shape, strict=True)
+        ends = zip(self.place(batch), self.chunk, self.shape, strict=True)
         return tuple(slice(k * size, min((k + 1) * size, n)) for k, size, n in ends)
 
     def count(self, batch: int) -> int:

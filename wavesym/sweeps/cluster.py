@@ -43,7 +43,7 @@ class ClusterError(WavesymError):
 
 
 @contextmanager
-def connected(workers: int | None, address: str | None) -> Iterator[Any]:
+def connect(workers: int | None, address: str | None) -> Iterator[Any]:
     """A client of the cluster at an address, or of so many processes on this machine. ClusterError."""
     require_packages("dask", "distributed")
     import dask
@@ -101,7 +101,7 @@ def on_workers(client: Any, plan: SweepPlan, batches: Batches, todo: Iterable[Ta
     from distributed import KilledWorker
 
     _send(client, plan, batches)
-    sent = _Sent(client, plan)
+    sent = _TaskQueue(client, plan)
     left, parts, alone = deque(todo), deque[Task](), deque[Task]()
     last: Task | None = None
     while left or parts or alone or sent:
@@ -111,7 +111,7 @@ def on_workers(client: Any, plan: SweepPlan, batches: Batches, todo: Iterable[Ta
             sent.add(parts.popleft())
         if alone and not (left or parts or sent):
             sent.add(last := alone.popleft())
-        if (found := sent.next_done()) is None:
+        if (found := sent.next_result()) is None:
             continue
         (batch, places), future = found
         try:
@@ -134,7 +134,7 @@ def _in_parts(places: list[Place]) -> Iterator[list[Place]]:
     return (places[first : first + size] for first in range(0, len(places), size))
 
 
-class _Sent:
+class _TaskQueue:
     """Tasks that are under way; their futures are let go as they are done."""
 
     def __init__(self, client: Any, plan: SweepPlan) -> None:
@@ -162,15 +162,15 @@ class _Sent:
 
     def add(self, task: Task) -> None:
         """Send a task."""
-        from wavesym.sweeps.worker import computed
+        from wavesym.sweeps.worker import compute_batch
 
         # a name of its own: what another client asked for is another task
         name = f"wavesym-{self._plan.sha256[:12]}-{task[0]}-{uuid4().hex[:12]}"
-        future = self._client.submit(computed, __version__, self._plan.sha256, *task, key=name, pure=False)
+        future = self._client.submit(compute_batch, __version__, self._plan.sha256, *task, key=name, pure=False)
         self._tasks[name] = task, future
         future.add_done_callback(self._done.put)
 
-    def next_done(self) -> tuple[Task, Any] | None:
+    def next_result(self) -> tuple[Task, Any] | None:
         """A task and its future; None where there is none for a while. ClusterError where no worker ever came."""
         try:
             return self._tasks.pop(self._done.get(timeout=_LOOK).key)

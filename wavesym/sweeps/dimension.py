@@ -13,9 +13,9 @@ from flint import arb, ctx
 from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
-from wavesym.fields.measured import plain
 from wavesym.fields.numbers import exact, number_text
 from wavesym.fields.quantity import split_quantity
+from wavesym.fields.quantity_fields import plain
 from wavesym.fields.table import refusal, show
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.sweeps.request import Span
@@ -37,7 +37,7 @@ class Column:
     unit: str = ""
 
     @classmethod
-    def of(cls, path: str, given: Iterable[object]) -> Column:
+    def from_values(cls, path: str, given: Iterable[object]) -> Column:
         """The column of values as a user gives them."""
         values = tuple(plain(value) for value in given)
         found = [number_of(value) for value in values]
@@ -96,14 +96,14 @@ def spread(values: Span | tuple[object, ...]) -> Sequence[object]:
                 "two numbers of one sign",
                 "to",
             )
-        inner = [_between(first, last, Fraction(k, steps)) for k in range(1, steps)]
+        inner = [_geometric_point(first, last, Fraction(k, steps)) for k in range(1, steps)]
     else:
         inner = [first + (last - first) * Fraction(k, steps) for k in range(1, steps)]
     numbers = [first, *inner, *([last] if steps else [])]
     return [_labels(number, unit) for number in numbers]
 
 
-def _between(first: Fraction, last: Fraction, part: Fraction) -> Fraction:
+def _geometric_point(first: Fraction, last: Fraction, part: Fraction) -> Fraction:
     """first (last/first)^part, rounded to the shortest decimal of a double."""
     with ctx.workprec(_BITS):
         ratio = arb(rational(last / first)) ** arb(rational(part))

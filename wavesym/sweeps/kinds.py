@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from wavesym.sweeps import parameters, recorded
+from wavesym.sweeps import parameters, shared_records
 from wavesym.sweeps.plan import SweepPlan
 
 
 def kind(plan: SweepPlan) -> tuple[str, tuple[bool, ...]]:
     """The kind of its batches, and in which dimensions cases can be parts of one batch."""
-    if recorded.serves(plan):
+    if shared_records.serves(plan):
         return "recorded", ()
-    if joined := parameters.together(plan):
+    if joined := parameters.shared_axes(plan):
         return "parameters", joined
     return "single", (True,) * len(plan.dimensions)

@@ -12,7 +12,7 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import nearest
 from wavesym.scene import Scene
-from wavesym.scene.paths import changed, steps
+from wavesym.scene.paths import replace_at_path, steps
 from wavesym.sweeps.dimension import Column
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.topology import RuntimeCase
@@ -52,7 +52,9 @@ def _varied_number(plan: SweepPlan, path: str, name: str) -> Lane | None:
     key = plan.sha256, path
     if key not in _LANES:
         try:
-            both = (RuntimeCase.of(Scene(**changed(plan.fields, path, value)), (name,)) for value in _PROBES)
+            both = (
+                RuntimeCase.from_scene(Scene(**replace_at_path(plan.fields, path, value)), (name,)) for value in _PROBES
+            )
             before, after = (np.array([nearest(value) for value in case.fields[0].values]) for case in both)
         except WavesymError:
             return None

@@ -14,7 +14,7 @@ from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.marks import FOLDER
 from wavesym.sweeps.plan import MOST, OUTPUT, SAMPLE, SCHEMA, SweepPlan
 from wavesym.sweeps.request import MOST_SAMPLES
-from wavesym.sweeps.sealed import DamagedError, SealedFile, Sha256, StrictTable, file_bytes
+from wavesym.sweeps.sealed_files import DamagedError, SealedFile, Sha256, StrictTable, file_bytes
 from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, folder_content, lay_out
 from wavesym.sweeps.values import kept_arrays
 
@@ -85,7 +85,7 @@ class Manifest(SealedFile):
         )
 
     @classmethod
-    def of(cls, folder: Path) -> Self:
+    def read_folder(cls, folder: Path) -> Self:
         """That of a folder. WavesymError where it has none; DamagedError for one that is not as it was written."""
         try:
             found = cls.read(folder / FILE)

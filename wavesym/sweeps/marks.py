@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from wavesym.sweeps.batches import Batches
-from wavesym.sweeps.sealed import DamagedError, SealedFile, Sha256, StrictTable
+from wavesym.sweeps.sealed_files import DamagedError, SealedFile, Sha256, StrictTable
 
 FOLDER = "done"
 

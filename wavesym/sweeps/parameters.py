@@ -30,17 +30,17 @@ _FEWEST = 8  # sets that are worth a program of their own
 _HOW = "parameters at run time, errors estimated"
 
 
-def together(plan: SweepPlan) -> tuple[bool, ...] | None:
+def shared_axes(plan: SweepPlan) -> tuple[bool, ...] | None:
     """Whether cases can differ in each dimension and still share a program; None where that is worth nothing."""
     if not set(plan.summary) <= set(RUNTIME_ARRAYS):
         return None
-    names = [_varied(plan, axis) for axis in range(len(plan.dimensions))]
+    names = [_varied_fields(plan, axis) for axis in range(len(plan.dimensions))]
     joined = tuple(map(bool, names))
     sets = np.prod([len(d) for d, some in zip(plan.dimensions, joined, strict=True) if some], initial=1)
     if not any(joined) or sets < _FEWEST:
         return None
     with suppress(WavesymError):
-        RuntimeCase.of(Scene(**plan.fields), _names(plan, joined))
+        RuntimeCase.from_scene(Scene(**plan.fields), _names(plan, joined))
         return joined
     return None
 
@@ -84,7 +84,7 @@ def _numbers(
     served, numbers = [], []
     for place in places:
         with suppress(WavesymError):  # by itself it says what is wrong
-            case = RuntimeCase.of(plan.scene(place), _names(plan, joined))
+            case = RuntimeCase.from_scene(plan.scene(place), _names(plan, joined))
             if case.rest == own.rest:
                 served.append(place)
                 numbers.append([[nearest(value) for value in field.values] for field in case.fields])
@@ -109,14 +109,16 @@ def _program(plan: SweepPlan, topology: Place, joined: Sequence[bool]) -> _Topol
         _PROGRAMS[key] = None
         with suppress(WavesymError):
             scene, names = plan.scene(topology), _names(plan, joined)
-            case, given = RuntimeCase.of(scene, names), amplitudes(scene) if "load" in names else ()
+            case, given = RuntimeCase.from_scene(scene, names), amplitudes(scene) if "load" in names else ()
             _PROGRAMS[key] = _TopologyProgram(case, RuntimeModel(sets_program(case.model, names, given)))
     return _PROGRAMS[key]
 
 
 def _names(plan: SweepPlan, joined: Sequence[bool]) -> tuple[str, ...]:
     """The fields that are varied."""
-    return tuple(dict.fromkeys(name for axis, joins in enumerate(joined) if joins for name in _varied(plan, axis)))
+    return tuple(
+        dict.fromkeys(name for axis, joins in enumerate(joined) if joins for name in _varied_fields(plan, axis))
+    )
 
 
 def _plain(plan: SweepPlan, joined: Sequence[bool]) -> bool:
@@ -128,7 +130,7 @@ def _plain(plan: SweepPlan, joined: Sequence[bool]) -> bool:
 _VARIED: dict[tuple[str, int], tuple[str, ...]] = {}
 
 
-def _varied(plan: SweepPlan, axis: int) -> tuple[str, ...]:
+def _varied_fields(plan: SweepPlan, axis: int) -> tuple[str, ...]:
     """The fields of a program that a dimension varies; none where cases along it have programs of their own."""
     key = plan.sha256, axis
     if key not in _VARIED:
@@ -149,7 +151,7 @@ def _differing_fields(probes: Sequence[Scene]) -> tuple[str, ...]:
     if not names:
         return ()
     with suppress(WavesymError):
-        first, *others = (RuntimeCase.of(scene, names) for scene in probes)
+        first, *others = (RuntimeCase.from_scene(scene, names) for scene in probes)
         return names if all(other.rest == first.rest for other in others) else ()
     return ()
 

@@ -17,11 +17,11 @@ from pydantic_core import PydanticCustomError
 from wavesym import __version__
 from wavesym.errors import SceneError
 from wavesym.fields.table import faults_of, show
-from wavesym.scene.paths import changed, steps
+from wavesym.scene.paths import replace_at_path, steps
 from wavesym.scene.physical.scene import acts
 from wavesym.scene.scene import Scene
 from wavesym.sweeps.dimension import Column, SweepAxis, count_of, spread
-from wavesym.sweeps.measured import Unreadable, match_files, record_column
+from wavesym.sweeps.record_files import Unreadable, match_files, record_column
 from wavesym.sweeps.request import SweepRequest
 
 SCHEMA = 2
@@ -85,7 +85,7 @@ class SweepPlan:
                 value = column.values[k]
                 if isinstance(value, Unreadable):
                     raise SceneError(value.reason, column.path)
-                fields = changed(fields, column.path, value)
+                fields = replace_at_path(fields, column.path, value)
         return fields
 
     def scene(self, place: tuple[int, ...]) -> Scene:
@@ -99,16 +99,16 @@ class SweepPlan:
         for dimension in self.dimensions:
             for column in dimension.columns:
                 if isinstance(column.values[0], dict | Unreadable):
-                    fields = changed(fields, column.path, column.labels[0])
+                    fields = replace_at_path(fields, column.path, column.labels[0])
         return fields
 
     @cached_property
     def sha256(self) -> str:
         """Of all that goes in: scene, values, records by content, what is kept, and the version of wavesym."""
-        return _hashed(self._said)
+        return _hash(self._content)
 
     @property
-    def _said(self) -> dict[str, Any]:
+    def _content(self) -> dict[str, Any]:
         columns = [[[column.path, *map(_key, column.values)] for column in d.columns] for d in self.dimensions]
         return {
             "schema_version": SCHEMA,
@@ -120,24 +120,24 @@ class SweepPlan:
 
 
 def _key(value: object) -> object:
-    return _hashed(value) if isinstance(value, dict) else value
+    return _hash(value) if isinstance(value, dict) else value
 
 
-def _hashed(value: object) -> str:
+def _hash(value: object) -> str:
     return hashlib.sha256(json.dumps(value, sort_keys=True, default=str).encode()).hexdigest()
 
 
 def plan(request: SweepRequest, file: str) -> SweepPlan:
     """What a request comes to. SceneError, which names the `file`, for what is wrong with it."""
     try:
-        return _planned(request)
+        return _make_plan(request)
     except SceneError as error:
         raise error if error.file != "scene" else SceneError(error.what, error.path, file) from None
     except PydanticCustomError as error:
         raise SceneError(str(error), "scene", file) from None
 
 
-def _planned(request: SweepRequest) -> SweepPlan:
+def _make_plan(request: SweepRequest) -> SweepPlan:
     files = match_files(request.records, request.folder)
     _refuse_many(request, max(len(files), 1))
     base = request.base()
@@ -154,8 +154,8 @@ def _planned(request: SweepRequest) -> SweepPlan:
     for dimension in dimensions:
         for column in dimension.columns:
             if not isinstance(column.values[0], Unreadable):
-                fields = changed(fields, column.path, column.values[0])
-    watched = _watched(base, fields, dimensions)
+                fields = replace_at_path(fields, column.path, column.values[0])
+    watched = _output_units(base, fields, dimensions)
     return SweepPlan(
         base.name,
         fields,
@@ -187,7 +187,7 @@ def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: st
     at = f"vary.{show(path)}"
     try:
         values = spread(request.vary[path])
-        changed(fields, path, None)
+        replace_at_path(fields, path, None)
         way = steps(path)
         if len(way) == 1:
             raise SceneError('a whole table; write a field in it, such as "output.until"')
@@ -196,14 +196,14 @@ def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: st
             return record_column(
                 path, files, request.folder, fields["load"][way[1]], acts(fields) if base.scale else None
             )
-        column = Column.of(path, values)
+        column = Column.from_values(path, values)
     except SceneError as error:
         raise SceneError(error.what, at) from None
     except PydanticCustomError as error:
         what, keys = faults_of(error)[0]
         raise SceneError(what, at + "".join(f".{key}" for key in keys)) from None
     try:
-        Scene(**changed(fields, path, column.values[0]))
+        Scene(**replace_at_path(fields, path, column.values[0]))
     except SceneError as error:
         if error.what.startswith("unknown key") and error.path == path:
             raise SceneError(error.what, at) from None
@@ -230,20 +230,20 @@ def _refuse_overlap(paths: list[str]) -> None:
                 )
 
 
-def _watched(base: Scene, fields: dict[str, Any], dimensions: list[SweepAxis]) -> dict[str, str]:
+def _output_units(base: Scene, fields: dict[str, Any], dimensions: list[SweepAxis]) -> dict[str, str]:
     """The outputs of all cases, in order, with their units."""
 
-    def told(scene: Scene) -> dict[str, str]:
+    def units(scene: Scene) -> dict[str, str]:
         scale = scene.scale
         return {each.name: scale.unit(each.quantity) if scale else "" for each in scene.outputs}
 
     varied = [dimension for dimension in dimensions if any(map(_makes_outputs, dimension.columns))]
     if not varied:
-        return told(base)
+        return units(base)
     watched: dict[str, str] = {}
     for scene in _scenes(fields, varied):
-        watched |= {name: unit for name, unit in told(scene).items() if name not in watched}
-    return watched or told(base)
+        watched |= {name: unit for name, unit in units(scene).items() if name not in watched}
+    return watched or units(base)
 
 
 def _makes_outputs(column: Column) -> bool:
@@ -256,7 +256,7 @@ def _scenes(fields: dict[str, Any], dimensions: list[SweepAxis]) -> Iterator[Sce
         made = fields
         for dimension, k in zip(dimensions, place, strict=True):
             for column in dimension.columns:
-                made = changed(made, column.path, column.values[k])
+                made = replace_at_path(made, column.path, column.values[k])
         try:
             yield Scene(**made)
         except SceneError:

@@ -16,7 +16,7 @@ from wavesym.reading import read_text
 from wavesym.results.statistics import ARRAYS, RUNTIME_ARRAYS
 from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.scene import Scene
-from wavesym.scene.scene_file import builtin_names, parsed
+from wavesym.scene.scene_file import builtin_names, parse_text
 
 MOST_SAMPLES = 1_000_000
 _FORM = "a file of TOML that describes a sweep"
@@ -64,7 +64,7 @@ class KeepTable(SceneTable):
 
     @field_validator("summary", mode="before")
     @classmethod
-    def _known(cls, value: object) -> tuple[object, ...]:
+    def _check_names(cls, value: object) -> tuple[object, ...]:
         names = as_list(value)
         for k, name in enumerate(names):
             if name not in ARRAYS:
@@ -117,7 +117,7 @@ class SweepRequest(SceneTable):
 
     @model_validator(mode="before")
     @classmethod
-    def _zipped_beside(cls, value: object) -> object:
+    def _move_zip(cls, value: object) -> object:
         """`zip` may stand among the fields that it is about: no field of a scene is called so."""
         if isinstance(value, Mapping) and isinstance(vary := value.get("vary"), Mapping) and "zip" in vary:
             rest = {path: values for path, values in vary.items() if path != "zip"}
@@ -149,7 +149,7 @@ class SweepRequest(SceneTable):
             file, text, folder, fields = "sweep", "", "", dict(source)
         else:
             file, text = read_text(source, _FORM)
-            folder, fields = os.path.dirname(os.fspath(source)), parsed(file, text)
+            folder, fields = os.path.dirname(os.fspath(source)), parse_text(file, text)
         if "system" in fields and "scene" not in fields:
             raise SceneError('this is a scene, not a sweep; write `scene = "PATH"`, and what to `[vary]`', file=file)
         try:

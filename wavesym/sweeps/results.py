@@ -18,10 +18,10 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from wavesym.errors import WavesymError, printable
-from wavesym.scene.paths import changed
+from wavesym.scene.paths import replace_at_path
 from wavesym.sweeps.manifest import Manifest
 from wavesym.sweeps.marks import BatchMark
-from wavesym.sweeps.sealed import DamagedError, StrictTable
+from wavesym.sweeps.sealed_files import DamagedError, StrictTable
 from wavesym.sweeps.status import SweepStatus, damage, marks_of, status_of
 from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, file_hash, folder_content
 from wavesym.sweeps.values import Numbers
@@ -111,8 +111,8 @@ class SweepResults:
             if batch in self.marks:
                 region = self.store.batches.region(batch)
                 here = [slice(max(a.start, b.start), min(a.stop, b.stop)) for a, b in zip(part, region, strict=True)]
-                values = self.store.read(name, batch)[_within(here, region)]
-                made[_within(here, part)] = values if output is None else values[..., output]
+                values = self.store.read(name, batch)[_relative_slices(here, region)]
+                made[_relative_slices(here, part)] = values if output is None else values[..., output]
         return made
 
     def place(self, case: int) -> tuple[int, ...]:
@@ -129,7 +129,7 @@ class SweepResults:
         fields: dict[str, Any] = self.manifest.scene
         for dimension, k in zip(self.dimensions, self.place(case), strict=True):
             for column in dimension.columns:
-                fields = changed(fields, column.path, _value(column.written[k]))
+                fields = replace_at_path(fields, column.path, _value(column.written[k]))
         return fields
 
 
@@ -140,7 +140,7 @@ def _value(written: str) -> object:
     return written
 
 
-def _within(part: Sequence[slice], whole: Sequence[slice]) -> tuple[slice, ...]:
+def _relative_slices(part: Sequence[slice], whole: Sequence[slice]) -> tuple[slice, ...]:
     """A part as it counts from where the whole begins."""
     return tuple(slice(a.start - b.start, a.stop - b.start) for a, b in zip(part, whole, strict=True))
 
@@ -157,7 +157,7 @@ class _CoordinateLabels(StrictTable):
 
 def results(folder: Path) -> SweepResults:
     """What there is in the folder of a sweep. WavesymError where it is none; DamagedError for what is not as it was."""
-    manifest = Manifest.of(folder)
+    manifest = Manifest.read_folder(folder)
     store, marks = manifest.store(folder), marks_of(folder, manifest)
     if not store.path.exists():
         raise WavesymError(f"{folder}: no {NAME} in it; write the folder of a sweep")
@@ -165,7 +165,7 @@ def results(folder: Path) -> SweepResults:
     damaged = [
         each for each, known in manifest.files.items() if each not in there or file_hash(store.path / each) != known
     ]
-    again = {batch: wrong for batch, mark in marks.items() if (wrong := store.damaged(batch, mark.chunks))}
+    again = {batch: wrong for batch, mark in marks.items() if (wrong := store.damaged_chunks(batch, mark.chunks))}
     if damaged or again:
         files = [f"{NAME}/{each}" for each in (*damaged, *chain.from_iterable(again.values()))]
         raise damage(folder, files, sum(map(store.batches.count, again)), manifest.cases)

@@ -20,7 +20,7 @@ from wavesym.sweeps.manifest import settle
 from wavesym.sweeps.marks import BatchMark, FailedCase, Marks
 from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
-from wavesym.sweeps.sealed import DamagedError
+from wavesym.sweeps.sealed_files import DamagedError
 from wavesym.sweeps.status import status
 from wavesym.sweeps.store import Store, require_packages
 from wavesym.sweeps.values import BatchValues
@@ -58,12 +58,12 @@ def run(
     planned = plan(request, file)
     parts = batches(planned, *kind(planned))
     place = Path(folder)
-    with _alone(place):
+    with _lock_folder(place):
         store, marks = settle(place, planned, parts), Marks(place)
         todo = _remaining_batches(planned, store, marks, retry_failed)
         before = done = planned.cases - sum(len(places) if places else parts.count(batch) for batch, places in todo)
         watch(planned.cases, done, before)
-        for batch, values in _computed(planned, parts, todo, engine):
+        for batch, values in _compute(planned, parts, todo, engine):
             keep(planned, store, marks, batch, values)
             done += len(values.places)
             watch(planned.cases, done, before)
@@ -78,7 +78,7 @@ def _remaining_batches(planned: SweepPlan, store: Store, marks: Marks, retry_fai
         name = store.batches.mark(planned.sha256, batch)
         with suppress(DamagedError):  # as if there were none
             mark = marks.get(name, store.batches, batch)
-            if mark and not store.damaged(batch, mark.chunks):
+            if mark and not store.damaged_chunks(batch, mark.chunks):
                 if again := {*mark.left, *(failed.case for failed in mark.failed if retry_failed)}:
                     every = store.batches.places(batch)
                     left.append((batch, [place for place in every if planned.number(place) in again]))
@@ -125,7 +125,7 @@ def _join_marks(
     return whole, left - set(values.places)
 
 
-def _computed(
+def _compute(
     planned: SweepPlan, parts: Batches, todo: Iterable[Task], engine: Computing
 ) -> Iterator[tuple[int, BatchValues]]:
     """The batches by whoever is to compute them: this process, as long as that does not take long."""
@@ -139,9 +139,9 @@ def _computed(
             if _estimate(times) * len(left) > _PATIENCE and _several():
                 break
     if left:
-        from wavesym.sweeps.cluster import connected, on_workers
+        from wavesym.sweeps.cluster import connect, on_workers
 
-        with connected(engine.workers or os.cpu_count(), engine.scheduler) as client:
+        with connect(engine.workers or os.cpu_count(), engine.scheduler) as client:
             yield from on_workers(client, planned, parts, left)
 
 
@@ -157,7 +157,7 @@ def _several() -> bool:
 
 
 @contextmanager
-def _alone(folder: Path) -> Iterator[None]:
+def _lock_folder(folder: Path) -> Iterator[None]:
     """No other process works in the folder meanwhile."""
     folder.mkdir(parents=True, exist_ok=True)
     lock = FileLock(folder / ".lock", timeout=0, fallback_to_soft=False)

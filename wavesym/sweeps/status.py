@@ -11,7 +11,7 @@ from typing import Any
 from wavesym.errors import printable
 from wavesym.sweeps.manifest import Manifest
 from wavesym.sweeps.marks import BatchMark, Marks
-from wavesym.sweeps.sealed import DamagedError
+from wavesym.sweeps.sealed_files import DamagedError
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class SweepStatus:
 
 def status(folder: Path) -> SweepStatus:
     """The state of the sweep in a folder. WavesymError where there is none; DamagedError for damaged marks."""
-    manifest = Manifest.of(folder)
+    manifest = Manifest.read_folder(folder)
     return status_of(manifest, marks_of(folder, manifest))
 
 

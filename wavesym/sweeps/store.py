@@ -26,7 +26,7 @@ from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.dimension import SweepAxis
 from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, SweepPlan
-from wavesym.sweeps.sealed import DamagedError
+from wavesym.sweeps.sealed_files import DamagedError
 from wavesym.sweeps.values import Numbers, kept_arrays, sizes
 
 NAME = "results.zarr"
@@ -58,7 +58,7 @@ class Store:
 
     def chunk(self, name: str, batch: int) -> str:
         """The file of an array's chunk, in the store."""
-        return f"{name}/{'.'.join(map(str, (*self.batches.at(batch), *(0 for _ in self.arrays[name]))))}"
+        return f"{name}/{'.'.join(map(str, (*self.batches.place(batch), *(0 for _ in self.arrays[name]))))}"
 
     def _shape(self, name: str) -> tuple[int, ...]:
         return (*self.batches.chunk, *self.arrays[name])
@@ -80,7 +80,7 @@ class Store:
             made[name] = hashlib.sha256(data).hexdigest()
         return made
 
-    def damaged(self, batch: int, hashes: Mapping[str, str | None]) -> list[str]:
+    def damaged_chunks(self, batch: int, hashes: Mapping[str, str | None]) -> list[str]:
         """The chunks of a batch that are not what they should be."""
         chunks = {name: self.chunk(name, batch) for name in self.arrays}
         return [chunk for name, chunk in chunks.items() if self._hash(name, batch) != hashes.get(name, "none")]

@@ -29,7 +29,7 @@ class RuntimeCase:
     rest: Any
 
     @classmethod
-    def of(cls, scene: Scene, names: tuple[str, ...]) -> RuntimeCase:
+    def from_scene(cls, scene: Scene, names: tuple[str, ...]) -> RuntimeCase:
         """That of a scene. WavesymError where it has no such fields, or cannot be served."""
         model, given = lower(scene), amplitudes(scene) if "load" in names else ()
         own = free_network(model, names, given).fields
@@ -45,7 +45,7 @@ def differing(first: Scene, second: Scene) -> Iterator[str]:
     """The fields in which two scenes differ."""
     for name in _EVERY:
         try:
-            one, other = (RuntimeCase.of(scene, (name,)).fields for scene in (first, second))
+            one, other = (RuntimeCase.from_scene(scene, (name,)).fields for scene in (first, second))
         except WavesymError:
             continue
         if [field.values for field in one] != [field.values for field in other]:

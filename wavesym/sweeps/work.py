@@ -12,7 +12,7 @@ from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches, Place
 from wavesym.sweeps.parameters import parameters
 from wavesym.sweeps.plan import SweepPlan
-from wavesym.sweeps.recorded import record_cases
+from wavesym.sweeps.shared_records import record_cases
 from wavesym.sweeps.single import single
 from wavesym.sweeps.values import BatchValues, CaseValues
 
@@ -27,7 +27,7 @@ def compute(plan: SweepPlan, batches: Batches, batch: int, places: list[Place] |
     with _ALONE:
         for group in batches.groups(batch):
             if asked := [place for place in group if place in row]:
-                shared = _shared(plan, batches, group)
+                shared = _shared_cases(plan, batches, group)
                 for place in asked:
                     if place in shared:
                         values.put(row[place], shared[place])
@@ -36,7 +36,7 @@ def compute(plan: SweepPlan, batches: Batches, batch: int, places: list[Place] |
     return values
 
 
-def _shared(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict[Place, CaseValues]:
+def _shared_cases(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict[Place, CaseValues]:
     """The cases of a group that can share work, as far as that serves them."""
     try:
         if batches.kind == "recorded":

@@ -26,7 +26,7 @@ class SentPlan(WorkerPlugin):  # type: ignore[misc]
         _PLANS[self.plan.sha256] = self.plan, self.batches
 
 
-def computed(version: str, sha256: str, batch: int, places: list[Place] | None) -> BatchValues:
+def compute_batch(version: str, sha256: str, batch: int, places: list[Place] | None) -> BatchValues:
     """A batch of a plan that was sent, or some cases of it."""
     if version != __version__:
         raise WavesymError(f"wavesym {__version__} at a worker, {version} here; install the same")

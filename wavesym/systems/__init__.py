@@ -6,8 +6,8 @@ from wavesym.systems.building import Building, PhysicalBuilding
 from wavesym.systems.collision import Collision, PhysicalCollision
 from wavesym.systems.drive import Drive, PhysicalDrive
 from wavesym.systems.explicit import ExplicitChain
+from wavesym.systems.explicit_preset import ExplicitPreset
 from wavesym.systems.preset import Preset
-from wavesym.systems.written_out import WrittenOut
 
 __all__ = [
     "PHYSICAL",
@@ -16,9 +16,9 @@ __all__ = [
     "Collision",
     "Drive",
     "ExplicitChain",
+    "ExplicitPreset",
     "Preset",
     "SystemTable",
-    "WrittenOut",
     "presets",
 ]
 

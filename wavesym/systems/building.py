@@ -27,8 +27,18 @@ from pydantic import (
 
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
-from wavesym.fields.measured import Area, Density, Length, Mass, Modulus, SecondMoment, Stiffness, one_of, read_quantity
 from wavesym.fields.numbers import Integer, Numbers, Positive, Positives
+from wavesym.fields.quantity_fields import (
+    Area,
+    Density,
+    Length,
+    Mass,
+    Modulus,
+    SecondMoment,
+    Stiffness,
+    one_of,
+    read_quantity,
+)
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import SceneTable, as_list, key_context, refusal, show
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
@@ -135,12 +145,12 @@ class Building(Preset):
     damping: ModalDamping = None
 
     @model_serializer(mode="wrap")
-    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         return without_damping(handler(self))
 
     @field_validator("base", mode="before")
     @classmethod
-    def _known(cls, base: object) -> object:
+    def _check_base(cls, base: object) -> object:
         return known_base(base)
 
     @property
@@ -258,7 +268,7 @@ class PhysicalBuilding(SceneTable):
         """As a building without units, where storeys differ part by part."""
         rods, floors = self._storeys()
         foundation = self._foundation()
-        scaled = Rods.of(rods)
+        scaled = Rods.from_rods(rods)
         first = scaled.first
         unit = first.length / scaled.seconds**2
         kappa = tuple(rod.mass / floor for rod, floor in zip(rods, floors, strict=True))

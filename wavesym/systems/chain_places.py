@@ -17,20 +17,20 @@ from wavesym.systems.station import Station
 def node(drawing: Drawing, at: str) -> int:
     """The point that a load acts on. MisplacedError."""
     position = position_of(at)
-    text = show(position.written)
+    text = show(position.text)
     if position.x is None and position.name in drawing.names:
         return drawing.names[position.name]
     _, station, _ = _locate(drawing, position, text)
     if station is None:
         raise MisplacedError(f"{text} is not a node; write the name or place of one")
     if len(station.points) > 1 and not position.side:
-        raise MisplacedError(f'{text} has two sides; write "{position.written}-" or "{position.written}+"')
+        raise MisplacedError(f'{text} has two sides; write "{position.text}-" or "{position.text}+"')
     return station.points[-1 if position.side > 0 else 0]
 
 
 def place(drawing: Drawing, position: Position, quantity: str, loaded: Collection[int]) -> Place:
     """The place of an output; `loaded` are the points that loads act on. MisplacedError."""
-    text = show(WrittenDecimal(position.written))
+    text = show(WrittenDecimal(position.text))
     if position.x is None and position.name in drawing.names:
         return _at_node(drawing, drawing.names[position.name], position.side, quantity, text, loaded)
     line, station, before = _locate(drawing, position, text)

@@ -26,8 +26,8 @@ from pydantic import (
 )
 
 from wavesym.fields.loads import Load
-from wavesym.fields.measured import Area, Density, Length, Mass, Modulus, Velocity, tidy
 from wavesym.fields.numbers import Numbers, Positives
+from wavesym.fields.quantity_fields import Area, Density, Length, Mass, Modulus, Velocity, tidy
 from wavesym.fields.table import SceneTable, as_list, refusal, show, without_usual
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.length import LengthUnit
@@ -106,11 +106,11 @@ class Collision(Preset):
 
     @field_validator("contacts", mode="before")
     @classmethod
-    def _known(cls, contacts: object) -> object:
+    def _check_contacts(cls, contacts: object) -> object:
         return known_contacts(contacts)
 
     @model_serializer(mode="wrap")
-    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         return without_usual(handler(self), contacts="closed")
 
     @field_validator("velocity")
@@ -131,14 +131,14 @@ class Collision(Preset):
         """Whether contacts open."""
         return {"contacts": "open"} if self.contacts == "open" else {}
 
-    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
+    def locate(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
-        place = super().located(position, quantity, loads)
+        place = super().locate(position, quantity, loads)
         touching = 0 < place.x < self.m and place.x % 2 == 0
         if self.contacts == "closed" or quantity in ("strain", "force") or not touching:
             return place
         if not position.side:
-            at = position.written
+            at = position.text
             raise MisplacedError(f'{at} has two sides, where bodies touch; write "{at}-" or "{at}+"')
         beyond = position.side > 0
         return replace(place, side=position.side, rod=place.rod + beyond, part=Fraction(1 - beyond))
@@ -202,7 +202,7 @@ class PhysicalCollision(SceneTable):
                     k,
                     "velocity",
                 )
-        rods = Rods.of([side.rod() for body in bodies for side in (body.left, body.right)])
+        rods = Rods.from_rods([side.rod() for body in bodies for side in (body.left, body.right)])
         first = rods.first
         velocities = [body.velocity * rods.seconds / first.length for body in bodies]
         kappa = tuple(rod.mass / body.mass for body, rod in zip(bodies, rods.all[::2], strict=True))
@@ -220,10 +220,10 @@ class PhysicalCollision(SceneTable):
             displacement=first.length,
             force=first.stiffness * first.length,
             lengths=tuple(rod.length for rod in rods.all),
-            load_unit=_unloaded,
+            load_unit=_refuse_loads,
             kappa=kappa,
         )
 
 
-def _unloaded(load: Mapping[str, Any]) -> LoadUnit:
+def _refuse_loads(load: Mapping[str, Any]) -> LoadUnit:
     raise refusal(f"{Collision.no_loads}; leave [[load]] out")

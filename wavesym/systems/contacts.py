@@ -19,13 +19,13 @@ def refuse_impacts(points: Sequence[Point], contacts: Iterable[tuple[Link, Keys]
     leader = list(range(len(points)))
     rigid = [point.mass != 0 or point.motion is not None for point in points]
 
-    def of(point: int) -> int:
+    def leader_of(point: int) -> int:
         while leader[point] != point:
             point = leader[point]
         return point
 
     for link, at in contacts:
-        one, other = of(link.left), of(link.right)
+        one, other = leader_of(link.left), leader_of(link.right)
         if rigid[one] and rigid[other]:
             raise refusal(
                 'a contact between two rigid parts ("fixed" and a motion are rigid too), which would need a law '
@@ -75,10 +75,10 @@ def name_contacts(links: Sequence[Link]) -> list[Link]:
     """The same; contacts at one place are called by its sides."""
     count = Counter(link.place for link in links if link.contact)
     met: Counter[str] = Counter()
-    return [_sided(link, count, met) for link in links]
+    return [_with_side(link, count, met) for link in links]
 
 
-def _sided(link: Link, count: Mapping[str, int], met: Counter[str]) -> Link:
+def _with_side(link: Link, count: Mapping[str, int], met: Counter[str]) -> Link:
     if not link.contact or count[link.place] == 1:
         return link
     met[link.place] += 1

@@ -17,14 +17,14 @@ Kind = Literal["longitudinal", "torsional", "shear"]
 class LoadUnit:
     """What a load is: its dimension and that of its slope, and how much in SI base units a dimensionless 1 is.
 
-    Keys that are `renamed` and `added` make a load of a named system one of the chain that it became.
+    Keys renamed by `renames` and added by `additions` make a load of a named system one of the chain that it became.
     """
 
     dimension: str
     slope: str
     size: Fraction
-    renamed: Mapping[str, str] = field(default_factory=dict)
-    added: Mapping[str, object] = field(default_factory=dict)
+    renames: Mapping[str, str] = field(default_factory=dict)
+    additions: Mapping[str, object] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

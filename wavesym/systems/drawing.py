@@ -99,12 +99,12 @@ class _Pen:
 
     points: list[Point] = field(default_factory=list)
     bars: list[Bar] = field(default_factory=list)
-    unsaid: dict[int, Keys] = field(default_factory=dict)  # masses whose velocity is that of their rods
+    default_velocities: dict[int, Keys] = field(default_factory=dict)  # masses whose velocity is that of their rods
     links: list[Link] = field(default_factory=list)
     names: dict[str, int] = field(default_factory=dict)
     lines: dict[str, tuple[Station, ...]] = field(default_factory=dict)
     contacts: list[tuple[Link, Keys]] = field(default_factory=list)
-    written: dict[int, Keys] = field(default_factory=dict)  # points by the parts that they are, or that come next
+    paths: dict[int, Keys] = field(default_factory=dict)  # points by the parts that they are, or that come next
     places: dict[int, tuple[str, Fraction]] = field(default_factory=dict)  # of contacts, by the number of the link
 
     def drawing(self) -> Drawing:
@@ -112,7 +112,7 @@ class _Pen:
         for k, point in enumerate(self.points):
             self._bearable(k, point)
         refuse_impacts(self.points, self.contacts)
-        refuse_joined_corners(self.points, self.links, self.written)
+        refuse_joined_corners(self.points, self.links, self.paths)
         return Drawing(tuple(self.points), tuple(self.bars), tuple(self.links), self.lines, self.names, self.places)
 
     def line(
@@ -128,7 +128,7 @@ class _Pen:
         nodes, between = alternating(parts, at, branch=begin is not None)
         if begin is not None and nodes[0] is not None:
             self._wheel(begin, nodes[0][1], ratio, (*at, nodes[0][0]))
-        numbers = [self._drawn(nodes, between, k, at) if k or begin is None else begin for k in range(len(nodes))]
+        numbers = [self._draw_node(nodes, between, k, at) if k or begin is None else begin for k in range(len(nodes))]
         stations = [Station(Fraction(0), (numbers[0],), None, None)]
         for k, ((number, part), left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
             last, turns = stations[-1], ratio if begin is not None and k == 0 else Fraction(1)
@@ -152,12 +152,12 @@ class _Pen:
                 x = next(station.x for station in stations if number in station.points)
                 self._hold(placed[1], number, (name, x), (*at, placed[0]))
 
-    def _drawn(self, nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], k: int, at: Keys) -> int:
+    def _draw_node(self, nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], k: int, at: Keys) -> int:
         """A new point for a node."""
         self.points.append(Point(fmpq(0)))
         number = len(self.points) - 1
         placed = nodes[k]
-        self.written[number] = (*at, (placed or between[min(k, len(between) - 1)])[0])
+        self.paths[number] = (*at, (placed or between[min(k, len(between) - 1)])[0])
         if placed is not None:
             beside = [between[n][1] for n in (k - 1, k) if 0 <= n < len(between)]
             self._become(number, placed[1], [part for part in beside if isinstance(part, RodPart)], (*at, placed[0]))
@@ -167,7 +167,7 @@ class _Pen:
         """Friction, or a spring with a law, between a point and the ground, a point of its own."""
         self.points.append(Point(fmpq(0), motion="fixed"))
         ground = len(self.points) - 1
-        self.written[ground] = at
+        self.paths[ground] = at
         self.places[len(self.links)] = place
         if part.friction:
             self.links.append(Link(ground, point, friction=rational(part.friction)))
@@ -233,10 +233,10 @@ class _Pen:
     def agree(self, point: int, branch: Branch) -> None:
         """A mass that takes its velocity from its rods takes it from that of a branch, too."""
         first = next(iter(branch.parts), None)
-        if point not in self.unsaid or not isinstance(first, RodPart):
+        if point not in self.default_velocities or not isinstance(first, RodPart):
             return
         if rational(first.velocity) != rational(branch.ratio) * self.points[point].velocity:
-            raise refusal(_UNSAID, *self.unsaid[point], "velocity")
+            raise refusal(_UNSAID, *self.default_velocities[point], "velocity")
 
     def _become(self, point: int, part: ChainPart | str, rods: Sequence[RodPart], at: Keys) -> None:
         """Give a point what a part says of it; `rods` are those beside it."""
@@ -245,7 +245,7 @@ class _Pen:
             if part.velocity is None and len(velocities) > 1 and part.inertia:
                 raise refusal(_UNSAID, *at, "velocity")
             if part.velocity is None and part.inertia:
-                self.unsaid[point] = at
+                self.default_velocities[point] = at
             velocity = part.velocity if part.velocity is not None else min(velocities, default=Fraction(0))
             spring = Fraction(0) if part.has_law else part.spring
             mass, damping, stiffness = map(rational, (part.inertia, part.dashpot, spring))
@@ -265,7 +265,7 @@ class _Pen:
                 raise refusal(f"{show(name)} is taken; write another name", *at, "name")
             self.names[name] = point
 
-    def _damped(self, number: int) -> bool:
+    def _is_damped(self, number: int) -> bool:
         """Whether a point has a rod, a dashpot or a motion, or others hold it that have, or a mass, by dashpots."""
         seen, coming = {number}, [number]
         while coming:
@@ -281,9 +281,9 @@ class _Pen:
 
     def _bearable(self, number: int, point: Point) -> None:
         """A point must have something that says how fast it is."""
-        if point.mass != 0 or self._damped(number):
+        if point.mass != 0 or self._is_damped(number):
             return
-        at = self.written[number]
+        at = self.paths[number]
         if any(number in (link.left, link.right) for link, _ in self.contacts):
             raise refusal(
                 "no mass, rod or dashpot holds a side of a contact, and what has lifted off needs a motion of "

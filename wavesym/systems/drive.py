@@ -17,8 +17,8 @@ from pydantic import BeforeValidator, FailFast, Field, SerializerFunctionWrapHan
 
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
-from wavesym.fields.measured import Bore, Density, Inertia, Length, Modulus, SecondMoment, one_of
 from wavesym.fields.numbers import Integer, Numbers, Positives
+from wavesym.fields.quantity_fields import Bore, Density, Inertia, Length, Modulus, SecondMoment, one_of
 from wavesym.fields.rounding import polar_moment
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import SceneTable, as_list, key_context, refusal, show, without_usual
@@ -97,7 +97,7 @@ class Moment(OnBody, TimedLoad):
     ramps: Numbers = ()
 
     @model_serializer(mode="wrap")
-    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         return without_usual(handler(self), name="", ramps=[])
 
 
@@ -123,7 +123,7 @@ class Drive(Preset):
     """m shafts between m + 1 rigid discs at x = 0, 1, ... m."""
 
     variants: ClassVar[tuple[System, ...]] = (DRIVE,)
-    beside: ClassVar[tuple[System, ...]] = (DRIVE_RAMPS,)
+    companions: ClassVar[tuple[System, ...]] = (DRIVE_RAMPS,)
     counts: ClassVar[Mapping[str, str]] = {"kappa": "m", "inertia": "m + 1"}
     load_kinds: ClassVar[LoadKinds] = (Moment, SampledMoment, RecordedMoment, ShapedMoment)
 
@@ -133,7 +133,7 @@ class Drive(Preset):
     damping: ModalDamping = None
 
     @model_serializer(mode="wrap")
-    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         return without_damping(handler(self))
 
     @property
@@ -247,4 +247,4 @@ class PhysicalDrive(SceneTable):
         for k, shaft in enumerate(self.shaft):
             with key_context("shaft", k):
                 rods.append(shaft.rod())
-        return Rods.of(rods)
+        return Rods.from_rods(rods)

@@ -46,7 +46,7 @@ class Rods:
     ratios: tuple[Fraction, ...]
 
     @classmethod
-    def of(cls, rods: Sequence[ElasticRod]) -> Rods:
+    def from_rods(cls, rods: Sequence[ElasticRod]) -> Rods:
         """Rods with their delays."""
         if not rods:
             return cls((), Fraction(1), ())

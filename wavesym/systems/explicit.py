@@ -43,7 +43,7 @@ class ExplicitChain(SceneTable):
         return self
 
     @model_serializer(mode="wrap")
-    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         return without_damping(handler(self))
 
     @cached_property
@@ -66,7 +66,7 @@ class ExplicitChain(SceneTable):
         damping = {"damping": self.damping.description} if self.damping else {}
         return {"parts": describe_parts(self.parts), **branches, **damping}
 
-    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
+    def locate(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
         return place(self.drawing, position, quantity, {self._point(load) for load in loads})
 
@@ -77,7 +77,7 @@ class ExplicitChain(SceneTable):
         except MisplacedError as error:
             return str(error), "at"
         if self.drawing.points[point].motion == "fixed":
-            place = show(position_of(_load_place(load)).written)
+            place = show(position_of(_load_place(load)).text)
             return f'{place} is a "fixed" end, which cannot move; write a node that can', "at"
         return None
 

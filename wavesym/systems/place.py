@@ -14,12 +14,12 @@ from wavesym.fields.titles import check_title
 
 
 class Position(NamedTuple):
-    """A place as it is `written`: x (in rod lengths, or along a line) or a name, and its side.
+    """A place as its `text` says: x (in rod lengths, or along a line) or a name, and its side.
 
     -1 is the left one, +1 the right one, 0 where none is said. The `title` is what people are shown for it, if any.
     """
 
-    written: str
+    text: str
     x: Fraction | None
     side: int
     name: str = ""
@@ -27,17 +27,17 @@ class Position(NamedTuple):
 
 
 class PlaceInUnits(str):
-    """A place in rod lengths, as text, that a scene with units has `written` in them."""
+    """A place in rod lengths, with the `text` that a scene with units has for it."""
 
-    written: str
+    text: str
 
     def __new__(cls, text: str, written: str) -> Self:
         place = super().__new__(cls, text)
-        place.written = written
+        place.text = written
         return place
 
     def __reduce__(self) -> tuple[type[Self], tuple[str, str]]:
-        return type(self), (str(self), self.written)
+        return type(self), (str(self), self.text)
 
 
 _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?")
@@ -65,7 +65,7 @@ def position_of(value: object) -> Position:
         place, title = read_titled_place(value)
         return position_of(place)._replace(title=title)
     if isinstance(value, PlaceInUnits):
-        return position_of(str(value))._replace(written=value.written)
+        return position_of(str(value))._replace(text=value.text)
     text = number_text(value)
     if text is None:
         return Position(str(exact(value)), exact(value), 0)

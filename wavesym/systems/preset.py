@@ -30,13 +30,13 @@ class Preset(SceneTable):
     """m elastic elements of a system, with numbers for its parameters.
 
     `variants` are what `derive` prints of it; their m and their indices say how many numbers a list has, `counts` the
-    formula as users know it. `beside` are systems that it becomes under loads that the paper does not have; they are
-    proved as the variants are. `fewest` is the smallest m, where it is less than that of the general statement of which
-    `variants` are families. `load_kinds` are the tables that its loads may be, `no_loads` why there are none.
+    formula as users know it. `companions` are systems that it becomes under loads that the paper does not have; they
+    are proved as the variants are. `fewest` is the smallest m, where it is less than that of the general statement of
+    which `variants` are families. `load_kinds` are the tables that its loads may be, `no_loads` why there are none.
     """
 
     variants: ClassVar[tuple[System, ...]]
-    beside: ClassVar[tuple[System, ...]] = ()
+    companions: ClassVar[tuple[System, ...]] = ()
     counts: ClassVar[Mapping[str, str]]
     fewest: ClassVar[int | None] = None
     load_kinds: ClassVar[LoadKinds] = ()
@@ -57,7 +57,7 @@ class Preset(SceneTable):
 
     @field_validator("*")
     @classmethod
-    def _counted(cls, value: object, info: ValidationInfo) -> object:
+    def _check_count(cls, value: object, info: ValidationInfo) -> object:
         m = info.data.get("m")  # None where it was refused, which is then what the user reads
         name = str(info.field_name)
         if name in cls.counts and m is not None and isinstance(value, tuple):
@@ -96,12 +96,12 @@ class Preset(SceneTable):
         }
         return Chain(self.system, self.m, Parameters(**numbers))
 
-    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
+    def locate(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
-        x, text = position.x, show(WrittenDecimal(position.written))
+        x, text = position.x, show(WrittenDecimal(position.text))
         if x is None or not 0 <= x <= self.m:
             raise MisplacedError(f"{text} is not on the chain; write a position from 0 to {self.m}")
-        divided = quantity in ("strain", "force") and self._divided_at(x, quantity)
+        divided = quantity in ("strain", "force") and self._has_sides_at(x, quantity)
         if divided and not position.side:
             raise MisplacedError(f'{text} has two sides, of the body there; write "{text}-" or "{text}+"')
         side = position.side if divided else 0
@@ -110,7 +110,7 @@ class Preset(SceneTable):
         rod = min(max(1, after + 1 if side > 0 else after), self.m)
         return Place(x, side, "", rod, x - (rod - 1))
 
-    def _divided_at(self, x: Fraction, quantity: str) -> bool:
+    def _has_sides_at(self, x: Fraction, quantity: str) -> bool:
         """Whether strain, or force, has two sides at x (in rod lengths), inside the chain: mostly at bodies."""
         if not (0 < x < self.m and x.denominator == 1):
             return False

@@ -119,7 +119,7 @@ def describe(program: Program) -> Description:
         tolerance=_tolerance(model),
         trust="proved" if program.proved else "estimated",
         outputs=tuple(
-            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, _described(probe))
+            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, _describe(probe))
             for output, constant, probe in zip(program.outputs, constants(names), model.probes, strict=True)
         ),
         output_count=str(len(names)),
@@ -149,7 +149,7 @@ def _units(model: Model) -> str:
     return f"Time is tau, of which one is {literal(nearest(model.clock.seconds))} s; outputs have the units below."
 
 
-def _described(probe: Probe) -> str:
+def _describe(probe: Probe) -> str:
     """An output as a comment names it."""
     return f"{probe.heading}: {ascii(probe.title)[1:-1]}" if probe.title else probe.heading
 

@@ -60,9 +60,9 @@ def fmu_files(program: Program, version: str) -> dict[str, str]:
     return made | {f"resources/{description.name}.json": manifest(description, program)}
 
 
-def tested(language: str) -> bool:
+def has_selftest(language: str) -> bool:
     """Whether a self-test is among the files of a language, or of "all"."""
-    return any(_target(name).tested for name in (TARGETS if language == "all" else (language,)))
+    return any(_target(name).has_selftest for name in (TARGETS if language == "all" else (language,)))
 
 
 def _target(name: str) -> Target:

@@ -44,7 +44,7 @@ def manifest(description: Description, program: Program) -> str:
         **({} if program.laws else {"error_bound": program.error_bound}),
         **_clock(program),
         "outputs": [_output(output, program) for output in program.outputs],
-        **_streamed(program),
+        **_stream_entry(program),
         **_runtime(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
         **_events(description),
@@ -101,7 +101,7 @@ def _events(description: Description) -> dict[str, object]:
     return {"events": [{"x": event.x, "kind": event.kind, "tau": event.digits} for event in description.events]}
 
 
-def _streamed(program: Program) -> dict[str, object]:
+def _stream_entry(program: Program) -> dict[str, object]:
     """The loads of a stream with the units of their samples, and the time between these, or how long a panel is."""
     if not program.step:
         return {}

@@ -12,7 +12,7 @@ class Target(Protocol):
     """A language that programs are written in. Each has a folder here, whose name is that of the language."""
 
     @property
-    def tested(self) -> bool:
+    def has_selftest(self) -> bool:
         """Whether its files contain a self-test, for which `Program.reference` is needed."""
 
     def files(self, description: Description, program: Program) -> dict[str, str]:

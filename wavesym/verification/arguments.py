@@ -14,8 +14,8 @@ from wavesym.derivation.recurrence import POWER, Recurrence
 from wavesym.documents.derivation.highest_powers import INTERVAL, PowerFamily, PowerRow, plain
 from wavesym.documents.derivation.notation import Text
 from wavesym.verification.powers import NUMBERS, Step
-from wavesym.verification.proofs import Outgoing, timed
-from wavesym.verification.theorem import A, B, applied, at_front
+from wavesym.verification.proofs import Outgoing, with_delays
+from wavesym.verification.theorem import A, B, at_front, operator_coefficient
 
 _TEXT = Text()
 
@@ -26,7 +26,7 @@ class Theorem:
 
     claim: str
     argument: str
-    counted: str
+    count_noun: str
 
 
 def _and(names: Iterable[str]) -> str:
@@ -41,10 +41,10 @@ def _product(factors: Expr) -> str:
     )
 
 
-def _applied() -> str:
+def _operator_text() -> str:
     """What an operator leaves of coefficients, as the proof has it."""
     of = Function("F")
-    form = applied().subs({A: Symbol("a"), B: Symbol("b")})
+    form = operator_coefficient().subs({A: Symbol("a"), B: Symbol("b")})
     return " + ".join(f"{_product(form.coeff(of(POWER + n)))} F[g,{'k+1' if n else 'k'}]" for n in (0, 1))
 
 
@@ -66,9 +66,9 @@ RECURRENCES = Theorem(
     "The recurrences solve the delay equations, for all i, m, n and k.",
     "By induction over the interval n. What stands on the right of a delay equation was found before: a sum over "
     "rates g of exp(-g w) F[g,k] w^k, w the time in the interval, in which every F[g,k] stays a symbol. Of such a "
-    f"sum a D + b leaves {_applied()} at exp(-g w) w^k, and {_jump()} at the front, w = 0. For the coefficient that "
-    "a recurrence gives, at k and at k+1, its right side is put in; what is then left of the delay equation is 0 as "
-    "a rational function of all symbols, i, m and k among them: at every rate and power, at each load, and at the "
+    f"sum a D + b leaves {_operator_text()} at exp(-g w) w^k, and {_jump()} at the front, w = 0. For the coefficient "
+    "that a recurrence gives, at k and at k+1, its right side is put in; what is then left of the delay equation is 0 "
+    "as a rational function of all symbols, i, m and k among them: at every rate and power, at each load, and at the "
     "front. So interval n solves the delay equations whatever came before it, and all intervals do. The rate g is "
     "first a symbol too, then each of those that occur.",
     "residuals",
@@ -101,26 +101,26 @@ def determinants(waves: Sequence[Outgoing]) -> str:
     """The determinants of both systems of equations, by node."""
     nodes: dict[tuple[Expr, Expr], list[str]] = {}
     for wave in waves:
-        nodes.setdefault(wave.determinants, []).append(_TEXT.indexed(wave.function, wave.rod))
+        nodes.setdefault(wave.determinants, []).append(_TEXT.with_index(wave.function, wave.rod))
     told = (f"{_and(names)}: {_image(one)} and {_image(other)}" for (one, other), names in nodes.items())
     return f"Determinants, of the delay equations and of the node law: {'; '.join(told)}."
 
 
 def _image(expression: Expr) -> str:
-    above, below = map(timed, fraction(cancel(together(expression))))
+    above, below = map(with_delays, fraction(cancel(together(expression))))
     return _TEXT.quotient([(term, "") for term in Add.make_args(above)], below)
 
 
 def rates_met(recurrence: Recurrence, rates: Iterable[Expr]) -> str:
     """The functions and the rates of a system's recurrences."""
-    functions = _and(_TEXT.indexed(law.function, law.rod) for law in recurrence.laws)
+    functions = _and(_TEXT.with_index(law.function, law.rod) for law in recurrence.laws)
     return f"Functions: {functions}. Rates: any g; {', '.join(map(_TEXT.expression, rates))}."
 
 
 def arrangements(family: PowerFamily, made: Sequence[Step]) -> str:
     """What is stated of a family, and how many inequalities show it."""
     rows = "; ".join(
-        f"{_kind(family, row)} {_power(family, row)}, since {_TEXT.expression(row.since)}" for row in family.rows
+        f"{_kind(family, row)} {_power(family, row)}, since {_TEXT.expression(row.start)}" for row in family.rows
     )
     free = {symbol for step in made for symbol in step.slack.free_symbols}
     drops = "" if INTERVAL in free else "n drops out of the differences. "
@@ -132,7 +132,7 @@ def arrangements(family: PowerFamily, made: Sequence[Step]) -> str:
 
 
 def _kind(family: PowerFamily, row: PowerRow) -> str:
-    name = _TEXT.indexed(row.function, row.rod)
+    name = _TEXT.with_index(row.function, row.rod)
     if row.first == row.last:
         return name
     second = row.first + row.step

@@ -49,7 +49,7 @@ _HALVINGS = 60
 _ROUNDINGS = 1
 
 
-class Undecided(ArithmeticError):
+class UndecidedError(ArithmeticError):
     """The integrator cannot go on; its text says why."""
 
 
@@ -70,7 +70,7 @@ class Motion:
     vague: list[float] = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
 
-    def at(self, reading: Gauge, taus: Sequence[float]) -> Array:
+    def evaluate(self, reading: Gauge, taus: Sequence[float]) -> Array:
         """Evaluate a strain, velocity, displacement or acceleration.
 
         Args:
@@ -86,7 +86,7 @@ class Motion:
         if not all(0 <= tau <= self.until for tau in taus):
             raise ValueError(f"tau outside [0, {self.until}]")
         order = order_of(reading.quantity)
-        parts = [self._sent(side, number, taus, late, order) for side, number, late in self._read(reading)]
+        parts = [self._sent_wave(side, number, taus, late, order) for side, number, late in self._read(reading)]
         if len(parts) == 1:
             return parts[0]
         right, left = parts
@@ -94,7 +94,7 @@ class Motion:
 
     def outputs(self, taus: Array) -> Array:
         """The outputs at doubles tau in [0, until], right-hand limits: (outputs, taus)."""
-        values = [self.at(reading, taus.tolist()) for reading in self.problem.readings]
+        values = [self.evaluate(reading, taus.tolist()) for reading in self.problem.readings]
         return self.problem.outputs(np.array(values).reshape(-1, len(taus)), taus)
 
     @property
@@ -147,7 +147,7 @@ class Motion:
     def _widths(self) -> Array:
         return np.array([float(width) for width in self.widths])
 
-    def _sent(self, side: int, number: int, taus: Sequence[float], late: Fraction, order: int) -> Array:
+    def _sent_wave(self, side: int, number: int, taus: Sequence[float], late: Fraction, order: int) -> Array:
         """A wave that was sent so long before, its derivative (`order` 1) or its integral since then (-1).
 
         Which panel that is, is decided exactly.
@@ -224,7 +224,7 @@ class _Integration:
                 is_vague |= front in vague
             if is_vague:
                 found.vague.append(float(now))
-            for time, group in problem.sent_on(now, here):
+            for time, group in problem.onward_arrivals(now, here):
                 if not any(group == other and abs(time - when) <= self._same for when, other in fronts):
                     heappush(fronts, (time, group))
                     vague |= {(time, group)} if is_vague else set()
@@ -234,7 +234,7 @@ class _Integration:
             width = (fronts[0][0] - now) / parts
             for _ in range(parts):
                 if len(found.starts) == self._most:
-                    raise Undecided(f"{self._most} panels end at tau = {float(now):.4g}")
+                    raise UndecidedError(f"{self._most} panels end at tau = {float(now):.4g}")
                 changed = self._panel(now, width)
                 now += found.widths[-1]
                 if changed:
@@ -307,7 +307,7 @@ class _Integration:
         parting = problem.parting[:, group]
         here = np.flatnonzero(np.any(parting != 0, axis=1))
         if not len(here):
-            self._velocities[group] = self._moved(number, (), width, acting)[0]
+            self._velocities[group] = self._group_motion(number, (), width, acting)[0]
             return 1.0
         apart = problem.gaps[here] + problem.parting[here] @ self._u
         length, force = problem.worth
@@ -316,20 +316,20 @@ class _Integration:
         states = sorted(product(*choices), key=lambda each: int(np.sum(np.array(each) != self._open[here])))
 
         @cache
-        def solved(state: tuple[bool, ...]) -> tuple[Array, list[Array]]:
+        def solve(state: tuple[bool, ...]) -> tuple[Array, list[Array]]:
             is_open = np.array(state)
-            moved, pushes = self._moved(number, tuple(here[~is_open].tolist()), width, acting)
+            moved, pushes = self._group_motion(number, tuple(here[~is_open].tolist()), width, acting)
             gaps = apart[is_open, np.newaxis] + parting[here[is_open]] @ moved @ (float(width) * self._rule.until.T)
             return moved, [*(gaps / length), *(pushes / force)]
 
         for noise in _SIGNS:
             for state in states:
-                moved, positive = solved(state)
+                moved, positive = solve(state)
                 part = min((self._first_negative(values, noise) for values in positive), default=1.0)
                 if part > 0:
                     self._velocities[group], self._states[here] = moved, state
                     return part
-        raise Undecided("contacts for which neither open nor closed will do")
+        raise UndecidedError("contacts for which neither open nor closed will do")
 
     def _first_negative(self, values: Array, noise: float) -> float:
         """Where on [0, 1] a polynomial by its values becomes negative: 1 if it does not, 0 if it begins so."""
@@ -348,7 +348,9 @@ class _Integration:
 
     # motion
 
-    def _moved(self, number: int, closed: tuple[int, ...], width: Fraction, acting: Array) -> tuple[Array, Array]:
+    def _group_motion(
+        self, number: int, closed: tuple[int, ...], width: Fraction, acting: Array
+    ) -> tuple[Array, Array]:
         """The velocities of a group at Gauss's points, and the pushes of its closed contacts."""
         group = list(self._problem.groups[number])
         system = self._system(number, closed, width)

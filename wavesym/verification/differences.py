@@ -56,7 +56,7 @@ Term = tuple[int, int, float]
 
 
 @dataclass(frozen=True)
-class Displaced:
+class GridReadings:
     """Readings at some instants, (readings, instants), what rounding may have added to each, (readings,);
     and which contacts opened and closed, at the ends of steps."""
 
@@ -78,7 +78,7 @@ class SpaceTimeGrid:
         return int(min(self.problem.delays) / self.step)
 
     @property
-    def aligned(self) -> bool:
+    def is_aligned(self) -> bool:
         """Whether all loads begin on the grid. All fronts are on it then, and errors are a series in h^2."""
         return all((event.time / self.step).denominator == 1 for event in self.problem.events)
 
@@ -120,7 +120,7 @@ class SpaceTimeGrid:
                     free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
         return instants[free]
 
-    def struck(self, until: float, most: float) -> tuple[SpaceTimeGrid, KnownChanges] | None:
+    def resolve_contacts(self, until: float, most: float) -> tuple[SpaceTimeGrid, KnownChanges] | None:
         """The coarsest grid which, halved twice, has the same happen at contacts, and that; None if it costs more."""
         grid = self
         while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
@@ -134,7 +134,7 @@ class SpaceTimeGrid:
             grid = grid.finer(2)
         return None
 
-    def integrate(self, instants: Instants) -> Displaced:
+    def integrate(self, instants: Instants) -> GridReadings:
         """The readings at positive instants in ascending order. At a front, the mean of what is before and after it."""
         kept = np.unique(np.add.outer(instants, (-1, 0, 1)))
         terms = [list(self._terms(reading)) for reading in self.problem.readings]
@@ -153,11 +153,11 @@ class SpaceTimeGrid:
             value += self.problem.start_strain[reading.rod - 1] if reading.quantity == "strain" else 0.0
             for later, place, weight in some:
                 value += weight * history[rows + later, np.searchsorted(places, place)]
-        unsure = largest * self._roundoff(int(instants[-1])) + motion.missed * self._struck
-        return Displaced(values, unsure, tuple(self._lasting(motion.changes)))
+        unsure = largest * self._roundoff(int(instants[-1])) + motion.missed * self._impulse_effects
+        return GridReadings(values, unsure, tuple(self._lasting(motion.changes)))
 
     @cached_property
-    def _struck(self) -> Array:
+    def _impulse_effects(self) -> Array:
         """What an impulse at a contact changes of the readings, at most: rods' ends move, masses are faster."""
         impedance, heavy = self.problem.impedance, self.problem.mass[self.problem.mass > 0]
         slowest, lightest = float(np.min(self.problem.speed)), float(np.min(heavy, initial=np.inf))
@@ -216,7 +216,7 @@ class SpaceTimeGrid:
         if reading.point is not None:
             cells, first = 1, int(self.field.points[reading.point])
         slope = half / self.problem.speed[bar]
-        for j, weight in _between(place, cells):
+        for j, weight in _interpolation(place, cells):
             match reading.quantity:
                 case "displacement":
                     terms = [(0, j, 1.0)]
@@ -280,7 +280,7 @@ class _ContactMotion(GridMotion):
         return after
 
 
-def _between(place: float, cells: int) -> Iterator[tuple[int, float]]:
+def _interpolation(place: float, cells: int) -> Iterator[tuple[int, float]]:
     """Points of a rod, and the weights with which they stand for a place between them."""
     if _is_whole(place):
         yield round(place), 1.0

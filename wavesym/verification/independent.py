@@ -231,7 +231,7 @@ def _chain(system: ExplicitChain) -> Sketch:
         first, start = branch.parts[0], sketch.names[branch.from_]
         parts = branch.parts[isinstance(first, PointPart) :]
         if isinstance(first, PointPart):  # a wheel of the node
-            wheel, node, square = _pointed(first, ()), sketch.points[start], rational(branch.ratio) ** 2
+            wheel, node, square = _point(first, ()), sketch.points[start], rational(branch.ratio) ** 2
             names = ("mass", "damping", "stiffness")
             gathered = {name: getattr(node, name) + square * getattr(wheel, name) for name in names}
             sketch.points[start] = replace(node, **gathered)
@@ -250,9 +250,7 @@ def _row(parts: Sequence[Any], *, branch: bool = False) -> Row:
     if isinstance(written[-1], _SPANS):
         written.append("joint")
     return [
-        _spanned(part)
-        if isinstance(part, _SPANS)
-        else _pointed(part, [*written[max(k - 1, 0) : k], *written[k + 1 :][:1]])
+        _span(part) if isinstance(part, _SPANS) else _point(part, [*written[max(k - 1, 0) : k], *written[k + 1 :][:1]])
         for k, part in enumerate(written)
     ]
 
@@ -260,7 +258,7 @@ def _row(parts: Sequence[Any], *, branch: bool = False) -> Row:
 _SPANS = (RodPart, LinkPart, ContactPart)
 
 
-def _spanned(part: RodPart | LinkPart | ContactPart) -> Span:
+def _span(part: RodPart | LinkPart | ContactPart) -> Span:
     if isinstance(part, ContactPart):
         return (Link(0, 0, contact=True, gap=rational(part.contact)),)
     held = (Link(0, 0, rational(part.spring), rational(part.dashpot)),) if part.spring or part.dashpot else ()
@@ -272,7 +270,7 @@ def _spanned(part: RodPart | LinkPart | ContactPart) -> Span:
     return (Bar(0, 0, rod, speed, impedance, velocity=velocity, strain=strain), *held)
 
 
-def _pointed(part: Any, beside: Sequence[Any]) -> Point:
+def _point(part: Any, beside: Sequence[Any]) -> Point:
     rods = [other for other in beside if isinstance(other, RodPart)]
     if isinstance(part, MotionPart):
         return Point(fmpq(0), velocity=rational(part.velocity), motion=part.motion, name=part.name or "")

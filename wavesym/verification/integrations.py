@@ -21,7 +21,7 @@ from wavesym.methods.elements import Elements
 from wavesym.methods.problem import Array
 from wavesym.methods.problem import problem_of as damped_problem
 from wavesym.numbers.doubles import fraction, rational
-from wavesym.verification.collocation import Motion, Undecided, integrate
+from wavesym.verification.collocation import Motion, UndecidedError, integrate
 from wavesym.verification.differences import LATE, SpaceTimeGrid, coarsest_grid
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
 from wavesym.verification.problem import Change, KnownChanges, match_changes, problem_of
@@ -63,7 +63,7 @@ def collocation(known: ReferenceOutputs) -> list[Outcome]:
 
     With contacts N is one with which the same happens at them with 2N and 4N.
     """
-    solved = _solved_once(known)
+    solved = _cached_solutions(known)
     if isinstance(solved, str):
         return refused_outcomes(known, "N", solved)
     taus = np.array(known.taus)
@@ -103,10 +103,10 @@ class _Solutions:
         self.has_contacts = len(self._problem.gaps) > 0
         self._motions: dict[int, Motion] = {}
         for points in _POINTS_OF_CONTACTS if self.has_contacts else (_POINTS,):
-            self.points, why = points, Undecided("more points a panel have other things happen at contacts")
+            self.points, why = points, UndecidedError("more points a panel have other things happen at contacts")
             try:
                 coarse, half, quarter = (self.motion(k * points).changes for k in (1, 2, 4))
-            except Undecided as undecided:
+            except UndecidedError as undecided:
                 why = undecided
                 continue
             if (found := match_changes(quarter, half)) is not None and match_changes(half, coarse) is not None:
@@ -148,13 +148,13 @@ class _Solutions:
 def _solve(model: Model, until: float) -> _Solutions | str:
     try:
         return _Solutions(model, until)
-    except Undecided as undecided:
+    except UndecidedError as undecided:
         return f"no integration between fronts, as {undecided}"
 
 
 @lru_cache(maxsize=1)
-def _solved_once(known: ReferenceOutputs) -> _Solutions | str:
-    return _solve(known.integrated, known.until)
+def _cached_solutions(known: ReferenceOutputs) -> _Solutions | str:
+    return _solve(known.integration_model, known.until)
 
 
 # central differences
@@ -166,13 +166,13 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
     As far as they can be had; where they stay coarse that is said, but no failure: what they allow is in the table.
     With contacts N is so large that the same happens at them with 2N and 4N, and that is one more front.
     """
-    model = known.integrated
+    model = known.integration_model
     if not model.network.bars:
         return refused_outcomes(known, "to", "there is no rod for a grid")
     first, struck = _grid(model), list[tuple[Change, float]]()
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     if len(first.problem.gaps):
-        if (found := first.struck(until, MOST_MOVED)) is None:
+        if (found := first.resolve_contacts(until, MOST_MOVED)) is None:
             return refused_outcomes(known, "to", _NO_GRID)
         first, struck = found
     while len(first.instants(until, struck)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
@@ -202,7 +202,7 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
     def is_affordable(finer: int) -> bool:
         return first.finer(finer).cost(until) <= MOST_MOVED
 
-    rule: Rule = "extrapolated" if first.aligned and not struck else "wandering"
+    rule: Rule = "extrapolated" if first.is_aligned and not struck else "wandering"
     method = Method("space-time grid", first.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
     return method.outcomes(model.name, known.names, truths, {"to": f"{until:.4g}"})
 
@@ -251,13 +251,13 @@ def elements(known: ReferenceOutputs) -> list[Outcome]:
 
 def contact_changes(known: ReferenceOutputs) -> list[Outcome]:
     """When contacts open and close, against collocation between fronts and central differences."""
-    model, judged = known.model, known.integrated
+    model, judged = known.model, known.integration_model
     if not judged.network.corners:
         return []
-    solved, stepped = _solved_once(known), _grid(judged).struck(known.until, MOST_MOVED)
+    solved, stepped = _cached_solutions(known), _grid(judged).resolve_contacts(known.until, MOST_MOVED)
     seen = {
-        "fronts": None if isinstance(solved, str) else Happened(solved.struck, 0.0),
-        "grid": Happened(stepped[1], LATE * float(stepped[0].step)) if stepped else None,
+        "fronts": None if isinstance(solved, str) else ContactHistory(solved.struck, 0.0),
+        "grid": ContactHistory(stepped[1], LATE * float(stepped[0].step)) if stepped else None,
     }
     notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
     notes += [] if stepped else [f"{model.name}: {_NO_GRID}"]
@@ -266,26 +266,26 @@ def contact_changes(known: ReferenceOutputs) -> list[Outcome]:
     for number, link in enumerate(model.network.corners):
         if link in reaching:
             place = model.network.links[link].place
-            here = {name: each and each.at(number) for name, each in seen.items()}
+            here = {name: each and each.select(number) for name, each in seen.items()}
             outcomes += compare_events(place, [event for event in claimed if event.x == place], here, known.until)
     return outcomes
 
 
 @dataclass(frozen=True)
-class Happened:
+class ContactHistory:
     """What a method found at contacts, and what it does not see as it does not last as long."""
 
-    struck: KnownChanges
+    changes: KnownChanges
     shortest: float
 
-    def at(self, contact: int) -> Happened:
+    def select(self, contact: int) -> ContactHistory:
         """At one contact."""
-        return Happened([each for each in self.struck if each[0].contact == contact], self.shortest)
+        return ContactHistory([each for each in self.changes if each[0].contact == contact], self.shortest)
 
     def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
         """The numbers of the events of a contact that it can have seen: without those that hardly last, if it must."""
         kept = list(range(len(claimed)))
-        while len(kept) > max(len(self.struck), 1):
+        while len(kept) > max(len(self.changes), 1):
             lasting = [claimed[then].double - claimed[now].double for now, then in pairwise(kept)]
             if min(lasting) >= self.shortest:
                 break
@@ -295,7 +295,7 @@ class Happened:
 
 
 def compare_events(
-    place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, Happened | None], until: float
+    place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, ContactHistory | None], until: float
 ) -> Iterator[Outcome]:
     """A row for each event of a contact, and for each that a method has besides.
 
@@ -312,15 +312,15 @@ def compare_events(
         for k, event in enumerate(claimed):
             if k not in visible:
                 rows[k] |= {name: "too short"}
-            elif (at := visible.index(k)) < len(method.struck):
-                change, slack = method.struck[at]
+            elif (at := visible.index(k)) < len(method.changes):
+                change, slack = method.changes[at]
                 error = abs(change.tau - event.double)
                 rows[k] |= {name: format_error(error), f"{name} allowed": format_error(slack)}
                 passed[k] &= change.kind == event.kind and error <= slack
             else:
                 rows[k] |= {name: "none"}
                 passed[k] &= event.double > until - _CLOSE
-        for change, slack in method.struck[len(visible) :]:
+        for change, slack in method.changes[len(visible) :]:
             if change.tau + slack < until:
                 cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": format_error(slack)}
                 parts_by_nothing = name == "grid" and methods["fronts"] is not None

@@ -64,29 +64,29 @@ class Balance:
 
 
 @dataclass(frozen=True)
-class Within:
+class BoundedValues:
     """Values, and what they may be wrong by."""
 
     value: Array
     error: Array
 
-    def __add__(self, other: Within | Array | float) -> Within:
-        other = other if isinstance(other, Within) else Within(np.asarray(other), np.zeros(1))
-        return Within(self.value + other.value, self.error + other.error)
+    def __add__(self, other: BoundedValues | Array | float) -> BoundedValues:
+        other = other if isinstance(other, BoundedValues) else BoundedValues(np.asarray(other), np.zeros(1))
+        return BoundedValues(self.value + other.value, self.error + other.error)
 
-    def sums(self, rows: Array) -> Within:
+    def sums(self, rows: Array) -> BoundedValues:
         """Weighted sums: rows @ values."""
-        return Within(rows @ self.value, np.abs(rows) @ self.error)
+        return BoundedValues(rows @ self.value, np.abs(rows) @ self.error)
 
-    def integrals(self, weights: Array) -> Within:
+    def integrals(self, weights: Array) -> BoundedValues:
         """Weighted sums over instants: values @ weights, which are not negative."""
-        return Within(self.value @ weights, self.error @ weights)
+        return BoundedValues(self.value @ weights, self.error @ weights)
 
-    def form(self, matrix: Array) -> Within:
+    def form(self, matrix: Array) -> BoundedValues:
         """The quadratic form: sum over i and j of matrix[i, j] value[i] value[j]."""
         size, wrong, weight = np.abs(self.value), self.error, np.abs(matrix)
         error = size * (weight @ wrong) + wrong * (weight @ (size + wrong))
-        return Within(np.sum(self.value * (matrix @ self.value), axis=0), np.sum(error, axis=0))
+        return BoundedValues(np.sum(self.value * (matrix @ self.value), axis=0), np.sum(error, axis=0))
 
 
 class Balancing:
@@ -125,10 +125,10 @@ class Balancing:
         to is allowed, and what quadrature misses.
         """
         fine, coarse = (_Books(self, evaluate, errors, points) for points in (_POINTS, _FEWER))
-        largest = max(float(np.max(fine.stored.value)), fine.initial_energy) or 1.0
+        largest = max(float(np.max(fine.stored_energy.value)), fine.initial_energy) or 1.0
         unit = _ROUNDINGS * len(self.cuts) * float(UNIT_ROUNDOFF)
 
-        def balance(name: str, ours: Within, theirs: Within, scale: float) -> Balance:
+        def balance(name: str, ours: BoundedValues, theirs: BoundedValues, scale: float) -> Balance:
             missed = float(np.max(np.abs(ours.value - theirs.value)))
             error, slack = float(np.max(np.abs(ours.value))), float(np.max(ours.error))
             return Balance(name, error / scale, (slack + missed) / scale + unit)
@@ -190,16 +190,16 @@ class _Books:
         size, ends = problem.points, len(problem.end_points)
         scales = np.concatenate([balancing.scales, balancing.scales, np.repeat(problem.speed, 2)])[:, np.newaxis]
 
-        def at(times: Array) -> Within:
+        def state(times: Array) -> BoundedValues:
             values = evaluate(times)
             rounded = float(UNIT_ROUNDOFF) * np.max(np.abs(values), axis=1)
             wrong = np.abs(scales) * (rounded if errors is None else np.array(errors))[:, np.newaxis]
-            return Within(
+            return BoundedValues(
                 np.concatenate([scales * values, problem.loads(times)]),
                 np.concatenate([wrong, np.zeros((size, 1))]) + np.zeros(len(times)),
             )
 
-        self._all, self._ends = at(self._times), at(self._struck)
+        self._all, self._ends = state(self._times), state(self._struck)
         unit = np.eye(3 * size + ends)
         self._q, self._u, self._strain, self._load = np.split(unit, [size, 2 * size, 2 * size + ends])
         sign = np.tile([1.0, -1.0], len(problem.delays))
@@ -209,9 +209,9 @@ class _Books:
         self._resisted = problem.damping @ self._q + problem.stiffness @ self._u
         self._free = problem.is_free.astype(float)
 
-    def _content(self, power: int, weights: Array) -> Within:
+    def _content(self, power: int, weights: Array) -> BoundedValues:
         """The sum over bars of weights times the integral of their waves, to a power, when balances are struck."""
-        problem, total = self._problem, Within(np.zeros(len(self._struck)), np.zeros(len(self._struck)))
+        problem, total = self._problem, BoundedValues(np.zeros(len(self._struck)), np.zeros(len(self._struck)))
         since = self._struck - self._times[:, np.newaxis]
         for bar, delay in enumerate(self._delays):
             inside = self._weights[:, np.newaxis] * ((since < delay) & (since > 0))
@@ -220,19 +220,19 @@ class _Books:
             left = np.maximum(delay - self._struck, 0.0)  # of this length there is still what was there at the start
             held = np.sum(problem.start_waves[bar] ** power)
             part = came.integrals(inside) + left * held
-            total += Within(weights[bar] * part.value, abs(weights[bar]) * part.error)
+            total += BoundedValues(weights[bar] * part.value, abs(weights[bar]) * part.error)
         return total
 
-    def _balance(self, stored: Within, rate: Within, before: float) -> Within:
+    def _balance(self, stored: BoundedValues, rate: BoundedValues, before: float) -> BoundedValues:
         """What is stored when balances are struck, less what was there and what came."""
         until = (self._times[:, np.newaxis] < self._struck) * self._weights[:, np.newaxis]
         came = rate.integrals(until)
-        return stored + Within(-came.value, came.error) + -before
+        return stored + BoundedValues(-came.value, came.error) + -before
 
     # energy
 
     @cached_property
-    def stored(self) -> Within:
+    def stored_energy(self) -> BoundedValues:
         """The energy when balances are struck."""
         problem = self._problem
         kept = self._q.T @ (problem.mass[:, np.newaxis] * self._q) + self._u.T @ problem.stiffness @ self._u
@@ -246,18 +246,18 @@ class _Books:
         return float(problem.mass @ problem.velocity**2 / 2 + (problem.impedance * self._delays) @ waves)
 
     @property
-    def energy(self) -> Within:
+    def energy(self) -> BoundedValues:
         """By how much energy is not what was there and what came."""
         problem, free = self._problem, self._free
         work = self._q.T @ (free[:, np.newaxis] * self._load) - self._q.T @ problem.damping @ self._q
         reaction = self._resisted - problem.incidence @ self._force - problem.parting.T @ self._push
         work += self._q.T @ ((1 - free)[:, np.newaxis] * reaction)
-        return self._balance(self.stored, self._all.form(work), self.initial_energy)
+        return self._balance(self.stored_energy, self._all.form(work), self.initial_energy)
 
     # momentum
 
     @cached_property
-    def _counted(self) -> tuple[Array, Array]:
+    def _momentum_weights(self) -> tuple[Array, Array]:
         """The weights of points and of bars in the momentum."""
         problem = self._problem
         points, bars = np.zeros(problem.points), np.zeros(len(problem.delays))
@@ -270,14 +270,14 @@ class _Books:
     @property
     def mass(self) -> float:
         """All of it, as it counts in the momentum."""
-        points, bars = self._counted
+        points, bars = self._momentum_weights
         return float(points**2 @ self._problem.mass + bars**2 @ (self._problem.impedance * self._delays))
 
     @property
-    def momentum(self) -> Within:
+    def momentum(self) -> BoundedValues:
         """By how much momentum is not what was there and what came."""
-        problem, (points, bars) = self._problem, self._counted
-        counted, moving = points * self._free * self._unheld, bars * problem.impedance
+        problem, (points, bars) = self._problem, self._momentum_weights
+        counted, moving = points * self._free * self._free_weights, bars * problem.impedance
         stored = self._content(1, moving) + self._ends.sums(counted * problem.mass @ self._q)
         across = counted @ problem.incidence - np.repeat(bars, 2)  # 0 but where prescribed motion holds
         rate = self._all.sums(counted @ (self._load - self._resisted) + across @ self._force)
@@ -287,7 +287,7 @@ class _Books:
     # contacts
 
     @cached_property
-    def _unheld(self) -> Array:
+    def _free_weights(self) -> Array:
         """0 for points without mass that contacts may hold to a prescribed motion, 1 for others."""
         problem, held = self._problem, 1 - self._free
         touching = problem.parting != 0
@@ -303,7 +303,7 @@ class _Books:
         acting = self._load + problem.incidence @ self._force - self._resisted
         return np.asarray(-np.linalg.pinv(problem.parting[:, light].T) @ acting[light])
 
-    def contacts(self, largest: float) -> Within:
+    def contacts(self, largest: float) -> BoundedValues:
         """How far a push or a gap is negative, or neither is 0, at any time; as an energy."""
         problem = self._problem
         length = (2 * largest / self.mass) ** 0.5 * float(np.max(self._delays))
@@ -312,4 +312,4 @@ class _Books:
         gap += largest / length * problem.gaps[:, np.newaxis]
         wrong = np.maximum(np.maximum(-push.value, -gap.value), np.minimum(np.abs(push.value), np.abs(gap.value)))
         worst = np.maximum(push.error, gap.error)
-        return Within(np.max(np.maximum(wrong, 0.0), axis=1), np.max(worst, axis=1))
+        return BoundedValues(np.max(np.maximum(wrong, 0.0), axis=1), np.max(worst, axis=1))

@@ -16,7 +16,7 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.exact.extremes import extremes
 from wavesym.methods.problem import Array
-from wavesym.running.compiled import Compiled, CompiledModel
+from wavesym.running.compilation import CompiledLibrary, CompiledModel
 from wavesym.verification.outcome import Integrals, IntegratedOutput, ProgramValues
 from wavesym.verification.reference import ReferenceOutputs, even_taus, sample_evenly
 
@@ -39,7 +39,9 @@ class ParameterSet:
     exact: ReferenceOutputs | None = None
 
 
-def model_values(built: Compiled, name: str, given: ParameterSet, taus: Array, until: float) -> Iterator[ProgramValues]:
+def model_values(
+    built: CompiledLibrary, name: str, given: ParameterSet, taus: Array, until: float
+) -> Iterator[ProgramValues]:
     """Values at `taus` of [0, until], samples and peaks of a model."""
     model = built.model(given.numbers)
     bounds = [model.estimate] * built.outputs
@@ -59,7 +61,7 @@ def model_values(built: Compiled, name: str, given: ParameterSet, taus: Array, u
 
 
 def functions_of_parameters(
-    built: Compiled, name: str, own: ParameterSet, other: Sequence[float], taus: Array, until: float
+    built: CompiledLibrary, name: str, own: ParameterSet, other: Sequence[float], taus: Array, until: float
 ) -> Iterator[ProgramValues]:
     """The model of `error_bound`, that of a batch with `other` numbers beside it, its misfit, and derivatives."""
     model, bounds = built.bounded_model(own.numbers)
@@ -71,11 +73,11 @@ def functions_of_parameters(
     stated = [beside.estimate] * built.outputs
     yield ProgramValues(f"{name}, batch", taus, beside(taus.tolist()), own.sizes, stated)
     found = np.full((built.outputs, 1), misfit / np.sum(off**2))
-    yield _computed(f"{name}, misfit", found, np.ones_like(found), [4 * (estimate + _ROUNDING)] * built.outputs)
+    yield _computed_values(f"{name}, misfit", found, np.ones_like(found), [4 * (estimate + _ROUNDING)] * built.outputs)
     yield _derivatives(built, f"{name}, gradients", own, estimate, instants)
 
 
-def _computed(name: str, values: Array, due: Array, allowed: Sequence[float]) -> ProgramValues:
+def _computed_values(name: str, values: Array, due: Array, allowed: Sequence[float]) -> ProgramValues:
     """Numbers that are not values at instants, (outputs, n), relative to 1, and how far they may be from those due."""
     places = np.arange(values.shape[1], dtype=float)
     integrals = [IntegratedOutput(places.tolist(), *each) for each in zip(due, allowed, strict=True)]
@@ -103,7 +105,7 @@ def _peaks(model: CompiledModel, name: str, given: ParameterSet) -> ProgramValue
         values.append(np.array([low, high, *there]) / unit)
         due.append(np.array([least, greatest, low, high]) / unit)
         allowed.append(2 * model.estimate + _ROUNDING + off)
-    return _computed(name, np.array(values), np.array(due), allowed)
+    return _computed_values(name, np.array(values), np.array(due), allowed)
 
 
 def _true_extremes(known: ReferenceOutputs | None) -> list[tuple[float, float]] | None:
@@ -123,7 +125,9 @@ def _nearest_value(model: CompiledModel, output: int, value: float, tau: float) 
     return float(there[np.nanargmin(np.abs(there - value))]) if not np.all(np.isnan(there)) else np.nan
 
 
-def _derivatives(built: Compiled, name: str, own: ParameterSet, estimate: float, instants: Array) -> ProgramValues:
+def _derivatives(
+    built: CompiledLibrary, name: str, own: ParameterSet, estimate: float, instants: Array
+) -> ProgramValues:
     """Derivatives by some parameters, against differences of models, extrapolated: relative to the largest of each."""
     count, dtau = len(instants), instants[1]
     lanes = built.tangent(own.numbers, 0.0, dtau, count)
@@ -140,10 +144,12 @@ def _derivatives(built: Compiled, name: str, own: ParameterSet, estimate: float,
         due.append(slopes / scale)
         wrong = np.max(np.abs(near - far), axis=1) / 3 + 2 * estimate * sizes[:, 0] / by
         allowed = np.maximum(allowed, wrong / scale[:, 0])
-    return _computed(name, np.hstack(values), np.hstack(due), allowed.tolist())
+    return _computed_values(name, np.hstack(values), np.hstack(due), allowed.tolist())
 
 
-def _difference(built: Compiled, numbers: Sequence[float], parameter: int, by: float, dtau: float, count: int) -> Array:
+def _difference(
+    built: CompiledLibrary, numbers: Sequence[float], parameter: int, by: float, dtau: float, count: int
+) -> Array:
     """The central difference of values by a parameter, (outputs, count)."""
     there = []
     for changed in (by, -by):

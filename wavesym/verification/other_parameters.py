@@ -57,7 +57,7 @@ def draw_parameters(scene: Scene, model: Model, own: Sequence[RuntimeField]) -> 
         if field.name not in listed
         for label, factor in zip(field.labels, factors[field.name], strict=True)
     }
-    made = replace(made, network=_changed(made.network, labels))
+    made = replace(made, network=_with_parameters(made.network, labels))
     if "load" in factors:
         made = replace(made, loads=tuple(replace(load, weight=_TOGETHER["load"] * load.weight) for load in made.loads))
     return numbers, made
@@ -72,7 +72,7 @@ def _factors(field: RuntimeField, model: Model) -> list[fmpq]:
     return factors
 
 
-def _changed(network: Network, factors: Mapping[str, fmpq]) -> Network:
+def _with_parameters(network: Network, factors: Mapping[str, fmpq]) -> Network:
     """With other numbers: `mass_point_0`, `spring_link_3`; what absorbs a rod's waves has the rod's impedance."""
 
     def times(part: Any, kind: str, number: int, names: Mapping[str, str]) -> Any:

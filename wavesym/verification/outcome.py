@@ -72,7 +72,7 @@ class ProgramValues:
     note: str = ""
     integrals: Integrals = ()
     close: float = 0.0
-    refused: str = ""
+    refusal: str = ""
 
 
 @dataclass(frozen=True)

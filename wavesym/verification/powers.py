@@ -35,7 +35,7 @@ Region = Mapping[Symbol, Expr]
 class Step:
     """One inequality of the induction: `slack` >= 0 for function `of` from `because`, body and source where `where`."""
 
-    of: str
+    function: str
     because: str
     where: str
     slack: Expr
@@ -53,7 +53,7 @@ def steps(system: System, family: PowerFamily) -> Iterator[Step]:
     for law in recurrence(system).laws:
         for places in _places(system, family, law):
             row, place = _row(family, law.function, law.rod, places)
-            node = _at(row.node, place, places)
+            node = _evaluate_row(row.node, place, places)
             for body in _bodies(family, node, places):
                 for source in _sources(family, node, places):
                     yield from _law_steps(family, law, {**places, **body, **source})
@@ -80,7 +80,7 @@ def _bodies(family: PowerFamily, node: Expr, places: Region) -> Iterator[Region]
     elif first == last:
         yield {BODY: first}
     else:
-        yield from _around(BODY, node, first, last, family.step, _AWAY)
+        yield from _regions_around(BODY, node, first, last, family.step, _AWAY)
 
 
 def _sources(family: PowerFamily, node: Expr, places: Region) -> Iterator[Region]:
@@ -89,10 +89,10 @@ def _sources(family: PowerFamily, node: Expr, places: Region) -> Iterator[Region
     if first == last:
         yield {SOURCE: first}
     else:
-        yield from _around(SOURCE, node, first, last, 1, _FAR)
+        yield from _regions_around(SOURCE, node, first, last, 1, _FAR)
 
 
-def _around(symbol: Symbol, node: Expr, first: Expr, last: Expr, step: int, away: Symbol) -> Iterator[Region]:
+def _regions_around(symbol: Symbol, node: Expr, first: Expr, last: Expr, step: int, away: Symbol) -> Iterator[Region]:
     """`symbol` at a node, before and after it, as far as there is room between first and last."""
     before, after = exact(node - first), exact(last - node)
     if not before.is_nonpositive:
@@ -105,17 +105,19 @@ def _around(symbol: Symbol, node: Expr, first: Expr, last: Expr, step: int, away
 
 def _law_steps(family: PowerFamily, law: CoefficientLaw, at: Region) -> Iterator[Step]:
     row, place = _row(family, law.function, law.rod, at)
-    since, budget = (_at(value, place, at) for value in (row.since, row.budget))
-    own = law.own.jump != 0 and _of_family(family, _at(row.node, place, at), at)
+    since, budget = (_evaluate_row(value, place, at) for value in (row.start, row.budget))
+    own = law.own.jump != 0 and _of_family(family, _evaluate_row(row.node, place, at), at)
     said = {"of": f"{law.function}_{law.rod}", "where": ", ".join(f"{name} = {value}" for name, value in at.items())}
     for term in law.terms:
         other, there = _row(family, term.function, term.rod, at)
         earlier = {**at, INTERVAL: INTERVAL - term.back}
         visit = family.period if own and _adds_a_visit(law, term) else 0
         because = f"{term.function}_{term.rod}, {term.back} before"
-        yield Step(because=f"since, {because}", slack=exact(since - _at(other.since, there, earlier)), **said)
+        yield Step(because=f"since, {because}", slack=exact(since - _evaluate_row(other.start, there, earlier)), **said)
         yield Step(
-            because=f"budget, {because}", slack=exact(budget - _at(other.budget, there, earlier) - visit), **said
+            because=f"budget, {because}",
+            slack=exact(budget - _evaluate_row(other.budget, there, earlier) - visit),
+            **said,
         )
     if own:
         yield Step(because="a first visit", slack=exact(budget - since), **said)
@@ -126,8 +128,8 @@ def _law_steps(family: PowerFamily, law: CoefficientLaw, at: Region) -> Iterator
             first, last = (exact(value.subs(at)) for value in family.sources)
             if (start[SOURCE] - first).is_negative or (last - start[SOURCE]).is_negative:
                 continue
-        for value in (row.since, row.budget) if own else (row.since,):
-            yield Step(because=f"load {load.kind}", slack=_at(value, place, start), **said)
+        for value in (row.start, row.budget) if own else (row.start,):
+            yield Step(because=f"load {load.kind}", slack=_evaluate_row(value, place, start), **said)
 
 
 def _row(family: PowerFamily, function: str, rod: Expr, at: Region) -> tuple[PowerRow, Expr]:
@@ -142,7 +144,7 @@ def _row(family: PowerFamily, function: str, rod: Expr, at: Region) -> tuple[Pow
     raise LookupError(f"{function}_{place}, m = {at[COUNT]}")
 
 
-def _at(value: Expr, place: Expr, at: Region) -> Expr:
+def _evaluate_row(value: Expr, place: Expr, at: Region) -> Expr:
     """A formula of a row, whose i is `place`, by numbers."""
     return exact(value.xreplace({**at, INDEX: place}))
 

@@ -94,10 +94,10 @@ class ContactProblem(Problem):
             while queue and queue[0][0] == now:
                 here.add(heappop(queue)[1])
             yield now, here
-            for front in self.sent_on(now, here):
+            for front in self.onward_arrivals(now, here):
                 heappush(queue, front)
 
-    def sent_on(self, now: Fraction, groups: set[int]) -> Iterator[tuple[Fraction, int]]:
+    def onward_arrivals(self, now: Fraction, groups: set[int]) -> Iterator[tuple[Fraction, int]]:
         """When what sets out from groups now comes to others."""
         for end, point in enumerate(self.end_points.tolist()):
             if self.group_of[point] in groups:

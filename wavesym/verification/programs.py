@@ -28,7 +28,7 @@ from wavesym.programs.request import KINDS, PARTS, Request
 from wavesym.programs.runtime.making import runtime_program
 from wavesym.programs.stream.making import stream_program
 from wavesym.programs.stream.plan import inputs_of
-from wavesym.running.compiled import Compiled, compiled, imported
+from wavesym.running.compilation import CompiledLibrary, compile_files, import_text
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes, sources
@@ -90,9 +90,9 @@ def compare_programs(
         else:
             found += _run_c(scene, known, integrals, program, name)
     for each in found:
-        if each.refused:
-            reasons.setdefault(each.refused, []).append(each.name)
-    return [_compare(known, integrals, each) for each in found if not each.refused] + [
+        if each.refusal:
+            reasons.setdefault(each.refusal, []).append(each.name)
+    return [_compare(known, integrals, each) for each in found if not each.refusal] + [
         Outcome(name, {"of": "-", "error": "refused"}, True, f"{model.name}: not {'; not '.join(names)}: {why}")
         for why, names in reasons.items()
         for name in names
@@ -149,7 +149,7 @@ def _run(known: ReferenceOutputs, integrals: Integrals) -> ProgramValues:
 def _run_numpy(known: ReferenceOutputs, integrals: Integrals, program: Program, name: str) -> Iterator[ProgramValues]:
     if program.evaluator in ("runtime", "stream"):
         return
-    module = imported(files(program, "numpy")[f"{known.whole.name}.py"], known.whole.name)
+    module = import_text(files(program, "numpy")[f"{known.whole.name}.py"], known.whole.name)
     taus, given, late = _instants(known, integrals, program)
     values = np.asarray(module.evaluate(given), np.float64)
     yield ProgramValues(f"{name}, NumPy", taus, values, _sizes(known, integrals, program), _bounds(program), late)
@@ -161,7 +161,7 @@ def _run_c(
     model, sizes, bounds = known.whole, _sizes(known, integrals, program), _bounds(program)
     real = np.float32 if program.real.bytes == 4 else np.float64
     taus, given, late = _instants(known, integrals, program)
-    with compiled(files(program, "c"), len(model.probes), real, FLAGS) as built:
+    with compile_files(files(program, "c"), len(model.probes), real, FLAGS) as built:
         fails = f"{model.name}: {name}: the self-test of the generated C fails"
         note = fails if program.reference and built.selftest() != 0 else ""
         if program.evaluator == "runtime":
@@ -183,7 +183,7 @@ def _run_c(
 
 
 def _with_parameters(
-    scene: Scene, known: ReferenceOutputs, integrals: Integrals, program: Program, built: Compiled, name: str
+    scene: Scene, known: ReferenceOutputs, integrals: Integrals, program: Program, built: CompiledLibrary, name: str
 ) -> Iterator[ProgramValues]:
     """With the scene's own parameters, and with others, of which only integrations know anything."""
     assert program.laws is not None
@@ -196,7 +196,7 @@ def _with_parameters(
     instants = np.unique([*[tau for tau in known.taus if np.float32(tau) == tau][::_SOME], *even_taus(known.until)])
     method = collocation_method(changed.shorten(known.model.until), known.until, instants.tolist())
     if isinstance(method, str):
-        yield ProgramValues(f"{name}, C, others", taus, np.empty(0), [], [], refused=method)
+        yield ProgramValues(f"{name}, C, others", taus, np.empty(0), [], [], refusal=method)
         return
     _, refined = method.refine([None] * len(program.outputs))
     sizes = [float(np.max(np.abs(each.values))) for each in refined]

@@ -95,7 +95,7 @@ def _late(lag: Expr) -> Expr:
     return E ** int(whole) * (Symbol(f"E^({rest})") if rest != 0 else 1)
 
 
-def timed(expression: Expr) -> Expr:
+def with_delays(expression: Expr) -> Expr:
     """An expression with the exponentials that the symbols for delays stand for."""
     return expression.subs({E: exp(-S), **{Symbol(f"E^({place})"): exp(-S * place) for place in (INDEX, COUNT)}})
 
@@ -111,7 +111,7 @@ def _source(kind: str, number: Expr | int | None) -> Expr:
 
 def _node_equations(node: Node, x: Expr) -> list[Expr]:
     """The node law with the velocity Q of the node eliminated: each equation, an expression that is 0."""
-    arrived = {"left": _arrived(node.left, "f", x, x), "right": _arrived(node.right, "g", x + 1, x)}
+    arrived = {"left": _arriving_wave(node.left, "f", x, x), "right": _arriving_wave(node.right, "g", x + 1, x)}
     load = sum(
         (
             value * _power(k) * _source(unit.kind, unit.number)
@@ -141,7 +141,7 @@ def _lag(rod: Rod, function: str, x: Expr) -> Expr:
     return exact(rod.tau0 + (x - rod.x0 if function == "f" else rod.x0 - x))
 
 
-def _arrived(rod: Rod | None, function: str, number: Expr, x: Expr) -> Expr:
+def _arriving_wave(rod: Rod | None, function: str, number: Expr, x: Expr) -> Expr:
     if rod is None:
         return Integer(0)
     return _late(_lag(rod, function, x)) * _image(function, exact(number)) + rod.velocity / (2 * S)
@@ -175,7 +175,7 @@ def _wave_equation(equations: Iterable[DelayEquation], family: Family, function:
     (e,) = found
     at = INDEX + shift
     own = Operator(*(exact(part.subs(INDEX, at)) for part in e.own))
-    return DelayEquation(function, rod, own, e.right.renumbered(INDEX, at), e.first, e.last, e.step)
+    return DelayEquation(function, rod, own, e.right.replace_index(INDEX, at), e.first, e.last, e.step)
 
 
 def _image_of(e: DelayEquation) -> Expr:

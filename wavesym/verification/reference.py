@@ -63,7 +63,7 @@ class ReferenceOutputs:
     exact: Reference | None = None
 
     @property
-    def integrated(self) -> Model:
+    def integration_model(self) -> Model:
         """What integrators start from, as far as it is known."""
         return self.model if self.independent is None else self.independent.shorten(self.model.until)
 

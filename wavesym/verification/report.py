@@ -58,7 +58,7 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
         integrals = [found.get(probe.name) for probe in model.probes]
         compared = compare_programs(scene, truth, integrals, requests)
         add_rows(0, model.name, "program", compared)
-        add_rows(0, model.name, "program", _unseen(model, integrals, compared))
+        add_rows(0, model.name, "program", _unjudged_outputs(model, integrals, compared))
     lines = [_LEGEND, _compiler(), *dict.fromkeys(notes), ""]
     for title, of_check in zip((_PROGRAMS, *(check.title for check in CHECKS)), rows, strict=True):
         if of_check:
@@ -72,7 +72,9 @@ def _judges(integral: IntegratedOutput, truth: ReferenceOutputs) -> bool:
     return integral.judges and (moves or integral.taus[-1] >= truth.whole.horizon() * (1 - _LATE))
 
 
-def _unseen(model: Model, integrals: Sequence[IntegratedOutput | None], compared: Sequence[Outcome]) -> list[Outcome]:
+def _unjudged_outputs(
+    model: Model, integrals: Sequence[IntegratedOutput | None], compared: Sequence[Outcome]
+) -> list[Outcome]:
     """A row that fails for each output that nothing judges, and for a scene that no program serves."""
     found = []
     for probe, integral in zip(model.probes, integrals, strict=True):

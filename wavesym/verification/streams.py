@@ -12,7 +12,7 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.programs.program import Program
-from wavesym.running.compiled import Compiled, CompiledStream
+from wavesym.running.compilation import CompiledLibrary, CompiledStream
 from wavesym.scene import Scene
 from wavesym.verification.independent import changes
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly
@@ -25,7 +25,7 @@ FedLoads = tuple[Fraction, list[float], bool]
 
 
 def step_stream(
-    scene: Scene, known: ReferenceOutputs, program: Program, built: Compiled, taus: Array
+    scene: Scene, known: ReferenceOutputs, program: Program, built: CompiledLibrary, taus: Array
 ) -> tuple[Array, Array, CompiledStream]:
     """A stream of waves: some of the taus, the outputs there, and it as it is after them.
 
@@ -39,7 +39,7 @@ def step_stream(
     looked, columns, before = set(stops), [], 0.0
     own = [nearest(value) for field in program.laws.fields for value in field.values] if program.laws else None
     stream = built.stream(own)
-    for tau, loads, jumps in feed.through(stops, everywhere=True):
+    for tau, loads, jumps in feed.loads_at_stops(stops, everywhere=True):
         column = stream.step(0.0 if jumps else float(tau) - before, loads)
         before = float(tau)
         if tau in looked:
@@ -47,7 +47,7 @@ def step_stream(
     return chosen, np.array(columns).T, stream
 
 
-def step_modes(scene: Scene, known: ReferenceOutputs, program: Program, built: Compiled) -> tuple[Array, Array]:
+def step_modes(scene: Scene, known: ReferenceOutputs, program: Program, built: CompiledLibrary) -> tuple[Array, Array]:
     """A stream of modes: some multiples of its spacing after the first change of a load, and the outputs there."""
     feed = LoadFeed(scene, known.whole, program.sources)
     step = Fraction(program.constants["spacing"])
@@ -56,7 +56,7 @@ def step_modes(scene: Scene, known: ReferenceOutputs, program: Program, built: C
     first = feed.times[0] % step if feed.times else Fraction(0)
     stops = [first + k * step for k in range(1, int((fraction(known.model.until) - first) / step) + 1)]
     stream = built.stream()
-    columns = [stream.step(program.constants["spacing"], loads) for _, loads, _ in feed.through(stops)]
+    columns = [stream.step(program.constants["spacing"], loads) for _, loads, _ in feed.loads_at_stops(stops)]
     some = sample_evenly(np.arange(len(stops)), _MOST_LOOKED)
     return np.array([float(stop) for stop in stops])[some], np.array(columns).T[:, some]
 
@@ -80,7 +80,7 @@ class LoadFeed:
                     self._changes.setdefault(time, []).append((row, fraction(size) * jump, fraction(size) * slope))
         self.times = sorted(self._changes)
 
-    def through(
+    def loads_at_stops(
         self, stops: Sequence[Fraction], *, everywhere: bool = False
     ) -> Iterator[tuple[Fraction, list[float], bool]]:
         """The loads at each stop, or wherever they change, too; after that as they are once they have jumped there."""

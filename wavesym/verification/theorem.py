@@ -20,7 +20,7 @@ A, B, W = Dummy("a"), Dummy("b"), Symbol("w", positive=True)
 
 
 @cache
-def applied() -> Expr:
+def operator_coefficient() -> Expr:
     """(a D + b) exp(-g w) sum F(j) w^j at exp(-g w) w^k, in terms of F(k), F(k + 1). Four terms stand for all of them.
 
     ValueError where another of the four terms takes part.
@@ -43,17 +43,17 @@ def at_front() -> Expr:
     return image.coeff(DiracDelta(w)).subs(w, 0)
 
 
-def _at(operator: Operator, value: Callable[[Expr], Expr], rate: Expr) -> Expr:
+def _apply_operator(operator: Operator, value: Callable[[Expr], Expr], rate: Expr) -> Expr:
     """What an operator leaves at a rate and power k of a function with coefficients `value`(power)."""
-    (above,) = (f for f in applied().atoms(Function("F")) if f.args[0] == POWER + 1)
-    (same,) = (f for f in applied().atoms(Function("F")) if f.args[0] == POWER)
-    image = applied().subs({A: operator.a, B: operator.b, RATE: rate})
+    (above,) = (f for f in operator_coefficient().atoms(Function("F")) if f.args[0] == POWER + 1)
+    (same,) = (f for f in operator_coefficient().atoms(Function("F")) if f.args[0] == POWER)
+    image = operator_coefficient().subs({A: operator.a, B: operator.b, RATE: rate})
     return image.subs({above: value(POWER + 1), same: value(POWER)})
 
 
 def _coefficient_symbol(c: Coefficient) -> Symbol:
     """A coefficient as a symbol of its own."""
-    return Symbol(f"{c.function}({c.rod})^{c.back}[{c.over}{c.rate},{c.power}]")
+    return Symbol(f"{c.function}({c.rod})^{c.back}[{c.sum_range}{c.rate},{c.power}]")
 
 
 def _symbol(place: tuple[str, Expr, int, Expr], power: Expr) -> Symbol:
@@ -67,7 +67,7 @@ def residuals(e: DelayEquation, lines: Sequence[Recursion], interval: int) -> It
     """
     rates = [line.left.rate for line in lines if line.left.power != 0]
     for line in lines:
-        yield _front(e, line, interval, rates) if line.left.power == 0 else _inside(e, line, interval)
+        yield _front(e, line, interval, rates) if line.left.power == 0 else _substitute_line(e, line, interval)
     given = {(s.kind, s.number, int(s.lag) // interval, s.power): value for s, value in e.right.loads.items()}
     taken = [(load, (load.kind, load.number, load.back, load.power)) for line in lines for load in line.loads]
     for place in {**given, **{place: None for _, place in taken}}:
@@ -79,31 +79,31 @@ def _right(line: Recursion) -> Expr:
     return sum((factor * _coefficient_symbol(c) for factor, c in line.parts), Integer(0)) / line.divisor
 
 
-def _inside(e: DelayEquation, line: Recursion, interval: int) -> Expr:
+def _substitute_line(e: DelayEquation, line: Recursion, interval: int) -> Expr:
     """At the line's rate and power k, with the line for the coefficient that it gives."""
     rate = line.left.rate
 
     def own(power: Expr) -> Expr:
         plain = _coefficient_symbol(line.left._replace(power=power))
-        return _shifted(line, power) if power == POWER + line.least else plain
+        return _shift_power(line, power) if power == POWER + line.least else plain
 
-    left = _at(e.own, own, rate)
+    left = _apply_operator(e.own, own, rate)
     for wave, operator in e.right.waves.items():
         place = (wave.function, wave.rod, int(wave.lag) // interval, rate)
-        left -= _at(operator, partial(_symbol, place), rate)
+        left -= _apply_operator(operator, partial(_symbol, place), rate)
     return cancel(together(left))
 
 
-def _shifted(line: Recursion, power: Expr) -> Expr:
+def _shift_power(line: Recursion, power: Expr) -> Expr:
     """What the line gives at another power than k."""
 
-    def at(expression: Expr) -> Expr:
+    def replace_power(expression: Expr) -> Expr:
         return expression.subs(POWER, power)
 
     moved = Recursion(
         line.left,
-        tuple((at(factor), c._replace(power=at(c.power))) for factor, c in line.parts),
-        at(line.divisor),
+        tuple((replace_power(factor), c._replace(power=replace_power(c.power))) for factor, c in line.parts),
+        replace_power(line.divisor),
     )
     return _right(moved)
 

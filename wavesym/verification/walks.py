@@ -10,7 +10,7 @@ from math import factorial
 
 from flint import fmpq, fmpq_poly, fmpz_mpoly
 
-from wavesym.derivation.increments import Increment, add, trimmed
+from wavesym.derivation.increments import Increment, add, trim
 from wavesym.derivation.table import Function, Table
 from wavesym.derivation.walks import Letters, Unit, departures, function_walks, letters, units, walks_until
 from wavesym.mechanics.chain import Chain
@@ -38,11 +38,11 @@ def by_walks(chain: Chain, table: Table, intervals: int, names: Letters) -> dict
         for function, gains in response.items():
             for n, gain in enumerate(gains, 1):
                 polynomial = function_walks(chain, sent, function, n, table.interval)
-                add(gain, _expanded(polynomial, unit, names))
-    return {source: {f: list(map(trimmed, gains)) for f, gains in r.items()} for source, r in responses.items()}
+                add(gain, _expand(polynomial, unit, names))
+    return {source: {f: list(map(trim, gains)) for f, gains in r.items()} for source, r in responses.items()}
 
 
-def _expanded(polynomial: fmpz_mpoly, unit: Unit, letters: Letters) -> Increment:
+def _expand(polynomial: fmpz_mpoly, unit: Unit, letters: Letters) -> Increment:
     """The increment whose transform is unit.value/s**(unit.power + 1) times the polynomial; the chain in numbers.
 
     With u = s + q, the coefficient of u**(-k - 1) over k! is that of exp(-q w) w**k; that of s is rate 0.
@@ -55,7 +55,7 @@ def _expanded(polynomial: fmpz_mpoly, unit: Unit, letters: Letters) -> Increment
         if pole != 0:
             taylor = taylor * _power(fmpq(1), -pole, unit.power + 1, depth)
         increment[pole] = [unit.value * taylor[depth - 1 - k] / factorial(k) for k in range(depth)]
-    return trimmed(increment)
+    return trim(increment)
 
 
 def _at_pole(polynomial: fmpz_mpoly, pole: fmpq, depth: int, letters: Letters) -> fmpq_poly:

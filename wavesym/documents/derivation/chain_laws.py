@@ -74,18 +74,20 @@ def own_laws(chain: Chain) -> tuple[CoefficientLaw, ...]:
                 alike[-1] = replace(own, first=alike[-1].first)
             else:
                 alike.append(own)
-        laws += [substitute(own, partial(_at, own.first)) if own.first == own.last else own for own in alike]
+        laws += [
+            substitute(own, partial(_substitute_rod, own.first)) if own.first == own.last else own for own in alike
+        ]
     return tuple(laws)
 
 
-def _at(rod: Expr, place: Expr) -> Expr:
+def _substitute_rod(rod: Expr, place: Expr) -> Expr:
     return place.subs(INDEX, rod)
 
 
 def _relative(law: CoefficientLaw, rule: Rule, rod: int, m: int) -> CoefficientLaw:
     """The law of one rod, with i for its number."""
 
-    def near(place: Expr) -> Expr:
+    def relative_index(place: Expr) -> Expr:
         return INDEX + int(number(place, {COUNT.name: m, INDEX.name: rod}, None)) - rod
 
     return CoefficientLaw(
@@ -93,10 +95,13 @@ def _relative(law: CoefficientLaw, rule: Rule, rod: int, m: int) -> CoefficientL
         INDEX,
         _weights(rule.own),
         tuple(
-            replace(t, rod=near(t.rod), weights=_weights(r.weights)) for t, r in zip(law.terms, rule.terms, strict=True)
+            replace(t, rod=relative_index(t.rod), weights=_weights(r.weights))
+            for t, r in zip(law.terms, rule.terms, strict=True)
         ),
         tuple(
-            replace(x, number=x.number if x.number is None else near(x.number), value=exact(expression(r.value)))
+            replace(
+                x, number=x.number if x.number is None else relative_index(x.number), value=exact(expression(r.value))
+            )
             for x, r in zip(law.loads, rule.loads, strict=True)
         ),
         Integer(rod),
@@ -109,5 +114,5 @@ def _weights(w: Weights) -> SymbolicWeights:
     def linear(part: Linear, variable: Symbol) -> Expr:
         return expression(part.constant) + expression(part.slope) * variable
 
-    raised = linear(w.raised, POWER).factor()  # k + 1 as one
+    raised = linear(w.next_power, POWER).factor()  # k + 1 as one
     return SymbolicWeights(exact(linear(w.same, RATE)), raised, expression(w.jump))

@@ -28,7 +28,7 @@ from wavesym.derivation.recurrence import (
 class Coefficient(NamedTuple):
     """[rate, power] of what a function gained `back` intervals ago; summed over all rates, or over all but q.
 
-    Where `over` is "all" or "other" `rate` is the symbol g.
+    Where `sum_range` is "all" or "other" `rate` is the symbol g.
     """
 
     function: str
@@ -36,7 +36,7 @@ class Coefficient(NamedTuple):
     back: int
     rate: Expr
     power: Expr
-    over: str = ""
+    sum_range: str = ""
 
 
 @dataclass(frozen=True)
@@ -64,16 +64,16 @@ def own_rate(law: CoefficientLaw) -> Expr | None:
 def substitute(law: CoefficientLaw, at: Callable[[Expr], Expr]) -> CoefficientLaw:
     """A law with `at` of every expression in it; of a law that stands for several, the one that `at` is for."""
 
-    def there(w: SymbolicWeights) -> SymbolicWeights:
-        return SymbolicWeights(at(w.same), at(w.raised), at(w.jump))
+    def weights_at(w: SymbolicWeights) -> SymbolicWeights:
+        return SymbolicWeights(at(w.same), at(w.next_power), at(w.jump))
 
     rod = at(law.rod)
     first, last = (law.first, law.last) if rod.has(INDEX) else (rod, rod)
     return replace(
         law,
         rod=rod,
-        own=there(law.own),
-        terms=tuple(replace(t, rod=at(t.rod), weights=there(t.weights)) for t in law.terms),
+        own=weights_at(law.own),
+        terms=tuple(replace(t, rod=at(t.rod), weights=weights_at(t.weights)) for t in law.terms),
         loads=tuple(
             replace(x, number=x.number if x.number is None else at(x.number), value=at(x.value)) for x in law.loads
         ),
@@ -96,7 +96,7 @@ def _operator_value(
 ) -> Iterator[tuple[Expr, Coefficient]]:
     """What an operator gives at [rate, power]."""
     yield exact(w.same.subs(RATE, rate)), Coefficient(function, rod, back, rate, power)
-    yield w.raised.subs(POWER, power), Coefficient(function, rod, back, rate, power + 1)
+    yield w.next_power.subs(POWER, power), Coefficient(function, rod, back, rate, power + 1)
 
 
 def _right(law: CoefficientLaw, rate: Expr, power: Expr) -> Iterator[tuple[Expr, Coefficient]]:

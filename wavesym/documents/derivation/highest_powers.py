@@ -31,7 +31,7 @@ _GAMMA, _KAPPA = IndexedBase("gamma")[BODY], SYMBOLS.kappa
 class PowerRow:
     """One kind of function, i = first, first + step, ... last, last sent by the body (or the base) `node`.
 
-    Where it is not 0, `since` >= 0. Its increment of interval n has the family's rate up to power
+    Where it is not 0, `start` >= 0. Its increment of interval n has the family's rate up to power
     floor(`budget`/`period`), and not at all where that is below 0.
     """
 
@@ -39,7 +39,7 @@ class PowerRow:
     rod: Expr
     node: Expr
     budget: Expr
-    since: Expr
+    start: Expr
     first: Expr
     last: Expr
     step: int
@@ -80,14 +80,14 @@ def plain(family: PowerFamily, row: PowerRow) -> Expr:
         at = place.first + place.step * before
         known.append({symbol: at, COUNT: exact(at + place.step * after - place.last + COUNT)})
 
-    def decided(inside: Expr) -> Expr:
+    def decide(inside: Expr) -> Expr:
         for places in known:
             sign = exact(inside.xreplace(places))
             if not sign.free_symbols - {before, after} and (sign.is_nonnegative or sign.is_nonpositive):
                 return inside if sign.is_nonnegative else -inside
         return Abs(inside)
 
-    return exact(budget.replace(Abs, decided))
+    return exact(budget.replace(Abs, decide))
 
 
 def _row(function: str, rod: Expr | int, node: Expr | int, budget: Expr, since: Expr, *places: Expr | int) -> PowerRow:

@@ -41,11 +41,11 @@ def kinds(network: Network) -> tuple[Kind, ...]:
     """All kinds, in the order in which one meets them."""
     found: dict[Any, list[int]] = {}
     for number in range(len(network.joints)):
-        found.setdefault(_structure(alone(network, number).network), []).append(number)
-    return tuple(Kind(_symbolic(alone(network, numbers[0])), tuple(numbers)) for numbers in found.values())
+        found.setdefault(_structure(isolate_joint(network, number).network), []).append(number)
+    return tuple(Kind(_symbolic(isolate_joint(network, numbers[0])), tuple(numbers)) for numbers in found.values())
 
 
-def alone(network: Network, number: int) -> LoneJoint:
+def isolate_joint(network: Network, number: int) -> LoneJoint:
     """A joint with its points, its links and the bars at it, whose other ends are nowhere."""
     joint = network.joints[number]
     place = {point: k for k, point in enumerate(joint.points)}
@@ -65,11 +65,13 @@ def alone(network: Network, number: int) -> LoneJoint:
 def _write(points: list[Point], bars: list[Bar], links: list[Link]) -> LoneJoint:
     network = Network((*points, Point(_NONE)), tuple(bars), tuple(links))
     ends = tuple(end for end in network.joints[-1].ends)
-    near = Joint(tuple(range(len(points))), tuple((network.opposite_end(end), _near(bars[end.bar])) for end, _ in ends))
+    near = Joint(
+        tuple(range(len(points))), tuple((network.opposite_end(end), _near_point(bars[end.bar])) for end, _ in ends)
+    )
     return LoneJoint(network, near, JointLaw.assemble(network, near))
 
 
-def _near(bar: Bar) -> int:
+def _near_point(bar: Bar) -> int:
     return min(bar.left, bar.right)  # the other end is at the last point
 
 
@@ -77,7 +79,7 @@ def _structure(network: Network) -> Any:
     """What two joints of one kind have in common."""
     return (
         tuple((p.mass != 0, p.damping != 0, p.stiffness != 0, p.motion, bool(p.loads)) for p in network.points),
-        tuple((_near(bar), bar.ratios[int(bar.left != _near(bar))] != 1) for bar in network.bars),
+        tuple((_near_point(bar), bar.ratios[int(bar.left != _near_point(bar))] != 1) for bar in network.bars),
         tuple(
             (link.left, link.right, link.stiffness != 0, link.damping != 0, link.ratio != 1, link.contact)
             for link in network.links
@@ -106,19 +108,19 @@ def _symbolic(joint: LoneJoint) -> LoneJoint:
     """The same joint with symbols for the numbers that it has."""
     symbols: Mapping[str, Ratio] = Ring(tuple(values(joint))).symbols()
 
-    def of(name: str, usual: fmpq = _NONE) -> Any:
+    def symbol(name: str, usual: fmpq = _NONE) -> Any:
         return symbols.get(name, usual)
 
     points = [
-        Point(of(f"M_{i}"), of(f"c_{i}"), of(f"K_{i}"), motion=point.motion, loads=point.loads)
+        Point(symbol(f"M_{i}"), symbol(f"c_{i}"), symbol(f"K_{i}"), motion=point.motion, loads=point.loads)
         for i, point in enumerate(joint.network.points[:-1], 1)
     ]
     bars = []
     for e, bar in enumerate(joint.network.bars, 1):
-        ratio = of(f"n_{e}", _ONE)
-        bars.append(Bar(bar.left, bar.right, bar.length, bar.speed, of(f"Z_{e}"), (ratio, ratio)))
+        ratio = symbol(f"n_{e}", _ONE)
+        bars.append(Bar(bar.left, bar.right, bar.length, bar.speed, symbol(f"Z_{e}"), (ratio, ratio)))
     links = [
-        Link(link.left, link.right, of(f"k_{n}"), of(f"d_{n}"), of(f"r_{n}", _ONE), link.contact)
+        Link(link.left, link.right, symbol(f"k_{n}"), symbol(f"d_{n}"), symbol(f"r_{n}", _ONE), link.contact)
         for n, link in enumerate(joint.network.links, 1)
     ]
     return _write(points, bars, links)
@@ -130,7 +132,7 @@ def describe_joint(joint: LoneJoint) -> Iterator[str]:
     for i, point in enumerate(network.points[:-1], 1):
         sizes = (("mass", point.mass), ("dashpot", point.damping), ("spring", point.stiffness))
         own = [word for word, size in sizes if size != 0]
-        rods = [bar for bar in network.bars if _near(bar) == i - 1]
+        rods = [bar for bar in network.bars if _near_point(bar) == i - 1]
         geared = any(bar.ratios[int(bar.left != i - 1)] != 1 for bar in rods)
         what = {None: "joint", "fixed": "fixed end"}.get(point.motion, f"end of prescribed {point.motion}")
         what = ", ".join(own) or what if point.motion is None else what

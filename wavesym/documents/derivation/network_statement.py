@@ -13,7 +13,7 @@ from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.numbers import expression
 from wavesym.derivation.recurrence import POWER, RATE, joint_rule, weights
-from wavesym.documents.derivation.joint_kinds import Kind, LoneJoint, alone, describe_joint, kinds, values
+from wavesym.documents.derivation.joint_kinds import Kind, LoneJoint, describe_joint, isolate_joint, kinds, values
 from wavesym.documents.derivation.notation import Text
 from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, rates
 from wavesym.exact.tables.network_joints import MOST_POINTS
@@ -94,7 +94,7 @@ class _Author:
 
     def rods(self) -> Iterator[RodEntry]:
         for number, bar in enumerate(self.network.bars, 1):
-            names = [self._called(point) for point in (bar.left, bar.right)]
+            names = [self._joint_name(point) for point in (bar.left, bar.right)]
             numbers = (("T", bar.delay), ("Z", bar.impedance), ("c", bar.speed), ("v", bar.velocity), ("e", bar.strain))
             shown = (f"{letter} = {self.n.expression(expression(size))}" for letter, size in numbers)
             yield RodEntry(self.n.word(bar.name or str(number)), self.n.word(" -- ".join(names)), tuple(shown))
@@ -102,7 +102,7 @@ class _Author:
     def node(self) -> Iterator[str]:
         law = node_law()
         own = [(law.own.a, "q'"), (law.own.b, "q")]
-        yield self._balanced(own, [(law.left, "a"), (law.right, "b"), (law.load, "S")])
+        yield self._balance(own, [(law.left, "a"), (law.right, "b"), (law.load, "S")])
 
     def end(self) -> Iterator[str]:
         """What a rod's end brings to a joint: the law of a node taken apart."""
@@ -110,48 +110,48 @@ class _Author:
         for radiates, arrives in dict.fromkeys(zip(rule.radiates, rule.arrives, strict=True)):
             ratio, impedance = Symbol("n"), Symbol("Z")
             brought = [(expression(radiates) * ratio**2 * impedance, "q")]
-            yield self._balanced(brought, [(expression(arrives) * ratio * impedance, "a")])
+            yield self._balance(brought, [(expression(arrives) * ratio * impedance, "a")])
 
     def factor(self) -> Iterator[str]:
         """What D + q, a factor of a polynomial, does to exponentials times powers."""
         law = weights(Operator(Integer(1), _Q))
-        own = [(law.same, self._at("y", "g,k")), (law.raised, self._at("y", "g,k+1"))]
-        yield self._balanced(own, [(Integer(1), self._at("s", "g,k"))])
+        own = [(law.same, self._coefficient_name("y", "g,k")), (law.next_power, self._coefficient_name("y", "g,k+1"))]
+        yield self._balance(own, [(Integer(1), self._coefficient_name("s", "g,k"))])
 
     def powers(self) -> Iterator[str]:
         """What the law of a joint does to powers alone: the ansatz at rate 0."""
         mass, damping = Symbol("M"), Symbol("C")
         law = weights(Operator(mass, damping))
-        going_up = (law.raised / mass).cancel(), f"M {self.n.term('q', POWER + 1)}"
+        going_up = (law.next_power / mass).cancel(), f"M {self.n.term('q', POWER + 1)}"
         own = [going_up, (law.same.subs(RATE, 0), self.n.term("q", POWER))]
-        yield self._balanced([*own, (Symbol("K"), self.n.term("u", POWER))], [(Integer(1), self.n.term("s", POWER))])
-        yield self._balanced([(POWER + 1, self.n.term("u", POWER + 1))], [(Integer(1), self.n.term("q", POWER))])
+        yield self._balance([*own, (Symbol("K"), self.n.term("u", POWER))], [(Integer(1), self.n.term("s", POWER))])
+        yield self._balance([(POWER + 1, self.n.term("u", POWER + 1))], [(Integer(1), self.n.term("q", POWER))])
 
     def kind(self, kind: Kind) -> JointKind:
         joints = (self._joint(number) for number in kind.numbers)
         made = kind.symbols
         words = self.n.word(" | ".join(describe_joint(made)))
-        laws, sent, polynomial = (tuple(write(made)) for write in (self._laws, self._sent, self._symbolic))
+        laws, sent, polynomial = (tuple(write(made)) for write in (self._laws, self._outgoing, self._symbolic))
         return JointKind(JointLaws(words, (), laws, sent, polynomial, ()), tuple(joints))
 
     def _joint(self, number: int) -> JointLaws:
-        made = alone(self.network, number)
+        made = isolate_joint(self.network, number)
         given = (
             f"{self._symbol(name)} = {self.n.expression(expression(value))}" for name, value in values(made).items()
         )
-        of = ", ".join(self._called(point) for point in self.network.joints[number].points)
+        of = ", ".join(self._joint_name(point) for point in self.network.joints[number].points)
         ends = self.network.joints[number].ends
         rods = ", ".join(self.network.bars[end.bar].name or str(end.bar + 1) for end, _ in ends)
         return JointLaws(
             self.n.word(f"{of}; rods {rods}" if len(ends) > 1 else f"{of}; rod {rods}" if ends else of),
             tuple(given),
             tuple(self._laws(made)),
-            tuple(self._sent(made)),
+            tuple(self._outgoing(made)),
             tuple(self._polynomial(made)),
             tuple(self._answer(made)),
         )
 
-    def _called(self, number: int) -> str:
+    def _joint_name(self, number: int) -> str:
         point = self.network.points[number]
         return f"{point.name}, x = {point.place}" if point.name else f"x = {point.place}"
 
@@ -161,12 +161,12 @@ class _Author:
         for i in range(len(law.mass)):
             if law.motions[i] is not None:
                 prime = "'" if law.motions[i] == "acceleration" else ""
-                yield self._balanced([(Integer(1), self.n.indexed("q", i + 1) + prime)], self._force(made, i))
+                yield self._balance([(Integer(1), self.n.with_index("q", i + 1) + prime)], self._force(made, i))
                 continue
-            own = [(_expression(law.mass[i]), self.n.indexed("q", i + 1) + "'")]
+            own = [(_expression(law.mass[i]), self.n.with_index("q", i + 1) + "'")]
             for letter, matrix in (("q", law.damping), ("u", law.stiffness)):
-                own += [(_expression(c), self.n.indexed(letter, j + 1)) for j, c in enumerate(matrix[i])]
-            yield self._balanced(own, [*self._arriving(made, i), *self._force(made, i)])
+                own += [(_expression(c), self.n.with_index(letter, j + 1)) for j, c in enumerate(matrix[i])]
+            yield self._balance(own, [*self._arriving(made, i), *self._force(made, i)])
 
     def _arriving(self, made: LoneJoint, i: int) -> Iterator[tuple[Expr, str]]:
         """2 n Z a of the rod ends at a point."""
@@ -175,25 +175,25 @@ class _Author:
             if at == i:
                 bar = made.network.bars[end.bar]
                 factor = rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
-                yield _expression(factor), self.n.indexed("a", e)
+                yield _expression(factor), self.n.with_index("a", e)
 
     def _force(self, made: LoneJoint, i: int) -> list[tuple[Expr, str]]:
-        return [(Integer(1), self.n.indexed("F", i + 1))] if made.network.points[i].loads else []
+        return [(Integer(1), self.n.with_index("F", i + 1))] if made.network.points[i].loads else []
 
-    def _moved(self, made: LoneJoint, i: int) -> Iterator[tuple[Expr, str]]:
+    def _motion_terms(self, made: LoneJoint, i: int) -> Iterator[tuple[Expr, str]]:
         """What points whose motion is prescribed do to another, through springs and dashpots."""
         law = made.law
         for letter, matrix in (("q", law.damping), ("u", law.stiffness)):
             for j, given in enumerate(law.motions):
                 if given not in (None, "fixed") and matrix[i][j] != 0:
-                    yield -_expression(matrix[i][j]), self.n.indexed(letter, j + 1)
+                    yield -_expression(matrix[i][j]), self.n.with_index(letter, j + 1)
 
-    def _sent(self, made: LoneJoint) -> Iterator[str]:
+    def _outgoing(self, made: LoneJoint) -> Iterator[str]:
         """n q - a into each end."""
         for e, (end, at) in enumerate(made.joint.ends, 1):
             ratio = _expression(made.network.bars[end.bar].ratios[end.side])
-            terms = [(ratio, self.n.indexed("q", at + 1)), (Integer(-1), self.n.indexed("a", e))]
-            yield f"{self.n.indexed('l', e)} = {self.n.joined(terms)}"
+            terms = [(ratio, self.n.with_index("q", at + 1)), (Integer(-1), self.n.with_index("a", e))]
+            yield f"{self.n.with_index('l', e)} = {self.n.sum_terms(terms)}"
 
     def _symbolic(self, made: LoneJoint) -> Iterator[str]:
         """The determinant of M s + C + K/s in symbols, and the rate of a joint that has one."""
@@ -219,7 +219,7 @@ class _Author:
         if polynomial.degree() > 1:
             content = prod((factor.leading_coefficient() ** power for factor, power in factors), start=fmpq(content))
             parts = ((factor / factor.leading_coefficient(), power) for factor, power in factors)
-            yield self.n.joined([(expression(content), " ".join(self._power(*part) for part in parts))])
+            yield self.n.sum_terms([(expression(content), " ".join(self._power(*part) for part in parts))])
 
     def _power(self, factor: fmpq_poly, power: int) -> str:
         within = self._in_s([expression(c) for c in reversed(factor.coeffs())])
@@ -232,40 +232,42 @@ class _Author:
             return
         response: JointResponse = joint_response(law)
         for i in sorted((*law.heavy, *law.light)):
-            if moved := list(self._moved(made, i)):
+            if moved := list(self._motion_terms(made, i)):
                 all_of_it = [*self._arriving(made, i), *self._force(made, i), *moved]
-                yield self._balanced([(Integer(1), self.n.indexed("s", i + 1))], all_of_it)
+                yield self._balance([(Integer(1), self.n.with_index("s", i + 1))], all_of_it)
         for i in sorted((*law.heavy, *law.light)):
             terms = []
             for j in sorted((*law.heavy, *law.light)):
-                pushed = self.n.indexed("s", j + 1)
+                pushed = self.n.with_index("s", j + 1)
                 terms.append((expression(response.direct.get((i, j), fmpq(0))), pushed))
                 for pole in response.poles:
                     for k, residues in enumerate(pole.residues, 1):
-                        below = self._in("D", [Integer(1), expression(pole.rate)])
-                        terms.append((expression(residues.get((i, j), fmpq(0))), self.n.over(pushed, below, k)))
-            yield f"{self.n.indexed('q', i + 1)} = {self.n.joined(term for term in terms if term[0] != 0)}"
+                        below = self._polynomial_text("D", [Integer(1), expression(pole.rate)])
+                        terms.append(
+                            (expression(residues.get((i, j), fmpq(0))), self.n.power_fraction(pushed, below, k))
+                        )
+            yield f"{self.n.with_index('q', i + 1)} = {self.n.sum_terms(term for term in terms if term[0] != 0)}"
 
     def _in_s(self, coefficients: Iterable[Expr]) -> str:
-        return self._in("s", coefficients)
+        return self._polynomial_text("s", coefficients)
 
-    def _in(self, variable: str, coefficients: Iterable[Expr]) -> str:
+    def _polynomial_text(self, variable: str, coefficients: Iterable[Expr]) -> str:
         """A polynomial, from its highest coefficient down."""
         highest_first = list(coefficients)
         powers = range(len(highest_first) - 1, -1, -1)
         names = (self.n.expression(Symbol(variable) ** k) if k else "" for k in powers)
         terms = zip(highest_first, names, strict=True)
-        return self.n.joined(term for term in terms if term[0] != 0)
+        return self.n.sum_terms(term for term in terms if term[0] != 0)
 
-    def _balanced(self, left: Iterable[tuple[Expr, str]], right: Iterable[tuple[Expr, str]]) -> str:
-        return " = ".join(self.n.joined(term for term in side if term[0] != 0) for side in (left, right))
+    def _balance(self, left: Iterable[tuple[Expr, str]], right: Iterable[tuple[Expr, str]]) -> str:
+        return " = ".join(self.n.sum_terms(term for term in side if term[0] != 0) for side in (left, right))
 
-    def _at(self, name: str, place: str) -> str:
-        return self.n.placed(name, place)
+    def _coefficient_name(self, name: str, place: str) -> str:
+        return self.n.coefficient_name(name, place)
 
     def _symbol(self, name: str) -> str:
         letter, _, index = name.partition("_")
-        return self.n.indexed(letter, Integer(index))
+        return self.n.with_index(letter, Integer(index))
 
 
 def symbolic_polynomial(made: LoneJoint) -> Poly:

@@ -13,7 +13,7 @@ from wavesym.derivation.delay_terms import exact
 from wavesym.derivation.recurrence import RATE
 
 
-def _ordered(expression: Add) -> list[Expr]:
+def _positive_first(expression: Add) -> list[Expr]:
     """The terms of a sum, a positive one first: no sum starts with a minus that it need not have."""
     terms = expression.as_ordered_terms()
     first = next((term for term in terms if not term.could_extract_minus_sign()), terms[0])
@@ -27,7 +27,7 @@ class _TextPrinter(StrPrinter):  # type: ignore[misc]  # SymPy is untyped
         return f"{expression.base}_{Text().subscript(expression.indices[0])}"
 
     def _print_Add(self, expression: Add, order: object = None) -> str:
-        return Text().joined((term, "") for term in _ordered(expression))
+        return Text().sum_terms((term, "") for term in _positive_first(expression))
 
     def _print_Mul(self, expression: Expr) -> str:
         return str(super()._print_Mul(expression)).replace("**", "^").replace("*", " ")
@@ -60,11 +60,11 @@ class Text:
         written = self.expression(index).replace(" ", "")
         return written if written.isalnum() else f"({written})"
 
-    def indexed(self, name: str, index: Expr | int) -> str:
+    def with_index(self, name: str, index: Expr | int) -> str:
         """f_i."""
         return f"{name}_{self.subscript(index)}"
 
-    def joined(self, terms: Iterable[tuple[Expr, str]]) -> str:
+    def sum_terms(self, terms: Iterable[tuple[Expr, str]]) -> str:
         """A sum of factor times name, with signs as people write them; 0 where it is empty."""
         written = ""
         for factor, name in terms:
@@ -88,18 +88,18 @@ class Text:
         terms = list(above)
         if all(part.could_extract_minus_sign() for part in Add.make_args(below)):
             terms, below = [(-factor, name) for factor, name in terms], -below
-        return self.joined(terms) if below == 1 else self.divided(self.joined(terms), len(terms) > 1, below)
+        return self.sum_terms(terms) if below == 1 else self.fraction(self.sum_terms(terms), len(terms) > 1, below)
 
-    def divided(self, above: str, is_sum: bool, below: Expr) -> str:
+    def fraction(self, above: str, is_sum: bool, below: Expr) -> str:
         """Something divided by something that is not 1."""
         written = self.expression(below)
         return f"{f'({above})' if is_sum else above}/{written if below.is_Atom or below.is_Indexed else f'({written})'}"
 
-    def over(self, above: str, below: str, power: int) -> str:
+    def power_fraction(self, above: str, below: str, power: int) -> str:
         """Something divided by (below)**power."""
         return f"{above}/({below})" + (f"^{power}" if power > 1 else "")
 
-    def placed(self, name: str, place: str) -> str:
+    def coefficient_name(self, name: str, place: str) -> str:
         """A coefficient at a rate and a power, as they are written."""
         return f"{name}[{place}]"
 
@@ -110,12 +110,12 @@ class Text:
     def motion(self, rod: Expr, by: str) -> str:
         """A derivative of the displacement U of a rod: `by` "tau", "tau2" or "x"."""
         order = "d2U" if by == "tau2" else "dU"
-        return f"{self.indexed(order, rod)}/d{by}"
+        return f"{self.with_index(order, rod)}/d{by}"
 
     def coefficient(self, function: str, rod: Expr, back: int, rate: Expr, power: Expr) -> str:
         """A coefficient of a function's increment `back` intervals ago."""
         interval = "n" if back == 0 else f"(n-{back})"
-        return f"{self.indexed(function, rod)}^{interval}[{self.expression(rate)},{self._short(power)}]"
+        return f"{self.with_index(function, rod)}^{interval}[{self.expression(rate)},{self._short(power)}]"
 
     def term(self, name: str, power: Expr) -> str:
         """The coefficient of a power of time."""
@@ -160,15 +160,15 @@ class Text:
         """A number that is 0, 2, ..."""
         return f",  {number} = 0, 2, ..."
 
-    def at_least(self, m: int) -> str:
+    def lower_limit(self, m: int) -> str:
         """m >= a number."""
         return f"m >= {m}"
 
     def place(self, first: Expr | int, last: Expr | int, step: int) -> str:
         """i = first, first + step, ..., last."""
-        return ",  i = " + ", ".join(self._listed(first, last, step, "..."))
+        return ",  i = " + ", ".join(self._list_range(first, last, step, "..."))
 
-    def _listed(self, first: Expr | int, last: Expr | int, step: int, between: str) -> list[str]:
+    def _list_range(self, first: Expr | int, last: Expr | int, step: int, between: str) -> list[str]:
         start = [self.expression(place) for place in ((first, first + step) if step > 1 else (first,))]
         return [*(start[:1] if exact(last - first) == step else [*start, between]), self.expression(last)]
 
@@ -177,7 +177,7 @@ class _LatexPrinter(LatexPrinter):  # type: ignore[misc]
     printmethod = "_wavesym"
 
     def _as_ordered_terms(self, expression: Add, order: object = None) -> list[Expr]:
-        return _ordered(expression)
+        return _positive_first(expression)
 
     def _print_Indexed(self, expression: Indexed) -> str:
         return f"{self._print(expression.base.label)}_{{{self._print(expression.indices[0])}}}"
@@ -211,14 +211,14 @@ class Latex(Text):
     def power(self, base: str, power: int) -> str:
         return super().power(r"\tau" if base == "tau" else base, power)
 
-    def divided(self, above: str, is_sum: bool, below: Expr) -> str:
+    def fraction(self, above: str, is_sum: bool, below: Expr) -> str:
         # a product, which can be broken over lines where a fraction cannot
         return rf"\frac{{1}}{{{self.expression(below)}}} " + (rf"\bigl( {above} \bigr)" if is_sum else above)
 
-    def over(self, above: str, below: str, power: int) -> str:
+    def power_fraction(self, above: str, below: str, power: int) -> str:
         return rf"\frac{{{above}}}{{({below})^{{{power}}}}}" if power > 1 else rf"\frac{{{above}}}{{{below}}}"
 
-    def placed(self, name: str, place: str) -> str:
+    def coefficient_name(self, name: str, place: str) -> str:
         return f"{name}_{{{place.replace('g', self.expression(RATE))}}}"
 
     def coefficient(self, function: str, rod: Expr, back: int, rate: Expr, power: Expr) -> str:
@@ -257,8 +257,8 @@ class Latex(Text):
     def even(self, number: str) -> str:
         return rf",\quad {number} = 0, 2, \ldots"
 
-    def at_least(self, m: int) -> str:
+    def lower_limit(self, m: int) -> str:
         return rf"m \geq {m}"
 
     def place(self, first: Expr | int, last: Expr | int, step: int) -> str:
-        return r",\quad i = " + ", ".join(self._listed(first, last, step, r"\ldots"))
+        return r",\quad i = " + ", ".join(self._list_range(first, last, step, r"\ldots"))

@@ -148,7 +148,7 @@ class _Author:
         )
 
     def _size(self, of: System | PowerFamily) -> str:
-        return f"m = {self.m}" if self.m is not None else self.n.at_least(of.smallest)
+        return f"m = {self.m}" if self.m is not None else self.n.lower_limit(of.smallest)
 
     def _powers(self, system: System) -> Iterator[Powers]:
         for family in POWERS.get(system.name, ()):
@@ -156,7 +156,7 @@ class _Author:
                 continue
             rows = (
                 Entry(
-                    f"{self.n.indexed(row.function, at(row.rod))}{self.w.range(row.first, row.last, row.step)}",
+                    f"{self.n.with_index(row.function, at(row.rod))}{self.w.range(row.first, row.last, row.step)}",
                     (self.w.power(family, row, at),),
                 )
                 for row in family.rows
@@ -213,7 +213,7 @@ class _Author:
         for law in laws:
             where = self.w.range(law.first, law.last, law.step)
             for at in self.w.places(law.first, law.last, law.step):
-                yield Entry(f"{self.n.indexed(law.function, at(law.rod))}{where}", tuple(self.w.law(law, at)))
+                yield Entry(f"{self.n.with_index(law.function, at(law.rod))}{where}", tuple(self.w.law(law, at)))
 
     def _displacements(self) -> Iterator[Entry]:
         for function in ("f", "g"):
@@ -221,7 +221,7 @@ class _Author:
 
     def _family(self, law: CoefficientLaw, found: tuple[Expr, ...] | None, names: Mapping[Expr, Expr]) -> Entry:
         where = self.w.range(law.first, law.last, law.step)
-        return Entry(f"{self.n.indexed(law.function, law.rod)}{where}", tuple(self.w.families(law, found, names)))
+        return Entry(f"{self.n.with_index(law.function, law.rod)}{where}", tuple(self.w.families(law, found, names)))
 
     def patterns(self, system: System) -> Iterator[Families]:
         """The families for every pattern; of patterns that are one for this m, the last."""

@@ -36,9 +36,9 @@ class Writer:
         if self.m is None:
             return [exact]
         low, high = (int(exact(bound).subs(COUNT, self.m)) for bound in (first, last))
-        return [partial(self._at, i) for i in range(low, high + 1, step)]
+        return [partial(self._evaluate, i) for i in range(low, high + 1, step)]
 
-    def _at(self, i: int, expression: Expr | int) -> Expr:
+    def _evaluate(self, i: int, expression: Expr | int) -> Expr:
         return exact(expression).subs({INDEX: i, COUNT: self.m})
 
     def range(self, first: Expr | int, last: Expr | int, step: int) -> str:
@@ -47,8 +47,8 @@ class Writer:
             return ""
         return self.n.place(first, last, step)
 
-    def _balanced(self, left: Iterable[tuple[Expr, str]], right: Iterable[tuple[Expr, str]]) -> str:
-        sides = (self.n.joined(term for term in side if term[0] != 0) for side in (left, right))
+    def _balance(self, left: Iterable[tuple[Expr, str]], right: Iterable[tuple[Expr, str]]) -> str:
+        sides = (self.n.sum_terms(term for term in side if term[0] != 0) for side in (left, right))
         return " = ".join(sides)
 
     def condition(self, node: Node, x: Expr, at: Place) -> Iterator[str]:
@@ -69,19 +69,19 @@ class Writer:
         for load in node.loads:
             symbol = self._source(load.kind, load.number, at)
             right += [(at(c), symbol + self.n.power("tau", k)) for k, c in enumerate(load.coefficients)]
-        yield self._balanced(left, right)
+        yield self._balance(left, right)
 
     def rod(self, kind: RodKind, at: Place) -> Iterator[str]:
         """(4.2) with the constants of Table 1, and velocity and strain in the rod and at its ends."""
         number, rod = kind.number, kind.rod
         forth, back = (TAU - rod.tau0 + sign * (rod.x0 - X) for sign in (1, -1))
         terms = [
-            (Integer(1), self.n.indexed("f", at(number)) + self.n.argument(at(forth))),
-            (Integer(1), self.n.indexed("g", at(number)) + self.n.argument(at(back))),
+            (Integer(1), self.n.with_index("f", at(number)) + self.n.argument(at(forth))),
+            (Integer(1), self.n.with_index("g", at(number)) + self.n.argument(at(back))),
             (at(rod.velocity), self.n.expression(TAU)),
         ]
         yield self.n.constants(at(number), at(rod.tau0), at(rod.x0), at(rod.velocity))
-        yield self._balanced([(Integer(1), self.n.indexed("U", at(number)))], terms)
+        yield self._balance([(Integer(1), self.n.with_index("U", at(number)))], terms)
         for x, outgoing in ((number - 1, "f"), (number, "g")):
             yield from self._end(side(rod, number, x, outgoing), self.n.where(at(x)), at)
 
@@ -100,24 +100,24 @@ class Writer:
     def stretch(self, node: Node, x: Expr, at: Place) -> Iterator[str]:
         """The law of the node at x on powers of time, where no front passes."""
         law = stretch_law(node_law().with_numbers(node))
-        own = [(at(law.own.same), self.n.term("q", POWER)), (at(law.own.raised), self.n.term("q", POWER + 1))]
+        own = [(at(law.own.same), self.n.term("q", POWER)), (at(law.own.next_power), self.n.term("q", POWER + 1))]
         arriving = ((law.left, "a"), (law.right, "b"), (law.load if node.loads else Integer(0), "s"))
         right = [(at(factor), self.n.term(name, POWER)) for factor, name in arriving]
-        yield self._balanced(own, right)
+        yield self._balance(own, right)
 
     def _in_time(self, line: Line, at: Place) -> str:
         """A line in waves of tau; what a load is before tau = 0 need not be said there."""
         terms = []
         for wave, operator in line.waves.items():
-            name, clock = self.n.indexed(wave.function, at(wave.rod)), self.n.argument(at(TAU - wave.lag))
+            name, clock = self.n.with_index(wave.function, at(wave.rod)), self.n.argument(at(TAU - wave.lag))
             terms += [(at(operator.a), f"{name}''{clock}"), (at(operator.b), f"{name}'{clock}")]
         for source, value in line.loads.items():
             name = "" if source.kind == "impact" else self._source(source.kind, source.number, at)
             terms.append((at(value), (name + self.n.power("tau", source.power)).strip()))
-        return self.n.joined(term for term in terms if term[0] != 0)
+        return self.n.sum_terms(term for term in terms if term[0] != 0)
 
     def _source(self, kind: str, number: Expr | int | None, at: Place) -> str:
-        return kind if number is None else self.n.indexed(kind, at(number))
+        return kind if number is None else self.n.with_index(kind, at(number))
 
     def _load(self, source: Source, at: Place) -> str:
         """H(z), or what of it a load is; the velocities of an impact stand for themselves."""
@@ -129,26 +129,28 @@ class Writer:
 
     def equation(self, e: DelayEquation, at: Place) -> str:
         """A delay equation."""
-        name = self.n.indexed(e.function, at(e.rod))
+        name = self.n.with_index(e.function, at(e.rod))
         left = [(at(e.own.a), f"{name}''(z)"), (at(e.own.b), f"{name}'(z)")]
         right = []
         for wave, operator in e.right.waves.items():
-            term, clock = self.n.indexed(wave.function, at(wave.rod)), self.n.clock(wave.lag)
+            term, clock = self.n.with_index(wave.function, at(wave.rod)), self.n.clock(wave.lag)
             right += [(at(operator.a), f"{term}''{clock}"), (at(operator.b), f"{term}'{clock}")]
         right += [(at(value), self._load(source, at)) for source, value in e.right.loads.items()]
-        return self._balanced(left, right)
+        return self._balance(left, right)
 
-    def _weighted(self, w: SymbolicWeights, function: str, rod: Expr, back: int, at: Place) -> list[tuple[Expr, str]]:
+    def _weight_terms(
+        self, w: SymbolicWeights, function: str, rod: Expr, back: int, at: Place
+    ) -> list[tuple[Expr, str]]:
         return [
             (at(w.same), self.n.coefficient(function, rod, back, RATE, POWER)),
-            (at(w.raised), self.n.coefficient(function, rod, back, RATE, POWER + 1)),
+            (at(w.next_power), self.n.coefficient(function, rod, back, RATE, POWER + 1)),
         ]
 
     def law(self, law: CoefficientLaw, at: Place) -> Iterator[str]:
         """A recurrence for every rate and power, its loads, and its jump."""
-        own = self._weighted(law.own, law.function, at(law.rod), 0, at)
-        right = [part for t in law.terms for part in self._weighted(t.weights, t.function, at(t.rod), t.back, at)]
-        yield self._balanced(own, right)
+        own = self._weight_terms(law.own, law.function, at(law.rod), 0, at)
+        right = [part for t in law.terms for part in self._weight_terms(t.weights, t.function, at(t.rod), t.back, at)]
+        yield self._balance(own, right)
         yield from self._gains(law.loads, at)
         q = own_rate(law)
         if q is not None:
@@ -159,12 +161,12 @@ class Writer:
                 for t in law.terms
             )
             yield f"q = {self.n.expression(at(q))}"
-            yield self._balanced([(law.own.jump, start)], jumps)
+            yield self._balance([(law.own.jump, start)], jumps)
 
     def _gains(self, loads: Iterable[SymbolicLoad], at: Place) -> Iterator[str]:
         for load in loads:
             source = "" if load.kind == "impact" else self._source(load.kind, load.number, at)
-            yield self.n.gain(load.back + 1, load.power, self.n.joined([(at(load.value), source)]))
+            yield self.n.gain(load.back + 1, load.power, self.n.sum_terms([(at(load.value), source)]))
 
     def families(
         self, law: CoefficientLaw, rates: tuple[Expr, ...] | None, names: Mapping[Expr, Expr]
@@ -178,22 +180,22 @@ class Writer:
             yield f"{self.n.expression(OWN)} = {self.n.expression(own)}"
             names = {own: OWN}
         for line in solve_at_rates(law, rates):
-            yield self._solved(line, own, names)
+            yield self._solution(line, own, names)
             yield from self._gains(line.loads, exact)
 
-    def _solved(self, line: Recursion, own: Expr | None, names: Mapping[Expr, Expr]) -> str:
-        def named(rate: Expr) -> Expr:
+    def _solution(self, line: Recursion, own: Expr | None, names: Mapping[Expr, Expr]) -> str:
+        def rate_name(rate: Expr) -> Expr:
             return names.get(rate, rate)
 
         def coefficient(c: Coefficient) -> str:
-            written = self.n.coefficient(c.function, c.rod, c.back, named(c.rate), c.power)
-            return self.n.total(written, named(own) if c.over == "other" else None) if c.over else written
+            written = self.n.coefficient(c.function, c.rod, c.back, rate_name(c.rate), c.power)
+            return self.n.total(written, rate_name(own) if c.sum_range == "other" else None) if c.sum_range else written
 
         among = ""
         if line.least:
             among = self.n.upwards(line.least)
         elif own is not None and line.left.rate == RATE:
-            among = self.n.unless(named(own))
+            among = self.n.unless(rate_name(own))
         right = [(factor, coefficient(c)) for factor, c in line.parts]
         return f"{coefficient(line.left)} = {self.n.quotient(right, line.divisor)}{among}"
 
@@ -210,9 +212,9 @@ class Writer:
         if all(value.is_integer for value in power.as_coefficients_dict().values()):
             highest = self.n.expression(power)
         else:
-            highest = self.n.divided(self.n.expression(budget), True, Integer(family.period))
+            highest = self.n.fraction(self.n.expression(budget), True, Integer(family.period))
         if family.period > 2:  # there and back is even, so that half of it is whole
             highest = self.n.whole(highest)
-        always = all(value % 2 == 0 for value in row.since.as_coefficients_dict().values())
-        since = "" if always else self.n.even(self.n.expression(at(row.since)))
+        always = all(value % 2 == 0 for value in row.start.as_coefficients_dict().values())
+        since = "" if always else self.n.even(self.n.expression(at(row.start)))
         return f"K = {highest}{since}"

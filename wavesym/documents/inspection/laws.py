@@ -135,7 +135,7 @@ def _matrix(name: str, rows: Sequence[Sequence[fmpq]]) -> Display:
 
 
 def _of_function(rule: Rule) -> dict[str, Plain]:
-    terms, loads = list(map(_right, rule.terms)), list(map(_added, rule.loads))
+    terms, loads = list(map(_right, rule.terms)), list(map(_load_text, rule.loads))
     return {
         "function": rule.function,
         "rod": rule.rod,
@@ -146,10 +146,10 @@ def _of_function(rule: Rule) -> dict[str, Plain]:
 
 
 def _linear(linear: Linear, variable: str) -> Display:
-    return Display({"constant": str(linear.constant), "slope": str(linear.slope)}, _in(linear, variable))
+    return Display({"constant": str(linear.constant), "slope": str(linear.slope)}, _linear_text(linear, variable))
 
 
-def _in(linear: Linear, variable: str) -> str:
+def _linear_text(linear: Linear, variable: str) -> str:
     """constant + slope variable, as one writes it."""
     if not linear.slope:
         return str(linear.constant)
@@ -163,8 +163,8 @@ def _in(linear: Linear, variable: str) -> str:
 def _product(weights: Weights, name: str, back: int) -> str:
     interval = f"n-{back}" if back else "n"
     return " + ".join(
-        f"({_in(linear, variable)}) {name}{prime}[{interval}]"
-        for linear, variable, prime in ((weights.same, "g", ""), (weights.raised, "k", "'"))
+        f"({_linear_text(linear, variable)}) {name}{prime}[{interval}]"
+        for linear, variable, prime in ((weights.same, "g", ""), (weights.next_power, "k", "'"))
         if linear.constant or linear.slope
     )
 
@@ -173,14 +173,14 @@ def _right(term: Term) -> str:
     return f"+ {_product(term.weights, f'{term.function}_{term.rod}', term.back)}"
 
 
-def _added(load: LoadTerm) -> str:
+def _load_text(load: LoadTerm) -> str:
     return f"+ ({load.value}) {load.source}, at g = 0, k = {load.power}, n = {1 + load.back}"
 
 
 def _weights(weights: Weights) -> dict[str, Plain]:
     return {
         "same": _linear(weights.same, "g").value,
-        "raised": _linear(weights.raised, "k").value,
+        "raised": _linear(weights.next_power, "k").value,
         "jump": str(weights.jump),
     }
 

@@ -75,19 +75,19 @@ def dump(key: str, words: str, values: Sequence[DataclassInstance], number: str 
     """
     columns = fields(values[0]) if values else ()
     rows = [
-        {**({number: k} if number else {}), **{each.name: _frozen(getattr(value, each.name)) for each in columns}}
+        {**({number: k} if number else {}), **{each.name: _field_json(getattr(value, each.name)) for each in columns}}
         for k, value in enumerate(values, first)
     ]
     usual = (each.name for each in columns if all(getattr(value, each.name) == each.default for value in values))
     return Listing(key, words, rows, hidden=tuple(usual))
 
 
-def _frozen(value: Any) -> Plain:
+def _field_json(value: Any) -> Plain:
     """A field as JSON: exact numbers as text, what is made of others by its fields, names as they are."""
     if isinstance(value, UnitLoad):
         return value.source
     if isinstance(value, tuple):
-        return list(map(_frozen, value))
+        return list(map(_field_json, value))
     return str(value) if isinstance(value, fmpq) else value
 
 

@@ -18,7 +18,7 @@ from itertools import product
 from flint import arb, ctx, fmpq, fmpq_poly
 
 from wavesym.derivation.exact_rule import factor_weights
-from wavesym.derivation.increments import Increment, add, solve, trimmed
+from wavesym.derivation.increments import Increment, add, solve, trim
 from wavesym.derivation.rules import Weights
 from wavesym.exact.joints.joint import JointLaw
 
@@ -77,7 +77,7 @@ class JointResponse:
                     part = solve(pole.factor, part, push)
                     push = _ZERO
                     gain(residues, point, part)
-        return {point: increment for point, total in found.items() if (increment := trimmed(total))}
+        return {point: increment for point, total in found.items() if (increment := trim(total))}
 
 
 @cache

@@ -15,7 +15,7 @@ from math import inf
 from flint import fmpq
 
 from wavesym.derivation.exact_rule import joint_rule
-from wavesym.derivation.increments import Increment, add, combine, integrate, trimmed
+from wavesym.derivation.increments import Increment, add, combine, integrate, trim
 from wavesym.derivation.table import Function, Part, Row, table_rows
 from wavesym.derivation.table_size import refuse_size
 from wavesym.exact.tables.forecast import Forecast
@@ -64,7 +64,7 @@ class RuledNetwork:
         else:
             bar = self.network.bars[reading.rod - 1]
             held = bar.strain if reading.quantity == "strain" else bar.velocity
-        return trimmed({fmpq(0): {-1: [fmpq(0), held], 0: [held], 1: []}[reading.order]})
+        return trim({fmpq(0): {-1: [fmpq(0), held], 0: [held], 1: []}[reading.order]})
 
     def acting_loads(self, loads: Sequence[AppliedLoad]) -> Sequence[AppliedLoad]:
         """The loads, and the start where anything moves then."""
@@ -155,9 +155,9 @@ class RuledNetwork:
             for other in (*law.heavy, *law.light):
                 add(forces[other], velocity, -law.damping[other][k])
                 add(forces[other], integrate(velocity), -law.stiffness[other][k])
-        free = {k: trimmed(force) for k, force in forces.items() if law.motions[k] is None}
+        free = {k: trim(force) for k, force in forces.items() if law.motions[k] is None}
         moved = self.joints.response(number).velocities(free, pushes)
-        return {joint.points[k]: trimmed(velocity) for k, velocity in {**moved, **given}.items()}
+        return {joint.points[k]: trim(velocity) for k, velocity in {**moved, **given}.items()}
 
     def _outgoing_waves(
         self, number: int, source: str, waves: Mapping[End, Increment], velocities: Mapping[int, Increment]

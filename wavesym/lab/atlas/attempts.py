@@ -50,12 +50,12 @@ class Attempt:
     taus: Array
     errors: Array | None
     bounds: Array
-    refused: str
+    refusal: str
 
     def point(self, panel: str, curve: str, x: float) -> AtlasPoint:
         """The largest error as a point of a curve."""
         error = math.nan if self.errors is None else float(np.max(self.errors))
-        return AtlasPoint(panel, curve, x, error, float(self.bounds[-1]), self.refused)
+        return AtlasPoint(panel, curve, x, error, float(self.bounds[-1]), self.refusal)
 
 
 def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:

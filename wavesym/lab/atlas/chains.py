@@ -14,7 +14,7 @@ from flint import arb, ctx, fmpq
 from wavesym.exact.contacts.events import events
 from wavesym.exact.motion import Motion
 from wavesym.lab.atlas.attempts import EVALUATORS, Truth, attempt, truth
-from wavesym.lab.atlas.evaluators import sprung
+from wavesym.lab.atlas.evaluators import sprung_masses
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import atlas_scene, chain
 from wavesym.mechanics.event import ContactEvent
@@ -28,7 +28,7 @@ _AFTER = fmpq(1, 2**30)  # so soon after an event a ball is looked at
 WIDTH, RADIUS, PIECES = "width of the instant", f"radius of a velocity, {BITS} bits", "pieces, error so far"
 
 
-def dropped(until: int) -> Scene:
+def dropped_bar(until: int) -> Scene:
     """A bar with a ground below that comes up to it, always faster: its own frame. Every 16 it is as at the start."""
     parts: list[Any] = [{"motion": "acceleration", "name": "ground"}, {"contact": "1/2"}, {"rod": 1}, "free"]
     load = [{"at": "ground", "times": [0], "steps": ["1/9"]}]
@@ -44,7 +44,7 @@ def wagons(until: int) -> Scene:
 
 
 CONTACTS: Mapping[str, Scene] = {
-    "a bar dropped on the ground: all is rational": dropped(200),
+    "a bar dropped on the ground: all is rational": dropped_bar(200),
     "two wagons between walls": wagons(20),
 }
 
@@ -94,7 +94,7 @@ def _errors_so_far(panel: str, known: Truth, found: tuple[ContactEvent, ...]) ->
         error, bound = math.nan, math.inf
         if one.errors is not None:
             error, bound = float(np.max(one.errors[:here])), float(one.bounds[-1])
-        yield AtlasPoint(panel, PIECES, n, error, bound, one.refused)
+        yield AtlasPoint(panel, PIECES, n, error, bound, one.refusal)
 
 
 def _masses(lengths: Sequence[Fraction], until: int) -> Scene:
@@ -119,10 +119,10 @@ REFUSALS: Mapping[str, tuple[Callable[[float], Scene], Sequence[float]]] = {
     "horizon, lengths 1, 1.414213562 and 1.732050808": (_incommensurable, (2, 5, 10, 20, 40, 120)),
     "steps in the first rod, lengths 1 and 1 + a step": (_one_step_longer, (1, 2, 4, 8, 16, 32, 64, 128, 1e3, 1e6)),
     "K/M of a spring between two masses": (
-        lambda ratio: sprung(Fraction(ratio)),
+        lambda ratio: sprung_masses(Fraction(ratio)),
         (1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e8),
     ),
-    "contact events": (lambda count: dropped(4 * int(count)), (4, 16, 64, 256, 1024)),
+    "contact events": (lambda count: dropped_bar(4 * int(count)), (4, 16, 64, 256, 1024)),
 }
 """Of each panel a scene for x, and the places of x."""
 
@@ -138,7 +138,7 @@ def refusals(
                 progress(f"{panel}: {x:g}, {name}")
                 tried = attempt_program(lower(scene(x)), name, asked=True)
                 bound = tried.form.error_bound if tried.form else math.nan
-                points.append(AtlasPoint(panel, name, x, bound, refused=tried.refusal))
+                points.append(AtlasPoint(panel, name, x, bound, refusal=tried.refusal))
     return CurveFamily(
         "refusals",
         "Where each program refuses a chain that asks for 1e-10",

@@ -76,7 +76,7 @@ def _panel(axes: Axes, family: CurveFamily, panel: str, named: bool) -> None:
         places = _places(family, valued, [point.error for point in valued])
         _line(axes, places, valued, color=grey, linestyle=dashes, linewidth=1.2, zorder=3)
         for (x, y), point in zip(places, valued, strict=True):
-            filled = "white" if point.refused else grey
+            filled = "white" if point.refusal else grey
             axes.plot(x, y, marker, color=grey, markerfacecolor=filled, markersize=5, zorder=4)
         for x, y in _missing(family, panel, name, missing):
             axes.plot(x, y, "x", color=grey, markersize=6, zorder=4)

@@ -11,7 +11,7 @@ import numpy as np
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.lab.atlas.attempts import EVALUATORS, attempt, not_tried, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
-from wavesym.lab.atlas.scenes import AIM, LEGEND, aimed, atlas_scene, chain, drive
+from wavesym.lab.atlas.scenes import AIM, LEGEND, atlas_scene, chain, drive, with_tolerance
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.making import make
@@ -50,7 +50,7 @@ def reflections(progress: Progress, kappas: Sequence[Fraction] = KAPPAS, counts:
     for kappa in kappas:
         for name in EVALUATORS:
             progress(f"reflections, kappa = {kappa}, {name}")
-            points += _reflected(kappa, name, counts)
+            points += _reflection_points(kappa, name, counts)
     return CurveFamily(
         "reflections",
         "Error against reflections: the closed form loses all its digits, pieces and march stay within their bounds",
@@ -61,7 +61,7 @@ def reflections(progress: Progress, kappas: Sequence[Fraction] = KAPPAS, counts:
     )
 
 
-def _reflected(kappa: Fraction, name: str, counts: Sequence[int]) -> Iterator[AtlasPoint]:
+def _reflection_points(kappa: Fraction, name: str, counts: Sequence[int]) -> Iterator[AtlasPoint]:
     """An evaluator for the longest horizon, looked at up to shorter ones."""
     until = 2 * (min(_FITTED[kappa], counts[-1]) if name == "pieces" else counts[-1])
     known = truth(drive([kappa], [1, 1], until), per_unit=3)
@@ -70,7 +70,7 @@ def _reflected(kappa: Fraction, name: str, counts: Sequence[int]) -> Iterator[At
     for count in (count for count in counts if 2 * count <= until):
         last = int(np.searchsorted(known.taus, 2 * count)) - 1
         error, bound = float(np.max(one.errors[: last + 1])), float(one.bounds[last])
-        refused = one.refused if bound > nearest(known.model.tolerance) else ""
+        refused = one.refusal if bound > nearest(known.model.tolerance) else ""
         yield AtlasPoint(f"kappa = {kappa}", name, count, error, bound, refused)
 
 
@@ -147,7 +147,7 @@ def kappa(progress: Progress, exponents: Sequence[int] = EXPONENTS) -> CurveFami
 STIFFNESSES = range(-6, 7)
 
 
-def sprung(stiffness: Fraction) -> Scene:
+def sprung_masses(stiffness: Fraction) -> Scene:
     """Two unit masses with a spring between them, the first pushed, the second on a rod that ends in a wall."""
     parts = [{"mass": 1, "name": "first"}, {"spring": stiffness}, {"mass": 1, "name": "second"}, {"rod": 1}, "fixed"]
     return chain(parts, 3, velocity=["first", "second"], strain=["0.5"])
@@ -155,7 +155,7 @@ def sprung(stiffness: Fraction) -> Scene:
 
 def stiffness(progress: Progress, exponents: Sequence[int] = STIFFNESSES) -> CurveFamily:
     """K/M from 1e-6 to 1e6, for which the spring swings up to 700 times on the horizon."""
-    places = ((10.0**exponent, sprung(Fraction(10) ** exponent)) for exponent in exponents)
+    places = ((10.0**exponent, sprung_masses(Fraction(10) ** exponent)) for exponent in exponents)
     return CurveFamily(
         "stiffness",
         "Error against the stiffness of a spring between two masses: bounds hold from soft to stiff",
@@ -183,7 +183,7 @@ def with_dashpot(dashpot: Fraction) -> Scene:
 
 def echoes(dashpot: Fraction) -> list[float]:
     """The size of each echo, by the pieces that would be generated; the pulse has size 1."""
-    pieces = make(lower(aimed(with_dashpot(dashpot), AIM)), Request(evaluator="pieces"))
+    pieces = make(lower(with_tolerance(with_dashpot(dashpot), AIM)), Request(evaluator="pieces"))
     return list(map(float, np.abs(pieces.evaluate(list(_ECHOES.values()))[0])))
 
 

@@ -24,7 +24,7 @@ class AtlasPoint:
     x: float
     error: float
     bound: float = math.inf
-    refused: str = ""
+    refusal: str = ""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def to_csv(family: CurveFamily) -> str:
     writer.writerow(["panel", "curve", "x", "error", "bound", "refused"])
     for point in family.points:
         writer.writerow(
-            [point.panel, point.curve, f"{point.x:g}", *map(_digits, (point.error, point.bound)), point.refused]
+            [point.panel, point.curve, f"{point.x:g}", *map(_digits, (point.error, point.bound)), point.refusal]
         )
     return text.getvalue()
 

@@ -14,7 +14,7 @@ from wavesym.exact.reference import Reference
 from wavesym.fields.numbers import decimal_text
 from wavesym.lab.atlas.attempts import Array, Truth, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
-from wavesym.lab.atlas.scenes import aimed, atlas_scene
+from wavesym.lab.atlas.scenes import atlas_scene, with_tolerance
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
@@ -32,7 +32,7 @@ from wavesym.scene import Scene, lower
 _RODS, _LEAP = 2, 8
 
 
-def shaken(spacing: Fraction, samples: int, tolerance: Fraction, damping: Any = 0, **outputs: Any) -> Scene:
+def shaken_building(spacing: Fraction, samples: int, tolerance: Fraction, damping: Any = 0, **outputs: Any) -> Scene:
     """A building of two storeys on ground that shakes as so many samples say, which leap between -1 and 1.
 
     The first is 0 at tau = 0, the last is at the horizon; they may be any time apart.
@@ -40,7 +40,7 @@ def shaken(spacing: Fraction, samples: int, tolerance: Fraction, damping: Any = 
     leaps = [Fraction(0), *(Fraction((7 * k * k + 3 * k) % 17 - _LEAP, _LEAP) for k in range(1, samples))]
     system = {"type": "building", "m": _RODS, "kappa": ["1/10", "1/5", "1/10"], "base": "ground", "damping": damping}
     load = {"spacing": spacing, "samples": leaps}
-    return aimed(atlas_scene(system, [load], spacing * (samples - 1), **outputs), tolerance)
+    return with_tolerance(atlas_scene(system, [load], spacing * (samples - 1), **outputs), tolerance)
 
 
 def by_modes(model: Model, taus: Array) -> tuple[ModesEvaluator, Array]:
@@ -68,7 +68,7 @@ def mode_counts(
     """A curve for each kind of output: as many modes as each tolerance takes, up to the most that are taken."""
     points: list[AtlasPoint] = []
     for spacing in spacings:
-        known = truth(shaken(spacing, SAMPLES, Fraction(1), **OUTPUTS), per_unit=4)
+        known = truth(shaken_building(spacing, SAMPLES, Fraction(1), **OUTPUTS), per_unit=4)
         for number in range(len(known.model.probes)):
             progress(f"modes, samples {float(spacing):g} apart, {known.model.probes[number].name}")
             points += _one_output(known, number, f"samples {float(spacing):g} apart", digits)
@@ -116,7 +116,7 @@ _CELLS = (8, 16, 32, 64)  # of a rod
 _INSTANTS = 10  # of a step
 
 
-class Extrapolated(NamedTuple):
+class Extrapolation(NamedTuple):
     """Outputs at `taus` (outputs, n): of the finest elements, and of none; and these from elements twice as coarse."""
 
     taus: Array
@@ -136,8 +136,10 @@ def damping(progress: Progress, ratios: Sequence[Fraction] = RATIOS, panels: Seq
     for panel in panels:
         for ratio in ratios:
             progress(f"damping, {panel}: {float(ratio):g}")
-            model = lower(shaken(SPACING, SAMPLES, TOLERANCE, damping_of(panel, ratio), drift=[1], relative=[2]))
-            found = extrapolated(model)
+            model = lower(
+                shaken_building(SPACING, SAMPLES, TOLERANCE, damping_of(panel, ratio), drift=[1], relative=[2])
+            )
+            found = extrapolate(model)
             sizes = np.max(np.abs(found.limit), axis=1)
             form, values = by_modes(model, found.taus)
             for name, one, bound in (
@@ -164,7 +166,7 @@ def damping_of(panel: str, ratio: Fraction) -> Fraction | str | Mapping[str, Any
     return stated if panel == ALL else {"modes": [1, 2], "ratio": stated}
 
 
-def extrapolated(model: Model) -> Extrapolated:
+def extrapolate(model: Model) -> Extrapolation:
     """The limit of elements that are halved again and again, by two powers of their length."""
     problem = problem_of(model)
     levels = []
@@ -174,7 +176,7 @@ def extrapolated(model: Model) -> Extrapolated:
         levels.append(values)
     once = [(4 * fine - coarse) / 3 for coarse, fine in pairwise(levels)]
     coarser, limit = ((16 * fine - coarse) / 15 for coarse, fine in pairwise(once))
-    return Extrapolated(taus, levels[-1], limit, coarser)
+    return Extrapolation(taus, levels[-1], limit, coarser)
 
 
 # against the spacing of a record
@@ -192,7 +194,7 @@ def spacings(progress: Progress, counts: Sequence[int] = PARTS) -> CurveFamily:
     """Each program at the samples."""
     points = []
     for parts in counts:
-        scene = shaken(spacing(parts), RECORD_SAMPLES, TOLERANCE, force=[0], drift=[1], relative=[2])
+        scene = shaken_building(spacing(parts), RECORD_SAMPLES, TOLERANCE, force=[0], drift=[1], relative=[2])
         reference = Reference(lower(scene))
         times = (nearest(rational(k * spacing(parts))) for k in range(RECORD_SAMPLES))
         taus = np.array([min(time, reference.tau_max) for time in times])
@@ -204,7 +206,7 @@ def spacings(progress: Progress, counts: Sequence[int] = PARTS) -> CurveFamily:
                 found = form(reference.model)
                 values = found.evaluate(taus)
             except WavesymError as why:
-                points.append(AtlasPoint("", name, parts, float("nan"), refused=str(why)))
+                points.append(AtlasPoint("", name, parts, float("nan"), refusal=str(why)))
                 continue
             error = largest_error(values, right, sizes)
             refused = f"{name}: a bound of {found.error_bound:.1e} in all" if found.error_bound > TOLERANCE else ""

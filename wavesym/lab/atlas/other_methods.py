@@ -83,7 +83,7 @@ SLOW_TIME = 6
 SAMPLES = 20_011
 
 
-class Lumped(NamedTuple):
+class LumpedSystem(NamedTuple):
     """A system whose kappas are in fixed proportion, and the rods whose strains are compared."""
 
     name: str
@@ -96,23 +96,23 @@ class Lumped(NamedTuple):
 _STEP = ({"times": [0], "a": [1], "b": [0]},)
 _STOREYS = (Fraction(1), Fraction(1), Fraction(3, 2))
 SYSTEMS = (
-    Lumped(
+    LumpedSystem(
         "drive",
         {"type": "drive", "m": 2, "inertia": [1, 2, 1]},
         (Fraction(1), Fraction(2)),
         ({"body": 1, "times": [0], "steps": [1]},),
         (1, 2),
     ),
-    Lumped(
+    LumpedSystem(
         "collision",
         {"type": "collision", "m": 4, "velocity": [1, "-1/2"]},
         (Fraction(1), Fraction(2)),
         (),
         (2, 3),
     ),
-    Lumped("building on moving ground", {"type": "building", "m": 2, "base": "ground"}, _STOREYS, _STEP, (1, 2)),
-    Lumped("building, base force, rod 1", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (1,)),
-    Lumped("building, base force, rod 2", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (2,)),
+    LumpedSystem("building on moving ground", {"type": "building", "m": 2, "base": "ground"}, _STOREYS, _STEP, (1, 2)),
+    LumpedSystem("building, base force, rod 1", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (1,)),
+    LumpedSystem("building, base force, rod 2", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (2,)),
 )
 
 
@@ -128,13 +128,13 @@ def springs(progress: Progress, kappas: Sequence[Fraction] = KAPPAS) -> CurveFam
         "Waves against a chain of masses and springs: its order in kappa depends on the load, and may be none",
         Axis("kappa", falling=True),
         "largest difference of strain / largest strain",
-        _labelled(points),
+        _label_orders(points),
         least=1e-6,
         most=1e1,
     )
 
 
-def difference(system: Lumped, kappa: Fraction) -> float:
+def difference(system: LumpedSystem, kappa: Fraction) -> float:
     """Between the strains in the middle of the rods and those of springs, relative to the largest of the latter."""
     until = math.ceil(SLOW_TIME / math.sqrt(kappa))
     model = lower(_scene(system, kappa, until))
@@ -144,7 +144,7 @@ def difference(system: Lumped, kappa: Fraction) -> float:
     return float(np.max(np.abs(waves.evaluate(taus) - strains)) / np.max(np.abs(strains)))
 
 
-def _scene(system: Lumped, kappa: Fraction, until: int) -> Scene:
+def _scene(system: LumpedSystem, kappa: Fraction, until: int) -> Scene:
     fields = {**system.fields, "kappa": [part * kappa for part in system.proportions]}
     return atlas_scene(fields, system.load, until, strain=[Fraction(2 * rod - 1, 2) for rod in system.rods])
 
@@ -158,6 +158,6 @@ def orders(points: Sequence[AtlasPoint]) -> dict[str, float]:
     return found
 
 
-def _labelled(points: Sequence[AtlasPoint]) -> tuple[AtlasPoint, ...]:
+def _label_orders(points: Sequence[AtlasPoint]) -> tuple[AtlasPoint, ...]:
     slopes = orders(points)
     return tuple(replace(point, curve=f"{point.curve}: order {slopes[point.curve]:.2f}") for point in points)

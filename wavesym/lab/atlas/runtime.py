@@ -75,5 +75,5 @@ def _points(panel: str, kappa: Sequence[Fraction], until: int, x: float) -> list
     bound = float(np.nan_to_num(np.max(model.bounds(kappa=values)), nan=np.inf))
     return [
         AtlasPoint(panel, "error", x, float(np.max(wrong)), bound, why),
-        AtlasPoint(panel, "estimate", x, float(estimate), refused=why),
+        AtlasPoint(panel, "estimate", x, float(estimate), refusal=why),
     ]

@@ -38,6 +38,6 @@ def atlas_scene(system: dict[str, Any], load: Sequence[dict[str, Any]], until: F
     return Scene.model_validate({"name": "atlas", "system": system, "load": list(load), "output": output})
 
 
-def aimed(scene: Scene, tolerance: Fraction) -> Scene:
+def with_tolerance(scene: Scene, tolerance: Fraction) -> Scene:
     """A scene with another tolerance."""
     return scene.model_copy(update={"output": scene.output.model_copy(update={"tolerance": tolerance})})

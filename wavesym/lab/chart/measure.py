@@ -74,7 +74,9 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
     """All evaluators, and other methods, of a scene. CompilerError where there is no C compiler, CostError."""
     judge = _Judge(scene)
     found: list[tuple[Subject, tuple[float, float]]] = []
-    for source in (subjects, other_methods) if judge.known.bound else (subjects, other_methods, _only(reference)):
+    for source in (
+        (subjects, other_methods) if judge.known.bound else (subjects, other_methods, _single_subject(reference))
+    ):
         for subject in source(scene, samples):
             progress(" ".join((*subject.curve, subject.resolution)))
             found.append((subject, judge.errors(subject)))
@@ -134,7 +136,7 @@ def _cell(value: object) -> object:
     return "" if isnan(value) else f"{value:.3g}"
 
 
-def _only(make: Callable[[Scene, int], Subject]) -> Callable[[Scene, int], Iterator[Subject]]:
+def _single_subject(make: Callable[[Scene, int], Subject]) -> Callable[[Scene, int], Iterator[Subject]]:
     return lambda scene, samples: iter((make(scene, samples),))
 
 
@@ -151,10 +153,10 @@ class _Judge:
         single = subject.precision == "single"
         every = max(1, (len(subject.instants) - 1) // _CHECKED)
         where, values = subject.instants[::every], np.asarray(subject.sample())[:, ::every]
-        if subject.at is not None and len(self.arrivals):
+        if subject.evaluate is not None and len(self.arrivals):
             fronts = np.unique(self._fronts.astype(where.dtype))
             fronts = fronts[fronts <= self.known.until]
-            where, values = np.concatenate([where, fronts]), np.hstack([values, subject.at(fronts)])
+            where, values = np.concatenate([where, fronts]), np.hstack([values, subject.evaluate(fronts)])
         where = where.astype(np.float64)
         relative = np.abs(values.astype(np.float64) - self._truth(where)) / self.known.sizes[:, np.newaxis]
         after = where[:, np.newaxis] - self.arrivals

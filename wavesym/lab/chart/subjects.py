@@ -56,7 +56,7 @@ class Subject:
     bound: float | None
     instants: Values
     sample: Callable[[], Values]
-    at: Callable[[Values], Values] | None
+    evaluate: Callable[[Values], Values] | None
 
     @property
     def curve(self) -> tuple[str, str, str]:
@@ -104,7 +104,7 @@ def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
                         bound=made.program.error_bound,
                         instants=instants,
                         sample=sample,
-                        at=at,
+                        evaluate=at,
                     )
 
 
@@ -138,7 +138,7 @@ def other_methods(scene: Scene, samples: int) -> Iterator[Subject]:
                 break
 
 
-def left_out(scene: Scene) -> Iterator[str]:
+def unsupported_methods(scene: Scene) -> Iterator[str]:
     """A line for each method that does not take the scene: which, and why."""
     model = lower(scene)
     for method in METHODS:
@@ -164,7 +164,7 @@ def other_method(method: Method, resolution: float, problem: Problem, at: Values
         bound=None,
         instants=at,
         sample=partial(evaluate, at),
-        at=evaluate,
+        evaluate=evaluate,
     )
 
 
@@ -204,13 +204,13 @@ def _c(scene: Scene, made: _Build, samples: int, precision: str) -> Loaded:
         call(0.0, apart, samples, where)
         return out
 
-    def at(instants: Values) -> Values:
+    def sample_at(instants: Values) -> Values:
         columns = np.empty((len(instants), outputs), dtype=dtype)
         for tau, column in zip(instants.tolist(), columns, strict=True):
             evaluate(tau, address(column))
         return np.asarray(columns.T)
 
-    return taus(until, samples, precision), sample, at
+    return taus(until, samples, precision), sample, sample_at
 
 
 def _stream(scene: Scene, made: _Build, *_: object) -> Loaded:

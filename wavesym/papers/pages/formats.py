@@ -175,7 +175,7 @@ def _json_reproduction(record: Record) -> dict[str, str] | None:
 def markdown(findings: Findings) -> str:
     """A document that lies beside the code: the errata that are kept in generated/."""
     made = document(findings, "markdown")
-    parts = ["# Errata", f"{marked_down(made.source)} {made.introduction}"]
+    parts = ["# Errata", f"{to_markdown(made.source)} {made.introduction}"]
     for section in made.sections:
         parts += [f"## {section.title}"] * bool(section.title)
         for block in section.blocks:
@@ -189,16 +189,16 @@ def _markdown_block(block: Block) -> Iterator[str]:
     if block.text:
         yield block.text
     if block.table:
-        heads, *rows = ([marked_down(cell.line) for cell in row] for row in (block.table.heads, *block.table.rows))
+        heads, *rows = ([to_markdown(cell.line) for cell in row] for row in (block.table.heads, *block.table.rows))
         lines = [heads, ["---"] * len(heads), *rows]
         yield "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
     for entry in block.entries:
         yield f"**{entry.id}**"
-        yield "\n".join(f"- {field.name}: {marked_down(field.line)}" for field in entry.fields)
+        yield "\n".join(f"- {field.name}: {to_markdown(field.line)}" for field in entry.fields)
         yield from (f"```toml\n{field.listing.rstrip()}\n```" for field in entry.fields if field.listing)
 
 
-def marked_down(line: Line) -> str:
+def to_markdown(line: Line) -> str:
     """A line as markdown."""
     return "".join(f"`{_plain(part)}`" if isinstance(part, (Code, Formula)) else _plain(part) for part in line)
 

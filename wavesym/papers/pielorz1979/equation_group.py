@@ -67,7 +67,7 @@ class EquationGroup(ABC):
     # what a kind has of its own
 
     @classmethod
-    def compared_with(cls, entry: PaperEntry) -> str:
+    def reference_note(cls, entry: PaperEntry) -> str:
         """What a record is compared with."""
         return cls.reference
 
@@ -114,7 +114,7 @@ class EquationGroup(ABC):
                     yield self.balance(equation, {**here, **name}, bound)
         if (needed := self.required_keys()) is None:
             return
-        beside = Counter[Key]() if self.is_alone else self.said_by_others()
+        beside = Counter[Key]() if self.is_alone else self.statements_elsewhere()
         total, required = said + beside, Counter(needed)
         for key in sorted(total.keys() | required.keys(), key=str):
             found = Case(
@@ -133,7 +133,7 @@ class EquationGroup(ABC):
                 found = case(at, lambda: Jet.from_number(left() - right()).value, 0)
         return replace(found, is_telling=self.scope.is_seen, example=None if found.agrees else self.scene(at, found))
 
-    def said_by_others(self) -> Counter[Key]:
+    def statements_elsewhere(self) -> Counter[Key]:
         """What the other equations of the group say."""
         known, key = self.scope.motion.memory, ("beside", self.entry.kind, self.entry.id)
         if key not in known:

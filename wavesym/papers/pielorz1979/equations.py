@@ -85,7 +85,7 @@ def equation(entry: PaperEntry) -> Test:
         bodies = next(r for r in right_reading("(3.1)").ranges if isinstance(r, Progression))
         conventions["i is the number of a body, as in (3.1)"] = with_range(bodies)
     return Test(
-        group.compared_with(entry) + (", on a foundation that moves with the ground" if base else ""),
+        group.reference_note(entry) + (", on a foundation that moves with the ground" if base else ""),
         cases,
         is_subtracted=not base,
         mathematics=(lambda reading: cases(reading, None)) if base else None,
@@ -126,7 +126,7 @@ def is_complete(number: str, m: int) -> bool:
     if (m - known.system.smallest) % known.system.step:
         return False
     entry = PaperEntry(id=number, kind="delay", printed="")
-    said = Delays(entry, Reading(None), loaded_chain(known.name, m)).said_by_others()
+    said = Delays(entry, Reading(None), loaded_chain(known.name, m)).statements_elsewhere()
     return said == Counter((name, rod) for name in "fg" for rod in range(1, m + 1))
 
 
@@ -154,11 +154,11 @@ def _solution_cases(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
                 for x in range(m + 1):
                     where = {**at, "t": tau * scope.units.l / scope.units.c_f, "node": x}
                     value = "step of velocity, force left over"
-                    found = case({**where, "value": value}, partial(_left_over, scope, reading.formula, x, tau), (0, 0))
+                    found = case({**where, "value": value}, partial(_residual, scope, reading.formula, x, tau), (0, 0))
                     yield replace(found, example=None if found.agrees else group.scene({**where, "x": x}, found))
 
 
-def _left_over(scope: Motion, formula: Tree, x: int, tau: fmpq) -> tuple[Any, Any]:
+def _residual(scope: Motion, formula: Tree, x: int, tau: fmpq) -> tuple[Any, Any]:
     """What the printed displacements leave of the law of a node."""
     step, force = scope.law(x, tau, partial(_printed_displacement, scope, formula))
     for load in scope.chain.nodes[x].loads:

@@ -160,7 +160,7 @@ class Table1(OfRods):
     is_definition = True
 
     @classmethod
-    def compared_with(cls, entry: PaperEntry) -> str:
+    def reference_note(cls, entry: PaperEntry) -> str:
         return cls._AGAINST[entry.subject["column"]]
 
     def numbers(self, equation: Tree) -> Iterable[int]:

@@ -471,7 +471,7 @@ def most_meetings(exact: Exact, source: str, body: int, *, reflected_only: bool)
     starts = [unit for unit in units(exact.chain) if source in (unit.name, "impact")]
 
     @cache
-    def most_sent(x: int, right: bool, tau: int) -> int:
+    def largest_sent(x: int, right: bool, tau: int) -> int:
         """The most of those that leave a node to one side at tau."""
         node = nodes[x]
         if tau < 0 or (node.right if right else node.left) is None:
@@ -488,13 +488,13 @@ def most_meetings(exact: Exact, source: str, body: int, *, reflected_only: bool)
             thrown_back = from_left != right
             if not node.inertia and thrown_back == bool(node.left and node.right):
                 continue  # without a body a wave passes between rods, and is thrown back from an end
-            before = most_sent(x - 1, True, tau - 1) if from_left else most_sent(x + 1, False, tau - 1)
+            before = largest_sent(x - 1, True, tau - 1) if from_left else largest_sent(x + 1, False, tau - 1)
             found.append(before + here * (thrown_back or not reflected_only))
         return max(found, default=NEVER)
 
     def count(letter: str, rod: int, interval: int) -> int:
         tau = exact.chain.leaves(letter, rod, exact.interval * (interval - 1))
-        return most_sent(rod - 1, True, tau) if letter == "f" else most_sent(rod, False, tau)
+        return largest_sent(rod - 1, True, tau) if letter == "f" else largest_sent(rod, False, tau)
 
     return count
 

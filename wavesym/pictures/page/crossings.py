@@ -14,14 +14,14 @@ from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.pictures.along import limit
 from wavesym.pictures.field import Field
 from wavesym.pictures.histories import Points
+from wavesym.pictures.line_histories import limit
 from wavesym.pictures.page.frame import Frame, PlotAxis
 from wavesym.pictures.page.places import colour_bar
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture
-from wavesym.pictures.page.png import address, shaded
-from wavesym.pictures.page.svg import Svg, box, element, line, together
+from wavesym.pictures.page.png import address, encode_png
+from wavesym.pictures.page.svg import Svg, box, concatenate, element, line
 from wavesym.pictures.stations import Opened, open_times, standing
 from wavesym.pictures.timescale import timescale
 from wavesym.scene.physical.scale import Scale
@@ -43,10 +43,10 @@ def crossings(model: Model, lines: Lines, units: Scale | None) -> list[PagePictu
         field = Field(model)
     except WavesymError:
         return []
-    return [_drawn(model, lines, field, name, units) for name in _QUANTITIES]
+    return [_draw(model, lines, field, name, units) for name in _QUANTITIES]
 
 
-def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | None) -> PagePicture:
+def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | None) -> PagePicture:
     stations, scale = lines[""], timescale(model)
     until, long = nearest(model.until), float(stations[-1].x)
     factor = nearest(rational(units.factor(name, 1))) if units else 1.0
@@ -55,7 +55,7 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
     x, y = PlotAxis(0.0, long, LEFT, WIDTH - RIGHT), PlotAxis(0.0, until * scale.per_tau, TOP + _TALL, TOP)
     cells = element(
         "image",
-        href=address(shaded(values[::-1], -largest, largest, signed=True)),
+        href=address(encode_png(values[::-1], -largest, largest, signed=True)),
         x=x.start,
         y=y.end,
         width=x.end - x.start,
@@ -63,8 +63,8 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
         preserveAspectRatio="none",
         class_="cells",
     )
-    formal = together(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
-    nodes = together(*_nodes(model, stations, open_times(model, field.events), x, scale.per_tau, y))
+    formal = concatenate(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
+    nodes = concatenate(*_nodes(model, stations, open_times(model, field.events), x, scale.per_tau, y))
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
     words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
     bar = colour_bar(words, ends, TOP + _TALL + BELOW, signed=True)
@@ -87,7 +87,7 @@ def _formal(end: ContactEnd, x: PlotAxis, y: PlotAxis, until: float, long: float
     low, high = max(0.0, end.x - reach), min(long, end.x + reach)
     corners = [(end.x, end.double), (low, end.double + end.x - low), (low, until), (high, until)]
     corners.append((high, end.double + high - end.x))
-    points = " ".join(f"{x.at(at):.1f},{y.at(tau * per_tau):.1f}" for at, tau in corners)
+    points = " ".join(f"{x.pixel(at):.1f},{y.pixel(tau * per_tau):.1f}" for at, tau in corners)
     return element("polygon", points=points, class_="hatched")
 
 
@@ -110,12 +110,12 @@ def _nodes(
 ) -> Iterator[Svg]:
     """Masses and ends as thick lines; a contact is a thin line, and a white gap while it is open."""
     for station in stations:
-        at = x.at(float(station.x))
+        at = x.pixel(float(station.x))
         for what in standing(model.network, station):
             if isinstance(what, Link) and what.contact:
                 yield line(at, y.start, at, y.end, "thin")
                 for low, high in opened[what.place]:
-                    top, bottom = y.at(high * per_tau), y.at(low * per_tau)
+                    top, bottom = y.pixel(high * per_tau), y.pixel(low * per_tau)
                     yield box(at - 2, top, 4, bottom - top, "gap")
             elif isinstance(what, Link):
                 yield line(at, y.start, at, y.end, "held")

@@ -31,7 +31,7 @@ class Grid:
     high: float
 
     @classmethod
-    def of(cls, columns: int, until: float, low: float, high: float) -> Grid:
+    def from_limits(cls, columns: int, until: float, low: float, high: float) -> Grid:
         """One that has these values, and a step at 0."""
         step = (high - low) / (HEIGHT - 1)
         first = floor(low / step)
@@ -39,9 +39,9 @@ class Grid:
 
     def path(self, stretches: Iterable[Points]) -> str:
         """Polylines (n, 2) of tau and value, each begun anew."""
-        return "".join("".join(self._drawn(stretch)) for stretch in stretches)
+        return "".join("".join(self._draw(stretch)) for stretch in stretches)
 
-    def _drawn(self, stretch: Points) -> Iterator[str]:
+    def _draw(self, stretch: Points) -> Iterator[str]:
         points = reduce_vertices(stretch, self.until, self.columns)
         x = columns_of(points[:, 0], self.until, self.columns)
         y = np.rint((self.high - points[:, 1]) / (self.high - self.low) * HEIGHT).astype(int)

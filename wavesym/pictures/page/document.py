@@ -11,17 +11,17 @@ from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.pictures.along import Along, along, chain_outputs
 from wavesym.pictures.groups import load_panel, notes, panels
 from wavesym.pictures.histories import Histories, History, drawable, histories
+from wavesym.pictures.line_histories import LineHistories, chain_outputs, line_histories
 from wavesym.pictures.loads import load_histories
 from wavesym.pictures.naming import with_titles
 from wavesym.pictures.page.crossings import crossings
-from wavesym.pictures.page.headline import Figure, headline, neglected, storeys
+from wavesym.pictures.page.headline import Figure, headline, neglected_effects, storeys
 from wavesym.pictures.page.motion import Motion, motion
+from wavesym.pictures.page.page_tables import PageTable, advice_table, extremes_table
 from wavesym.pictures.page.places import along_pictures, maps
 from wavesym.pictures.page.plots import PagePicture, panel, picture
-from wavesym.pictures.page.said import SaidTable, advice_told, extremes_told
 from wavesym.pictures.page.small import first_rows, first_text, fitting
 from wavesym.pictures.page.structure import structure
 from wavesym.pictures.timescale import Timescale, timescale
@@ -45,7 +45,7 @@ class Report:
     project: str
     credit: str
     headline: tuple[Figure, ...]
-    storeys: SaidTable
+    storeys: PageTable
     neglected: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     structure: PagePicture
@@ -55,8 +55,8 @@ class Report:
     until: str
     time: str
     columns: int
-    extremes: SaidTable
-    advice: SaidTable
+    extremes: PageTable
+    advice: PageTable
     maps: tuple[PagePicture, ...]
     along: tuple[PagePicture, ...]
     refused: str
@@ -94,7 +94,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
     lines = scene.system.lines
-    found, refused = _along(scene, model, None if searched else drawn_by)
+    found, refused = _line_pictures(scene, model, None if searched else drawn_by)
     structured = structure(model, lines)
     block = scene.title_block
     title = f"The structure of {model.name}"
@@ -104,7 +104,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         credit=block.credit if block else "",
         headline=tuple(headline(scene, model, summary, found, loads)),
         storeys=storeys(scene, found, scale),
-        neglected=tuple(filter(None, neglected(model))),
+        neglected=tuple(filter(None, neglected_effects(model))),
         facts=tuple(_facts(model, made, found, loads, scale)),
         structure=PagePicture(
             title,
@@ -112,12 +112,12 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         ),
         motion=motion(model, found, scale),
         histories=(),
-        notes=(*_left_out(model, drawn), *notes(made)),
+        notes=(*_missing_outputs(model, drawn), *notes(made)),
         until=repr(until * scale.per_tau),
         time=scale.unit,
         columns=most,
-        extremes=first_rows(extremes_told(model, summary, scale)),
-        advice=first_rows(advice_told(model)),
+        extremes=first_rows(extremes_table(model, summary, scale)),
+        advice=first_rows(advice_table(model)),
         maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),
         refused=refused,
@@ -155,10 +155,10 @@ def _program_of_all(drawn: Model, placed: Model) -> Program | None:
         return None
 
 
-def _along(scene: Scene, model: Model, program: Program | None) -> tuple[tuple[Along, ...], str]:
+def _line_pictures(scene: Scene, model: Model, program: Program | None) -> tuple[tuple[LineHistories, ...], str]:
     """What happens along the chain, or why that is not known."""
     try:
-        return along(scene, model, program), ""
+        return line_histories(scene, model, program), ""
     except WavesymError as error:
         return (), f"Not drawn: {error}"
 
@@ -170,7 +170,7 @@ def _fair(model: Model) -> list[Probe]:
     return [probe for group in groups for probe in group[:each]]
 
 
-def _left_out(model: Model, drawn: Model) -> list[str]:
+def _missing_outputs(model: Model, drawn: Model) -> list[str]:
     missing = len(model.probes) - len(drawn.probes)
     return (
         [f"{missing} of {len(model.probes)} outputs are not drawn; their extremes are in the table"] if missing else []
@@ -178,12 +178,12 @@ def _left_out(model: Model, drawn: Model) -> list[str]:
 
 
 def _facts(
-    model: Model, made: Histories, found: Sequence[Along], loads: Sequence[History], scale: Timescale
+    model: Model, made: Histories, found: Sequence[LineHistories], loads: Sequence[History], scale: Timescale
 ) -> Iterator[tuple[str, str]]:
     """What there is to know at first sight, each under a word."""
     network, program = model.network, made.program
     assert program is not None  # histories have one
-    yield "System", ", ".join([model.labels.system["type"], *_chosen(model)])
+    yield "System", ", ".join([model.labels.system["type"], *_system_choices(model)])
     rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
     yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
     if model.damping is not None:
@@ -223,7 +223,7 @@ def _loads(model: Model, loads: Sequence[History]) -> str:
     return "; ".join(f"{load.name}, from {min(v):.4g} to {max(v):.4g} {load.output.unit}" for load, v in values)
 
 
-def _chosen(model: Model) -> list[str]:
+def _system_choices(model: Model) -> list[str]:
     return [f"{key} = {value}" for key, value in model.labels.system.items() if key in ("base", "contacts")]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
 
-from wavesym.pictures.page.svg import Svg, line, text, together
+from wavesym.pictures.page.svg import Svg, concatenate, line, text
 
 _RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
 _NICE = (1, 2, 2.5, 5, 10)
@@ -22,7 +22,7 @@ class PlotAxis:
     start: float
     end: float
 
-    def at(self, value: float) -> float:
+    def pixel(self, value: float) -> float:
         """The pixel of a value."""
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
@@ -73,7 +73,7 @@ class Frame:
         left, right, top, bottom = self.x.start, self.x.end, self.y.end, self.y.start
         parts = []
         for value, number in self.x.ticks(10) if self.x_places is None else self.x_places:
-            at = self.x.at(value)
+            at = self.x.pixel(value)
             parts.append(line(at, top, at, bottom, "grid"))
             if numbers:
                 parts.append(text(at, bottom + 16, number))
@@ -84,14 +84,14 @@ class Frame:
             if power:
                 parts.append(text(left - 6, top - 1, f"\u00d710{str(power).translate(_RAISED)}", "end"))
         for value, number in upward:
-            at = self.y.at(value)
+            at = self.y.pixel(value)
             parts.append(line(left, at, right, at, "grid"))
             parts.append(text(left - 6, at + 4, number, "end"))
         if self.places is None and self.y.low < 0 < self.y.high:
-            parts.append(line(left, self.y.at(0), right, self.y.at(0), "zero"))
+            parts.append(line(left, self.y.pixel(0), right, self.y.pixel(0), "zero"))
         if numbers:
             parts.append(text((left + right) / 2, bottom + 34, self.x_title))
         middle = (top + bottom) / 2
         for k, words in enumerate(self.y_title.split("\n")):
             parts.append(text(14 + 15 * k, middle, words, transform=f"rotate(-90 {14 + 15 * k} {middle:g})"))
-        return together(*parts)
+        return concatenate(*parts)

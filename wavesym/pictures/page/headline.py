@@ -12,9 +12,9 @@ from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.pictures.along import Along
 from wavesym.pictures.histories import History
-from wavesym.pictures.page.said import SaidTable
+from wavesym.pictures.line_histories import LineHistories
+from wavesym.pictures.page.page_tables import PageTable
 from wavesym.pictures.timescale import Timescale
 from wavesym.pictures.units import unit_text
 from wavesym.results.modes import modes
@@ -47,7 +47,11 @@ def _probes(scene: Scene) -> tuple[Probe, ...]:
 
 
 def headline(
-    scene: Scene, model: Model, summary: Summary | WavesymError, found: Sequence[Along], loads: Sequence[History]
+    scene: Scene,
+    model: Model,
+    summary: Summary | WavesymError,
+    found: Sequence[LineHistories],
+    loads: Sequence[History],
 ) -> Iterator[Figure]:
     """The figures of a scene, those that it has.
 
@@ -78,11 +82,11 @@ def headline(
             yield Figure("Period" + "s" * (len(rows) > 1), f"{values}{unit}", "" if unit else "in tau")
 
 
-def storeys(scene: Scene, found: Sequence[Along], scale: Timescale) -> SaidTable:
+def storeys(scene: Scene, found: Sequence[LineHistories], scale: Timescale) -> PageTable:
     """Storey by storey: its height, how far its floors move apart, in parts of the height, too, and when."""
     own = next((each for each in found if each.storeys), None)
     if own is None or len(own.bands[0].spots) > _STOREYS:
-        return SaidTable((), (), ())
+        return PageTable((), (), ())
     heights = _heights(scene, len(own.bands[0].spots))
     when = f"at {scale.symbol}{scale.unit and ' in '}{scale.unit}"
     head = ("Storey", *["Height in m"] * bool(heights), f"Largest drift{own.unit and ' in '}{unit_text(own.unit)}")
@@ -95,10 +99,10 @@ def storeys(scene: Scene, found: Sequence[Along], scale: Timescale) -> SaidTable
             row.insert(1, f"{heights[k]:.4g}")
             row.insert(3, f"{100 * abs(values[place]) * _metres(scene) / heights[k]:.3g}")
         rows.append(tuple(row))
-    return SaidTable(head, tuple(rows), (f"The largest of {len(own.taus)} instants",))
+    return PageTable(head, tuple(rows), (f"The largest of {len(own.taus)} instants",))
 
 
-def neglected(model: Model) -> Iterator[str]:
+def neglected_effects(model: Model) -> Iterator[str]:
     """What the model of a scene leaves out, a sentence each."""
     if model.labels.system["type"] == "building":
         yield "Floors are rigid and move sideways only: no rocking, no torsion, no bending of the building as a whole"
@@ -119,7 +123,7 @@ def _outputs(scene: Scene, model: Model, summary: Summary | WavesymError) -> dic
     return found
 
 
-def _largest_drift(scene: Scene, found: Sequence[Along]) -> Iterator[Figure]:
+def _largest_drift(scene: Scene, found: Sequence[LineHistories]) -> Iterator[Figure]:
     own = next((each for each in found if each.storeys), None)
     if own is None:
         return

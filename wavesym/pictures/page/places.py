@@ -8,14 +8,14 @@ import numpy as np
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
-from wavesym.pictures.along import Along, Band, cells, limit
 from wavesym.pictures.envelope_values import BandExtreme, envelope, extremes
 from wavesym.pictures.groups import axis_title
 from wavesym.pictures.histories import Points
+from wavesym.pictures.line_histories import Band, LineHistories, cells, limit
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture, spot
-from wavesym.pictures.page.png import address, colours, shaded
-from wavesym.pictures.page.svg import Svg, box, element, line, polyline, text, together
+from wavesym.pictures.page.png import address, colours, encode_png
+from wavesym.pictures.page.svg import Svg, box, concatenate, element, line, polyline, text
 from wavesym.pictures.timescale import Timescale
 
 _ALONG = 230.0  # pixels high
@@ -23,7 +23,7 @@ _COLUMNS = 600  # of a map
 _NUMBERED = 12  # storeys with a number
 
 
-def along_pictures(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[PagePicture]:
+def along_pictures(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Iterator[PagePicture]:
     """The least and the greatest of each quantity along each line."""
     upright = model.labels.system["type"] == "building"
     for k, quantity in enumerate(found):
@@ -40,7 +40,7 @@ def along_pictures(model: Model, found: Sequence[Along], scale: Timescale) -> It
             yield PagePicture(title, picture(f"along-{k}-{j}", title, told, height, content, class_="plot"))
 
 
-def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) -> tuple[Svg, float]:
+def _over_height(model: Model, quantity: LineHistories, band: Band, scale: Timescale) -> tuple[Svg, float]:
     least, greatest = envelope(band)
     low, high = spread(min(0.0, float(np.min(least))), max(0.0, float(np.max(greatest))), 0.1)
     tall = max(160.0, min(30.0 * len(band.spots), 420.0))
@@ -51,8 +51,8 @@ def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) ->
     places = band.tick_labels(_NUMBERED, first=1 if quantity.storeys else 0)
     title = axis_title(model, quantity.quantity, quantity.unit).replace("\n", " ")
     frame = Frame(x, y, title, "storey" if quantity.storeys else "floor", places)
-    parts = [frame.draw(), line(x.at(0), y.start, x.at(0), y.end, "zero")]
-    ends = [(y.at(spot.x), x.at(a), x.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
+    parts = [frame.draw(), line(x.pixel(0), y.start, x.pixel(0), y.end, "zero")]
+    ends = [(y.pixel(spot.x), x.pixel(a), x.pixel(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
     if quantity.storeys:
         half = 0.38 * (y.start - y.end) / (y.high - y.low)
         for at, a, b in ends:
@@ -63,19 +63,19 @@ def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) ->
         parts.append(polyline([(a, at) for at, a, _ in ends], "least"))
         parts.append(polyline([(b, at) for at, _, b in ends], "greatest"))
     parts += [
-        _labelled_spot(x.at(each.value), y.at(each.x), each, scale, below=k > 0)
+        _labelled_spot(x.pixel(each.value), y.pixel(each.x), each, scale, below=k > 0)
         for k, each in enumerate(extremes(quantity, band))
         if each.value
     ]
-    return together(*parts), TOP + tall + BELOW
+    return concatenate(*parts), TOP + tall + BELOW
 
 
-def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> tuple[Svg, float]:
+def _along_line(model: Model, quantity: LineHistories, band: Band, scale: Timescale) -> tuple[Svg, float]:
     least, greatest = envelope(band)
     low, high = spread(min(0.0, float(np.min(least))), max(0.0, float(np.max(greatest))), 0.14)
     x, y = PlotAxis(band.spots[0].low, band.spots[-1].high, LEFT, WIDTH - RIGHT), PlotAxis(low, high, TOP + _ALONG, TOP)
     frame = Frame(x, y, axis_text(band.line, quantity.length), axis_title(model, quantity.quantity, quantity.unit))
-    ends = [(x.at(spot.x), y.at(a), y.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
+    ends = [(x.pixel(spot.x), y.pixel(a), y.pixel(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
     parts = [
         frame.draw(),
         polyline([*((at, a) for at, a, _ in ends), *((at, b) for at, _, b in ends[::-1])], "between"),
@@ -83,23 +83,23 @@ def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> 
         polyline([(at, b) for at, _, b in ends], "greatest"),
     ]
     parts += [
-        _labelled_spot(x.at(each.x), y.at(each.value), each, scale, below=k > 0)
+        _labelled_spot(x.pixel(each.x), y.pixel(each.value), each, scale, below=k > 0)
         for k, each in enumerate(extremes(quantity, band))
         if each.value
     ]
-    return together(*parts), TOP + _ALONG + BELOW
+    return concatenate(*parts), TOP + _ALONG + BELOW
 
 
 def _labelled_spot(x: float, y: float, extreme: BandExtreme, scale: Timescale, *, below: bool) -> Svg:
     """A spot and what it is, written towards the middle, above or below it."""
     right, down = x < (LEFT + WIDTH - RIGHT) / 2, 15 if below else -7
-    return together(
+    return concatenate(
         spot(x, y),
         text(x + (8 if right else -8), y + down, extreme.describe(scale), "start" if right else "end", class_="halo"),
     )
 
 
-def maps(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[PagePicture]:
+def maps(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Iterator[PagePicture]:
     """Place x time as colours."""
     for k, quantity in enumerate(found):
         values = [cells(quantity, band, _COLUMNS) for band in quantity.bands]
@@ -116,7 +116,7 @@ def maps(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Pag
 
 
 def _map(
-    model: Model, quantity: Along, band: Band, values: Points, largest: float, scale: Timescale
+    model: Model, quantity: LineHistories, band: Band, values: Points, largest: float, scale: Timescale
 ) -> tuple[Svg, float]:
     """Rows of equal height are asked for: places are spread evenly along a rod."""
     tall = max(120.0, min(16.0 * len(band.spots), 260.0))
@@ -127,7 +127,7 @@ def _map(
     rows = _evenly(band, values)
     image = element(
         "image",
-        href=address(shaded(rows[::-1], -largest, largest, signed=True)),
+        href=address(encode_png(rows[::-1], -largest, largest, signed=True)),
         x=x.start,
         y=y.end,
         width=x.end - x.start,
@@ -138,7 +138,7 @@ def _map(
     frame = Frame(x, y, scale.title, upward, places)
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
     bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), ends, TOP + tall + BELOW, signed=True)
-    return together(frame.draw(), image, bar), TOP + tall + BELOW + 34
+    return concatenate(frame.draw(), image, bar), TOP + tall + BELOW + 34
 
 
 def _evenly(band: Band, values: Points) -> Points:
@@ -164,4 +164,4 @@ def colour_bar(title: str, ends: tuple[str, str], top: float, *, signed: bool) -
         text(left - 6, top + 10, ends[0], "end"),
         text(left + wide * len(shades) + 6, top + 10, ends[1], "start"),
     )
-    return together(*cells, *numbers, text(WIDTH / 2, top + 27, title.replace("\n", " ")))
+    return concatenate(*cells, *numbers, text(WIDTH / 2, top + 27, title.replace("\n", " ")))

@@ -48,7 +48,7 @@ def picture(number: str, title: str, told: str, height: float, *content: Svg, **
 def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Timescale, *, last: bool) -> PagePicture:
     """The curves of a panel over time."""
     height, (low, high) = _size(given)
-    grid = Grid.of(columns, until, low, high)
+    grid = Grid.from_limits(columns, until, low, high)
     x = PlotAxis(0.0, until * scale.per_tau, LEFT, WIDTH - RIGHT)
     y = PlotAxis(grid.low, grid.high, TOP + height, TOP)
     frame = Frame(x, y, scale.title, given.title)
@@ -58,12 +58,14 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
         *curves,
         transform=f"translate({LEFT:g} {TOP:g}) scale({(x.end - x.start) / columns:.6g} {height / HEIGHT:.6g})",
     )
-    spots = sorted((value, x.at(tau * scale.per_tau), mark.text) for mark in given.marks for tau, value in mark.points)
-    marks = [spot(at, y.at(value)) for value, at, _ in spots]
+    spots = sorted(
+        (value, x.pixel(tau * scale.per_tau), mark.text) for mark in given.marks for tau, value in mark.points
+    )
+    marks = [spot(at, y.pixel(value)) for value, at, _ in spots]
     if given.limits:
         marks.append(text(LEFT + 4, TOP + 11, given.summary, "start", class_="halo"))
     else:
-        marks += [_label_near(at, y.at(value), words, above) for (value, at, words), above in _ends(spots)]
+        marks += [_label_near(at, y.pixel(value), words, above) for (value, at, words), above in _ends(spots)]
     told = " ".join(_describe(history, scale) for history in given.histories)
     quantity = given.histories[0].name if given.limits else given.title.split("\n")[0]
     title = f"{quantity} over time".capitalize()

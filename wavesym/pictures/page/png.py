@@ -25,7 +25,7 @@ def colours(*, signed: bool) -> list[tuple[int, int, int]]:
     return [*((round(red), round(green), round(blue)) for red, green, blue in parts.tolist()), _FORMAL]
 
 
-def shaded(values: Points, least: float, greatest: float, *, signed: bool) -> bytes:
+def encode_png(values: Points, least: float, greatest: float, *, signed: bool) -> bytes:
     """Values (rows, columns), the first row at the top, as a PNG; those beyond the limits have the last colours."""
     parts = np.clip((values - least) / (greatest - least), 0, 1)
     shades = np.rint(parts * (SHADES - 1))
@@ -36,7 +36,7 @@ def shaded(values: Points, least: float, greatest: float, *, signed: bool) -> by
     content = b"".join(b"\0" + row.tobytes() for row in packed)
     header = pack(">IIBBBBB", values.shape[1], values.shape[0], 4, 3, 0, 0, 0)
     palette = bytes(part for colour in colours(signed=signed) for part in colour)
-    chunks = ((b"IHDR", header), (b"PLTE", palette), (b"IDAT", _stored(content)), (b"IEND", b""))
+    chunks = ((b"IHDR", header), (b"PLTE", palette), (b"IDAT", _deflate(content)), (b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(kind, data) for kind, data in chunks)
 
 
@@ -45,7 +45,7 @@ def address(image: bytes) -> str:
     return "data:image/png;base64," + b64encode(image).decode()
 
 
-def _stored(content: bytes) -> bytes:
+def _deflate(content: bytes) -> bytes:
     """A stream of deflate that stores its content as it is."""
     starts = range(0, len(content), _BLOCK)
     blocks = []

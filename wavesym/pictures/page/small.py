@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
-from wavesym.pictures.page.said import SaidTable
+from wavesym.pictures.page.page_tables import PageTable
 
 LARGEST = 400_000  # bytes of a page
 FEWEST = 60  # columns of a curve
@@ -23,7 +23,7 @@ def fitting(drawn: Callable[[int], P], render: Callable[[P], str], columns: int)
     return text
 
 
-def first_rows(table: SaidTable) -> SaidTable:
+def first_rows(table: PageTable) -> PageTable:
     """A table of as many rows as one looks at."""
     if len(table.rows) <= _ROWS:
         return table

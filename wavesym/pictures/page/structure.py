@@ -14,7 +14,7 @@ from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.doubles import nearest
 from wavesym.pictures.loads import load_histories
 from wavesym.pictures.page import symbols
-from wavesym.pictures.page.svg import Svg, box, element, line, polyline, text, together
+from wavesym.pictures.page.svg import Svg, box, concatenate, element, line, polyline, text
 from wavesym.pictures.stations import standing
 from wavesym.rendering import text_of
 from wavesym.systems.station import Lines, Station
@@ -58,7 +58,7 @@ def structure_html(title: str, model: Model, lines: Lines) -> str:
         viewBox=f"0 0 {WIDTH:g} {found.height:g}",
     )
     source = f"data:image/svg+xml;base64,{b64encode(alone.encode()).decode()}"
-    return together(element("p", title), element("img", src=source, alt=found.description, style="max-width: 100%"))
+    return concatenate(element("p", title), element("img", src=source, alt=found.description, style="max-width: 100%"))
 
 
 def _building(model: Model) -> Picture:
@@ -76,7 +76,7 @@ def _building(model: Model) -> Picture:
         parts.append(box(middle - half, base - k * storey - thick / 2, _FLOOR, thick, "mass"))
     step = -(-m // max(1, int(m * storey / 18)))
     for k in range(0, m + 1, step):
-        parts.append(text(middle + half + 24, base - k * storey + 4, f"x = {k}{_called(k, m)}", "start"))
+        parts.append(text(middle + half + 24, base - k * storey + 4, f"x = {k}{_floor_note(k, m)}", "start"))
     if network.points[0].motion:
         hatches = (line(middle + k, base, middle + k - 8, base + 8, "thin") for k in range(-110, 120, 10))
         parts += [line(middle - 115, base, middle + 115, base, "face"), *hatches]
@@ -91,10 +91,10 @@ def _building(model: Model) -> Picture:
     ]
     kind = "moves with the ground" if network.points[0].motion else "is pushed by the force of the paper's (4.5)"
     told = f"A building of {m} storeys, elastic columns between rigid floors; its foundation {kind}."
-    return Picture(together(*parts), base + (60 if acting else 30), told)
+    return Picture(concatenate(*parts), base + (60 if acting else 30), told)
 
 
-def _called(k: int, m: int) -> str:
+def _floor_note(k: int, m: int) -> str:
     return {0: ", foundation", m: ", roof"}.get(k, "")
 
 
@@ -110,13 +110,13 @@ class _Pen:
     network: Network
     lines: Lines
     length: LengthUnit | None
-    at: dict[int, tuple[float, float]] = field(default_factory=dict)  # points
+    positions: dict[int, tuple[float, float]] = field(default_factory=dict)  # points
     rods: dict[int, tuple[float, float, float]] = field(default_factory=dict)  # bars: from, to, and their height
     parts: list[Svg] = field(default_factory=list)
 
     def chain(self, model: Model) -> Picture:
         scale = self._scale()
-        y = 70.0 + self.above
+        y = 70.0 + self.name_height
         for name, stations in self.lines.items():
             self._line(name, stations, y, scale)
             y += _ROW
@@ -130,16 +130,16 @@ class _Pen:
             "springs or dashpots" * any(not link.contact for link in self.network.links),
         ]
         told = f"A chain of {len(self.network.bars)} rods and {bodies} rigid bodies"
-        return Picture(together(*self.parts), y - _ROW + 90, f"{', with '.join([told, *filter(None, more)])}.")
+        return Picture(concatenate(*self.parts), y - _ROW + 90, f"{', with '.join([told, *filter(None, more)])}.")
 
     @property
-    def above(self) -> float:
+    def name_height(self) -> float:
         """How much higher names stand where something is parallel to a rod."""
         return 26.0 * any(_parallel(link, bar) for link in self.network.links for bar in self.network.bars)
 
     def _widths(self, station: Station) -> list[tuple[Point | Link, float]]:
         """What stands there and is not drawn yet, from left to right."""
-        drawn = [self.network.points[point] for point in station.points if point in self.at]
+        drawn = [self.network.points[point] for point in station.points if point in self.positions]
         found = standing(self.network, station)
         return [(what, self._width(what)) for what in found if not any(what is point for point in drawn)]
 
@@ -168,17 +168,17 @@ class _Pen:
             self.parts.append(text(8, y + 4, name, "start", class_="name"))
         for station, following in zip(stations, [*stations[1:], None], strict=True):
             begun = x
-            new = [point for point in station.points if point not in self.at]
+            new = [point for point in station.points if point not in self.positions]
             for what, width in self._widths(station):
                 self._sign(what, x, y, width * shrink)
                 for point in new:
                     if what is self.network.points[point]:
-                        self.at[point] = x + width * shrink / 2, y
-                        self._over(x + width * shrink / 2, y - 36 - self.above, what.name, names)
+                        self.positions[point] = x + width * shrink / 2, y
+                        self._write_above(x + width * shrink / 2, y - 36 - self.name_height, what.name, names)
                 x += width * shrink
-            self.at.update({point: ((begun + x) / 2, y) for point in new if point not in self.at})
+            self.positions.update({point: ((begun + x) / 2, y) for point in new if point not in self.positions})
             held = any(self.network.points[point].damping or self.network.points[point].stiffness for point in new)
-            self._under((begun + x) / 2, y + 52, place_text(station.x, unit=self.length), numbers, beside=held)
+            self._write_below((begun + x) / 2, y + 52, place_text(station.x, unit=self.length), numbers, beside=held)
             if following is not None and station.right is not None:
                 length = unit * float(following.x - station.x)
                 self._rod(station.right, x, length, y)
@@ -188,7 +188,7 @@ class _Pen:
         """Where a branch begins: below its node, if there is room; and what it hangs from."""
         shrink, unit = scale
         signs = sum(width for station in stations for _, width in self._widths(station)) * shrink
-        above, high = self.at[stations[0].points[0]]
+        above, high = self.positions[stations[0].points[0]]
         x = max(_LEFT, min(above, WIDTH - _RIGHT - signs - unit * float(stations[-1].x)))
         x = max(x, above + _ASIDE) if x == above else x  # beside what may lead to the ground there
         turns = [(above + 5, high + 16), (above + 5, high + 24), (above + _ASIDE, high + 24), (above + _ASIDE, y - 46)]
@@ -200,7 +200,7 @@ class _Pen:
         thick = max(_THIN, _THICK * (nearest(bar.impedance) / thickest) ** 0.5)
         self.rods[number] = x, x + length, y
         self.parts.append(box(x, y - thick / 2, length, thick, "rod"))
-        self._beside(bar, x, length, y)
+        self._draw_parallel(bar, x, length, y)
 
     def _sign(self, what: Point | Link, x: float, y: float, width: float) -> None:
         if isinstance(what, Link):
@@ -216,7 +216,7 @@ class _Pen:
         elif not what.motion:
             self.parts.append(line(x + width / 2, y - 14, x + width / 2, y + 14, "thin"))
 
-    def _beside(self, bar: Bar, x: float, length: float, y: float) -> None:
+    def _draw_parallel(self, bar: Bar, x: float, length: float, y: float) -> None:
         """What is parallel to a rod, its name, and how it moves at first."""
         for each in self.network.links:
             if _parallel(each, bar):
@@ -232,7 +232,7 @@ class _Pen:
     def _ends(self) -> None:
         """What holds points to the ground, or moves them."""
         first, last = self.lines[""][0].points[0], {stations[-1].points[-1] for stations in self.lines.values()}
-        for number, (x, y) in self.at.items():
+        for number, (x, y) in self.positions.items():
             point = self.network.points[number]
             side = -1 if number == first else 1
             edge = x + side * (_END / 2 if point.motion else _MASS / 2)
@@ -245,11 +245,13 @@ class _Pen:
             if point.stiffness or point.damping:
                 below = y + 62
                 self.parts.append(line(x, y + 6, x, below, "thin"))
-                self.parts.append(symbols.grounded(x, below, elastic=bool(point.stiffness), damped=bool(point.damping)))
+                self.parts.append(
+                    symbols.ground_link(x, below, elastic=bool(point.stiffness), damped=bool(point.damping))
+                )
 
     def _loads(self, model: Model) -> None:
         acting = {load.source for load in model.loads}
-        for number, (x, y) in self.at.items():
+        for number, (x, y) in self.positions.items():
             if not self.network.points[number].motion and acting & {
                 u.source for u in self.network.points[number].loads
             }:
@@ -261,13 +263,13 @@ class _Pen:
         spots = set()
         for probe in model.probes:
             if probe.point is not None:
-                spots.add(self.at[probe.point])
+                spots.add(self.positions[probe.point])
             else:
                 low, high, y = self.rods[probe.rod - 1]
                 spots.add((low + nearest(probe.place) * (high - low), y))
         self.parts += [polyline([(x - 4, y + 38), (x, y + 30), (x + 4, y + 38)], "place") for x, y in sorted(spots)]
 
-    def _under(self, x: float, y: float, words: str, taken: list[float], *, beside: bool) -> None:
+    def _write_below(self, x: float, y: float, words: str, taken: list[float], *, beside: bool) -> None:
         """A number, beside what leads to the ground, unless it would lie over the one before."""
         half = _LETTER * len(words) / 2
         x -= (half + 6) * beside
@@ -275,7 +277,7 @@ class _Pen:
             taken.append(x + half)
             self.parts.append(text(x, y, words))
 
-    def _over(self, x: float, y: float, words: str, rows: list[float]) -> None:
+    def _write_above(self, x: float, y: float, words: str, rows: list[float]) -> None:
         """A name, in the lowest row where it does not lie over another; none where all rows are taken."""
         half = _LETTER * len(words) / 2
         row = next((k for k, end in enumerate(rows) if end + 4 < x - half), len(rows))

@@ -22,11 +22,11 @@ _NOTHING = Svg()
 def element(tag: str, *content: str, **attributes: Attribute) -> Svg:
     """<tag ...>content</tag>; `class_` is the attribute class, `stroke_width` is stroke-width."""
     given = "".join(f' {name.strip("_").replace("_", "-")}="{_attribute(value)}"' for name, value in attributes.items())
-    inside = together(*content)
+    inside = concatenate(*content)
     return Svg(f"<{tag}{given}>{inside}</{tag}>" if inside else f"<{tag}{given}/>")
 
 
-def together(*content: str) -> Svg:
+def concatenate(*content: str) -> Svg:
     """Elements and texts one after another."""
     return Svg("".join(part if isinstance(part, Svg) else escape(part) for part in content))
 

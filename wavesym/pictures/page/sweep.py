@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from wavesym.errors import printable
+from wavesym.pictures.page.page_tables import PageTable
 from wavesym.pictures.page.plots import PagePicture
-from wavesym.pictures.page.said import SaidTable
 from wavesym.pictures.page.svg import element
 from wavesym.pictures.page.sweep_pictures import SweepOutput, output_picture, outputs_of
 from wavesym.rendering import render
@@ -39,11 +39,11 @@ class SweepPage:
 
     name: str
     facts: tuple[tuple[str, str], ...]
-    worst: SaidTable
+    worst: PageTable
     pictures: tuple[PagePicture, ...]
     notes: tuple[str, ...]
-    cases: SaidTable
-    failed: SaidTable
+    cases: PageTable
+    failed: PageTable
     scenes: tuple[WorstCase, ...]
     folder: str
     version: str
@@ -68,8 +68,8 @@ def sweep_page(folder: Path) -> str:
         pictures=tuple(filter(None, drawn)),
         notes=tuple(_notes(found, outputs)),
         cases=_cases(found, outputs, set(extremes)),
-        failed=_failed(found),
-        scenes=tuple(_shown(found, case) for case in sorted(set(extremes))),
+        failed=_failure_table(found),
+        scenes=tuple(_worst_case(found, case) for case in sorted(set(extremes))),
         folder=folder.resolve().name,
         version=found.manifest.wavesym,
         sha256=found.manifest.sha256,
@@ -81,12 +81,12 @@ def _facts(found: SweepResults) -> Iterator[tuple[str, str]]:
     status = found.status
     yield "Cases", f"{status.cases}: {status.done} done, {status.failed} failed, {status.left} left"
     for dimension in found.dimensions:
-        yield from _varied(dimension)
+        yield from _variation_rows(dimension)
     if not np.isnan(found.bound):
-        yield "Error", f"at most {found.bound:.2g} of an output's largest value: {_known(found)}"
+        yield "Error", f"at most {found.bound:.2g} of an output's largest value: {_accuracy_note(found)}"
 
 
-def _varied(dimension: StoredAxis) -> Iterator[tuple[str, str]]:
+def _variation_rows(dimension: StoredAxis) -> Iterator[tuple[str, str]]:
     for column in dimension.columns:
         ends = (
             column.format(0)
@@ -96,7 +96,7 @@ def _varied(dimension: StoredAxis) -> Iterator[tuple[str, str]]:
         yield column.path, f"{len(dimension)} {'value' if len(dimension) == 1 else 'values'}, {ends}"
 
 
-def _known(found: SweepResults) -> str:
+def _accuracy_note(found: SweepResults) -> str:
     return {
         "parameters": "an estimate, as parameters came at run time",
         "recorded": "of values; extremes between samples are an estimate",
@@ -110,16 +110,16 @@ def _extremes(output: SweepOutput) -> tuple[int, ...]:
     return int(np.nanargmin(output.least)), int(np.nanargmax(output.greatest))
 
 
-def _worst(outputs: list[SweepOutput]) -> SaidTable:
+def _worst(outputs: list[SweepOutput]) -> PageTable:
     rows = []
     for output in outputs:
         for case, values in zip(_extremes(output), (output.least, output.greatest), strict=False):
             rows += [f"{values.flat[case]:.6g}", _link(case)]
     told = [output for output in outputs if _extremes(output)]
     lines = zip(*[iter(rows)] * 4, strict=True)
-    return SaidTable(
+    return PageTable(
         ("Output", "Least", "in", "Greatest", "in"),
-        tuple((_named(output), *line) for output, line in zip(told, lines, strict=True)),
+        tuple((_output_label(output), *line) for output, line in zip(told, lines, strict=True)),
         (),
     )
 
@@ -128,7 +128,7 @@ def _link(case: int) -> str:
     return element("a", f"case {case}", href=f"#case-{case}")
 
 
-def _named(output: SweepOutput) -> str:
+def _output_label(output: SweepOutput) -> str:
     return f"{output.name}, {output.unit}" if output.unit else output.name
 
 
@@ -141,10 +141,14 @@ def _notes(found: SweepResults, outputs: list[SweepOutput]) -> Iterator[str]:
         yield f"{found.status.left} cases are left: this page shows what was done when it was made"
 
 
-def _cases(found: SweepResults, outputs: list[SweepOutput], linked: set[int]) -> SaidTable:
+def _cases(found: SweepResults, outputs: list[SweepOutput], linked: set[int]) -> PageTable:
     """The worst cases, those that are shown whole linked: outputs are compared in parts of their largest value."""
     paths = [column.path for dimension in found.dimensions for column in dimension.columns]
-    head = ("Case", *paths, *(f"{_named(output)}, {what}" for output in outputs for what in ("least", "greatest")))
+    head = (
+        "Case",
+        *paths,
+        *(f"{_output_label(output)}, {what}" for output in outputs for what in ("least", "greatest")),
+    )
     most = min(_ROWS, _CELLS // len(head), found.status.cases)
     rows = []
     for case in _worst_first(outputs)[:most]:
@@ -152,7 +156,7 @@ def _cases(found: SweepResults, outputs: list[SweepOutput], linked: set[int]) ->
         told = (value.replace("nan", "\u2013") for value in values)
         rows.append((_link(case) if case in linked else str(case), *found.labels_at(case).values(), *told))
     note = f"{len(rows)} of {found.status.cases} cases, the worst first; wavesym sweep --table writes all"
-    return SaidTable(head, tuple(rows), (note,))
+    return PageTable(head, tuple(rows), (note,))
 
 
 def _worst_first(outputs: list[SweepOutput]) -> list[int]:
@@ -163,7 +167,7 @@ def _worst_first(outputs: list[SweepOutput]) -> list[int]:
     return [int(case) for case in np.argsort(-np.fmax.reduce(parts), kind="stable")]
 
 
-def _failed(found: SweepResults) -> SaidTable:
+def _failure_table(found: SweepResults) -> PageTable:
     """Why cases failed."""
     reasons = found.status.reasons
     rows = tuple(
@@ -172,10 +176,10 @@ def _failed(found: SweepResults) -> SaidTable:
         for values in (each["values"],)
     )
     notes = (f"The first {_REASONS} of {len(reasons)}; wavesym sweep --status has all",)
-    return SaidTable(("Case", "Values", "Reason"), rows, notes if len(reasons) > _REASONS else ())
+    return PageTable(("Case", "Values", "Reason"), rows, notes if len(reasons) > _REASONS else ())
 
 
-def _shown(found: SweepResults, case: int) -> WorstCase:
+def _worst_case(found: SweepResults, case: int) -> WorstCase:
     scene = json.dumps(found.scene(case), indent=1)
     if len(scene) > _SCENE:
         scene = f"{scene[:_SCENE]}\n... and {len(scene) - _SCENE} characters more, left out to keep the page small"

@@ -10,7 +10,7 @@ from wavesym.pictures.histories import Points
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.places import colour_bar
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture, spot
-from wavesym.pictures.page.png import address, shaded
+from wavesym.pictures.page.png import address, encode_png
 from wavesym.pictures.page.svg import Svg, element, polyline, text, upright
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.sweeps.results import StoredAxis, SweepResults
@@ -88,7 +88,7 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
     worst = int(np.nanargmax(output.size.ravel()))
     value = float(greatest[worst] if greatest[worst] >= -least[worst] else least[worst])
     title = f"{output.name} over {axis.name}"
-    told = f"Largest: {_value_text(value, output.unit)} where {_where(axis, worst)}."
+    told = f"Largest: {_value_text(value, output.unit)} where {_case_label(axis, worst)}."
     parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).draw()]
     for values, class_, sign in ((least, "least", -1.0), (greatest, "greatest", 1.0)):
         points = np.column_stack([along[done] - x.low, values[done]])
@@ -97,9 +97,9 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
         elif len(done) > _COLUMNS:  # of some the longest
             starts = np.arange(_COLUMNS) * len(done) // _COLUMNS
             points = np.column_stack([points[starts, 0], sign * np.maximum.reduceat(sign * points[:, 1], starts)])
-        places = [(x.at(at + x.low), y.at(value)) for at, value in points.tolist()]
-        parts.append(polyline(places, class_) if ordered else upright(places, y.at(0.0), class_))
-    parts += _labelled_spot(x.at(float(along[worst])), y.at(value), _where(axis, worst), above=value > 0)
+        places = [(x.pixel(at + x.low), y.pixel(value)) for at, value in points.tolist()]
+        parts.append(polyline(places, class_) if ordered else upright(places, y.pixel(0.0), class_))
+    parts += _labelled_spot(x.pixel(float(along[worst])), y.pixel(value), _case_label(axis, worst), above=value > 0)
     return PagePicture(title, picture(number, title, told, TOP + _TALL + BELOW, *parts, class_="plot"))
 
 
@@ -113,7 +113,7 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     )
     image = element(
         "image",
-        href=address(shaded(_fewer(size).T[::-1], low, high if high > low else low + 1, signed=False)),
+        href=address(encode_png(_fewer(size).T[::-1], low, high if high > low else low + 1, signed=False)),
         x=x.start,
         y=y.end,
         width=x.end - x.start,
@@ -122,7 +122,7 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
         class_="cells",
     )
     worst = np.unravel_index(int(np.nanargmax(size)), size.shape)
-    where = ", ".join(_where(axis, int(k)) for axis, k in zip(axes, worst, strict=True))
+    where = ", ".join(_case_label(axis, int(k)) for axis, k in zip(axes, worst, strict=True))
     frame = Frame(x, y, _axis_title(across), _axis_title(upward), _places(upward), _places(across))
     name = f"size of {output.title}" + f", the greatest over {' and '.join(beyond)}" * bool(beyond)
     bar = colour_bar(name, (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW, signed=False)
@@ -130,7 +130,7 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     ends = f"from {_value_text(low, output.unit)} to {_value_text(high, output.unit)}"
     told = f"Colours show the size, {ends}, the largest where {where}."
     marks = _labelled_spot(
-        x.at(float(worst[0] + 1)), y.at(float(worst[1] + 1)), where, above=y.at(worst[1] + 1.0) > TOP + 30
+        x.pixel(float(worst[0] + 1)), y.pixel(float(worst[1] + 1)), where, above=y.pixel(worst[1] + 1.0) > TOP + 30
     )
     return PagePicture(
         title, picture(number, title, told, TOP + _MAP + BELOW + 34, frame.draw(), image, *marks, bar, class_="plot")
@@ -160,7 +160,7 @@ def _axis_title(axis: StoredAxis) -> str:
     return f"{axis.name}, by its number in the list"
 
 
-def _where(axis: StoredAxis, k: int) -> str:
+def _case_label(axis: StoredAxis, k: int) -> str:
     return ", ".join(f"{column.path} = {column.format(k)}" for column in axis.columns)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from wavesym.pictures.page.svg import Svg, box, element, line, polyline, text, together
+from wavesym.pictures.page.svg import Svg, box, concatenate, element, line, polyline, text
 
 HALF = 16.0  # of the height of a mass
 _COIL, _TEETH = 5.0, 6
@@ -26,7 +26,7 @@ def dashpot(x: float, y: float, width: float) -> Svg:
     low, high = x + 0.35 * width, x + 0.75 * width
     pot = polyline([(low, y - 6), (high, y - 6), (high, y + 6), (low, y + 6)], "wire")
     piston = line(x + 0.5 * width, y - 4, x + 0.5 * width, y + 4, "wire")
-    return together(line(x, y, x + 0.5 * width, y, "wire"), piston, pot, line(high, y, x + width, y, "wire"))
+    return concatenate(line(x, y, x + 0.5 * width, y, "wire"), piston, pot, line(high, y, x + width, y, "wire"))
 
 
 def link(x: float, y: float, width: float, *, elastic: bool, damped: bool) -> Svg:
@@ -34,45 +34,45 @@ def link(x: float, y: float, width: float, *, elastic: bool, damped: bool) -> Sv
     if width > _LONGEST:
         lead = (width - _LONGEST) / 2
         inner = link(x + lead, y, _LONGEST, elastic=elastic, damped=damped)
-        return together(line(x, y, x + lead, y, "wire"), inner, line(x + width - lead, y, x + width, y, "wire"))
+        return concatenate(line(x, y, x + lead, y, "wire"), inner, line(x + width - lead, y, x + width, y, "wire"))
     if elastic and damped:
-        ends = together(line(x, y - 10, x, y + 10, "wire"), line(x + width, y - 10, x + width, y + 10, "wire"))
-        return together(spring(x, y - 10, width), dashpot(x, y + 10, width), ends)
+        ends = concatenate(line(x, y - 10, x, y + 10, "wire"), line(x + width, y - 10, x + width, y + 10, "wire"))
+        return concatenate(spring(x, y - 10, width), dashpot(x, y + 10, width), ends)
     return spring(x, y, width) if elastic else dashpot(x, y, width)
 
 
 def contact(x: float, y: float, width: float) -> Svg:
     """Two faces that push and do not pull."""
     faces = (line(x + k * width, y - HALF, x + k * width, y + HALF, "wire") for k in (0.15, 0.85))
-    return together(*faces)
+    return concatenate(*faces)
 
 
 def wall(x: float, y: float, side: int) -> Svg:
     """What is fixed: a face, and hatches on its left (-1) or right (1)."""
     hatches = (line(x, y + k, x + 8 * side, y + k + 8, "thin") for k in range(-18, 14, 6))
-    return together(line(x, y - 20, x, y + 20, "face"), *hatches)
+    return concatenate(line(x, y - 20, x, y + 20, "face"), *hatches)
 
 
 def ground(x: float, y: float) -> Svg:
     """The ground below a place."""
     hatches = (line(x + k, y, x + k - 5, y + 6, "thin") for k in range(-8, 13, 5))
-    return together(line(x - 12, y, x + 12, y, "face"), *hatches)
+    return concatenate(line(x - 12, y, x + 12, y, "face"), *hatches)
 
 
-def grounded(x: float, y: float, *, elastic: bool, damped: bool) -> Svg:
+def ground_link(x: float, y: float, *, elastic: bool, damped: bool) -> Svg:
     """A spring, a dashpot or both from a place down to the ground."""
     inner = link(0, 0, 36, elastic=elastic, damped=damped)
-    return together(element("g", inner, transform=f"translate({x:.1f} {y:.1f}) rotate(90)"), ground(x, y + 36))
+    return concatenate(element("g", inner, transform=f"translate({x:.1f} {y:.1f}) rotate(90)"), ground(x, y + 36))
 
 
 def motion_arrow(x: float, y: float, words: str) -> Svg:
     """An arrow both ways: what moves as it is told."""
     arrow = polyline([(x - 12, y - 3), (x - 17, y), (x - 12, y + 3)], "act")
     other = polyline([(x + 12, y - 3), (x + 17, y), (x + 12, y + 3)], "act")
-    return together(line(x - 17, y, x + 17, y, "act"), arrow, other, text(x, y + 16, words, class_="act"))
+    return concatenate(line(x - 17, y, x + 17, y, "act"), arrow, other, text(x, y + 16, words, class_="act"))
 
 
 def load_arrow(x: float, y: float) -> Svg:
     """An arrow to the right that ends at a place: a load."""
     head = polyline([(x - 6, y - 4), (x, y), (x - 6, y + 4)], "act")
-    return together(line(x - 26, y, x, y, "act"), head)
+    return concatenate(line(x - 26, y, x, y, "act"), head)

@@ -13,8 +13,8 @@ from typing import Any
 
 from pydantic import Field
 
-from wavesym.fields.measured import read_quantity
 from wavesym.fields.numbers import LONGEST, exact
+from wavesym.fields.quantity_fields import read_quantity
 from wavesym.fields.table import Faults, SceneTable, as_list, key_context, refusal, show
 from wavesym.scene.physical.chain_parts import OTHERS, RODS, LinkKeys, MotionKeys, RodKeys
 from wavesym.scene.physical.places import PlaceInMetres, place
@@ -80,7 +80,7 @@ class PhysicalChain(SceneTable):
                 with faults.gather(*keys):
                     elastic.append(part.elastic(names["dashpot"]))
         faults.refuse()
-        rods = Rods.of(elastic)
+        rods = Rods.from_rods(elastic)
         pen = _Pen(kind, names, rods)
         table: dict[str, object] = {"type": "chain", "parts": pen.line("", main)}
         if self.branch:
@@ -165,7 +165,7 @@ class _Pen:
                     written.append(self._rod(part, length))
                     x += length
                 elif isinstance(part, SceneTable):
-                    table = self._converted(part)
+                    table = self._convert(part)
                     if isinstance(part, MotionKeys):
                         self.moved |= {at: str(part.motion) for at in (part.name, (name, x)) if at is not None}
                     written.append(table)
@@ -177,7 +177,7 @@ class _Pen:
     def _rod(self, part: RodKeys, length: Fraction) -> dict[str, object]:
         table = self.rods.part(self._next, length / self.rods.first.length)
         self._next += 1
-        table |= self._converted(part, "rod", "impedance", "speed", "strain", *part.made_of())
+        table |= self._convert(part, "rod", "impedance", "speed", "strain", *part.material_keys())
         if part.strain is not None:
             table["strain"] = self._strain(part.strain)
         return table
@@ -189,7 +189,7 @@ class _Pen:
                 return exact(value)
             return read_quantity(value, "rate of twist") * self.rods.first.length
 
-    def _converted(self, part: SceneTable, *without: str) -> dict[str, object]:
+    def _convert(self, part: SceneTable, *without: str) -> dict[str, object]:
         table: dict[str, object] = {}
         for field, value in part:
             key = _WRITTEN.get(field, field)

@@ -11,8 +11,8 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from wavesym.fields.measured import missing, one_of, read_quantity
 from wavesym.fields.numbers import exact
+from wavesym.fields.quantity_fields import missing, one_of, read_quantity
 from wavesym.fields.rounding import polar_moment
 from wavesym.fields.table import SceneTable, key_context, refusal, show
 from wavesym.systems.dimensionless import Kind
@@ -34,7 +34,7 @@ class RodKeys(SpringKeys):
     """Keys of a rod of any kind. It may say its impedance and wave speed instead of what they follow from."""
 
     key: ClassVar[str] = "rod"
-    needed: ClassVar[Mapping[str, str]]
+    dimensions: ClassVar[Mapping[str, str]]
 
     rod: Any = Field(description='a length such as "1.2 m"')
     impedance: Any = None
@@ -49,27 +49,27 @@ class RodKeys(SpringKeys):
         with key_context("rod"):
             length = read_quantity(self.rod, "length", 1)
         if self.impedance is None and self.speed is None:
-            found = self._measured()
+            found = self._si_values()
             return ElasticRod(length, self._mass(found) * length, self._stiffness(found) / length, self._square(found))
-        for key in self.made_of():
+        for key in self.material_keys():
             if getattr(self, key) is not None:
                 given = "impedance" if self.impedance is not None else "speed"
                 raise refusal(f"stands beside {given}; write one of them", key)
-        impedance, speed = self._said("impedance", dashpot), self._said("speed", "velocity")
+        impedance, speed = self._si_value("impedance", dashpot), self._si_value("speed", "velocity")
         return ElasticRod(length, impedance / speed * length, impedance * speed / length)
 
-    def _said(self, key: str, dimension: str, least: int = 1) -> Fraction:
+    def _si_value(self, key: str, dimension: str, least: int = 1) -> Fraction:
         value = getattr(self, key)
         if value is None:
             raise missing(dimension, key)
         with key_context(key):
             return read_quantity(value, dimension, least)
 
-    def _measured(self) -> dict[str, Fraction]:
-        return {key: self._said(key, dimension) for key, dimension in self.needed.items()}
+    def _si_values(self) -> dict[str, Fraction]:
+        return {key: self._si_value(key, dimension) for key, dimension in self.dimensions.items()}
 
     @classmethod
-    def made_of(cls) -> tuple[str, ...]:
+    def material_keys(cls) -> tuple[str, ...]:
         """The keys that say what it is made of."""
         return tuple(key for key in cls.model_fields if key not in RodKeys.model_fields)
 
@@ -89,7 +89,7 @@ class RodKeys(SpringKeys):
 class LongitudinalRod(RodKeys):
     """It is stretched: E A and rho A."""
 
-    needed: ClassVar[Mapping[str, str]] = {"A": "area", "E": "modulus", "rho": "density"}
+    dimensions: ClassVar[Mapping[str, str]] = {"A": "area", "E": "modulus", "rho": "density"}
 
     A: Any = None
     E: Any = None
@@ -99,7 +99,7 @@ class LongitudinalRod(RodKeys):
 class ShearRod(RodKeys):
     """It is sheared: k G A and rho A."""
 
-    needed: ClassVar[Mapping[str, str]] = {"A": "area", "G": "modulus", "rho": "density"}
+    dimensions: ClassVar[Mapping[str, str]] = {"A": "area", "G": "modulus", "rho": "density"}
 
     A: Any = None
     G: Any = None
@@ -122,7 +122,7 @@ class ShearRod(RodKeys):
 class TorsionalRod(RodKeys):
     """It is twisted: G J and rho J, J as it is or that of a round rod with a bore."""
 
-    needed: ClassVar[Mapping[str, str]] = {"G": "modulus", "rho": "density"}
+    dimensions: ClassVar[Mapping[str, str]] = {"G": "modulus", "rho": "density"}
 
     J: Any = None
     diameter: Any = None
@@ -130,22 +130,22 @@ class TorsionalRod(RodKeys):
     G: Any = None
     rho: Any = None
 
-    def _measured(self) -> dict[str, Fraction]:
-        return {"J": self._polar(), **super()._measured()}
+    def _si_values(self) -> dict[str, Fraction]:
+        return {"J": self._polar(), **super()._si_values()}
 
     def _polar(self) -> Fraction:
         if one_of(self, "J", "diameter") == "J":
             if self.bore is not None:
                 raise refusal("stands beside J; write one of them", "bore")
-            return self._said("J", "second moment of area")
-        diameter = self._said("diameter", "length")
-        bore = self._said("bore", "length", 0) if self.bore is not None else Fraction(0)
+            return self._si_value("J", "second moment of area")
+        diameter = self._si_value("diameter", "length")
+        bore = self._si_value("bore", "length", 0) if self.bore is not None else Fraction(0)
         if bore >= diameter:
             raise refusal(f"{show(self.bore)} is as wide as the shaft or wider; write less than the diameter", "bore")
         return polar_moment(diameter, bore)
 
     def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
-        return None if self.diameter is None else self._said("diameter", "length") ** 2
+        return None if self.diameter is None else self._si_value("diameter", "length") ** 2
 
     def _mass(self, found: Mapping[str, Fraction]) -> Fraction:
         return found["rho"] * found["J"]

@@ -12,11 +12,11 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
-from wavesym.fields.measured import read_quantity
 from wavesym.fields.numbers import decimal_text, exact
 from wavesym.fields.quantity import unit
+from wavesym.fields.quantity_fields import read_quantity
 from wavesym.fields.table import WrittenDecimal, as_list, key_context, refusal, show
-from wavesym.records.record_file import RecordFile, damaged
+from wavesym.records.record_file import RecordFile, damage_error
 from wavesym.records.recording import Recording, read_recording
 from wavesym.systems.dimensionless import LoadUnit
 
@@ -31,7 +31,7 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
     table: dict[str, Any] = {}
     said = {"unit", "samples"} | ({"record", "start", "column"} if "record" in load else set())  # converted below
     for key, value in load.items():
-        new = acting.renamed.get(key, key)
+        new = acting.renames.get(key, key)
         with key_context(key):
             if key == "times":
                 table[new] = _times(value, seconds)
@@ -55,7 +55,7 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
         table["samples"] = _samples(load, acting)
     elif "unit" in load:
         raise refusal("is that of samples or a record; write these, or leave it out", "unit")
-    return {**table, **acting.added}
+    return {**table, **acting.additions}
 
 
 def _times(value: object, seconds: Fraction) -> list[Fraction]:
@@ -126,7 +126,7 @@ def _spacing_in_file(said: RecordFile, dimension: str, spacing: Fraction | None)
             unit(said.unit, dimension)
         clock = _clock(said.clock)
     except PydanticCustomError as error:
-        raise damaged(said.file, said.head, str(error)) from None
+        raise damage_error(said.file, said.head, str(error)) from None
     return spacing and spacing / clock
 
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from wavesym.fields.measured import tidy
 from wavesym.fields.quantity import si_value
+from wavesym.fields.quantity_fields import tidy
 from wavesym.fields.table import refusal, show
 from wavesym.systems.place import Position
 
@@ -19,7 +19,7 @@ _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?", re.DOTALL)
 class PlaceInMetres:
     """A length from the start of a line, in m, or the name of a node; -1, 0 or +1 is its side."""
 
-    written: str
+    text: str
     line: str
     x: Fraction | None
     side: int
@@ -31,7 +31,7 @@ class PlaceInMetres:
 
     def position(self, unit: Fraction) -> Position:
         """As scenes without units have it, called as it is written."""
-        return Position(self.written, self.x and self.x / unit if self.x is not None else None, self.side, self.line)
+        return Position(self.text, self.x and self.x / unit if self.x is not None else None, self.side, self.line)
 
     def dimensionless(self, unit: Fraction) -> str:
         """As text of a scene without units."""
@@ -48,13 +48,13 @@ def place(value: object, lines: Mapping[str, Fraction]) -> PlaceInMetres:
     side = {"-": -1, "+": 1}.get(value[-1:], 0)
     bare = value[:-1] if side else value
     if not (found := _NAMED.fullmatch(bare)):
-        return PlaceInMetres(value, "", _along("", si_value(bare, "length"), value, lines), side)
+        return PlaceInMetres(value, "", _place_along_line("", si_value(bare, "length"), value, lines), side)
     if found[2] is None:
         return PlaceInMetres(value, found[1], None, side)
-    return PlaceInMetres(value, found[1], _along(found[1], si_value(found[2], "length"), value, lines), side)
+    return PlaceInMetres(value, found[1], _place_along_line(found[1], si_value(found[2], "length"), value, lines), side)
 
 
-def _along(line: str, x: Fraction, value: str, lines: Mapping[str, Fraction]) -> Fraction:
+def _place_along_line(line: str, x: Fraction, value: str, lines: Mapping[str, Fraction]) -> Fraction:
     if line in lines and not 0 <= x <= lines[line]:
         raise refusal(f"{show(value)} is not on the chain; write a place from 0 to {tidy(lines[line])} m")
     return x

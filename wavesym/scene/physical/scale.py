@@ -60,7 +60,7 @@ class Results:
     sizes: Mapping[str, Fraction]
 
     @classmethod
-    def of(cls, units: UnitsTable, kind: Kind) -> Results:
+    def from_table(cls, units: UnitsTable, kind: Kind) -> Results:
         """Those of a scene. Raises the error of `table.refusal`."""
         dimensions = {key: key for key in _DEFAULTS} | (_ROUND | {"force": "force"} if kind == "torsional" else _ALONG)
         texts: dict[str, str] = {}
@@ -118,7 +118,7 @@ class Scale:
 
     def factor(self, quantity: str, rod: int) -> Fraction:
         """What an output is multiplied by, `rod` being that of its place (from 1)."""
-        sizes, moved = self.results.sizes, self._moved
+        sizes, moved = self.results.sizes, self._displacement_dimension
         match quantity:
             case "strain":
                 length = self.lengths[(rod or 1) - 1 if len(self.lengths) > 1 else 0]
@@ -129,7 +129,7 @@ class Scale:
             case "acceleration":
                 return self.displacement / self.seconds**2 / sizes["acceleration"]
             case "force":
-                return self.force / sizes[self._pulled]
+                return self.force / sizes[self._force_dimension]
         return self.displacement / sizes[moved]
 
     def unit(self, quantity: str) -> str:
@@ -141,8 +141,8 @@ class Scale:
             case "velocity" | "acceleration":
                 return texts[quantity]
             case "force":
-                return texts[self._pulled]
-        return texts[self._moved]
+                return texts[self._force_dimension]
+        return texts[self._displacement_dimension]
 
     @property
     def parts(self) -> dict[str, tuple[Fraction, str]]:
@@ -161,9 +161,9 @@ class Scale:
         }
 
     @property
-    def _moved(self) -> str:
+    def _displacement_dimension(self) -> str:
         return "angle" if self.kind == "torsional" else "length"
 
     @property
-    def _pulled(self) -> str:
+    def _force_dimension(self) -> str:
         return "moment" if self.kind == "torsional" else "force"

@@ -10,18 +10,18 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
-from wavesym.fields.measured import plain, read_quantity, tidy
 from wavesym.fields.numbers import exact
+from wavesym.fields.quantity_fields import plain, read_quantity, tidy
 from wavesym.fields.table import Fault, Faults, key_context, key_path, refusal, show
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.scene.outputs import LONGEST_HORIZON
 from wavesym.scene.physical.chain import PhysicalChain
+from wavesym.scene.physical.description import describe
 from wavesym.scene.physical.loads import Acts, dimensionless, read
 from wavesym.scene.physical.places import place
-from wavesym.scene.physical.said import describe
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
-from wavesym.systems import PHYSICAL, SYSTEMS, ExplicitChain, SystemTable, WrittenOut
+from wavesym.systems import PHYSICAL, SYSTEMS, ExplicitChain, ExplicitPreset, SystemTable
 from wavesym.systems.dimensionless import DimensionlessSystem
 from wavesym.systems.place import read_titled_place
 
@@ -70,7 +70,7 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     made = dict(fields)
     found = _system(fields.get("system"), units)
     with key_context("units"):
-        results = Results.of(units, found.kind)
+        results = Results.from_table(units, found.kind)
     with key_context("system"), _of_quantities(fields["system"]):  # before loads and places on it
         length = results.length(found.lengths[0]) if found.lines is not None else None
         made["system"] = _table(found.system).model_validate(found.system, context=length)
@@ -115,7 +115,7 @@ def _of_quantities(said: Mapping[str, Any]) -> Iterator[None]:
 def _table(system: Mapping[str, object]) -> type[SystemTable]:
     """What takes a system without units: one that is named may have been written out."""
     known = SYSTEMS[str(system["type"])]
-    return WrittenOut if "parts" in system and known is not ExplicitChain else known
+    return ExplicitPreset if "parts" in system and known is not ExplicitChain else known
 
 
 def _system(table: object, units: UnitsTable) -> DimensionlessSystem:
@@ -146,7 +146,7 @@ def _output(output: Mapping[str, Any], found: DimensionlessSystem, seconds: Frac
     faults = Faults()
     if "until" in output:
         with faults.gather("until"):
-            made["until"] = _until(output["until"], seconds)
+            made["until"] = _horizon(output["until"], seconds)
     if found.lines is not None:
         for quantity in _LENGTHS & output.keys():
             if isinstance(places := output[quantity], list | tuple):
@@ -158,7 +158,7 @@ def _output(output: Mapping[str, Any], found: DimensionlessSystem, seconds: Frac
     return made
 
 
-def _until(value: object, seconds: Fraction) -> object:
+def _horizon(value: object, seconds: Fraction) -> object:
     """A time; a number is one of tau."""
     try:
         return exact(value)

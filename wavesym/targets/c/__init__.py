@@ -19,7 +19,7 @@ _UNDER = {"spacing": "under the scene's loads", "panel": "under a step of each l
 class CTarget:
     """C as a target."""
 
-    tested = True
+    has_selftest = True
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
         if program.numpy_only:

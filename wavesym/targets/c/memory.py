@@ -82,20 +82,20 @@ class Memory:
         """An integer of constants."""
         told = re.sub(r"sizeof\((\w+)\)", lambda of: str(self.size(of[1])), expression)
         told = _CHOSEN.sub(r"(\2) if (\1) else (\3)", told)
-        return self._evaluated(ast.parse(told.strip(), mode="eval").body)
+        return self._evaluate(ast.parse(told.strip(), mode="eval").body)
 
-    def _evaluated(self, node: ast.expr) -> int:
+    def _evaluate(self, node: ast.expr) -> int:
         match node:
             case ast.Constant(value=int(number)):
                 return number
             case ast.Name(id=name):
                 return self._constants[name]
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                return -self._evaluated(operand)
+                return -self._evaluate(operand)
             case ast.IfExp(test=ast.Compare(left=left, ops=[ast.Lt()], comparators=[right]), body=one, orelse=other):
-                return self._evaluated(one if self._evaluated(left) < self._evaluated(right) else other)
+                return self._evaluate(one if self._evaluate(left) < self._evaluate(right) else other)
             case ast.BinOp(left=left, op=sign, right=right):
-                value: int = _OPERATORS[type(sign)](self._evaluated(left), self._evaluated(right))
+                value: int = _OPERATORS[type(sign)](self._evaluate(left), self._evaluate(right))
                 return value
         raise ValueError(f"{ast.unparse(node)}: no integer of constants")
 

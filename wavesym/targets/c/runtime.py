@@ -171,7 +171,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         scene=scene,
         parts=program.parts,
         memory=tuple(_struct_sizes(scene, program.parts, memory, inside)),
-        stack=tuple(_stacked(scene, program.parts, memory, inside, texts)),
+        stack=tuple(_stack_sizes(scene, program.parts, memory, inside, texts)),
         structs=declared,
     )
     made = {f"{scene.name}.h": render("c/runtime/runtime.h.j2", header), f"{scene.name}.c": source}
@@ -202,9 +202,9 @@ def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRunt
         parts=program.parts,
         inside=False,
         fields=tuple(parameter_fields(laws, real)),
-        products=multiplied(laws, laws.every, real),
-        laws=tuple(assigned(laws, needed, real)),
-        slope_products=multiplied(laws, laws.every_slope, real) if derived else (),
+        products=product_lines(laws, laws.every, real),
+        laws=tuple(assignments(laws, needed, real)),
+        slope_products=product_lines(laws, laws.every_slope, real) if derived else (),
         slopes=tuple(slopes(laws, needed, real)) if derived else (),
         load_lane=load_lane(laws),
         tables=tables_text("runtime/tables.h", c_tables(program.tables, real)),
@@ -233,7 +233,7 @@ def _struct_sizes(scene: Description, parts: Sequence[str], memory: Memory, insi
             yield str(memory.size(f"{scene.name}_{struct}")), f"{scene.name}_{struct}, {told}"
 
 
-def _stacked(
+def _stack_sizes(
     scene: Description, parts: Sequence[str], memory: Memory, inside: bool, texts: RuntimeTexts
 ) -> Iterator[tuple[str, str]]:
     """What functions need of a stack, at most."""
@@ -281,7 +281,7 @@ def _describe(label: str, unit: ParameterUnit) -> str:
     return f"{label} [{unit.text}]" if unit.text else label
 
 
-def assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: Real) -> Iterator[tuple[str, str]]:
+def assignments(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: Real) -> Iterator[tuple[str, str]]:
     """What is assigned, with the expression."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for array, functions in arrays.items():
@@ -289,7 +289,7 @@ def assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: 
             yield f"{array}[{k}]", expression(function, places, real)
 
 
-def multiplied(laws: RuntimeLaws, functions: Iterable[Ratio], real: Real) -> Lines:
+def product_lines(laws: RuntimeLaws, functions: Iterable[Ratio], real: Real) -> Lines:
     """What is multiplied and added up on the way to some functions, each once."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     found = (

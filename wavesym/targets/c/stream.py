@@ -8,7 +8,7 @@ from wavesym.programs.program import Program
 from wavesym.programs.stream.parameters import MADE
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
-from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, multiplied, parameter_fields
+from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assignments, parameter_fields, product_lines
 from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description, constants
 from wavesym.targets.literals import Lines, c_constants, c_tables
@@ -70,8 +70,8 @@ def source(scene: Description, program: Program) -> str:
         fields=_fields(program),
         functions=tuple((name, str(len(of))) for name, of in laws.functions.items()) if laws else (),
         made_tables=MADE if laws else (),
-        products=multiplied(laws, laws.every, program.real) if laws else (),
-        laws=tuple(assigned(laws, laws.functions, program.real)) if laws else (),
+        products=product_lines(laws, laws.every, program.real) if laws else (),
+        laws=tuple(assignments(laws, laws.functions, program.real)) if laws else (),
         terms=str(len(laws.functions["gain"])) if laws else "",
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",

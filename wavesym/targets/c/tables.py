@@ -15,7 +15,7 @@ from wavesym.targets.literals import Lines
 _TABLE = re.compile(r"extern const (int|real) (\w+)\[\];")
 
 
-def declared(file: str) -> Iterator[list[str | tuple[str, str]]]:
+def table_declarations(file: str) -> Iterator[list[str | tuple[str, str]]]:
     """The paragraphs of tables in templates/c/`file`: a comment is its text, a table its type and name."""
     for paragraph in text_of(f"c/{file}").rstrip().split("\n\n"):
         items: list[str | tuple[str, str]] = []
@@ -35,7 +35,7 @@ def tables_text(file: str, values: Mapping[str, Lines], words: Mapping[str, str]
 
     In comments `words` are replaced.
     """
-    return ["\n".join(_write(items, values, words or {})) for items in declared(file)]
+    return ["\n".join(_write(items, values, words or {})) for items in table_declarations(file)]
 
 
 def _write(items: list[str | tuple[str, str]], values: Mapping[str, Lines], words: Mapping[str, str]) -> Iterator[str]:

@@ -11,7 +11,7 @@ from wavesym.programs.program import Program
 from wavesym.rendering import render, text_of
 from wavesym.targets.c import TARGET as C
 from wavesym.targets.description import Description
-from wavesym.targets.fmu.units import DefinedUnit, defined
+from wavesym.targets.fmu.units import DefinedUnit, define_units
 from wavesym.targets.fmu.variables import Variable, parameters, variables
 from wavesym.targets.literals import literal
 
@@ -108,7 +108,7 @@ def _description(scene: Description, program: Program) -> FmuDescription:
         scene=scene,
         about=f"{scene.model[0]}. {scene.units.replace('Time is tau, of which one', 'One tau')}",
         variables=found,
-        units=defined(one.unit for one in found),
+        units=define_units(one.unit for one in found),
         stepped=program.has_equal_steps,
         stop=_time(program, model.until),
         step=_time(program, panel(program)),

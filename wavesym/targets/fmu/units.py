@@ -18,12 +18,12 @@ class DefinedUnit:
     attributes: tuple[tuple[str, str], ...]
 
 
-def defined(names: Iterable[str]) -> tuple[DefinedUnit, ...]:
+def define_units(names: Iterable[str]) -> tuple[DefinedUnit, ...]:
     """The units by these names, each once."""
-    return tuple(map(_defined, sorted({name for name in names if name})))
+    return tuple(map(_define_unit, sorted({name for name in names if name})))
 
 
-def _defined(name: str) -> DefinedUnit:
+def _define_unit(name: str) -> DefinedUnit:
     factor, powers = base_units(name)
     attributes = [(base, str(powers[base])) for base in ("kg", "m", "s", "rad") if powers.get(base)]
     if factor != 1:

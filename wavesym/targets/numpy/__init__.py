@@ -11,7 +11,7 @@ from wavesym.targets.target import Target
 class NumPyTarget:
     """NumPy as a target."""
 
-    tested = False
+    has_selftest = False
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
         return {f"{description.name}.py": source(description, program)}

@@ -29,14 +29,14 @@ class NumPyProgram:
 def source(scene: Description, program: Program) -> str:
     """The text of the module."""
 
-    def written(values: Iterable[float]) -> Iterable[str]:
+    def literals(values: Iterable[float]) -> Iterable[str]:
         return (str(value) if isinstance(value, int) else literal(value, program.real) for value in values)
 
     scheme = SCHEMES[program.kernel]
     context = NumPyProgram(
         scene=scene,
-        tables={name: lines(written(program.tables[name]), _WIDTH) for name in scheme.TABLES},
-        constants=dict(zip(scheme.CONSTANTS, written(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
+        tables={name: lines(literals(program.tables[name]), _WIDTH) for name in scheme.TABLES},
+        constants=dict(zip(scheme.CONSTANTS, literals(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
         scheme="\n\n\n".join(map(_text, PARTS.get(program.kernel, (scheme,)))),
         scheme_name=scheme.__name__,
     )

@@ -24,7 +24,7 @@ from tools.bench.commands import ran
 from tools.bench.many_sets import FIRST, LAST, MANY, SETS
 from wavesym.lab.timing import medians
 from wavesym.scene import Scene
-from wavesym.sweeps import recorded
+from wavesym.sweeps import shared_records
 from wavesym.sweeps.batches import batches
 from wavesym.sweeps.kinds import kind
 from wavesym.sweeps.manifest import settle
@@ -120,20 +120,24 @@ def rows() -> Iterator[Sequence[str]]:
         inputs(folder)
         frames = FRAMES.format(structures=STRUCTURES)
         few = f"{RECORDS} records x {STRUCTURES} structures"
-        yield few, "this process", *swept(folder, frames)
+        yield few, "this process", *run_sweep(folder, frames)
         for workers in (1, 2):
             with cluster(folder, workers) as running:
-                swept(folder, FRAMES.format(structures=2), running)  # so that workers have loaded all they need
-                yield few, f"{workers} running workers", *swept(folder, frames, running)
+                run_sweep(folder, FRAMES.format(structures=2), running)  # so that workers have loaded all they need
+                yield few, f"{workers} running workers", *run_sweep(folder, frames, running)
         double = FRAMES.format(structures=2 * STRUCTURES)
-        yield f"{RECORDS} records x {2 * STRUCTURES} structures", "this process", *swept(folder, double)
+        yield f"{RECORDS} records x {2 * STRUCTURES} structures", "this process", *run_sweep(folder, double)
         for sets in (SETS, MANY):
-            yield f"peaks of {sets} kappa, compiling included", "this process", *swept(folder, SHAFTS.format(sets=sets))
+            yield (
+                f"peaks of {sets} kappa, compiling included",
+                "this process",
+                *run_sweep(folder, SHAFTS.format(sets=sets)),
+            )
         with cluster(folder, 2) as running:
             yield (
                 f"peaks of {MANY} kappa",
                 "2 running workers",
-                *swept(folder, SHAFTS.format(sets=MANY), running),
+                *run_sweep(folder, SHAFTS.format(sets=MANY), running),
             )
 
 
@@ -144,7 +148,7 @@ def growth() -> Iterator[Sequence[str]]:
         inputs(folder, records=0)
         with cluster(folder, 1) as running:
             for sets in GROWING:
-                told = swept(folder, BOTH.format(sets=sets), running)
+                told = run_sweep(folder, BOTH.format(sets=sets), running)
                 yield f"{10 * sets}", *told, f"{running.megabytes:.0f}"
 
 
@@ -167,18 +171,18 @@ def overheads() -> Iterator[Sequence[str]]:
         store, marks = settle(folder, planned, parts), Marks(folder)
         values, sent = compute(planned, parts, 0), serialize(planned)
 
-        def unpacked() -> object:
-            recorded.doubles.cache_clear()
+        def unpack() -> object:
+            shared_records.doubles.cache_clear()
             records = deserialize(*sent).records
-            return [recorded.doubles(recorded.key(each)) for each in records.values]
+            return [shared_records.doubles(shared_records.key(each)) for each in records.values]
 
         with Client(running.address, set_as_default=False) as client:
 
-            def through() -> object:
-                return client.submit(partial(_same, values), pure=False).result()
+            def round_trip() -> object:
+                return client.submit(partial(_identity, values), pure=False).result()
 
-            kept, passed = medians([partial(keep, planned, store, marks, 0, values), through])
-        computing, reading, unpacking = _busy(partial(compute, planned, parts, 1)), _busy(read), _busy(unpacked)
+            kept, passed = medians([partial(keep, planned, store, marks, 0, values), round_trip])
+        computing, reading, unpacking = _busy(partial(compute, planned, parts, 1)), _busy(read), _busy(unpack)
     samples = RECORDS * SAMPLES
     yield "a record through a structure", f"{1e3 * computing / RECORDS:.2f} ms"
     yield "the chunks of a batch written and hashed, its mark", f"{1e3 * kept:.1f} ms"
@@ -198,7 +202,7 @@ def _busy(call: Callable[[], object]) -> float:
     return min(times)
 
 
-def _same(values: object) -> object:
+def _identity(values: object) -> object:
     return values
 
 
@@ -230,7 +234,7 @@ class Running(NamedTuple):
 _NOBODY = Running("", ())
 
 
-def swept(folder: Path, text: str, running: Running = _NOBODY) -> tuple[str, str, str]:
+def run_sweep(folder: Path, text: str, running: Running = _NOBODY) -> tuple[str, str, str]:
     """Seconds, busy ones, and MB of the command, into a new folder."""
     (folder / "sweep.toml").write_text(text, encoding="ascii")
     given = ["--scheduler", running.address] if running.address else []

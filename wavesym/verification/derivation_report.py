@@ -48,15 +48,15 @@ class Proof(NamedTuple):
     """A theorem for a system: of what of it, what the proof went through, how many cases it has, where it fails."""
 
     theorem: Theorem
-    of: str
-    through: str
+    subject: str
+    route: str
     cases: int
-    failed: tuple[str, ...]
+    failures: tuple[str, ...]
 
     @property
     def holds(self) -> bool:
         """Whether there were cases, and it held in each."""
-        return self.cases > 0 and not self.failed
+        return self.cases > 0 and not self.failures
 
 
 def derivation_report(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
@@ -64,7 +64,7 @@ def derivation_report(watch: Callable[[list[System]], Iterable[System]] = iter) 
 
     `watch` goes through the systems as they are proved.
     """
-    systems = [system for preset in presets().values() for system in (*preset.variants, *preset.beside)]
+    systems = [system for preset in presets().values() for system in (*preset.variants, *preset.companions)]
     proofs = [proof for system in watch(systems) for proof in (*_proofs(system), _walks(system))]
     theorems = dict.fromkeys(proof.theorem for proof in proofs)
     lines = (line for theorem in theorems for line in _lines(theorem, [p for p in proofs if p.theorem is theorem]))
@@ -75,10 +75,10 @@ def _lines(theorem: Theorem, proofs: Iterable[Proof]) -> Iterator[str]:
     yield theorem.claim
     yield from wrap(theorem.argument, _WIDTH, initial_indent="  ", subsequent_indent="  ")
     for proof in proofs:
-        held = proof.cases - len(proof.failed)
-        yield f"  {'PASS' if proof.holds else 'FAIL'}  {proof.of}: {held} of {proof.cases} {theorem.counted}"
-        yield from wrap(proof.through, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT)
-        yield from (f"{_INDENT}Not so: {where}" for where in proof.failed[:_SHOWN])
+        held = proof.cases - len(proof.failures)
+        yield f"  {'PASS' if proof.holds else 'FAIL'}  {proof.subject}: {held} of {proof.cases} {theorem.count_noun}"
+        yield from wrap(proof.route, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT)
+        yield from (f"{_INDENT}Not so: {where}" for where in proof.failures[:_SHOWN])
     yield ""
 
 
@@ -111,7 +111,7 @@ def _proofs(system: System) -> Iterator[Proof]:
     for family in FAMILIES.get(system.name, ()):
         inequalities = list(steps(system, family))
         beyond = tuple(
-            f"{step.of}, {step.because}, {step.where}: {step.slack} is not at least 0"
+            f"{step.function}, {step.because}, {step.where}: {step.slack} is not at least 0"
             for step in inequalities
             if not step.holds
         )

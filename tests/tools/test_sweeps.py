@@ -7,34 +7,34 @@ import pytest
 
 pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
-from tools.bench import many_sets, swept
+from tools.bench import many_sets, sweeps
 from tools.bench.by_hand import SampleGrid, line, peaks_in_c, peaks_in_numpy
 from wavesym.results.summary import summarise
 from wavesym.scene import lower
 
-DRIVE = swept.drive()
+DRIVE = sweeps.drive()
 pytestmark = pytest.mark.slow
 
 
 def test_sweeps_are_measured_that_fail_nowhere(tmp_path: Path) -> None:
     """Nothing is asserted of the time itself."""
-    swept.inputs(tmp_path, records=3, samples=300)
-    for text in (swept.FRAMES.format(structures=2), swept.SHAFTS.format(sets=9)):
-        assert all(float(each) > 0 for each in swept.swept(tmp_path, text))
+    sweeps.inputs(tmp_path, records=3, samples=300)
+    for text in (sweeps.FRAMES.format(structures=2), sweeps.SHAFTS.format(sets=9)):
+        assert all(float(each) > 0 for each in sweeps.run_sweep(tmp_path, text))
 
 
 def test_what_a_batch_costs_and_what_memory_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(swept, "RECORDS", 3)
-    monkeypatch.setattr(swept, "GROWING", (2, 3))
-    rows = list(swept.growth())
+    monkeypatch.setattr(sweeps, "RECORDS", 3)
+    monkeypatch.setattr(sweeps, "GROWING", (2, 3))
+    rows = list(sweeps.growth())
     assert [cases for cases, *_ in rows] == ["20", "30"]
     assert all(float(each) > 0 for _, *told in rows for each in told)
-    assert all(float(told.split()[0]) > 0 for _, told in swept.overheads())
+    assert all(float(told.split()[0]) > 0 for _, told in sweeps.overheads())
 
 
 def test_programs_by_hand_find_the_peaks_that_the_exact_response_has() -> None:
     """In C and in NumPy alike; with twice the steps about eight times better, as a parabola's top is."""
-    scenes = many_sets.varied(DRIVE, 4)
+    scenes = many_sets.varied_scenes(DRIVE, 4)
     true = np.array([[(o.min.value, o.max.value) for o in summarise(lower(each)).outputs] for each in scenes])
     kappa = np.array([many_sets.kappa_of(each) for each in scenes])
     assert many_sets._worst(many_sets.best_known(DRIVE, kappa), true) < 1e-11

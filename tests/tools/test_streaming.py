@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tools.bench import panels, streamed
+from tools.bench import panels, streaming
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.running.native import FAST
@@ -16,7 +16,7 @@ RECORD = Path(__file__).parents[2] / "examples" / "records" / "elcentro_1940_ns_
 
 def test_frames_have_all_floors(tmp_path):
     path = tmp_path / "frame.toml"
-    path.write_text(streamed.frame(RECORD, 40))
+    path.write_text(streaming.frame(RECORD, 40))
     model = lower(Scene.from_toml(path))
     assert len(model.probes) == 121
     assert len(model.network.bars) == 40
@@ -26,10 +26,10 @@ def test_frames_have_all_floors(tmp_path):
 def test_a_stream_is_measured_sample_by_sample(tmp_path):
     """Nothing is asserted of the time itself."""
     path = tmp_path / "frame.toml"
-    path.write_text(streamed.frame(RECORD, 2).replace("1e-5", "1e-2"))
+    path.write_text(streaming.frame(RECORD, 2).replace("1e-5", "1e-2"))
     model = lower(Scene.from_toml(path))
     made = choose(model, "modes").evaluator
-    assert 0 < streamed._stepping(program(model, made), FAST) < 1e-3
+    assert 0 < streaming._stepping(program(model, made), FAST) < 1e-3
     assert np.isfinite(made.scheme.evaluate(made.tau_max)).all()
 
 

@@ -8,8 +8,8 @@ from wavesym.cli import main
 from wavesym.derivation import table as tables
 from wavesym.derivation.delay import delay_equations
 from wavesym.systems.drive import DRIVE
-from wavesym.verification import derived as module
-from wavesym.verification.derived import derivation_report
+from wavesym.verification import derivation_report as module
+from wavesym.verification.derivation_report import derivation_report
 
 THEOREMS = (
     "The delay equations are the node law, for all i and m.",

@@ -16,7 +16,7 @@ from wavesym.writing import write_whole
 FOLDER = Path("build", "portable")
 
 
-def kept(
+def cached_answer(
     folder: Path, question: Sequence[str], answer: Callable[[], Any], *, worth: Callable[[Any], bool] = lambda _: True
 ) -> Any:
     """The answer (JSON) from `folder`, or given now and, where it is worth it, kept there."""

@@ -22,7 +22,7 @@ _CALLED = {
 
 
 @dataclass(frozen=True)
-class SaidTable:
+class PageTable:
     """A table, and what to know of it; no rows where there is only something to say."""
 
     head: tuple[str, ...]
@@ -30,10 +30,10 @@ class SaidTable:
     notes: tuple[str, ...]
 
 
-def extremes_told(model: Model, found: Summary | WavesymError, scale: Timescale) -> SaidTable:
+def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale) -> PageTable:
     """The statistics of each output, and the largest drift, as `summary` writes them, or why they were not found."""
     if isinstance(found, WavesymError):
-        return SaidTable((), (), (f"Not found: {found}",))
+        return PageTable((), (), (f"Not found: {found}",))
     when = f"{scale.symbol} in {scale.unit}" if scale.unit else scale.symbol
     head = ("Output", *(text[:1].upper() + text[1:] for text in headings(f"at {when}", f" at {when}")))
     rows = (
@@ -51,7 +51,7 @@ def extremes_told(model: Model, found: Summary | WavesymError, scale: Timescale)
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
         f"How: {found.how}; {found.certain}",
     ]
-    return SaidTable(head, tuple(rows), tuple(filter(None, notes)))
+    return PageTable(head, tuple(rows), tuple(filter(None, notes)))
 
 
 def _drift(found: OutputSummary | None, scale: Timescale) -> str:
@@ -62,16 +62,16 @@ def _drift(found: OutputSummary | None, scale: Timescale) -> str:
     return f"Largest drift of a rod: {found.label}, {value} at {when}"
 
 
-def advice_told(model: Model) -> SaidTable:
+def advice_table(model: Model) -> PageTable:
     """Which of three models is enough for each output, over the horizon of the scene."""
     try:
         found = advise(model, _TOLERANCE)
     except WavesymError as error:
-        return SaidTable((), (), (f"Not compared: {error}",))
-    kept = [each for each in found.candidates if not each.refused]
-    notes = [*_verdict(found), *(f"{_CALLED[each.name]}: {each.refused}" for each in found.candidates if each.refused)]
+        return PageTable((), (), (f"Not compared: {error}",))
+    kept = [each for each in found.candidates if not each.refusal]
+    notes = [*_verdict(found), *(f"{_CALLED[each.name]}: {each.refusal}" for each in found.candidates if each.refusal)]
     if not found.outputs:
-        return SaidTable((), (), tuple(notes))
+        return PageTable((), (), tuple(notes))
     head = ("Output", *(f"{_CALLED[each.name]}, {what}" for each in kept for what in ("history", "peak")))
     labels = {probe.name: probe.label for probe in model.probes}
     rows = ((labels[name], *_differences(kept, k)) for k, (name, *_) in enumerate(found.outputs))
@@ -79,7 +79,7 @@ def advice_told(model: Model) -> SaidTable:
         f"Each number is the largest difference from waves at {found.instants} instants, in parts of the output's "
         "largest value: of the history at any time, and of the peak"
     )
-    return SaidTable(head, tuple(rows), tuple(notes))
+    return PageTable(head, tuple(rows), tuple(notes))
 
 
 def _verdict(found: Advice) -> list[str]:

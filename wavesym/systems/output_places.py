@@ -16,7 +16,7 @@ from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines
 
 
-class Located(Protocol):
+class PlacedSystem(Protocol):
     """A system that knows its places."""
 
     @property
@@ -25,24 +25,24 @@ class Located(Protocol):
     @property
     def lines(self) -> Lines: ...
 
-    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place: ...
+    def locate(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place: ...
 
     def network(self, loads: Sequence[Load]) -> Network: ...
 
 
 @dataclass(frozen=True)
-class Watching:
+class OutputPlaces:
     """The places of a system's outputs, under its loads."""
 
-    system: Located
+    system: PlacedSystem
     loads: Sequence[Load]
 
     def place(self, position: Position, quantity: str) -> Place:
         """Where an output is. MisplacedError."""
-        text = show(WrittenDecimal(position.written))
+        text = show(WrittenDecimal(position.text))
         if quantity == "drift":
             return self._rod(position, text)
-        place = self.system.located(position, QUANTITIES[quantity].place_quantity, self.loads)
+        place = self.system.locate(position, QUANTITIES[quantity].place_quantity, self.loads)
         if quantity == "relative":
             self._refuse_groundless(text)
         return place

@@ -1,4 +1,4 @@
-"""python -m tools.published: compute what others printed, and write docs/published.md.
+"""python -m tools.published_numbers: compute what others printed, and write docs/published.md.
 
 A number is the same where ours, rounded to as many digits as are printed, is what is printed.
 """
@@ -18,7 +18,7 @@ FOLDER = ROOT / "examples" / "published"
 PAGE = ROOT / "docs" / "published.md"
 
 
-class Compared(NamedTuple):
+class ComparedNumber(NamedTuple):
     """A printed number, ours as a double, and whether they are the same to the digits that are printed."""
 
     printed: str
@@ -33,7 +33,7 @@ class Compared(NamedTuple):
         return abs(Decimal(self.own) - Decimal(self.printed)) <= half + abs(Decimal(self.own)) * Decimal("3e-16")
 
     @property
-    def shown(self) -> str:
+    def rounded_text(self) -> str:
         """Ours with two digits more than are printed."""
         digits = len(Decimal(self.printed).as_tuple().digits)
         return f"{self.own:.{min(digits + 2, 17)}g}"
@@ -50,11 +50,11 @@ def cases() -> list[Mapping[str, Any]]:
     return found
 
 
-def compared(case: Mapping[str, Any], numbers: Mapping[str, Any]) -> list[Compared]:
+def compare_numbers(case: Mapping[str, Any], numbers: Mapping[str, Any]) -> list[ComparedNumber]:
     """Printed numbers of a case beside ours."""
     factor = float(numbers.get("factor", 1))
     own = [factor * value for value in _own(str(FOLDER / f"{case['scene']}.toml"), numbers)]
-    return [Compared(printed, value) for printed, value in zip(numbers["printed"], own, strict=True)]
+    return [ComparedNumber(printed, value) for printed, value in zip(numbers["printed"], own, strict=True)]
 
 
 def _own(path: str, numbers: Mapping[str, Any]) -> Sequence[float]:
@@ -88,7 +88,9 @@ def _own(path: str, numbers: Mapping[str, Any]) -> Sequence[float]:
     raise AssertionError(numbers["read"])
 
 
-def page(found: Callable[[Mapping[str, Any], Mapping[str, Any]], list[Compared]] = compared) -> Iterator[str]:
+def page(
+    found: Callable[[Mapping[str, Any], Mapping[str, Any]], list[ComparedNumber]] = compare_numbers,
+) -> Iterator[str]:
     """The lines of docs/published.md."""
     yield "# Numbers that others printed\n\n"
     yield (
@@ -107,7 +109,7 @@ def page(found: Callable[[Mapping[str, Any], Mapping[str, Any]], list[Compared]]
         for numbers in case["numbers"]:
             for each in found(case, numbers):
                 total, same = total + 1, same + each.same
-                body.append(f"| {each.printed} | {each.shown} | {each.verdict} |\n")
+                body.append(f"| {each.printed} | {each.rounded_text} | {each.verdict} |\n")
             if "why" in numbers:
                 reasons.append(f"Why they differ: {numbers['why']}.\n")
         body += ["\n", *reasons, *(["\n"] if reasons else [])]

@@ -8,7 +8,7 @@ from typing import Literal
 from wavesym.systems.explicit import ExplicitChain
 
 
-class WrittenOut(ExplicitChain):
+class ExplicitPreset(ExplicitChain):
     """A collision, a drive or a building, part by part: a chain in all that is computed, `type` in all that is said.
 
     Each rod counts 1 in places, as in the named system. The foundation of a building is the first node, whatever its

@@ -21,10 +21,10 @@ from wavesym.records.load import RecordedLoad
 from wavesym.results.many_records import ManyRecords, SharedModes
 from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.scene import Scene, lower
-from wavesym.scene.paths import changed
+from wavesym.scene.paths import replace_at_path
 from wavesym.sweeps.batches import Place
-from wavesym.sweeps.measured import Unreadable
 from wavesym.sweeps.plan import SweepPlan
+from wavesym.sweeps.record_files import Unreadable
 from wavesym.sweeps.single import instants, of_model, output_rows, spread_out
 from wavesym.sweeps.values import CaseValues, Numbers
 
@@ -56,7 +56,9 @@ def record_cases(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[Pla
     for (jumps, head), some in alike.items():
         if structure := _structure(plan, some[0], jumps, head):
             with suppress(WavesymError):
-                yield from _together(plan, structure, [(place, doubles(key(values[place[-1]]))) for place in some])
+                yield from _share_structure(
+                    plan, structure, [(place, doubles(key(values[place[-1]]))) for place in some]
+                )
 
 
 class _Structure(NamedTuple):
@@ -79,14 +81,16 @@ def _structure(plan: SweepPlan, place: Place, jumps: bool, head: str) -> _Struct
         _STRUCTURES[name] = None
         with suppress(WavesymError):
             path = plan.records.path  # type: ignore[union-attr]
-            scene = Scene(**changed(plan.fields_at(place), path, {**json.loads(head), "samples": _PROBES[jumps]}))
+            scene = Scene(
+                **replace_at_path(plan.fields_at(place), path, {**json.loads(head), "samples": _PROBES[jumps]})
+            )
             model, (load,) = lower(scene), scene.load
             if isinstance(load, RecordedLoad):
                 _STRUCTURES[name] = _Structure(model, load, SharedModes(model, nearest(rational(load.step))))
     return _STRUCTURES[name]
 
 
-def _together(
+def _share_structure(
     plan: SweepPlan, structure: _Structure, records: Sequence[tuple[Place, _Samples]]
 ) -> Iterator[tuple[Place, CaseValues]]:
     """Those of records that a structure takes alike."""

@@ -53,7 +53,7 @@ class Band:
 
 
 @dataclass(frozen=True)
-class Along:
+class LineHistories:
     """A quantity along all lines of a chain, at `taus`, by a program. `length` is the unit of places."""
 
     quantity: str
@@ -69,7 +69,7 @@ class Along:
         return self.quantity == "drift"
 
 
-def along(scene: Scene, model: Model, program: Program | None = None) -> tuple[Along, ...]:
+def line_histories(scene: Scene, model: Model, program: Program | None = None) -> tuple[LineHistories, ...]:
     """Motion, then strain or drift, of all of a scene's chain.
 
     Args:
@@ -83,7 +83,9 @@ def along(scene: Scene, model: Model, program: Program | None = None) -> tuple[A
     places = {quantity: _places(scene, quantity) for quantity in _quantities(scene)}
     made = histories(chain_outputs(scene, model), program=program)
     length = _length(scene)
-    return tuple(replace(_of(made, quantity, lines), length=length) for quantity, lines in places.items())
+    return tuple(
+        replace(_quantity_histories(made, quantity, lines), length=length) for quantity, lines in places.items()
+    )
 
 
 def chain_outputs(scene: Scene, model: Model) -> Model:
@@ -125,7 +127,7 @@ def _distinct(scene: Scene, quantity: str, spots: Iterable[Spot]) -> tuple[Spot,
     found: list[Spot] = []
     last: Place | None = None
     for spot in spots:
-        place = scene.system.located(position_of(spot.position), quantity, scene.load)
+        place = scene.system.locate(position_of(spot.position), quantity, scene.load)
         if place == last:
             found[-1] = replace(found[-1], high=spot.high)
         else:
@@ -165,17 +167,17 @@ def _motions(line: str, stations: tuple[Station, ...], parts: int, length: Lengt
         yield Spot(place_text(x, line, side), spoken, xs[k], (low + xs[k]) / 2, (xs[k] + high) / 2)
 
 
-def _of(made: Histories, quantity: str, lines: list[tuple[str, tuple[Spot, ...]]]) -> Along:
+def _quantity_histories(made: Histories, quantity: str, lines: list[tuple[str, tuple[Spot, ...]]]) -> LineHistories:
     assert made.program is not None  # histories have one
     own = [history for history in made.outputs if history.output.quantity == quantity]
     taus = own[0].points[:, 0]
     rows = np.array([np.where(taus <= history.formal, history.points[:, 1], np.nan) for history in own])
     cuts = np.cumsum([len(spots) for _, spots in lines])[:-1]
     bands = (Band(*line, values) for line, values in zip(lines, np.split(rows, cuts), strict=True))
-    return Along(quantity, own[0].output.unit, taus, tuple(bands), made.program)
+    return LineHistories(quantity, own[0].output.unit, taus, tuple(bands), made.program)
 
 
-def cells(along: Along, band: Band, columns: int) -> Points:
+def cells(along: LineHistories, band: Band, columns: int) -> Points:
     """The value of the largest size in each of so many columns of time, (places, columns); NaN where it is formal."""
     until = float(along.taus[-1])
     column = np.minimum(columns_of(along.taus, until, columns), columns - 1)
@@ -186,10 +188,10 @@ def cells(along: Along, band: Band, columns: int) -> Points:
         known = np.nan_to_num(values)
         low, high = (known[place] for place in extremes_between(known, starts, ends))
         row[column[starts]] = np.where(np.isnan(values[starts]), np.nan, np.where(high >= -low, high, low))
-    return _filled(found)
+    return _fill_gaps(found)
 
 
-def _filled(found: Points) -> Points:
+def _fill_gaps(found: Points) -> Points:
     """Columns without an instant are as the one before."""
     there = ~np.isnan(found).all(axis=0)
     last = np.maximum.accumulate(np.where(there, np.arange(found.shape[1]), 0))

@@ -12,7 +12,7 @@ def describe(value: Any) -> str:
     """Tables and lists as text; of long ones how long they are."""
     match value:
         case Mapping():
-            return ", ".join(_keyed(key, each) for key, each in value.items())
+            return ", ".join(_describe_key(key, each) for key, each in value.items())
         case list():
             parts = [describe(each) for each in value[:_MOST_PARTS]]
             more = [f"... and {len(value) - _MOST_PARTS} more"] if len(value) > _MOST_PARTS else []
@@ -20,7 +20,7 @@ def describe(value: Any) -> str:
     return str(value)
 
 
-def _keyed(key: str, value: Any) -> str:
+def _describe_key(key: str, value: Any) -> str:
     if key == "record":
         return f"record of {len(value['samples'])} samples, 0 one step after the last"
     if isinstance(value, list) and not any(isinstance(each, Mapping) for each in value):

@@ -26,8 +26,8 @@ _ALIGNED = 64  # bytes, of vectors
 _WIDEST_BATCH = 64  # sets
 
 
-class Compiled:
-    """The library and the self-test made from NAME.h, NAME.c and NAME_selftest.c; usable while `compiled` is open.
+class CompiledLibrary:
+    """The library and the self-test made from NAME.h, NAME.c and NAME_selftest.c; usable while `compile_files` is open.
 
     A library has values at any tau, or a `model` of parameters, which has them, or a `state` that takes loads step by
     step. Its numbers are of the type `real`.
@@ -139,7 +139,7 @@ class Compiled:
 class CompiledModel:
     """A model in memory of its own; `status` is what the function returned that made it."""
 
-    def __init__(self, program: Compiled, model: NDArray[np.uint8], status: int) -> None:
+    def __init__(self, program: CompiledLibrary, model: NDArray[np.uint8], status: int) -> None:
         self._program, self._model, self.status = program, model, status
 
     @property
@@ -169,7 +169,7 @@ class CompiledModel:
 class CompiledStream:
     """A state of a stream, which goes on step by step."""
 
-    def __init__(self, program: Compiled, state: NDArray[np.uint8]) -> None:
+    def __init__(self, program: CompiledLibrary, state: NDArray[np.uint8]) -> None:
         self._program, self._state, self.status = program, state, 0
         number = program.number
         self._step = program.function("step", [_WHERE, number, _WHERE, _WHERE])
@@ -191,12 +191,12 @@ class CompiledStream:
 
 
 @contextmanager
-def compiled(
+def compile_files(
     files: Mapping[str, str],
     outputs: int,
     real: type[np.floating[Any]] = np.float64,
     flags: Sequence[str] = FLAGS,
-) -> Iterator[Compiled]:
+) -> Iterator[CompiledLibrary]:
     """Generated C (file name -> text) with `outputs` outputs, compiled in a directory that goes when this is closed.
 
     Numbers are of the type `real`. There need not be a self-test. CompilerError where there is no compiler, or where it
@@ -218,10 +218,10 @@ def compiled(
         chosen.run(["-fPIC", "-shared", "made.o", "sizes.c", "-o", "library.so", "-lm"], folder)
         if f"{name}_selftest.c" in files:
             chosen.run([*flags, "made.o", f"{name}_selftest.c", "-o", "selftest", "-lm"], folder)
-        yield Compiled(folder / "library.so", folder / "selftest", name, outputs, int(declared[1]), real)
+        yield CompiledLibrary(folder / "library.so", folder / "selftest", name, outputs, int(declared[1]), real)
 
 
-def imported(text: str, name: str) -> ModuleType:
+def import_text(text: str, name: str) -> ModuleType:
     """Generated Python as a module."""
     with TemporaryDirectory() as directory:
         path = Path(directory, f"{name}.py")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.support.generated import files
-from wavesym.running.compiled import compiled, imported
+from wavesym.running.compilation import compile_files, import_text
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene, lower
 
@@ -26,8 +26,8 @@ def made():
 
 def test_c_and_numpy_give_the_same(made):
     taus = [0.0, 0.25, 0.5, 1.7, 4.0, -1.0, 4.1, math.nan]
-    module = imported(made["small.py"], "small")
-    with compiled(made, len(OUTPUTS)) as program:
+    module = import_text(made["small.py"], "small")
+    with compile_files(made, len(OUTPUTS)) as program:
         values = program(taus)
         assert program.names == module.OUTPUTS == OUTPUTS
         assert program.selftest() == 0
@@ -39,7 +39,7 @@ def test_c_and_numpy_give_the_same(made):
 
 
 def test_sample_is_eval_on_a_grid(made):
-    with compiled(made, len(OUTPUTS)) as program:
+    with compile_files(made, len(OUTPUTS)) as program:
         status, values = program.sample(0.1, 0.3, 10)
         np.testing.assert_array_equal(values, program([0.1 + k * 0.3 for k in range(10)]))
         assert status == 0
@@ -53,7 +53,7 @@ def test_the_self_test_can_fail(made):
     source = made["small.c"]
     changed = source.replace("return sum;", "return sum + 1e-9;", 1)
     assert changed != source
-    with compiled({**made, "small.c": changed}, len(OUTPUTS)) as program:
+    with compile_files({**made, "small.c": changed}, len(OUTPUTS)) as program:
         assert program.selftest() == 1
 
 
@@ -63,6 +63,6 @@ def test_the_self_test_can_fail(made):
 def test_a_warning_is_an_error(made, flaw):
     compiler()
     flawed = {**made, "small.c": f"{made['small.c']}\n{flaw}\n"}
-    with pytest.raises(CompilerError, match=r"does not accept.*small\.c") as error, compiled(flawed, len(OUTPUTS)):
+    with pytest.raises(CompilerError, match=r"does not accept.*small\.c") as error, compile_files(flawed, len(OUTPUTS)):
         pass
     assert "\n" not in str(error.value)
