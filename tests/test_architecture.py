@@ -131,12 +131,12 @@ def test_an_arrow_that_runs_up_is_seen(room: str, source: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("room", "module"), [("joints", "tables.ball"), ("contacts", "motion"), ("modes", "joints.joint")]
+    ("room", "module"), [("joints", "tables.ball"), ("contacts", "motion"), ("modes", "joints.joint_law")]
 )
 def test_an_arrow_that_runs_up_in_exact_is_seen(room: str, module: str) -> None:
     found = [
         (f"exact/{room}/file.py", "exact", f"wavesym.exact.{module}"),
-        ("exact/field.py", "exact", "wavesym.exact.joints.joint"),
+        ("exact/field.py", "exact", "wavesym.exact.joints.joint_law"),
     ]
     assert {name for name, _ in against(EXACT, within_exact(iter(found)))} == {room}
 

@@ -19,7 +19,7 @@ from wavesym.derivation.numbers import symbol
 from wavesym.documents.derivation.joint_kinds import isolate_joint, kinds, values
 from wavesym.documents.derivation.network_statement import MOST_SYMBOLIC, network_statement, symbolic_polynomial
 from wavesym.documents.derivation.notation import Text
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.tables.joint_response import joint_polynomial
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.ratio import Ring

@@ -12,7 +12,7 @@ import pytest
 import wavesym
 from wavesym.errors import WavesymError
 from wavesym.exact.arrivals import arrivals, identically_zero
-from wavesym.exact.joints.joint import JointMotion
+from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.exact.reference import Reference
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import attempt

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wavesym.exact.joints.enclosure import STILL, Enclosure
-from wavesym.exact.joints.joint import JointLaw, JointMotion
+from wavesym.exact.joints.joint_law import JointLaw
+from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.mechanics.network import Bar, Link, Network, Point
 
 SMALL = st.fractions(0, 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wavesym.derivation.increments import start
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.tables.joint_response import (
     JointResponse,
     joint_polynomial,

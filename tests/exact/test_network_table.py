@@ -22,7 +22,7 @@ from wavesym.derivation.increments import Increment, combine
 from wavesym.derivation.table import Function, full_table
 from wavesym.documents.named_table import named_table
 from wavesym.errors import CostError, UnservedError
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.tables.ball import Balls, segments
 from wavesym.exact.tables.network_joints import NetworkJoints
 from wavesym.exact.tables.network_table import NetworkTable, RuledNetwork, network_table
@@ -259,7 +259,7 @@ def test_a_rod_end_of_another_law_is_seen(place: str, monkeypatch: pytest.Monkey
 
     true = joint_rule()
     wrong = true._replace(**{place: (getattr(true, place)[0], 3 * getattr(true, place)[1])})
-    monkeypatch.setattr("wavesym.exact.joints.joint.joint_rule", lambda: wrong)
+    monkeypatch.setattr("wavesym.exact.joints.joint_law.joint_rule", lambda: wrong)
     assert faulty(STEPPED, {})
 
 

@@ -15,7 +15,8 @@ from wavesym.exact.contacts.events import events
 from wavesym.exact.contacts.search import Search
 from wavesym.exact.joints.enclosure import ORDER, Onset, combine
 from wavesym.exact.joints.exact_motion import onsets
-from wavesym.exact.joints.joint import JointLaw, motion_series
+from wavesym.exact.joints.joint_law import JointLaw
+from wavesym.exact.joints.joint_series import motion_series
 from wavesym.exact.reference import Reference
 from wavesym.programs.pieces import pieces
 

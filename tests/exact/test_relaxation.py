@@ -16,7 +16,8 @@ from tests.support.cushioned import seeded
 from wavesym.exact.contacts import schedule as room
 from wavesym.exact.contacts.events import events, scheduled
 from wavesym.exact.joints.enclosure import Enclosure
-from wavesym.exact.joints.joint import JointLaw, JointMotion
+from wavesym.exact.joints.joint_law import JointLaw
+from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.exact.joints.relaxation import Relaxation
 from wavesym.scene import Scene, lower
 

@@ -16,7 +16,7 @@ from tests.exact.test_chain_truth import missed, wrong_values
 from wavesym.errors import CostError
 from wavesym.exact.breakpoints import MOST_BREAKPOINTS, Breakpoints
 from wavesym.exact.contacts.events import events
-from wavesym.exact.joints.joint import SWING, JointLaw
+from wavesym.exact.joints.joint_law import SWING, JointLaw
 from wavesym.exact.motion import Motion
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model

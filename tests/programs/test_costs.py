@@ -107,7 +107,7 @@ def test_a_building_watched_for_20_is_refused_nothing(idle):
 def test_values_far_out_are_refused_before_the_first(until, idle, monkeypatch):
     """Three unequal shafts lose bits in proportion to the time: their waves would fill the memory."""
     monkeypatch.setattr(motion, "NetworkWaves", real_waves)
-    monkeypatch.setattr("wavesym.exact.joints.joint.JointMotion.move", begun)
+    monkeypatch.setattr("wavesym.exact.joints.joint_motion.JointMotion.move", begun)
     with pytest.raises(CostError, match=r"^output"):
         Reference(lower(drive([1, "1/2", "1/3"], [1, 2, 3, 4], until))).values([1.0 * k for k in range(1001)])
 

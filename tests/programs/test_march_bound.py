@@ -16,7 +16,7 @@ from tests.support.drives import drive, every, exact, small
 from tests.support.marches import all_windows, apart, energies, energy_of, missed, missed_at, squared
 from tests.support.rounded import Rounded
 from wavesym.errors import WavesymError
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.motion import Motion
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point

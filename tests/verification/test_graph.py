@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flint import fmpq
 
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Joint, Network

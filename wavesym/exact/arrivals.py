@@ -25,7 +25,7 @@ from math import factorial
 from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
 
 from wavesym.derivation.exact_rule import joint_rule
-from wavesym.exact.joints.joint import JointLaw, joint_ends
+from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End

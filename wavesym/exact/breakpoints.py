@@ -23,7 +23,7 @@ from flint import fmpq
 from wavesym.errors import CostError
 from wavesym.exact.contacts.events import scheduled
 from wavesym.exact.joints.fronts import front_sources, front_times
-from wavesym.exact.joints.joint import SWING, JointLaw
+from wavesym.exact.joints.joint_law import SWING, JointLaw
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model

@@ -15,7 +15,7 @@ from wavesym.errors import CostError, UnservedError
 from wavesym.exact.arrivals import smooth_starts
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.joints.enclosure import STILL, Enclosure, shift, weighted_sum
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.jumps import refuse_jumps
 from wavesym.exact.joints.network_waves import LoadPolynomial, NetworkWaves, Waves
 from wavesym.exact.tables.ball import Segment

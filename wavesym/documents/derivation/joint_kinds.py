@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.mechanics.network import Bar, Joint, Link, Network, Point
 from wavesym.numbers.ratio import Ratio, Ring
 

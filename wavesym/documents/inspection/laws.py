@@ -12,7 +12,7 @@ from wavesym.documents.inspection.model import light_cone
 from wavesym.documents.inspection.section import Display, Facts, Listing, Plain, Section
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.breakpoints import Breakpoints
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.tables.joint_response import joint_polynomial, polynomial_text, rates
 from wavesym.exact.tables.network_joints import MOST_POINTS
 from wavesym.mechanics.chain import Chain

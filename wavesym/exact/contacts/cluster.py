@@ -13,7 +13,7 @@ from itertools import chain, combinations
 from flint import fmpq
 
 from wavesym.errors import WavesymError
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.relaxation import Relaxation
 
 Closed = frozenset[int]

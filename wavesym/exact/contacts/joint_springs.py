@@ -11,7 +11,7 @@ from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding
 from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, sliding_sign
 from wavesym.exact.contacts.springs import CornerSpring, SpringState, acting_motion, idle_motion, yielding_motion
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, Terms, add_terms, scale_terms
-from wavesym.exact.joints.joint import JointMotion
+from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.mechanics.network import Network
 
 Displacements = Mapping[int, fmpq_poly] | JointMotion

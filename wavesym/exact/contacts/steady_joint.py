@@ -20,7 +20,8 @@ from wavesym.exact.contacts.joint_springs import JointSprings
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
 from wavesym.exact.joints.enclosure import STILL, UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
-from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
+from wavesym.exact.joints.joint_law import JointLaw, forces_on, joint_ends, outgoing_terms, scatter
+from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.exact.joints.network_waves import LoadPolynomial
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network

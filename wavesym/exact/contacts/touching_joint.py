@@ -18,7 +18,7 @@ from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, subsets
 from wavesym.exact.contacts.joint_stretch import JointStretch
 from wavesym.exact.contacts.steady_joint import SteadyJoint, group_forces, prescribed_terms, rate_terms, series_terms
 from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, one_at_each_instant, scale_terms, with_bounds
-from wavesym.exact.joints.joint import JointLaw, scatter
+from wavesym.exact.joints.joint_law import JointLaw, scatter
 
 _ONE = fmpq(1)
 _SLACK = fmpq(1, 2**20)

@@ -15,7 +15,8 @@ from math import factorial, inf
 from flint import arb, fmpq, fmpq_poly
 
 from wavesym.exact.joints.enclosure import ORDER, Onset
-from wavesym.exact.joints.joint import JointLaw, motion_series
+from wavesym.exact.joints.joint_law import JointLaw
+from wavesym.exact.joints.joint_series import motion_series
 
 # powers beyond those of what acts, in which a motion that is a polynomial must have come to its end
 _MORE = 5

@@ -15,7 +15,7 @@ from flint import fmpq
 
 from wavesym.derivation.exact_rule import joint_rule
 from wavesym.errors import WavesymError
-from wavesym.exact.joints.joint import JointLaw, joint_ends
+from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model

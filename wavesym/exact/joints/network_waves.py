@@ -19,7 +19,8 @@ from wavesym.exact.joints.enclosure import (
     shorten,
     weighted_sum,
 )
-from wavesym.exact.joints.joint import JointLaw, JointMotion, forces_on, joint_ends, outgoing_terms, scatter
+from wavesym.exact.joints.joint_law import JointLaw, forces_on, joint_ends, outgoing_terms, scatter
+from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import End, Joint, Network
 

@@ -28,7 +28,8 @@ from typing import cast
 
 from flint import acb, arb, arb_mat, ctx, fmpq, fmpq_mat
 
-from wavesym.exact.joints.joint import JointLaw, Powers
+from wavesym.exact.joints.joint_law import JointLaw
+from wavesym.exact.joints.joint_series import Powers
 
 _APART = 8  # fast rates are so many times the slow ones, at least
 _OSCILLATES = 8  # and at most so many times as fast as they decay

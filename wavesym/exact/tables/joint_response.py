@@ -20,7 +20,7 @@ from flint import arb, ctx, fmpq, fmpq_poly
 from wavesym.derivation.exact_rule import factor_weights
 from wavesym.derivation.increments import Increment, add, solve, trim
 from wavesym.derivation.rules import Weights
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 
 Matrix = Mapping[tuple[int, int], fmpq]
 """Entries by (moved point, pushed point); those that are 0 are left out."""

@@ -8,7 +8,7 @@ from flint import fmpq
 
 from wavesym.derivation.increments import Increment, add
 from wavesym.errors import UnservedError
-from wavesym.exact.joints.joint import JointEnd, JointLaw, joint_ends
+from wavesym.exact.joints.joint_law import JointEnd, JointLaw, joint_ends
 from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, polynomial_text, rates
 from wavesym.mechanics.network import Network, Point
 

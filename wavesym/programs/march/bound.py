@@ -33,7 +33,7 @@ from flint import fmpq, fmpq_mat
 from numpy.typing import NDArray
 
 from wavesym.exact.arrivals import identically_zero
-from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.losses import Losses

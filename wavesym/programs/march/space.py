@@ -21,7 +21,7 @@ import numpy as np
 from flint import fmpq, fmpq_mat
 from numpy.typing import NDArray
 
-from wavesym.exact.joints.joint import JointLaw, joint_ends
+from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.mechanics.network import Joint, Network
 from wavesym.numbers.doubles import nearest
 
