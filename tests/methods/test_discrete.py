@@ -11,7 +11,7 @@ from wavesym.mechanics.damping import Damping
 from wavesym.methods.advice import springs
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.problem import problem_of
+from wavesym.methods.network_problem import problem_of
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request

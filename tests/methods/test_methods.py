@@ -12,7 +12,7 @@ from wavesym.api import evaluator
 from wavesym.exact.reference import Reference
 from wavesym.methods import characteristics, differences, elements, laplace
 from wavesym.methods.catalogue import METHODS
-from wavesym.methods.problem import problem_of
+from wavesym.methods.network_problem import problem_of
 from wavesym.scene import Scene, lower
 
 

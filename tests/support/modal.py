@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 
 from wavesym.methods.elements import Elements
-from wavesym.methods.problem import undamped_problem
+from wavesym.methods.network_problem import undamped_problem
 from wavesym.scene import Scene, lower
 
 

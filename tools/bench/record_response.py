@@ -13,7 +13,7 @@ from wavesym.lab.timing import medians
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.problem import problem_of
+from wavesym.methods.network_problem import problem_of
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower

@@ -12,7 +12,8 @@ from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.problem import Array, problem_of
+from wavesym.methods.network_problem import problem_of
+from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import attempt, choose
 from wavesym.programs.making import program

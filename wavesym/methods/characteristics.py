@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
-from wavesym.methods.problem import Array, Evaluate, Method, Problem, gridded_problem
+from wavesym.methods.network_problem import gridded_problem
+from wavesym.methods.problem import Array, Evaluate, Method, Problem
 from wavesym.methods.quadrature import gauss, lagrange
 from wavesym.numbers.doubles import fraction
 from wavesym.running.native import FAST, address, library

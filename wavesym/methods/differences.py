@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.elements import FEWEST, interpolate_readings, stencil
-from wavesym.methods.problem import Array, Evaluate, Method, Problem, gridded_problem
+from wavesym.methods.network_problem import gridded_problem
+from wavesym.methods.problem import Array, Evaluate, Method, Problem
 
 Places = NDArray[np.int_]
 

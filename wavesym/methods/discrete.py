@@ -14,8 +14,9 @@ import numpy as np
 from wavesym.errors import UnservedError
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.elements import Elements
+from wavesym.methods.network_problem import problem_of
 from wavesym.methods.oscillators import DERIVATIVES, KEPT, condense
-from wavesym.methods.problem import Array, Evaluate, Method, Problem, problem_of
+from wavesym.methods.problem import Array, Evaluate, Method, Problem
 from wavesym.methods.stepping import Systems, step_systems
 from wavesym.numbers.doubles import fraction, nearest
 

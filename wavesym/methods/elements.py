@@ -16,7 +16,8 @@ from scipy.sparse import csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from wavesym.mechanics.gauge import Gauge
-from wavesym.methods.problem import Array, Evaluate, Method, Problem, undamped_problem
+from wavesym.methods.network_problem import undamped_problem
+from wavesym.methods.problem import Array, Evaluate, Method, Problem
 from wavesym.numbers.doubles import fraction
 
 FEWEST = 4

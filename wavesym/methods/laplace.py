@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from scipy.signal import czt
 
 from wavesym.mechanics.gauge import Gauge
-from wavesym.methods.problem import Array, Evaluate, Method, Problem, undamped_problem
+from wavesym.methods.network_problem import undamped_problem
+from wavesym.methods.problem import Array, Evaluate, Method, Problem
 from wavesym.numbers.doubles import fraction
 
 _PERIODS = 2.0  # T, in horizons

@@ -13,24 +13,21 @@ here, and the integrators of `verify`: nothing knows of joints, waves or their l
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
-from typing import TypeVar
 
 import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import UnservedError
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import fraction, nearest, not_below, rational
+from wavesym.numbers.doubles import nearest, not_below, rational
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]
@@ -38,9 +35,6 @@ Evaluate = Callable[[Array], Array]
 
 LOAD_TERMS = 3
 """Loads are polynomials in tau of at most this many terms: a ramp of acceleration is a parabola of ground velocity."""
-
-# a grid of steps that all delays are multiples of has at most so many in the longest
-_MOST_STEPS = 200
 
 
 @dataclass(frozen=True)
@@ -245,9 +239,6 @@ class Problem:
         return np.asarray(total)
 
 
-Stated = TypeVar("Stated", bound=Problem)
-
-
 @dataclass(frozen=True)
 class Method:
     """Another method. `solve` takes a problem and a resolution, and does what a new set of parameters needs.
@@ -275,125 +266,6 @@ class Method:
         """
         evaluate = self.solve(problem, resolution)
         return lambda taus: problem.outputs(evaluate(taus), taus)
-
-
-def network_problem(model: Model, kind: type[Stated]) -> Stated:
-    """State the problem of a model, contacts and modal damping included, as a `kind` of Problem."""
-    network = model.network
-    points, bars = network.points, network.bars
-    damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
-    gaps, parting = [], []
-    for link in network.links:
-        if link.has_corner and not link.contact:
-            raise UnservedError(f"system: {link.changes}, which integrations do not support; take `run`")
-        pair = np.zeros(len(points))
-        pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
-        if link.contact:
-            gaps.append(nearest(link.gap))
-            parting.append(pair)
-        else:
-            damping = damping + nearest(link.damping) * np.outer(pair, pair)
-            stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
-    events = tuple(_load_events(model))
-    velocity = np.array([nearest(_start_velocity(network, number)) for number in range(len(points))])
-    prescribed = tuple(number for number, point in enumerate(points) if point.motion)
-    for number in prescribed:
-        velocity[number] = sum(event.coefficients[0] for event in events if event.point == number and event.time == 0)
-    return kind(
-        mass=_numbers(points, "mass"),
-        damping=damping,
-        stiffness=stiffness,
-        velocity=velocity,
-        prescribed=prescribed,
-        ground=next((number for number in prescribed if points[number].motion != "fixed"), 0),
-        ends=np.array([(bar.left, bar.right) for bar in bars], dtype=int).reshape(-1, 2),
-        ratios=np.array([[nearest(ratio) for ratio in bar.ratios] for bar in bars]).reshape(-1, 2),
-        delays=tuple(fraction(bar.delay) for bar in bars),
-        speed=_numbers(bars, "speed"),
-        impedance=_numbers(bars, "impedance"),
-        start_velocity=_numbers(bars, "velocity"),
-        start_strain=_numbers(bars, "strain"),
-        gaps=np.array(gaps),
-        parting=np.array(parting).reshape(-1, len(points)),
-        events=events,
-        probes=model.probes,
-        until=nearest(model.until),
-        modal=model.damping,
-    )
-
-
-def problem_of(model: Model) -> Problem:
-    """State the problem of a model without contacts, modal damping included.
-
-    Raises:
-        UnservedError: contacts open and close.
-    """
-    if any(link.contact for link in model.network.links):
-        raise UnservedError(
-            "system: a contact that opens and closes is not supported by other methods; take pieces or `run`"
-        )
-    return network_problem(model, Problem)
-
-
-def undamped_problem(model: Model) -> Problem:
-    """State the problem of a model for methods that know no modes, and have no accelerations.
-
-    Raises:
-        UnservedError: there are no rods, contacts open and close, modes are damped, or what has no mass is accelerated.
-    """
-    model.refuse_damping()
-    model.network.refuse_rodless("this method", "write one")
-    problem = problem_of(model)
-    if any(reading.order > 0 for reading in problem.readings):
-        raise UnservedError("output.acceleration: other methods support no place without mass; write one with mass")
-    return problem
-
-
-def gridded_problem(model: Model) -> Problem:
-    """State the problem of a model for methods whose steps divide all delays.
-
-    Raises:
-        UnservedError: as `undamped_problem`, and where the delays have no common measure that is long enough.
-    """
-    problem = undamped_problem(model)
-    if (steps := max(problem.delays) / problem.measure) > _MOST_STEPS:
-        raise UnservedError(
-            f"system: delays of rods have a common measure of 1/{float(steps):.3g} of the longest; write lengths "
-            f"with one of 1/{_MOST_STEPS} or more"
-        )
-    return problem
-
-
-def _start_velocity(network: Network, number: int) -> fmpq:
-    """The velocity of a point at tau = 0; that of one without mass is what balances the momentum of its bars."""
-    point = network.points[number]
-    momentum = weight = fmpq(0)
-    for bar, side in network.ends_at.get(number, ()):
-        ratio, impedance = network.bars[bar].ratios[side], network.bars[bar].impedance
-        momentum += ratio * impedance * network.bars[bar].velocity
-        weight += ratio**2 * impedance
-    return momentum / weight if point.mass == 0 and weight != 0 else point.velocity
-
-
-def _load_events(model: Model) -> Iterator[LoadEvent]:
-    """The loads; for a prescribed motion its velocity, which begins as the point's own."""
-    units = {}
-    for number, point in enumerate(model.network.points):
-        if point.motion and point.velocity != 0:
-            yield LoadEvent(fraction(fmpq(0)), number, _coefficients([point.velocity]))
-        for unit in point.loads:
-            integrated = [fmpq(0), *(fmpq(c) / (k + 1) for k, c in enumerate(unit.coefficients))]
-            units[unit.source] = number, integrated if point.motion == "acceleration" else unit.coefficients
-    for load in model.loads:
-        if load.source in units:  # an impact is in the velocities
-            number, coefficients = units[load.source]
-            yield LoadEvent(fraction(load.time), number, _coefficients([load.weight * c for c in coefficients]))
-
-
-def _coefficients(exact: Sequence[fmpq]) -> tuple[float, float, float]:
-    """The coefficients of a load, as many as every load has."""
-    a, b, c = map(nearest, (*exact, *[fmpq(0)] * (LOAD_TERMS - len(exact))))
-    return a, b, c
 
 
 def output_terms(problem: Problem, probe: Probe) -> Iterator[tuple[float, Gauge]]:
@@ -448,7 +320,3 @@ def _acceleration(problem: Problem, probe: Probe) -> list[tuple[float, Gauge]]:
 
 def _at_point(quantity: str, point: int) -> Gauge:
     return Gauge(quantity, 0, fmpq(0), point)
-
-
-def _numbers(parts: Sequence[object], name: str) -> Array:
-    return np.array([nearest(getattr(part, name)) for part in parts])

@@ -18,8 +18,8 @@ from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
+from wavesym.methods.network_problem import problem_of as damped_problem
 from wavesym.methods.problem import Array
-from wavesym.methods.problem import problem_of as damped_problem
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, UndecidedError, integrate
 from wavesym.verification.differences import LATE, SpaceTimeGrid, coarsest_grid

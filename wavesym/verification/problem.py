@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.mechanics.model import Model
-from wavesym.methods.problem import Problem, network_problem
+from wavesym.methods.network_problem import network_problem
+from wavesym.methods.problem import Problem
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from wavesym.lab.atlas.scenes import atlas_scene, with_tolerance
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.problem import problem_of
+from wavesym.methods.network_problem import problem_of
 from wavesym.numbers.doubles import midpoint, nearest, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.hats.evaluator import hat_march
