@@ -102,7 +102,7 @@ class Run:
         at = (c.function, int(self.value(c.rod, here)), n - c.back)
         power = int(self.value(c.power, here))
         among = {"": lambda: {self.value(c.rate, here)}, "all": lambda: self.rates}
-        summed = among.get(c.over, lambda: self.rates - {self.own[function]})()
+        summed = among.get(c.sum_range, lambda: self.rates - {self.own[function]})()
         return sum((self.table[(*at, g, power)] for g in summed), fmpq(0))
 
 

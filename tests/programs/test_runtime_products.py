@@ -13,7 +13,7 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.making import runtime_program
 from wavesym.scene import lower
-from wavesym.targets.c.runtime import assignments, products, slopes
+from wavesym.targets.c.runtime import assignments, product_lines, slopes
 
 LINKED = wavesym.Scene(
     name="linked",
@@ -56,7 +56,7 @@ def lost(given, derived):
 
 def accepted(given, derived):
     """Whether what is multiplied on the way is a number with all its digits."""
-    sizes = np.abs(in_c(products(LAWS, LAWS.every_slope if derived else LAWS.every, DOUBLE), given))
+    sizes = np.abs(in_c(product_lines(LAWS, LAWS.every_slope if derived else LAWS.every, DOUBLE), given))
     return bool(np.all((sizes >= np.finfo(np.float64).tiny) & np.isfinite(sizes)))
 
 

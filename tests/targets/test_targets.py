@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 class Basic:
     """A language that says no more than its program's kind."""
 
-    tested = False
+    has_selftest = False
 
     def files(self, description, program):
         return {f"{description.name}.bas": f"10 PRINT {program.kernel}, {program.reference}\n"}

@@ -67,7 +67,7 @@ def struck(alpha, until, points):
     mass = 1 / Fraction(alpha)
     system = {"type": "chain", "parts": [{"mass": mass, "name": "a"}, {"rod": 1}, "fixed"]}
     motion = moved(scene(system, [{"at": "a", "times": [0], "steps": [mass]}], until, strain=[0]), until, points)
-    return lambda taus: 1 + float(alpha) * motion.at(at("strain", 0), taus)
+    return lambda taus: 1 + float(alpha) * motion.evaluate(at("strain", 0), taus)
 
 
 def solution(alpha, taus):
@@ -120,7 +120,7 @@ def test_a_jump_is_seen_from_the_right_and_nothing_before():
     )
     front = Fraction(1, 10) + Fraction(1, 3)
     first = float(front) if Fraction(float(front)) >= front else math.nextafter(float(front), 1)
-    before, after = motion.at(at("strain", Fraction(1, 3)), [math.nextafter(first, 0), first])
+    before, after = motion.evaluate(at("strain", Fraction(1, 3)), [math.nextafter(first, 0), first])
     assert before == 0
     assert after == pytest.approx(4)
 
@@ -129,7 +129,7 @@ def test_what_cannot_be_asked():
     motion = moved(DRIVE, 4.0, 8)
     for tau in (-1.0, 4.5, math.nan):
         with pytest.raises(ValueError, match="outside"):
-            motion.at(at("strain", 0), [tau])
+            motion.evaluate(at("strain", 0), [tau])
 
 
 numbers = st.sampled_from(["1/3", "1/2", "1/2", "1", "1", "3/4", "2"])

@@ -107,7 +107,10 @@ def _law_steps(family: PowerFamily, law: CoefficientLaw, at: Region) -> Iterator
     row, place = _row(family, law.function, law.rod, at)
     since, budget = (_evaluate_row(value, place, at) for value in (row.start, row.budget))
     own = law.own.jump != 0 and _of_family(family, _evaluate_row(row.node, place, at), at)
-    said = {"of": f"{law.function}_{law.rod}", "where": ", ".join(f"{name} = {value}" for name, value in at.items())}
+    said = {
+        "function": f"{law.function}_{law.rod}",
+        "where": ", ".join(f"{name} = {value}" for name, value in at.items()),
+    }
     for term in law.terms:
         other, there = _row(family, term.function, term.rod, at)
         earlier = {**at, INTERVAL: INTERVAL - term.back}
