@@ -8,6 +8,7 @@ import pytest
 import wavesym
 from wavesym.errors import CostError
 from wavesym.exact.extremes import TrueExtreme, extremes
+from wavesym.programs.modes.evaluator import modal_model
 from wavesym.programs.modes.loads import sampled_roughness
 from wavesym.results import many_records, summary
 from wavesym.results.many_records import ManyRecords, SharedModes
@@ -134,8 +135,9 @@ def test_many_records(monkeypatch):
 
     monkeypatch.setattr(many_records, "_extremes", noisy)
     values = np.array([[float(each) for each in samples] + [0.0, 0.0]])
-    records = ManyRecords(values, 0.0, 0.5, [sampled_roughness(values[0, 1:])], 1.0)
-    found = SharedModes(model, 0.5).extremes(records)
+    rough = [[sampled_roughness(values[0, 1:])]]
+    records = ManyRecords(values[:, :, None], 0.0, 0.5, rough, np.ones((1, 1)))
+    found = SharedModes(modal_model(model), 0.5).extremes(records)
     assert (found.values[0, 0, 0], found.taus[0, 0, 0]) == (0.0, 0.0)
     assert found.values[0, 0, 1] == pytest.approx(wavesym.summary(scene).outputs[0].max.value, rel=1e-4)
     assert 1e-6 < found.bounds[0] <= 1e-4

@@ -18,7 +18,7 @@ from wavesym.lab.timing import medians
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.runtime.making import sets_program
-from wavesym.running.model import RuntimeModel
+from wavesym.running.model import RuntimeModel, compiled_model
 from wavesym.scene import Scene, lower
 
 SETS, MANY = 200, 100_000
@@ -65,7 +65,7 @@ def rows(scene: Scene) -> Iterator[Sequence[str]]:
 
 
 def _model(scene: Scene) -> RuntimeModel:
-    return RuntimeModel(sets_program(lower(scene), ["kappa"]))
+    return compiled_model(sets_program(lower(scene), ["kappa"]))
 
 
 def best_known(scene: Scene, kappa: Array) -> Array:

@@ -23,7 +23,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.programs.request import PARTS
 from wavesym.programs.runtime.making import sets_program
 from wavesym.results.response import Response
-from wavesym.running.model import RuntimeModel
+from wavesym.running.model import compiled_model
 from wavesym.running.native import FAST, address, library
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import runtime_sets
@@ -155,7 +155,7 @@ def _worst(found: Array, truth: Array) -> float:
 
 def _ours(scene: Scene, each: Scene, truth: Array) -> Iterator[Sequence[str]]:
     program, kappa = sets_program(lower(scene), ["kappa"]), _kappa(each)
-    model = RuntimeModel(program)
+    model = compiled_model(program)
     (estimate,), bound = model.check(kappa=kappa).estimate, model.bounds(kappa=kappa).max()
     out, calls = np.empty(truth.shape), 20
     many, where = ctypes.c_size_t(calls), ctypes.c_void_p(address(out))
@@ -210,7 +210,7 @@ def many_rows(folder: Path) -> Iterator[Sequence[str]]:
             told = f"building to coefficients, {precision}, sets side by side, `{' '.join(flags)}`"
             yield told, f"{_MANY / seconds / 1e6:.2f} million sets/s"
     program = sets_program(lower(building), ["kappa"])
-    model = RuntimeModel(program)
+    model = compiled_model(program)
     tau = _instants(model.tau_max)
     data = model.values(tau, kappa=model.parameters["kappa"])[0] + 0.01
     kappa = model.parameters["kappa"] * np.random.default_rng(1).uniform(0.8, 1.2, (_MANY, 3))
@@ -220,14 +220,14 @@ def many_rows(folder: Path) -> Iterator[Sequence[str]]:
     drive = Scene.from_toml(folder / "d.toml").with_({"output.tolerance": "1e-6"})
     start = perf_counter()
     program = sets_program(lower(drive), ["kappa"])
-    model = RuntimeModel(program)
+    model = compiled_model(program)
     model.peaks()
     yield "drive, m = 3: generated, compiled and loaded", f"{perf_counter() - start:.2f} s"
     sets = model.parameters["kappa"] * np.linspace(0.2, 3, 200)[:, np.newaxis]
     (seconds,) = medians([partial(model.peaks, kappa=sets)])
     yield "200 kappa of it with true peaks, 1e-6", f"{1e3 * seconds:.1f} ms"
     shafts = Scene.from_toml(folder.parent / "examples" / "fit" / "shafts.toml")
-    model = RuntimeModel(sets_program(lower(shafts), ["kappa"]))
+    model = compiled_model(sets_program(lower(shafts), ["kappa"]))
     (seconds,) = medians([partial(model.gradients, _instants(model.tau_max), kappa=model.parameters["kappa"])])
     yield (
         f"a step of the fit in examples/fit: {SAMPLES} samples, their derivatives, from Python",

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from wavesym.errors import UnservedError, WavesymError
-from wavesym.programs.request import Request
+from wavesym.programs.request import OF_MODES, Request
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, sources
 
@@ -198,15 +198,19 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     Args:
         scene: what to compute.
         runtime: names of the parameters: "kappa", "inertia", "velocity", "load", or of a general chain "mass",
-            "dashpot", "spring", "impedance", "velocity", "load", those that the scene has.
+            "dashpot", "spring", "impedance", "velocity", "load", those that the scene has. Where modes are damped, or
+            where one of the first three is named: "stiffness" (of rods and springs, N/m with units), "rod_mass",
+            "damping" (ratios), "mass" (kg), "load".
 
     Returns:
-        What has `run`, `peaks`, `gradients`, `misfit` and `bounds`, compiled when they are first asked for.
+        What has `run`, `peaks`, `gradients`, `misfit` and `bounds`, compiled when they are first asked for; of modes
+        in NumPy, without gradients.
 
     Raises:
-        CompilerError: where there is no C compiler: the extra `compiler` brings one.
+        CompilerError: where there is no C compiler: the extra `compiler` brings one. Modes need none.
         WavesymError: for a scene that has not got these parameters.
         UnservedError, CostError: for one that no such program serves.
+        ToleranceError: where modes do not serve the scene's own numbers to its tolerance.
 
     >>> import wavesym
     >>> model = wavesym.model(wavesym.Scene.from_toml("drive_m1"), runtime=["kappa"])
@@ -215,12 +219,18 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     >>> model.peaks(kappa=[[0.5], [1], [2]]).max.shape
     (3, 5)
     """
+    from wavesym.programs.mode_sets.parameters import mode_parameters
     from wavesym.programs.runtime.making import sets_program
-    from wavesym.running.model import RuntimeModel
+    from wavesym.running.model import RuntimeModel, compiled_model
 
     if isinstance(runtime, str):
         raise WavesymError(f'runtime: "{runtime}" is not a list of names; write ["{runtime}"]')
-    return RuntimeModel(sets_program(lower(scene), runtime, _varied_loads(scene, runtime)))
+    lowered, loads = lower(scene), _varied_loads(scene, runtime)
+    if lowered.damping is None and OF_MODES.keys().isdisjoint(runtime):
+        return compiled_model(sets_program(lowered, runtime, loads))
+    from wavesym.running.mode_sets import ModalSets
+
+    return RuntimeModel(ModalSets(mode_parameters(lowered, runtime, loads)))
 
 
 def scene_notes(scene: Scene) -> list[str]:

@@ -155,7 +155,7 @@ class PartParameters:
     def numbers(self) -> Mapping[str, tuple[ModelParameter, ...]]:
         return {
             name: tuple(
-                ModelParameter(f"{name}_{kind}_{number}", value, f"{name} of {_describe(self.base, kind, number)}")
+                ModelParameter(f"{name}_{kind}_{number}", value, f"{name} of {describe_part(self.base, kind, number)}")
                 for (kind, number), value in parts
             )
             for name, of in _LISTS.items()
@@ -240,7 +240,7 @@ _LISTS: Mapping[str, Callable[[Network], Iterator[tuple[Part, fmpq]]]] = {
 }
 
 
-def _describe(network: Network, kind: str, number: int) -> str:
+def describe_part(network: Network, kind: str, number: int) -> str:
     """What a number belongs to."""
     if kind == "point":
         return _describe_point(network, number)

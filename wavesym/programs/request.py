@@ -25,6 +25,12 @@ SIMULATORS = ("fmu2", "fmu3")
 """Versions of FMI, of which a stream may be the one file."""
 PARTS = ("peaks", "gradients", "batch", "misfit", "bound")
 """What C with parameters at run time may have besides values and the estimate of their errors."""
+OF_MODES = {
+    "stiffness": "changes how long a wave takes through a rod",
+    "rod_mass": "changes how long a wave takes through a rod",
+    "damping": "is that of modes",
+}
+"""The parameters at run time that modes alone have, and what of them no march can take."""
 POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedance"})
 """The parameters at run time that have to be positive, and that a largest rate is about."""
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.modes.evaluator import modal_model
 from wavesym.programs.modes.loads import Roughness, scaled_roughness
 from wavesym.programs.modes.records import RecordResponse
 from wavesym.programs.modes.truncation import ModalModel
@@ -36,25 +35,35 @@ _HARDEST = 3  # records that tell how many modes all of them need
 
 @dataclass(frozen=True)
 class ManyRecords:
-    """Records for a model with one load: `samples` (records, n) as the model takes them, the first of them 0 at tau =
-    `begin`, and `spacing` apart; `rough` are theirs, of samples 1 apart and `factor` times smaller."""
+    """Records of the loads of a model: `samples` (records, n, loads) as the model takes them, the first of them 0 at
+    tau = `begin`, and `spacing` apart; `rough` are those of each record and load, of samples 1 apart and `factors`
+    (records, loads) times smaller."""
 
     samples: Numbers
     begin: float
     spacing: float
-    rough: Sequence[Roughness]
-    factor: float
+    rough: Sequence[Sequence[Roughness]]
+    factors: Numbers
 
     def some(self, which: Sequence[int]) -> ManyRecords:
         """Those of them."""
-        rough = [self.rough[k] for k in which]
-        return ManyRecords(self.samples[list(which)], self.begin, self.spacing, rough, self.factor)
+        rough, rows = [self.rough[k] for k in which], list(which)
+        return ManyRecords(self.samples[rows], self.begin, self.spacing, rough, self.factors[rows])
+
+    def roughness(self, record: int, until: float) -> list[Roughness]:
+        """Those of the loads of a record, as the model takes them, by tau = `until`."""
+        return [
+            scaled_roughness(rough, self.begin, self.spacing, factor, until)
+            for rough, factor in zip(self.rough[record], self.factors[record].tolist(), strict=True)
+        ]
 
     @property
     def hardest(self) -> ManyRecords:
         """Those that are likely to need most modes: the roughest beside their size."""
-        sizes = np.linalg.norm(self.samples, axis=1)
-        kinks = np.array([np.linalg.norm(rough.kinks) for rough in self.rough])
+        sizes = np.linalg.norm(self.samples, axis=(1, 2))
+        kinks = np.linalg.norm(
+            [[np.linalg.norm(rough.kinks) for rough in loads] for loads in self.rough] * np.abs(self.factors), axis=1
+        )
         rough = np.divide(kinks, sizes, out=np.zeros_like(kinks), where=sizes > 0)
         return self.some(np.argsort(-rough, kind="stable")[:_HARDEST].tolist())
 
@@ -75,13 +84,13 @@ class RecordedExtremes:
 
 
 class SharedModes:
-    """The modes of a model under records with this spacing: its own load is one of them, or any that does not jump.
+    """The modes of a model under records with this spacing: its own loads are one of them, or any that do not jump.
 
     UnservedError for what modes do not serve.
     """
 
-    def __init__(self, model: Model, spacing: float) -> None:
-        self._chain, self._spacing = modal_model(model), spacing
+    def __init__(self, chain: ModalModel[Any], spacing: float) -> None:
+        self._chain, self._spacing = chain, spacing
         self._known: dict[int, _Modes] = {}
         self._modes(self._chain.fewest)
 
@@ -135,9 +144,8 @@ def _by_modes(modes: _Modes, records: ManyRecords) -> RecordedExtremes:
     values, taus = (np.concatenate(each) for each in zip(*found, strict=True))
     largest = np.abs(values).max(axis=2)
     horizon = model.horizon()
-    felt = (scaled_roughness(rough, records.begin, records.spacing, records.factor, horizon) for rough in records.rough)
-    errors = np.array([chain.errors(known, count, [rough]) for rough in felt])
-    errors += _ROUNDING * largest * np.sqrt(records.samples.shape[1])
+    errors = np.array([chain.errors(known, count, records.roughness(k, horizon)) for k in range(len(records.samples))])
+    errors += (_ROUNDING * np.sqrt(records.samples.shape[1]) + chain.looseness(count)) * largest
     errors[:, np.array(chain.zero_outputs)] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         bounds = np.where(errors > 0, errors / np.maximum(largest - errors, 0.0), 0.0).max(axis=1, initial=0.0)
@@ -147,14 +155,14 @@ def _by_modes(modes: _Modes, records: ManyRecords) -> RecordedExtremes:
 
 def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) -> Numbers:
     """Values at tau, (records, outputs, instants)."""
-    count, n = records.samples.shape
+    count, n, _ = records.samples.shape
     made = np.zeros((count, len(response.system.direct), len(taus)))
     (felt,) = np.nonzero(taus > records.begin)
     since = taus - records.begin
     step = np.clip((since / records.spacing).astype(np.intp), 0, n - 2)
     later = np.maximum(since - step * records.spacing, 0.0)
     for first in range(0, count, _RECORDS):
-        samples = records.samples[first : first + _RECORDS, :, None]
+        samples = records.samples[first : first + _RECORDS]
         known, rows = response.known(samples), np.arange(len(samples))
         for begin in range(0, len(felt), _RECORDS):
             at = felt[begin : begin + _RECORDS]
@@ -164,30 +172,30 @@ def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) ->
     return made
 
 
-def _extremes(response: RecordResponse, model: Model, begin: float, records: Numbers) -> tuple[Numbers, Numbers]:
-    """Values and tau, (records, outputs, 2)."""
-    samples = records[:, :, None]
+def _extremes(response: RecordResponse, model: Model, begin: float, samples: Numbers) -> tuple[Numbers, Numbers]:
+    """Values and tau, (records, outputs, 2), under samples (records, n, loads)."""
+    records, n, _ = samples.shape
     end = (model.horizon() - begin) / response.spacing  # in steps
     known, outputs = response.known(samples), len(model.probes)
-    each = max(1, _AT_ONCE // (records.shape[1] * _PARTS * outputs))
+    each = max(1, _AT_ONCE // (n * _PARTS * outputs))
     parts = []
-    for first in range(0, len(records), each):
+    for first in range(0, records, each):
         here = slice(first, first + each)
         number, *rest = _candidates(response.in_blocks(known[here], samples[here]), end)
         parts.append((number + first, *rest))
     # and of all of them the last step, which may be a part of one
-    if (whole := _whole(end)) < end - 1e-9 and whole < records.shape[1] - 1:
-        number, output, side = (each.ravel() for each in np.indices((len(records), outputs, 2)))
+    if (whole := _whole(end)) < end - 1e-9 and whole < n - 1:
+        number, output, side = (each.ravel() for each in np.indices((records, outputs, 2)))
         parts.append((number, output, side, np.full(len(number), whole)))
     record, output, side, step = (np.concatenate(each) for each in zip(*parts, strict=True))
     length = response.spacing * np.where(step < whole, 1.0, end - whole)
     crossing = nearest(model.network.shortest)
     points = max(_PER_STEP, ceil(response.spacing / (crossing / _PER_CROSSING))) + 1
-    places, row = np.unique(record * records.shape[1] + step, return_inverse=True)
-    inside = response.inside(samples, known, *np.divmod(places, records.shape[1]))
+    places, row = np.unique(record * n + step, return_inverse=True)
+    inside = response.inside(samples, known, *np.divmod(places, n))
     group = (record * outputs + output) * 2 + side
     best, when = tops(response, SuspectSteps(group, step, output, 2.0 * side - 1.0, length, inside[row]), points)
-    values, taus = np.zeros((len(records), outputs, 2)), np.full((len(records), outputs, 2), begin)
+    values, taus = np.zeros((records, outputs, 2)), np.full((records, outputs, 2), begin)
     which = np.unique(group)
     values.ravel()[which] = best
     taus.ravel()[which] += when

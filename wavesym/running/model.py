@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,11 @@ from wavesym.programs.program import Program
 from wavesym.results.horizon import check_horizon
 from wavesym.results.near_zero import is_near_zero, zero_within
 from wavesym.running.labels import SetLabels
+
+if TYPE_CHECKING:
+    from wavesym.mechanics.model import Model
+    from wavesym.programs.runtime.network import RuntimeField
+    from wavesym.running.sets import FoundSets
 
 Array = NDArray[np.float64]
 
@@ -69,6 +74,31 @@ class SetGradients:
     estimates: Mapping[str, Array]
 
 
+class SetsEngine(Protocol):
+    """What computes sets of numbers of a model's `fields` until tau = `tau_max`; arrays are those of `CompiledSets`."""
+
+    fields: tuple[RuntimeField, ...]
+    model: Model
+    tau_max: float
+
+    def values(self, given: Array, tau: Array) -> FoundSets: ...
+
+    def tangents(self, given: Array, tau: Array) -> FoundSets: ...
+
+    def peaks(self, given: Array) -> FoundSets: ...
+
+    def bounds(self, given: Array) -> FoundSets: ...
+
+    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]: ...
+
+
+def compiled_model(program: Program) -> RuntimeModel:
+    """What a program with parameters at run time computes, compiled when it is first needed."""
+    from wavesym.running.sets import CompiledSets
+
+    return RuntimeModel(CompiledSets(program))
+
+
 class RuntimeModel:
     """A scene whose parameters are given when it runs.
 
@@ -79,24 +109,21 @@ class RuntimeModel:
     shapes; CompilerError where there is no C compiler.
     """
 
-    def __init__(self, program: Program) -> None:
-        from wavesym.running.sets import CompiledSets  # what compiles and computes is loaded when it is needed
-
-        laws = program.laws
-        assert laws is not None
-        self._engine = CompiledSets(program)
+    def __init__(self, engine: SetsEngine) -> None:
+        self._engine = engine
+        fields = engine.fields
         self.parameters: Mapping[str, Array] = {
-            field.name: np.array([float(value) for value in field.values]) for field in laws.fields
+            field.name: np.array([float(value) for value in field.values]) for field in fields
         }
-        self.labels: Mapping[str, tuple[str, ...]] = {field.name: field.captions for field in laws.fields}
+        self.labels: Mapping[str, tuple[str, ...]] = {field.name: field.captions for field in fields}
         """What the numbers of each field are called."""
         self.units: Mapping[str, tuple[str, ...]] = {
-            field.name: tuple(unit.text for unit in field.units) for field in laws.fields
+            field.name: tuple(unit.text for unit in field.units) for field in fields
         }
         """Their units; empty where they have none."""
-        self.outputs = tuple(output.name for output in program.outputs)
-        self.tau_max = program.tau_max
-        self._model = program.provenance.model
+        self._model = engine.model
+        self.outputs = tuple(probe.name for probe in self._model.probes)
+        self.tau_max = engine.tau_max
         clock = self._model.clock
         self.time_unit = clock.unit if clock else None
         """That of `times`; None of a scene without units, whose times are tau."""
@@ -252,7 +279,7 @@ class RuntimeModel:
     def _parameter_rows(self, parameters: Mapping[str, ArrayLike]) -> Array:
         """All fields side by side, a row for each set."""
         columns = self._fields(parameters)
-        counts = {len(values) for values in columns.values() if values.ndim == 2}
+        counts = {len(values) for values in columns.values() if values.ndim == 2} - {1}  # which is for all sets
         if len(counts) > 1:
             raise WavesymError(f"{' and '.join(map(str, sorted(counts)))} sets; write as many of each parameter")
         sets = counts.pop() if counts else 1

@@ -53,7 +53,10 @@ class CompiledSets:
 
     def __init__(self, program: Program) -> None:
         compiler()
+        laws = program.laws
+        assert laws is not None
         self._program = program
+        self.fields, self.model, self.tau_max = laws.fields, program.provenance.model, program.tau_max
         self._name = program.provenance.model.name
         self._outputs = len(program.outputs)
         self._libraries: dict[tuple[str, ...], ctypes.CDLL] = {}

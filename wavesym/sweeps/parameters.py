@@ -16,7 +16,7 @@ from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.runtime.making import sets_program
 from wavesym.results.statistics import RUNTIME_ARRAYS
-from wavesym.running.model import RuntimeModel
+from wavesym.running.model import RuntimeModel, compiled_model
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes
 from wavesym.sweeps.batches import Place
@@ -110,7 +110,7 @@ def _program(plan: SweepPlan, topology: Place, joined: Sequence[bool]) -> _Topol
         with suppress(WavesymError):
             scene, names = plan.scene(topology), _names(plan, joined)
             case, given = RuntimeCase.from_scene(scene, names), amplitudes(scene) if "load" in names else ()
-            _PROGRAMS[key] = _TopologyProgram(case, RuntimeModel(sets_program(case.model, names, given)))
+            _PROGRAMS[key] = _TopologyProgram(case, compiled_model(sets_program(case.model, names, given)))
     return _PROGRAMS[key]
 
 

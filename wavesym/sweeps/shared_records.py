@@ -16,6 +16,7 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
+from wavesym.programs.modes.evaluator import modal_model
 from wavesym.programs.modes.loads import Roughness, sampled_roughness
 from wavesym.records.load import RecordedLoad
 from wavesym.results.many_records import ManyRecords, SharedModes
@@ -86,7 +87,9 @@ def _structure(plan: SweepPlan, place: Place, jumps: bool, head: str) -> _Struct
             )
             model, (load,) = lower(scene), scene.load
             if isinstance(load, RecordedLoad):
-                _STRUCTURES[name] = _Structure(model, load, SharedModes(model, nearest(rational(load.step))))
+                _STRUCTURES[name] = _Structure(
+                    model, load, SharedModes(modal_model(model), nearest(rational(load.step)))
+                )
     return _STRUCTURES[name]
 
 
@@ -105,14 +108,14 @@ def _share_structure(
     if begin >= model.until:
         return
     steps = ceil(Fraction(int((span := (model.until - begin) / h).p), int(span.q)))
-    samples = np.zeros((len(fit), steps + 2))
+    samples = np.zeros((len(fit), steps + 2, 1))
     for row, (_, each) in zip(samples, fit, strict=True):
         given = each.values if late else each.values[1:]
         count = min(len(given), steps + 1)
-        row[1 : count + 1] = given[:count]
+        row[1 : count + 1, 0] = given[:count]
     factor = nearest(rational(load.record.samples[1] * load.scale))
-    rough = [each.late if late else each.early for _, each in fit]
-    many = ManyRecords(factor * samples, nearest(begin), nearest(h), rough, factor)
+    rough = [[each.late if late else each.early] for _, each in fit]
+    many = ManyRecords(factor * samples, nearest(begin), nearest(h), rough, np.full((len(fit), 1), factor))
     found = structure.modes.extremes(many, instants(model, plan.histories) if plan.histories else ())
     rows, of_all = output_rows(plan, model), of_model(plan, model)
     for k, (place, _) in enumerate(fit):

@@ -128,11 +128,8 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
 def searched(stiffness: Stiffness, count: int) -> Vector:
     """The first frequencies in doubles, by bisection of all at once."""
     n = np.arange(1, count + 1)
-    if stiffness.modes is None:
-        high = (n + len(stiffness.network.bars)) * np.pi / float(stiffness.delay)
-    else:
-        high = np.full(count, stiffness.highest)
-    low = np.zeros(count)
+    high = stiffness.above(n)
+    low = np.zeros_like(high)
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
         below = stiffness.count_below(middle) < n

@@ -137,12 +137,12 @@ def moved_mass(
     # (left^2 + right^2) same + 2 left right other
     same = [(t * s * s - c / w) / 2 for t, c, s in zip(law.delays, cot, csc, strict=True)]
     other = [s / w - t * c * s for t, c, s in zip(law.delays, cot, csc, strict=True)]
-    total = arb(0)
+    total: Quantity = 0
     for q, mass, weights in zip(found, law.mass, law.ends, strict=True):
         for delay, weight in weights:
             mass = mass + weight * same[delay]
-        total += mass * q * q
+        total = total + mass * q * q
     for q, parent, weights in zip(found, parents, law.bars, strict=True):
         for delay, weight in weights:
-            total += weight * other[delay] * q * found[parent or 0]
+            total = total + weight * other[delay] * q * found[parent or 0]
     return total

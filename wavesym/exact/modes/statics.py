@@ -15,17 +15,18 @@ Of a chain that nothing holds, shapes have no part in the motion without strain,
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
-from flint import arb, fmpq
+from flint import arb
 
 from wavesym.exact.modes.shape import rigid
-from wavesym.exact.modes.stiffness import Stiffness
-from wavesym.mechanics.network import End
+from wavesym.exact.modes.stiffness import Quantity, Stiffness
+from wavesym.mechanics.network import Bar, End
 
-Forces = Mapping[int, arb | fmpq]
+Forces = Mapping[int, Quantity]
 """What acts on points."""
 
 
@@ -34,14 +35,14 @@ class Shape:
     """How far points move, and their accelerations where bars are bent by them."""
 
     statics: Statics
-    points: Sequence[arb]
-    bent: Sequence[arb] | None = None
+    points: Sequence[Quantity]
+    bent: Sequence[Quantity] | None = None
 
-    def at(self, end: End) -> arb:
+    def at(self, end: End) -> Quantity:
         """How far the end of a bar moves."""
         return self.statics.at(self.points, end)
 
-    def slope(self, end: End) -> arb:
+    def slope(self, end: End) -> Quantity:
         """The strain there times the bar's speed."""
         delay = self.statics.stiffness.network.bars[end.bar].delay
         ends = End(end.bar, 0), End(end.bar, 1)
@@ -55,34 +56,38 @@ class Shape:
 
 @dataclass(frozen=True)
 class Statics:
-    """The statics of a network whose points are those of a tree, in balls of the precision that is set."""
+    """The statics of a network whose points are those of a tree, in balls of the precision that is set.
+
+    Or in what `number` makes of exact numbers.
+    """
 
     stiffness: Stiffness
+    number: Callable[[Any], Quantity] = arb
 
-    def at(self, points: Sequence[arb], end: End) -> arb:
+    def at(self, points: Sequence[Quantity], end: End) -> Quantity:
         """How far the end of a bar moves where points move so far."""
         bar = self.stiffness.network.bars[end.bar]
         return points[bar.right if end.side else bar.left] * bar.ratios[end.side]
 
     @cached_property
-    def free(self) -> list[arb] | None:
+    def free(self) -> list[Quantity] | None:
         """The motion without strain, of mass 1; None where something holds the chain."""
         found = rigid(self.stiffness.network)
         if found is None:
             return None
-        points = [arb(q) for q in found]
-        scale = self.mass(points).rsqrt()
+        points = [self.number(q) for q in found]
+        scale = self.mass(points) ** -0.5
         return [scale * q for q in points]
 
     @cached_property
-    def _springs(self) -> tuple[list[arb], list[arb]]:
+    def _springs(self) -> tuple[list[Quantity], list[Quantity]]:
         """Pivots and couplings of K where nothing moves: a bar is a spring of its impedance over its delay."""
-        law = self.stiffness.law(arb)
+        law = self.stiffness.law(self.number)
         over = [1 / delay for delay in law.delays]
-        diagonal, up = law.assembled(arb(0), over, [-each for each in over])
+        diagonal, up = law.assembled(0, over, [-each for each in over])
         return self.stiffness.pivots(diagonal, up), up
 
-    def solve(self, forces: Sequence[arb]) -> list[arb]:
+    def solve(self, forces: Sequence[Quantity]) -> list[Quantity]:
         """How far the points move under forces on them, those that are not free by nothing.
 
         Where nothing holds the chain the forces are in balance, and its root does not move.
@@ -91,39 +96,42 @@ class Statics:
         acting = [forces[point] for point in self.stiffness.points]
         return self.stiffness.point_motions(self.stiffness.substituted(pivots, up, acting, free=self.free is not None))
 
-    def inertia(self, points: Sequence[arb]) -> list[arb]:
+    def inertia(self, points: Sequence[Quantity]) -> list[Quantity]:
         """The forces on points that accelerate everything as points move, and what is between them linearly."""
         network = self.stiffness.network
         forces = [q * point.mass for q, point in zip(points, network.points, strict=True)]
         for number, bar in enumerate(network.bars):
-            share = arb(bar.impedance * bar.delay / 6)
+            share = self.number(bar.impedance * bar.delay / 6)
             ends = self.at(points, End(number, 0)), self.at(points, End(number, 1))
             forces[bar.left] += share * bar.ratios[0] * (2 * ends[0] + ends[1])
             forces[bar.right] += share * bar.ratios[1] * (ends[0] + 2 * ends[1])
         return forces
 
-    def mass(self, points: Sequence[arb], broken: Mapping[End, arb] | None = None) -> arb:
+    def mass(self, points: Sequence[Quantity], broken: Mapping[End, Quantity] | None = None) -> Quantity:
         """The sum of M q^2, and of the integrals of Z u^2; ends that are `broken` move so much further than points."""
         network = self.stiffness.network
-        total = sum((q * q * point.mass for q, point in zip(points, network.points, strict=True)), arb(0))
+        total = sum((q * q * point.mass for q, point in zip(points, network.points, strict=True)), self.number(0))
         for number, bar in enumerate(network.bars):
-            a, b = (self.at(points, end) + (broken or {}).get(end, arb(0)) for end in (End(number, 0), End(number, 1)))
-            total += arb(bar.impedance * bar.delay / 3) * (a * a + a * b + b * b)
+            a, b = (self.at(points, end) + (broken or {}).get(end, 0) for end in (End(number, 0), End(number, 1)))
+            total += self.number(bar.impedance * bar.delay / 3) * (a * a + a * b + b * b)
         return total
 
     def imposed(self, point: int) -> Shape:
         """The shape that the unit motion of a point imposes that moves as it is told."""
-        over = {bar.delay: 1 / arb(bar.delay) for bar in self.stiffness.network.bars}
-        _, forces = self.stiffness.prescribed_column(point, arb, over, over)
-        moved = self.solve([forces.get(other, arb(0)) for other in range(len(self.stiffness.network.points))])
-        moved[point] = arb(1)
+
+        def over(bar: Bar) -> Quantity:
+            return 1 / self.number(bar.delay)
+
+        _, forces = self.stiffness.prescribed_column(point, self.number, over, over)
+        moved = self.solve([forces.get(other, self.number(0)) for other in range(len(self.stiffness.network.points))])
+        moved[point] = self.number(1)
         return Shape(self, moved)
 
     def under(self, forces: Forces) -> Shape:
         """The shape under forces on points."""
-        acting = [arb(0)] * len(self.stiffness.network.points)
+        acting = [self.number(0)] * len(self.stiffness.network.points)
         for point, force in forces.items():
-            acting[point] += arb(force)
+            acting[point] = acting[point] + self.number(force)
         if self.free is None:
             return Shape(self, self.solve(acting))
         along = self._along(acting)
@@ -136,31 +144,31 @@ class Statics:
         """The shape that lags behind an imposed one when that has the acceleration 1."""
         return Shape(self, self.solve([-force for force in self.inertia(imposed.points)]), imposed.points)
 
-    def broken(self, end: End) -> arb:
+    def broken(self, end: End) -> Quantity:
         """The mass of the shape with a unit break at the end of a bar: the sum of (slope there)^2 / w^4."""
         bar = self.stiffness.network.bars[end.bar]
-        acting = [arb(0)] * len(self.stiffness.network.points)
-        acting[bar.left] -= arb(bar.ratios[0] / bar.delay)
-        acting[bar.right] += arb(bar.ratios[1] / bar.delay)
+        acting = [self.number(0)] * len(self.stiffness.network.points)
+        acting[bar.left] -= self.number(bar.ratios[0] / bar.delay)
+        acting[bar.right] += self.number(bar.ratios[1] / bar.delay)
         moved = self.solve(acting)
-        gap = {end: 1 / arb(bar.impedance) * (-1 if end.side else 1)}
+        gap = {end: 1 / self.number(bar.impedance) * (-1 if end.side else 1)}
         mass = self.mass(moved, gap)
         if self.free is None:
             return mass
         here = self.at(self.free, end)  # the same all along the bar
-        part = self._along(self.inertia(moved)) + here * gap[end] * arb(bar.impedance * bar.delay / 2)
+        part = self._along(self.inertia(moved)) + here * gap[end] * self.number(bar.impedance * bar.delay / 2)
         return mass - part * part
 
-    def _along(self, forces: Sequence[arb]) -> arb:
+    def _along(self, forces: Sequence[Quantity]) -> Quantity:
         """What forces do to the motion without strain."""
         assert self.free is not None
-        return sum((force * q for force, q in zip(forces, self.free, strict=True)), arb(0))
+        return sum((force * q for force, q in zip(forces, self.free, strict=True)), self.number(0))
 
-    def _without(self, moved: Sequence[arb], bent: Sequence[arb]) -> list[arb]:
+    def _without(self, moved: Sequence[Quantity], bent: Sequence[Quantity]) -> list[Quantity]:
         """A shape without its part in the motion without strain."""
         assert self.free is not None
         part = self._along(self.inertia(moved))
         for number, bar in enumerate(self.stiffness.network.bars):
             end = End(number, 0)  # a bar that is bent by a constant a is a T^2 (x^2 - x)/2 off the line
-            part -= self.at(self.free, end) * self.at(bent, end) * arb(bar.impedance * bar.delay**3 / 12)
+            part -= self.at(self.free, end) * self.at(bent, end) * self.number(bar.impedance * bar.delay**3 / 12)
         return [q - part * r for q, r in zip(moved, self.free, strict=True)]

@@ -12,10 +12,10 @@ A dashpot adds i w times what it resists. Then K is symmetric, and frequencies a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from flint import arb, fmpq
@@ -85,6 +85,8 @@ class Stiffness:
 
     network: Network
 
+    ZERO: ClassVar[float | fmpq] = fmpq(0)  # of its network's numbers
+
     @cached_property
     def points(self) -> tuple[int, ...]:
         """The point of each row: those that are free to move, tips first, each before its parent."""
@@ -129,33 +131,39 @@ class Stiffness:
                         )
         return list(found.items())
 
-    def law(self, number: Callable[[fmpq], Quantity]) -> HarmonicLaw:
+    @cached_property
+    def delays(self) -> tuple[list[Any], list[int]]:
+        """The different delays of bars in order, and the number of that of each bar."""
+        found = sorted({bar.delay for bar in self.network.bars})
+        return found, [found.index(bar.delay) for bar in self.network.bars]
+
+    def law(self, number: Callable[[Any], Quantity]) -> HarmonicLaw:
         """Its numbers in one arithmetic."""
         network, rows = self.network, self.rows
         free = [network.points[point] for point in self.points]
-        delays = sorted({bar.delay for bar in network.bars})
-        held, across = [point.stiffness for point in free], [fmpq(0)] * len(free)
-        slowed, slowing = [point.damping for point in free], [fmpq(0)] * len(free)
-        ends, bars = [dict[int, fmpq]() for _ in free], [dict[int, fmpq]() for _ in free]
+        delays, delay_of = self.delays
+        held, across = [point.stiffness for point in free], list[Quantity]([self.ZERO] * len(free))
+        slowed, slowing = [point.damping for point in free], list[Quantity]([self.ZERO] * len(free))
+        ends, bars = [dict[int, Quantity]() for _ in free], [dict[int, Quantity]() for _ in free]
         for link in network.links:
             left, right = rows.get(link.left), rows.get(link.right)
             if left is not None:
-                held[left] += link.ratio**2 * link.stiffness
-                slowed[left] += link.ratio**2 * link.damping
+                held[left] = held[left] + link.ratio**2 * link.stiffness
+                slowed[left] = slowed[left] + link.ratio**2 * link.damping
             if right is not None:
-                held[right] += link.stiffness
-                slowed[right] += link.damping
+                held[right] = held[right] + link.stiffness
+                slowed[right] = slowed[right] + link.damping
                 if left is not None:
-                    across[min(left, right)] -= link.ratio * link.stiffness
-                    slowing[min(left, right)] -= link.ratio * link.damping
-        for bar in network.bars:
-            delay, pair = delays.index(bar.delay), (rows.get(bar.left), rows.get(bar.right))
+                    across[min(left, right)] = across[min(left, right)] - link.ratio * link.stiffness
+                    slowing[min(left, right)] = slowing[min(left, right)] - link.ratio * link.damping
+        for bar, delay in zip(network.bars, delay_of, strict=True):
+            pair = rows.get(bar.left), rows.get(bar.right)
             for row, ratio in zip(pair, bar.ratios, strict=True):
                 if row is not None:
-                    ends[row][delay] = ends[row].get(delay, fmpq(0)) + bar.impedance * ratio**2
+                    ends[row][delay] = ends[row].get(delay, self.ZERO) + bar.impedance * ratio**2
             if None not in pair:
                 row = min(row for row in pair if row is not None)
-                bars[row][delay] = bars[row].get(delay, fmpq(0)) + bar.impedance * bar.ratios[0] * bar.ratios[1]
+                bars[row][delay] = bars[row].get(delay, self.ZERO) + bar.impedance * bar.ratios[0] * bar.ratios[1]
         return HarmonicLaw(
             [number(point.mass) for point in free],
             [*map(number, held)],
@@ -165,36 +173,36 @@ class Stiffness:
             [*map(number, slowing)],
             [[(delay, number(weight)) for delay, weight in each.items()] for each in bars],
             [*map(number, delays)],
-            [sum(bar.delay == delay for bar in network.bars) for delay in delays],
+            [delay_of.count(number) for number in range(len(delays))],
         )
 
     def prescribed_column(
         self,
         point: int,
-        number: Callable[[fmpq], Quantity],
-        pulled: Mapping[fmpq, Quantity],
-        shared: Mapping[fmpq, Quantity],
+        number: Callable[[Any], Quantity],
+        pulled: Callable[[Bar], Quantity],
+        shared: Callable[[Bar], Quantity],
         rate: Quantity = None,
     ) -> tuple[Quantity, dict[int, Quantity]]:
         """What holds a point whose motion is prescribed when it moves by 1, and how that pushes the points beside it.
 
-        Of each delay `pulled` and `shared` are what a bar of impedance 1 does at that end and at its other one.
+        `pulled` and `shared` say what a bar does, were its impedance 1, at that end and at its other one.
         """
-        held, forces = number(fmpq(0)), dict[int, Quantity]()
+        held, forces = number(self.ZERO), dict[int, Quantity]()
         parts: list[Bar | Link] = [*self.network.bars, *self.network.links]
         for part in parts:
             ends = [(part.left, part.right), (part.right, part.left)]
             if isinstance(part, Bar):
                 ratios, size = part.ratios, number(part.impedance)
-                near, far = pulled[part.delay] * size, shared[part.delay] * size
+                near, far = pulled(part) * size, shared(part) * size
             else:
                 ratios = part.ratio, fmpq(1)
                 near = number(part.stiffness) if rate is None else number(part.stiffness) + rate * number(part.damping)
                 far = near
             for (here, there), ratio, other in zip(ends, ratios, reversed(ratios), strict=True):
                 if here == point:
-                    held = held + near * number(ratio * ratio)
-                    forces[there] = forces.get(there, number(fmpq(0))) + far * number(ratio * other)
+                    held = held + near * number(ratio) ** 2
+                    forces[there] = forces.get(there, number(self.ZERO)) + far * number(ratio) * number(other)
         return held, forces
 
     def orders(self, root: int) -> list[tuple[int, int, int]]:
@@ -267,12 +275,13 @@ class Stiffness:
             return None
         return sum(self.network.points[point].mass != 0 for point in self.points)
 
-    @cached_property
-    def highest(self) -> float:
-        """Above all frequencies, where there are no bars: their squares have the sum K_ii/m_i at most."""
+    def above(self, n: NDArray[np.int64]) -> Vector:
+        """Above each n-th frequency. Without bars the squares of all have the sum K_ii/m_i at most."""
+        if self.modes is None:
+            return np.asarray((n + len(self.network.bars)) * np.pi / nearest(self.delay))
         law = self.doubles
         pairs = zip(law.held, law.mass, strict=True)
-        return 2 * float(np.sqrt(sum(held / mass for held, mass in pairs if mass != 0)) or 1)
+        return np.full(len(n), 2 * float(np.sqrt(sum(held / mass for held, mass in pairs if mass != 0)) or 1))
 
     def count_below(self, w: Vector) -> NDArray[np.int64]:
         """How many frequencies lie below each w > 0, in doubles: right but for rounding."""

@@ -11,7 +11,7 @@ from wavesym.lab.atlas.attempts import truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import drive
 from wavesym.programs.runtime.making import sets_program
-from wavesym.running.model import RuntimeModel
+from wavesym.running.model import compiled_model
 from wavesym.scene import lower
 
 KAPPAS = (*(factor * Fraction(10) ** power for power in range(-3, 3) for factor in (1, 3)), Fraction(1000))
@@ -67,7 +67,7 @@ def _points(panel: str, kappa: Sequence[Fraction], until: int, x: float) -> list
     """The error with its bound, and the estimate, of a model whose own kappa is 1."""
     known = truth(drive(list(kappa), [1] * (len(kappa) + 1), until), per_unit=8)
     own = drive([Fraction(1)] * len(kappa), [1] * (len(kappa) + 1), until).with_({"output.tolerance": _TOLERANCE})
-    model = RuntimeModel(sets_program(lower(own), ["kappa"]))
+    model = compiled_model(sets_program(lower(own), ["kappa"]))
     values = np.array([float(value) for value in kappa])
     checks = model.check(kappa=values)
     (why,), (estimate,) = checks.why, checks.estimate

@@ -18,7 +18,7 @@ from wavesym.lab.chart.subjects import Subject, other_methods, reference, subjec
 from wavesym.lab.floor import floor
 from wavesym.lab.timing import medians
 from wavesym.programs.runtime.making import sets_program
-from wavesym.running.model import RuntimeModel
+from wavesym.running.model import compiled_model
 from wavesym.scene import Scene, lower
 
 NEAR = 0.02
@@ -111,7 +111,7 @@ def _again(scene: Scene, samples: int) -> list[Callable[[], object]]:
         program = sets_program(lower(scene), ["kappa"])
     except WavesymError:
         return []
-    model = RuntimeModel(program)
+    model = compiled_model(program)
     return [partial(model.run, taus(model.tau_max, samples, "double"), kappa=model.parameters["kappa"])]
 
 

@@ -159,9 +159,12 @@ class LowFrequency:
         if network.points[driver.point].motion is None:
             moved = self._under({driver.point: one * gain})
             return SlowPort(moved, moved[driver.point] * gain, 0, *self._impulse_energy({driver.point: driver.gain}))
-        pulled, shared = ({delay: pair[k] for delay, pair in self._bars.items()} for k in (0, 1))
         held, forces = self._stiffness.prescribed_column(
-            driver.point, lambda value: arb_series([value]), pulled, shared, self._s
+            driver.point,
+            lambda value: arb_series([value]),
+            lambda bar: self._bars[bar.delay][0],
+            lambda bar: self._bars[bar.delay][1],
+            self._s,
         )
         moved = [q * gain for q in self._under(forces)]
         pull = sum((forces[point] * moved[point] for point in forces if network.points[point].motion is None), one * 0)

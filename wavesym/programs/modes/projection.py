@@ -40,24 +40,24 @@ class ModalOutput:
         if self.slope:
             weight, end = self.slope
             return shape.slope(end) * weight
-        return sum((shape.points[point] * weight for point, weight in self.points.items()), arb(0))
+        return sum(shape.points[point] * weight for point, weight in self.points.items())
 
     @property
     def power(self) -> int:
         """In how high a power of 1/w^2 its squares are summed up over all modes by `total`."""
         return 2 if self.slope else 0 if self.order == 2 and self.massive else 1
 
-    def total(self, statics: Statics) -> arb:
+    def total(self, statics: Statics) -> Quantity:
         """The sum over all modes with strain of its square over w^(2 power)."""
         if self.slope:
             weight, end = self.slope
             return statics.broken(end) * weight * weight
         if self.order == 2 and self.massive:
             network, free = statics.stiffness.network, statics.free
-            total = sum((arb(b * b / network.points[point].mass) for point, b in self.points.items()), arb(0))
-            part = sum((free[point] * b for point, b in self.points.items()), arb(0)) if free else arb(0)
+            total = sum(statics.number(b * b / network.points[point].mass) for point, b in self.points.items())
+            part = sum(free[point] * b for point, b in self.points.items()) if free else 0
             return total - part * part
-        return arb(self.value(statics.under(self.points)))
+        return statics.number(self.value(statics.under(self.points)))
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ def project(
     network = pieces.network
     with ctx.workprec(_BITS):
         statics = Statics(found[0].stiffness)
-        shapes = [_shapes(statics, driver) for driver in drivers]
+        shapes = [static_shapes(statics, driver) for driver in drivers]
         share_totals = [
             (static.points[driver.point] if imposed is None else statics.mass(imposed.points)) * driver.gain**2
             for driver, (imposed, static) in zip(drivers, shapes, strict=True)
@@ -231,7 +231,7 @@ def _column(output: ModalOutput, found: Sequence[Mode]) -> list[float]:
     return [float(output.value(mode)) for mode in found]
 
 
-def _shapes(statics: Statics, driver: Driver) -> tuple[Shape | None, Shape]:
+def static_shapes(statics: Statics, driver: Driver) -> tuple[Shape | None, Shape]:
     """What a load imposes, and the shape under it when it does not change, both but for its gain."""
     if statics.stiffness.network.points[driver.point].motion is None:
         return None, statics.under({driver.point: fmpq(1)})
@@ -244,7 +244,7 @@ def share(network: Network, driver: Driver, mode: Mode) -> Quantity:
     if network.points[driver.point].motion is None:
         return mode.points[driver.point] * driver.gain
     # what holds the end in the mode, over w^2, is the mass that both move together, the mode and what the end imposes
-    pull = arb(0)
+    pull: Quantity = 0
     for number, bar in enumerate(network.bars):
         if bar.left == driver.point:
             pull += mode.slope(End(number, 0)) * (bar.impedance * bar.ratios[0])

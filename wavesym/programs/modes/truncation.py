@@ -114,6 +114,10 @@ class ModalModel(ABC, Generic[K]):
     def errors(self, known: K, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
         """What the modes after the first `count` can add to each output, under its own or other `loads`."""
 
+    def looseness(self, count: int) -> Numbers:
+        """About how wrong outputs are, relative to the largest value, because modes are: 0, as these are proved."""
+        return np.zeros(len(self.model.probes))
+
     @abstractmethod
     def system(self, known: K, count: int) -> ModalSystem:
         """The system of the first `count` modes."""

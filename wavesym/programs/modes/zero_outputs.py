@@ -121,7 +121,9 @@ class _Response:
         else:
             prescribed = moved[driver.point] = -_modular(driver.gain) / (_W * _W)
             shared = {delay: _W / sine for delay, (sine, _) in self._circular.items()}
-            _, pushed = self._stiffness.prescribed_column(driver.point, _modular, shared, shared, _I * _W)
+            _, pushed = self._stiffness.prescribed_column(
+                driver.point, _modular, *2 * (lambda bar: shared[bar.delay],), _I * _W
+            )
             for there, across in pushed.items():
                 forces[there] += across * prescribed
         law = self._stiffness.law(_modular)

@@ -20,7 +20,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import Factors
 from wavesym.numbers.ratio import Ring
-from wavesym.programs.request import POSITIVE, refuse_others
+from wavesym.programs.request import OF_MODES, POSITIVE, refuse_others
 
 NAMES = ("kappa", "inertia", "velocity", "load")
 
@@ -78,6 +78,11 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     """
     network, parameters = model.network, model.parameters
     network.refuse_corners()
+    for name in OF_MODES.keys() & names:
+        raise UnservedError(
+            f"--runtime: {name} {OF_MODES[name]}, which no march supports (modes do, in Python: "
+            f'wavesym.model(scene, ["{name}"]), and in sweeps)'
+        )
     model.refuse_damping()
     for point in network.points:
         if point.motion is not None and point.velocity != 0:

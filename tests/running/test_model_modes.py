@@ -1,0 +1,203 @@
+"""Models whose stiffness, mass, damping and loads are given when they run: many damped structures, by modes."""
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+from scipy.signal import lsim
+
+import wavesym
+from wavesym.errors import UnservedError, WavesymError
+
+STOREYS = 4
+SPACING = 0.05
+RECORD = [0, 3, -5, 2, 6, -4, 1, 0, -2, 1, 0]
+RNG = np.random.default_rng(28)
+
+SPRUNG = wavesym.Scene(
+    name="sprung",
+    system={
+        "type": "chain",
+        "parts": [
+            {"motion": "acceleration", "name": "ground"},
+            *(part for k in range(STOREYS) for part in ({"spring": 900}, {"mass": 2, "name": f"f{k + 1}"})),
+        ],
+        "damping": ["1/20", "1/50"],
+    },
+    load=[
+        {"at": "ground", "spacing": str(SPACING), "samples": RECORD},
+        {"at": "f4", "times": [0, "1/4", "1/2"], "ramps": [8, -16, 8]},
+    ],
+    output={
+        "until": 2,
+        "tolerance": "1e-6",
+        "relative": ["f1", "f4"],
+        "velocity": ["f2"],
+        "acceleration": ["f4"],
+    },
+)
+TIMES = SPACING * np.arange(41)
+
+STOREY = {"height": "3.5 m", "stiffness": "600 MN/m", "column_mass": "10 t", "floor_mass": "350 t"}
+FRAME = wavesym.Scene(
+    name="frame",
+    units={"length": "mm"},
+    system={
+        "type": "building",
+        "base": "ground",
+        "damping": "1/20",
+        "storey": [
+            {"count": 2, **STOREY},
+            {"height": "3 m", "stiffness": "500 MN/m", "column_mass": "20 t", "floor_mass": "300 t"},
+        ],
+    },
+    load=[{"spacing": "0.1 s", "samples": ["0", "1/4", "-3/10", "1/5", "-1/10", 0], "unit": "g"}],
+    output={
+        "until": "3 s",
+        "tolerance": "1e-4",
+        "drift": [1, 3],
+        "acceleration": [3],
+        "force": [0],
+        "strain": ["1-"],
+        "relative": [3],
+    },
+)
+
+
+def drawn(model, sets, name, wide=0.4):
+    """A field's own numbers, each times a random one."""
+    own = model.parameters[name]
+    return own * RNG.uniform(1 - wide, 1 + wide, (sets, len(own)))
+
+
+def integrated(stiffness, mass, damping, load):
+    """The outputs of SPRUNG at TIMES: its matrices, and an exact step of its state under straight lines."""
+    mass = np.diag(mass)
+    spread = np.diag(np.append(stiffness[:-1] + stiffness[1:], stiffness[-1]))
+    spring = spread - np.diag(stiffness[1:], 1) - np.diag(stiffness[1:], -1)
+    squares, shapes = eigh(spring, mass)
+    ratios = np.append(damping, [damping[-1]] * (STOREYS - len(damping)))
+    damper = mass @ shapes @ np.diag(2 * ratios * np.sqrt(squares)) @ shapes.T @ mass
+    inverse = np.linalg.inv(mass)
+    state = np.block([[np.zeros((4, 4)), np.eye(4)], [-inverse @ spring, -inverse @ damper]])
+    ground = load[0] * np.interp(TIMES, SPACING * np.arange(len(RECORD)), RECORD)
+    force = sum(a * r * np.maximum(TIMES - t, 0) for a, t, r in zip(load[1:], (0, 0.25, 0.5), (1, 1, 1), strict=True))
+    push = np.zeros((8, 2))
+    push[4:, 0], push[7, 1] = -1, inverse[3, 3]
+    _, _, x = lsim((state, push, np.eye(8), np.zeros((8, 2))), np.stack([ground, force], 1), TIMES, interp=True)
+    moved = np.concatenate([[0], np.cumsum(SPACING * (ground[1:] + ground[:-1]) / 2)])
+    roof = (x @ state.T)[:, 7] + force * inverse[3, 3]
+    return np.stack([x[:, 5] + moved, roof, x[:, 0], x[:, 3]])
+
+
+@pytest.fixture(scope="module")
+def sprung():
+    return wavesym.model(SPRUNG, ["stiffness", "mass", "damping", "load"])
+
+
+@pytest.fixture(scope="module")
+def frame():
+    return wavesym.model(FRAME, ["stiffness", "rod_mass", "mass", "damping", "load"])
+
+
+def test_frames_without_rods_are_what_their_matrices_say(sprung):
+    sets = {name: drawn(sprung, 5, name) for name in sprung.parameters}
+    values = sprung.values(TIMES, **sets)
+    estimates = sprung.check(**sets).estimate
+    for k, found in enumerate(values):
+        true = integrated(*(sets[name][k] for name in ("stiffness", "mass", "damping", "load")))
+        assert np.abs(found - true).max(axis=1) / np.abs(true).max(axis=1) == pytest.approx(0, abs=1e-9)
+        assert estimates[k] < 1e-9
+
+
+def test_a_model_says_what_its_numbers_are(frame):
+    assert frame.labels["stiffness"][0] == "stiffness of rod 1"
+    assert frame.parameters["stiffness"] == pytest.approx([6e8, 6e8, 5e8], rel=1e-15)
+    assert frame.parameters["mass"] == pytest.approx([350e3, 350e3, 300e3], rel=1e-15)
+    assert frame.parameters["rod_mass"] == pytest.approx([10e3, 10e3, 20e3], rel=1e-15)
+    assert frame.units["stiffness"][0] == "N/m"
+    assert frame.units["mass"][0] == frame.units["rod_mass"][0] == "kg"
+    assert frame.parameters["damping"].tolist() == [0.05]
+
+
+def changed(stiffness, rod_mass, mass, damping):
+    """FRAME with other numbers."""
+    heights = "3.5 m", "3.5 m", "3 m"
+    rows = zip(heights, stiffness.tolist(), rod_mass.tolist(), mass.tolist(), strict=True)
+    storeys = [
+        {"height": h, "stiffness": f"{k} N/m", "column_mass": f"{m} kg", "floor_mass": f"{f} kg"} for h, k, m, f in rows
+    ]
+    return FRAME.with_({"system.storey": storeys, "system.damping": damping.tolist(), "output.tolerance": "1e-7"})
+
+
+def test_peaks_of_frames_are_those_of_their_scenes(frame):
+    """Of each set a scene of its own, its modes proved; errors are within the estimate, and values within the bound."""
+    sets = {name: drawn(frame, 3, name) for name in frame.parameters}
+    peaks, bounds = frame.peaks(**sets), frame.bounds(**sets)
+    times = np.linspace(0, 3, 31)
+    values = np.asarray(frame.run(times=times, **sets))
+    assert np.all(peaks.checks.status == 0)
+    for k in range(3):
+        scene = changed(*(sets[name][k] for name in ("stiffness", "rod_mass", "mass", "damping")))
+        true = wavesym.summary(scene).outputs
+        factor = sets["load"][k, 0]
+        for n, output in enumerate(true):
+            least, greatest = factor * output.min.value, factor * output.max.value
+            size = max(-least, greatest)
+            allowed = (peaks.checks.estimate[k] + 1e-7) * size
+            assert abs(peaks.min[k, n] - least) <= allowed
+            assert abs(peaks.max[k, n] - greatest) <= allowed
+            seconds = peaks.tau_max[k, n] * frame.seconds_per_tau
+            assert seconds == pytest.approx(output.max.at.time, rel=1e-2, abs=1e-2)
+        exact = wavesym.run(scene, times=times)
+        for n, name in enumerate(frame.outputs):
+            row = factor * np.asarray(exact[name])
+            size = max(-factor * true[n].min.value, factor * true[n].max.value)
+            assert np.abs(values[k, n] - row).max() <= (bounds[k, n] + 1e-7) * size
+    assert np.all(bounds <= 2e-4)
+
+
+def test_what_differs_little_in_bounds_is_a_bound(frame):
+    """Values of sets are not those of the proved program to the last bit, and a bound counts that."""
+    assert np.all(frame.bounds() > 0)
+    assert np.all(frame.bounds() <= 1e-4)
+
+
+def test_a_misfit_is_the_sum_of_squares(sprung):
+    sets = {"stiffness": drawn(sprung, 3, "stiffness")}
+    values = sprung.values(TIMES, **sets)
+    data = values[1] + 0.01
+    data[0, :5] = np.nan
+    assert sprung.misfit(TIMES, data)(**sets) == pytest.approx(np.nansum((values - data) ** 2, axis=(1, 2)), rel=1e-12)
+
+
+def test_bad_numbers_are_refused_and_others_are_not(sprung):
+    mass = np.tile(sprung.parameters["mass"], (4, 1))
+    mass[1, 2], mass[3, 0] = -1, np.nan
+    peaks = sprung.peaks(mass=mass)
+    assert peaks.checks.status.tolist() == [0, 1, 0, 1]
+    assert np.isnan(peaks.max[[1, 3]]).all()
+    assert np.array_equal(peaks.max[0], peaks.max[2])
+    assert sprung.check(damping=[[0, 0.1], [-0.1, 0.1]]).status.tolist() == [0, 1]
+
+
+def test_instants_outside_the_horizon_have_no_value(sprung):
+    with pytest.warns(UserWarning, match="outside"):
+        values = sprung.values([-1.0, 1.0])
+    assert np.isnan(values[0, :, 0]).all()
+    assert np.isfinite(values[0, :, 1]).all()
+
+
+def test_what_modes_cannot_give_is_refused_in_one_line(sprung):
+    with pytest.raises(UnservedError, match=r"gradients: .* modes have none; take differences of `run`"):
+        sprung.gradients([1.0])
+    with pytest.raises(WavesymError, match="runtime: kappa is unknown; write stiffness, mass, damping or load"):
+        wavesym.model(SPRUNG, ["kappa"])
+    stepped = SPRUNG.with_({"load": [{"at": "f4", "times": [0], "steps": [1]}]})
+    with pytest.raises(UnservedError, match="modes support no jump"):
+        wavesym.model(stepped, ["mass"])
+
+
+def test_a_number_that_changes_a_delay_is_refused_for_marches_with_what_takes_it():
+    undamped = FRAME.with_({"system.damping": 0})
+    with pytest.raises(UnservedError, match=r"--runtime: stiffness changes how long a wave takes .* wavesym.model"):
+        wavesym.generate(undamped, runtime=["stiffness"])
