@@ -12,14 +12,14 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.errors import CostError, UnservedError, WavesymError
-from wavesym.mechanics.loads import Applied, AppliedRecord
+from wavesym.mechanics.loads import AppliedLoad, AppliedRecord
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.mode_sets.modes import ModesOfSet
 from wavesym.programs.mode_sets.parameters import ModeParameters
 from wavesym.programs.modes.evaluator import modes
 from wavesym.programs.modes.loads import Roughness, linear_loads, sampled_roughness
-from wavesym.results.recorded import ManyRecords, RecordedExtremes, SharedModes
+from wavesym.results.many_records import ManyRecords, RecordedExtremes, SharedModes
 from wavesym.running.sets import Array, FoundSets, no_sets
 
 _TOGETHER = 64  # sets whose modes are found at once: what a cache holds
@@ -117,7 +117,7 @@ class ModalSets:
                 f"load: {count} samples, {self._spacing:g} apart in tau, the limit is {_MOST_SAMPLES} (times with a "
                 "larger common measure, or a shorter horizon, help)"
             )
-        every: Sequence[Applied] = self._parameters.amplitudes or [
+        every: Sequence[AppliedLoad] = self._parameters.amplitudes or [
             AppliedRecord(pair[1] or pair[0], fmpq(0), fmpq(1), tuple(x for x in self.model.loads if x.source in pair))
             for pair in like.sources
         ]

@@ -20,7 +20,7 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.mechanics.damping import Damping
-from wavesym.mechanics.loads import Applied, merge_loads
+from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Network
 from wavesym.mechanics.parameters import ModelParameter, PartParameters, describe_part
@@ -43,7 +43,7 @@ class ModeParameters:
 
     model: Model
     fields: tuple[RuntimeField, ...]
-    amplitudes: tuple[Applied, ...]
+    amplitudes: tuple[AppliedLoad, ...]
 
     @cached_property
     def like(self) -> UndampedModes:
@@ -174,7 +174,9 @@ class ModeParameters:
         return replace(output, slope=(weight, end))
 
 
-def mode_parameters(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]]) -> ModeParameters:
+def mode_parameters(
+    model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, AppliedLoad]]
+) -> ModeParameters:
     """The numbers that `names` ask for, in the order of the scene.
 
     UnservedError for what modes do not serve, WavesymError for a name that the scene does not have.
