@@ -62,7 +62,8 @@ def test_generated_python_imports_nothing_but_numpy(evaluator, precision):
 @pytest.mark.parametrize("kind", SCHEMES)
 def test_nor_does_the_arithmetic_that_is_written_into_it(kind):
     """But for other files of it, and names of types, which are above what is written."""
-    for part in PARTS.get(kind, (SCHEMES[kind],)):
+    parts = (*PARTS.get(kind, ()), SCHEMES[kind])
+    for part in parts:
         scheme = Path(inspect.getfile(part)).read_text(encoding="utf-8")
-        others = {other.__module__ for other in PARTS.get(kind, ())}
-        assert set(imports(scheme)) - others - {"__future__", "collections.abc", "typing"} == {"numpy", "numpy.typing"}
+        others = {other.__module__ for other in parts}
+        assert set(imports(scheme)) - others - {"collections.abc", "typing"} == {"numpy", "numpy.typing"}

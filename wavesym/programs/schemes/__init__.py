@@ -25,6 +25,8 @@ SCHEMES: dict[str, type[Scheme]] = {
     "modes": ModesScheme,
 }
 
-_MARCH = (MarchScheme, JointGroup, Marching)
-PARTS: dict[str, tuple[type, ...]] = {"march": _MARCH, "hats": (*_MARCH, HatScheme)}
-"""A class of each file that a scheme is made of, in order; of others the file of the scheme alone."""
+PARTS: dict[str, tuple[type, ...]] = {
+    "march": (JointGroup, Marching),
+    "hats": (JointGroup, Marching, MarchScheme),
+}
+"""A class of each other file that a scheme is made of, in order."""

@@ -1,7 +1,5 @@
 """Joints of a march in NumPy: what they send on a window, all joints of a kind at once."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +17,7 @@ class JointGroup:
     than another, what is missing is a port that neither takes nor gives.
     """
 
-    def __init__(self, scheme: MarchScheme, joints: NDArray[np.int_]) -> None:
+    def __init__(self, scheme: "MarchScheme", joints: NDArray[np.int_]) -> None:
         def members(name: str) -> NDArray[np.int_]:
             firsts = scheme.firsts[name]
             counts = firsts[joints + 1] - firsts[joints]
@@ -55,7 +53,7 @@ class JointGroup:
 class Scatterers(JointGroup):
     """Joints without state."""
 
-    def __init__(self, scheme: MarchScheme, joints: NDArray[np.int_]) -> None:
+    def __init__(self, scheme: "MarchScheme", joints: NDArray[np.int_]) -> None:
         super().__init__(scheme, joints)
         ports = self.ports.shape[1]
         self.columns = self.matrices(ports + self.points.shape[1], ports)
@@ -79,7 +77,7 @@ class Scatterers(JointGroup):
 class Bodies(JointGroup):
     """Masses between rods: their recurrences as scans, in log2(degree) steps."""
 
-    def __init__(self, scheme: MarchScheme, joints: NDArray[np.int_]) -> None:
+    def __init__(self, scheme: "MarchScheme", joints: NDArray[np.int_]) -> None:
         super().__init__(scheme, joints)
         rows = np.swapaxes(self.matrices(self.size, 3), 2, 3)
         self.slack, self.loss = rows[:, :, 0, 0].copy(), rows[:, :, 1, 0].copy()
@@ -130,7 +128,7 @@ class Bodies(JointGroup):
 class Blocks(JointGroup):
     """Joints with any other state, all with the same matrices."""
 
-    def __init__(self, scheme: MarchScheme, joints: NDArray[np.int_]) -> None:
+    def __init__(self, scheme: "MarchScheme", joints: NDArray[np.int_]) -> None:
         super().__init__(scheme, joints)
         self.collect = np.swapaxes(self.at * self.push[..., None], 1, 2)
         self.spread = self.at * self.ratio[..., None]

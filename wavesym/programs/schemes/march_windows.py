@@ -1,7 +1,5 @@
 """Windows of a march in NumPy: how it goes on, and what outputs are on windows that are known."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +18,7 @@ class WindowBlock:
 
     def __init__(
         self,
-        scheme: MarchScheme,
+        scheme: "MarchScheme",
         first: int,
         waves: NDArray[np.float64],
         starts: NDArray[np.float64],
@@ -135,7 +133,7 @@ class WindowBlock:
 class Marching:
     """A march on its way."""
 
-    def __init__(self, scheme: MarchScheme, most: int | None = None) -> None:
+    def __init__(self, scheme: "MarchScheme", most: int | None = None) -> None:
         tracks, size = len(scheme.held), scheme.degree + 1
         self.most = most or max(1, min(256, 2_000_000 // (tracks * scheme.panels * size)))
         """So many windows at once."""
@@ -167,7 +165,7 @@ class Marching:
 class RunningLoads:
     """The loads, polynomials in the time since their last change."""
 
-    def __init__(self, scheme: MarchScheme, powers: NDArray[np.float64], since: NDArray[np.float64]) -> None:
+    def __init__(self, scheme: "MarchScheme", powers: NDArray[np.float64], since: NDArray[np.float64]) -> None:
         self._scheme, self._powers, self._since = scheme, powers, since
         self._now: dict[int, tuple[int, int, NDArray[np.float64]]] = {}
         self._event = 0

@@ -37,7 +37,7 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables={name: lines(literals(program.tables[name]), _WIDTH) for name in scheme.TABLES},
         constants=dict(zip(scheme.CONSTANTS, literals(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
-        scheme="\n\n\n".join(map(_text, PARTS.get(program.kernel, (scheme,)))),
+        scheme="\n\n\n".join(map(_text, (*PARTS.get(program.kernel, ()), scheme))),
         scheme_name=scheme.__name__,
     )
     return render("numpy/program.py.j2", context)
