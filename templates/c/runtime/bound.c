@@ -196,9 +196,14 @@ WITHIN void add_slices(const real *numbers, const slice *series, const slice *si
     }
 }
 
+/* Where a joint has what arrives at its ends on a panel, and what these send. */
+typedef struct {
+    const real *arriving[NAME_PORTS], *sent[NAME_PORTS];
+} ends_of_joint;
+
 /* What acts on the points of a joint, from a coefficient on, and what that is the sum of in absolute values. */
-WITHIN void acting_slices(const progress *b, const places *now, int joint, int panel, int points, size_t k, slice *acting,
-                          slice *size)
+WITHIN void acting_slices(const progress *b, const ends_of_joint *at, int joint, int panel, int points, int ends, size_t k,
+                          slice *acting, slice *size)
 {
     const march_state *const m = b->sets;
     for (int point = 0; point < points; ++point) {
@@ -213,9 +218,10 @@ WITHIN void acting_slices(const progress *b, const places *now, int joint, int p
         }
         size[point] = MAGNITUDE(acting[point]);
     }
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const slice pushed = b->law->push[port] * *slice_at(m->waves[now->arrived[arrive[port]]][panel], k);
-        const int point = points > 1 ? point_of[port] : 0;
+    UNROLLED
+    for (int side = 0; side < ends; ++side) {
+        const slice pushed = b->law->push[first_port[joint] + side] * *slice_at(at->arriving[side], k);
+        const int point = points > 1 ? point_of[first_port[joint] + side] : 0;
         acting[point] += pushed;
         size[point] += MAGNITUDE(pushed);
     }
@@ -232,34 +238,38 @@ static real load_error(const errors *w, const real *row, int joint, int panel)
     return sum;
 }
 
-/* What a joint of n states and so many points adds to the energy of errors on a panel, and to what each end sends; of a
- * body nothing that acts passes at once. */
+/* What a joint of n states and so many points and ends adds to the energy of errors on a panel, and to what each end sends;
+ * of a body nothing that acts passes at once. */
 WITHIN void add_residual(const progress *b, const places *now, errors *w, int joint, int panel, int n, int points,
-                         int passing, slice *energy, real *apart)
+                         int passing, int ends, slice *energy, real *apart)
 {
     const march_state *const m = b->sets;
     const laws *const law = b->law;
     const int first = first_state[joint], ports = first_port[joint], degree = b->degree;
     const real half = half_length[panel], few = unit * ((real)(degree / LANES + 12) + 2 * w->bent[panel][joint]);
-    const real exact = unit * ((real)(n + points + first_port[joint + 1] - ports + 10) + 3 * roundings);
+    const real exact = unit * ((real)(n + points + ends + 10) + 3 * roundings);
     real rate_of[NAME_WIDEST][NAME_ROW + LANES + 1];
     slice x[NAME_WIDEST], x_size[NAME_WIDEST], s[NAME_WIDEST], s_size[NAME_WIDEST];
-    slice begins[NAME_WIDEST], ends[NAME_WIDEST], sizes[NAME_WIDEST], x_sizes[NAME_WIDEST];
+    slice begins[NAME_WIDEST], last[NAME_WIDEST], sizes[NAME_WIDEST], x_sizes[NAME_WIDEST];
     slice aparts[NAME_PORTS], sums[NAME_PORTS], waves[NAME_PORTS], reads[NAME_PORTS];
     for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
-        begins[i] = ends[i] = sizes[i] = x_sizes[i] = x[i] = x_size[i] = nothing;
+        begins[i] = last[i] = sizes[i] = x_sizes[i] = x[i] = x_size[i] = nothing;
     }
-    for (int port = ports; port < first_port[joint + 1]; ++port) {
-        aparts[port] = sums[port] = waves[port] = reads[port] = nothing;
+    ends_of_joint at = {{NULL}, {NULL}};
+    UNROLLED
+    for (int side = 0; side < ends; ++side) {
+        aparts[side] = sums[side] = waves[side] = reads[side] = nothing;
+        at.arriving[side] = m->waves[now->arrived[arrive[ports + side]]][panel];
+        at.sent[side] = m->waves[now->sent[send[ports + side]]][panel];
     }
     size_t end = 0;
     for (; end <= (size_t)degree; end += LANES) {
-        acting_slices(b, now, joint, panel, points, end, s, s_size);
+        acting_slices(b, &at, joint, panel, points, ends, end, s, s_size);
         for (int i = 0; i < n; ++i) {
             x[i] = *slice_at(m->path[panel][first + i], end);
             x_size[i] = MAGNITUDE(x[i]);
             begins[i] += *slice_at(alternating, end % 2) * x[i];
-            ends[i] += x[i];
+            last[i] += x[i];
         }
         for (int i = 0; i < n; ++i) {
             slice sum = nothing, size = nothing;
@@ -269,19 +279,19 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
             sizes[i] += size;
             x_sizes[i] += x_size[i];
         }
-        for (int port = ports; port < first_port[joint + 1]; ++port) {
-            const int row = points > 1 ? point_of[port] : 0;
-            const slice out = *slice_at(m->waves[now->sent[send[port]]][panel], end);
-            const slice a = *slice_at(m->waves[now->arrived[arrive[port]]][panel], end);
+        UNROLLED
+        for (int side = 0; side < ends; ++side) {
+            const int row = points > 1 ? point_of[ports + side] : 0;
+            const slice out = *slice_at(at.sent[side], end), a = *slice_at(at.arriving[side], end);
             const slice out_size = MAGNITUDE(out);
             slice sum = nothing, size = nothing;
             add_slices(law->shown + at_shown[joint] + row * n, x, x_size, n, &sum, &size);
             add_slices(law->passed + at_passed[joint] + row * points, s, s_size, passing, &sum, &size);
-            const slice much = (out + a) - ratio[port] * sum;
-            aparts[port] += MAGNITUDE(much);
-            sums[port] += size;
-            waves[port] += out_size + MAGNITUDE(a);
-            reads[port] += *slice_at(w->reading, end) * out_size;
+            const slice much = (out + a) - ratio[ports + side] * sum;
+            aparts[side] += MAGNITUDE(much);
+            sums[side] += size;
+            waves[side] += out_size + MAGNITUDE(a);
+            reads[side] += *slice_at(w->reading, end) * out_size;
         }
     }
     for (int i = 0; i < n; ++i) {
@@ -301,16 +311,17 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
         w->energy += w->weight[first + i] *
                      (magnitude(total_of(&begins[i]) - w->end[first + i]) +
                       2 * half * load_error(w, law->pushed + at_pushed[joint] + i * points, joint, panel));
-        w->end[first + i] = total_of(&ends[i]);
+        w->end[first + i] = total_of(&last[i]);
     }
-    for (int port = ports; port < first_port[joint + 1]; ++port) {
+    for (int side = 0; side < ends; ++side) {
+        const int port = ports + side;
         const real beyond = load_error(w, law->passed + at_passed[joint] + point_of[port] * points, joint, panel);
-        const slice much = aparts[port] + magnitude(ratio[port]) * exact * sums[port] + unit * 4 * waves[port];
+        const slice much = aparts[side] + magnitude(ratio[port]) * exact * sums[side] + unit * 4 * waves[side];
         const real here = total_of(&much) + magnitude(ratio[port]) * beyond;
         w->energy += w->length[panel] * w->passes[port] * here;
         apart[port] = larger(apart[port], here);
         slice *const most = &w->read[send[port]];
-        *most = LARGER(reads[port], *most); /* lane by lane: no sum of lanes has been larger */
+        *most = LARGER(reads[side], *most); /* lane by lane: no sum of lanes has been larger */
     }
 }
 
@@ -329,13 +340,17 @@ static void add_window(const progress *b, errors *w)
     }
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            if (is_body[joint]) {
-                add_residual(b, &now, w, joint, panel, 1, 1, 0, &energy, apart);
-            } else if (points_of(joint) == 1 && states_of(joint) == 0) {
-                add_residual(b, &now, w, joint, panel, 0, 1, 1, &energy, apart);
+            const int n = states_of(joint), points = points_of(joint), ends = first_port[joint + 1] - first_port[joint];
+            if (is_body[joint] && ends == 2) { /* as compilers know then */
+                add_residual(b, &now, w, joint, panel, 1, 1, 0, 2, &energy, apart);
+            } else if (is_body[joint]) {
+                add_residual(b, &now, w, joint, panel, 1, 1, 0, ends, &energy, apart);
+            } else if (points == 1 && n == 0 && ends == 2) {
+                add_residual(b, &now, w, joint, panel, 0, 1, 1, 2, &energy, apart);
+            } else if (points == 1 && n == 0) {
+                add_residual(b, &now, w, joint, panel, 0, 1, 1, ends, &energy, apart);
             } else {
-                const int points = points_of(joint);
-                add_residual(b, &now, w, joint, panel, states_of(joint), points, points, &energy, apart);
+                add_residual(b, &now, w, joint, panel, n, points, points, ends, &energy, apart);
             }
         }
     }
