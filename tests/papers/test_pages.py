@@ -154,8 +154,8 @@ def test_counts_add_up() -> None:
 
 def test_what_could_not_be_tested_is_a_failure() -> None:
     untested = records(entry("(9)", "n + n = 3n", "section 9"))
-    assert not Findings(PAPER, untested).all_tested
-    assert findings().all_tested
+    assert not Findings(PAPER, untested).are_complete
+    assert findings().are_complete
     for page in PAGES.values():
         assert "no correction is known" in page(Findings(PAPER, untested))
 

@@ -33,14 +33,14 @@ N, ROD, K = Symbol("n"), Symbol("i"), Symbol("k")
         ("-2n", Minus(Product((Number("2"), N)))),
         ("H(n-2)", Call(Symbol("H"), (Addition((N, Minus(Number("2")))),))),
         ("a(b)", Product((Symbol("a"), Group("(", Symbol("b"))))),
-        ("f'_1(z)", Call(Symbol("f", primes=1, below=(Number("1"),)), (Symbol("z"),))),
-        ("f_1''(z)", Call(Symbol("f", primes=2, below=(Number("1"),)), (Symbol("z"),))),
-        ("f^{k,1}(z)", Product((Symbol("f", above=(K, Number("1"))), Group("(", Symbol("z"))))),
+        ("f'_1(z)", Call(Symbol("f", primes=1, subscript=(Number("1"),)), (Symbol("z"),))),
+        ("f_1''(z)", Call(Symbol("f", primes=2, subscript=(Number("1"),)), (Symbol("z"),))),
+        ("f^{k,1}(z)", Product((Symbol("f", superscript=(K, Number("1"))), Group("(", Symbol("z"))))),
         ("w^2", Power(Symbol("w"), Number("2"))),
-        (r"\bar{v}_i^{-1}", Power(Symbol("v", r"\bar", below=(ROD,)), Minus(Number("1")))),
-        ("t_{0i}", Symbol("t", below=(Number("0"), ROD))),
-        ("t_{2i}", Symbol("t", below=(Product((Number("2"), ROD)),))),
-        (r"F^{k, \cdot}", Symbol("F", above=(K, Blank(r"\cdot")))),
+        (r"\bar{v}_i^{-1}", Power(Symbol("v", r"\bar", subscript=(ROD,)), Minus(Number("1")))),
+        ("t_{0i}", Symbol("t", subscript=(Number("0"), ROD))),
+        ("t_{2i}", Symbol("t", subscript=(Product((Number("2"), ROD)),))),
+        (r"F^{k, \cdot}", Symbol("F", superscript=(K, Blank(r"\cdot")))),
         (r"\sum_{k=0}^n k", Series(K, Number("0"), N, K)),
         (r"\frac{\partial^2 U}{\partial t^2}", Derivative(2, Symbol("U"), Symbol("t"))),
         ("—", Blank("—")),
@@ -66,7 +66,9 @@ def test_what_is_read_is_written_again(text):
 
 _LEAVES = st.one_of(
     st.integers(0, 99).map(lambda n: Number(str(n))),
-    st.sampled_from([Symbol("n"), Symbol("x", r"\bar"), Symbol(r"\kappa", below=(ROD,)), Symbol("K", below=(N, ROD))]),
+    st.sampled_from(
+        [Symbol("n"), Symbol("x", r"\bar"), Symbol(r"\kappa", subscript=(ROD,)), Symbol("K", subscript=(N, ROD))]
+    ),
 )
 _TREES = st.recursive(
     _LEAVES,

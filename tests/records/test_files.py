@@ -98,7 +98,7 @@ def test_both_forms_of_the_fourth_line_are_read(tmp_path, line):
     read = read_record(path)
     assert read.samples == (Fraction(1, 10), Fraction(-1, 40), Fraction(3), Fraction(0), Fraction(3, 2))
     assert read.even() == Fraction(1, 50)
-    assert read.written == (".1", "-.25E-01", "3.", "0", "1.5D+00")
+    assert read.digits == (".1", "-.25E-01", "3.", "0", "1.5D+00")
 
 
 @pytest.mark.parametrize(
@@ -382,7 +382,7 @@ def test_cells_are_read_as_spreadsheets_write_them(tmp_path, text):
     read = read_record(made(tmp_path, text))
     assert (read.samples, read.even()) == ((Fraction(1, 10), Fraction(-1, 2), 3), Fraction(1, 50))
     assert (read.unit, read.clock) == ("g", "s")
-    assert read.written[0] == "0.1"
+    assert read.digits[0] == "0.1"
 
 
 @pytest.mark.parametrize(

@@ -254,7 +254,7 @@ def cluster(folder: Path, workers: int) -> Iterator[Running]:
     dask, told = [sys.executable, "-m", "dask"], ["--no-dashboard", "--scheduler-file", str(file)]
     started = [subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *told], **quiet)]  # type: ignore[call-overload]
     try:
-        _until(lambda: file.exists() and file.read_text(encoding="utf-8").endswith("}"))
+        _wait(lambda: file.exists() and file.read_text(encoding="utf-8").endswith("}"))
         address = str(json.loads(file.read_text(encoding="utf-8"))["address"])
         alone = ["--nthreads", "1", "--no-nanny"]
         started += [subprocess.Popen([*dask, "worker", *told, *alone], **quiet) for _ in range(workers)]  # type: ignore[call-overload]
@@ -269,6 +269,6 @@ def cluster(folder: Path, workers: int) -> Iterator[Running]:
             process.wait()
 
 
-def _until(done: Callable[[], bool]) -> None:
+def _wait(done: Callable[[], bool]) -> None:
     while not done():
         sleep(0.05)

@@ -59,7 +59,7 @@ class RecordFacts:
         """The peak with the file's digits, and when."""
         time = self.time(self.peak)
         at = f"sample {self.peak + 1}" if time is None else self.format_time(time)
-        size = f"{self.file.written[self.peak].lstrip('+-')} {self.unit}".rstrip()
+        size = f"{self.file.digits[self.peak].lstrip('+-')} {self.unit}".rstrip()
         return f"{size} at {at}{', negative' * (self.file.samples[self.peak] < 0)}"
 
 

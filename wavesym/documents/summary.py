@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from wavesym.results.link_losses import Measured
+from wavesym.results.link_losses import MeasuredQuantity
 from wavesym.results.statistics import STATISTICS, Statistic, cells, headings, number_text
 from wavesym.results.summary import OutputSummary, Summary
 
@@ -60,13 +60,13 @@ def _lines(summary: Summary) -> Iterable[str]:
         peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
         yield f"largest drift: {drift.label}, {number_text(peak.value)}{unit} at {number_text(peak.at.in_scene_time)}"
     for link in summary.links or ():
-        yield f"{link.law} at {link.place}: set {_measured(link.set)}, dissipated {_measured(link.dissipated)}"
+        yield f"{link.law} at {link.place}: set {_with_unit(link.set)}, dissipated {_with_unit(link.dissipated)}"
     if summary.links is None:
         yield "sets and what is dissipated would cost too much (a shorter horizon helps)"
     yield f"{summary.how}: {summary.certain}"
 
 
-def _measured(found: Measured) -> str:
+def _with_unit(found: MeasuredQuantity) -> str:
     return f"{number_text(found.value)} {found.unit}".rstrip()
 
 

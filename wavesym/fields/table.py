@@ -150,7 +150,7 @@ class SceneTable(BaseModel):
         if not isinstance(value, Mapping):
             raise refusal(f"{show(value)} is not a table; write its keys and values")
         fields = {field.alias or name: field for name, field in cls.model_fields.items()}
-        unknown = [Fault(_unknown(str(key), list(fields)), (str(key),)) for key in value if key not in fields]
+        unknown = [Fault(_unknown_key(str(key), list(fields)), (str(key),)) for key in value if key not in fields]
         missing = [
             Fault(f"missing; write {field.description}", (key,))
             for key, field in fields.items()
@@ -165,7 +165,7 @@ class SceneTable(BaseModel):
         return handler(value)
 
 
-def _unknown(key: str, known: Sequence[str]) -> str:
+def _unknown_key(key: str, known: Sequence[str]) -> str:
     *others, last = known
     choice = f"{', '.join(others)} or {last}" if others else last
     meant = did_you_mean(key[:_SHOWN], known)

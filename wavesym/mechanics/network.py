@@ -28,7 +28,7 @@ class Point:
 
     A `motion` is prescribed by the loads on the point: its velocity, or its acceleration. What is fixed has no loads.
     `place` is where a scene would say that it is. What is `absorbing` has the dashpot that its rod asks for. What is
-    `glued` is a contact that is taken to stay closed.
+    `is_glued` is a contact that is taken to stay closed.
     """
 
     mass: fmpq
@@ -40,7 +40,7 @@ class Point:
     name: str = ""
     place: str = field(default="", compare=False)
     absorbing: bool = field(default=False, compare=False)
-    glued: bool = field(default=False, compare=False)
+    is_glued: bool = field(default=False, compare=False)
 
     def action(self, unit: UnitLoad) -> tuple[Any, ...]:
         """The force that a unit load makes here, or the velocity that it prescribes: coefficients by powers of tau."""
@@ -327,7 +327,7 @@ class Network:
 def with_contacts(network: Network, contacts: Collection[int]) -> Network:
     """A line of rods whose points in `contacts` are two, a contact between them; points stay in their order."""
     points = [
-        replace(point, glued=point.glued and x not in contacts)
+        replace(point, is_glued=point.is_glued and x not in contacts)
         for x, point in enumerate(network.points)
         for _ in range(1 + (x in contacts))
     ]
@@ -360,7 +360,7 @@ def network_of(chain: Chain) -> Network:
     for x, node in enumerate(chain.nodes):
         if node.left and node.alpha != 0:
             scale = bars[-1].impedance / (node.alpha / 2)
-        points.append(replace(_point(node, scale), place=str(x), glued=node.contact))
+        points.append(replace(_point(node, scale), place=str(x), is_glued=node.contact))
         if node.right:
             impedance = scale * node.beta / 2 or fmpq(1)  # a prescribed motion does not feel its rod
             bars.append(Bar(x, x + 1, fmpq(1), fmpq(1), impedance, velocity=_ZERO + node.right.velocity))

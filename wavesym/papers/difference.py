@@ -204,4 +204,4 @@ def _terms(tree: Tree) -> Iterator[Tree]:
 
 
 def _brackets(factor: Tree) -> bool:
-    return isinstance(factor, Group) and any(symbol.above for symbol in symbols(factor))
+    return isinstance(factor, Group) and any(symbol.superscript for symbol in symbols(factor))

@@ -78,7 +78,7 @@ class Scope:
 
     def meaning(self, known: Mapping[str, Callable[..., Any]], symbol: Symbol, *arguments: Any) -> Any:
         """What a letter or function is there; MeaninglessError where it is not known, or has not these indices."""
-        if (means := known.get(letter_name(symbol))) is None or symbol.above:
+        if (means := known.get(letter_name(symbol))) is None or symbol.superscript:
             raise MeaninglessError(f"{latex(symbol)} is not defined")
         index = self.indices(symbol)
         try:
@@ -311,7 +311,7 @@ def _index_runners(symbol: Symbol) -> tuple[Callable[[Scope], tuple[int, ...]], 
     try:
         return symbol.__dict__["_index_runners"]  # type: ignore[no-any-return]
     except KeyError:
-        made = _indices(symbol.below), _indices(symbol.above)
+        made = _indices(symbol.subscript), _indices(symbol.superscript)
         symbol.__dict__["_index_runners"] = made
         return made
 
@@ -350,7 +350,7 @@ def _symbol(tree: Symbol) -> Runner:
             return scope._constant(tree)
         return scope.symbol(tree)
 
-    return with_marks if tree.below or tree.above or tree.primes or tree.accent else plain
+    return with_marks if tree.subscript or tree.superscript or tree.primes or tree.accent else plain
 
 
 def _minus(tree: Minus) -> Runner:

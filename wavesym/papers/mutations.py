@@ -151,7 +151,7 @@ def _own_faults(tree: Any, here: str) -> Iterator[tuple[str, Any]]:
                 yield f"sum from {latex(moved)} for {latex(first)} in {here}", Series(variable, moved, last, body)
                 moved = _plus(last, by)
                 yield f"sum to {latex(moved)} for {latex(last)} in {here}", Series(variable, first, moved, body)
-        case Symbol(name) if name not in _STRUCTURE and not tree.above and not tree.primes:
+        case Symbol(name) if name not in _STRUCTURE and not tree.superscript and not tree.primes:
             yield f"2 {latex(tree)} for {latex(tree)} in {here}", Group("(", Product((Number("2"), tree)))
 
 

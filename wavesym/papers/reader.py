@@ -103,7 +103,7 @@ class _Trees(Transformer[Token, Any]):
         factors: list[Tree] = []
         for item in items:
             before = factors[-1] if factors else None
-            is_applied = isinstance(before, Symbol) and before.name in _FUNCTIONS and not before.above
+            is_applied = isinstance(before, Symbol) and before.name in _FUNCTIONS and not before.superscript
             match before, item:
                 case Symbol() as function, _Arguments(arguments) if is_applied:
                     factors[-1] = Call(function, arguments)
@@ -170,7 +170,7 @@ class _Trees(Transformer[Token, Any]):
         (accent, name), (below, above, late) = letter, scripts or (None, None, None)
         symbol = Symbol(name, accent, len(early or "") + len(late or ""), below or ())
         if above is not None and name in _INDEXED_ABOVE:
-            return replace(symbol, above=above)
+            return replace(symbol, superscript=above)
         return symbol if above is None else Power(symbol, self.power(above))
 
     def scripts(self, below: Any, above: Any, primes: Token | None) -> tuple[Any, Any, Any]:

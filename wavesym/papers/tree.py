@@ -25,8 +25,8 @@ class Symbol:
     name: str
     accent: str = ""
     primes: int = 0
-    below: tuple[Tree, ...] = ()
-    above: tuple[Tree, ...] = ()
+    subscript: tuple[Tree, ...] = ()
+    superscript: tuple[Tree, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -289,10 +289,10 @@ def replace_part(tree: Any, part: Tree, instead: Tree) -> Any:
 def _symbol(symbol: Symbol) -> str:
     text = rf"{symbol.accent}{{{symbol.name}}}" if symbol.accent else symbol.name
     text += "'" * symbol.primes
-    if symbol.below:
-        text += f"_{{{','.join(map(latex, symbol.below))}}}"
-    if symbol.above:
-        text += f"^{{{','.join(map(latex, symbol.above))}}}"
+    if symbol.subscript:
+        text += f"_{{{','.join(map(latex, symbol.subscript))}}}"
+    if symbol.superscript:
+        text += f"^{{{','.join(map(latex, symbol.superscript))}}}"
     return text
 
 

@@ -83,4 +83,4 @@ def verdict_page(
     data = paper.paper()
     wanted = requested_entries(tuple(data.entries.values()), names) if names else None
     findings = Findings(data, paper.records(wanted, watch), not (names or only), reproduce, only)
-    return FORMATS[format](findings), findings.all_tested
+    return FORMATS[format](findings), findings.are_complete

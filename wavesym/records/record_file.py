@@ -27,7 +27,7 @@ _NEAR = Fraction(1, 10)  # of a step: times that are written with few digits
 
 @dataclass(frozen=True)
 class RecordFile:
-    """The samples of a file, exact, and as they are `written` there; `lines` says on which line each of them is.
+    """The samples of a file, exact, and as their `digits` there; `lines` says on which line each of them is.
 
     What the file does not say is None, or empty: `unit` is that of the samples, `clock` that of times. `times` are
     those of a time column, one for each sample; `spacing` is what a file without one says in its header. `head` is the
@@ -37,7 +37,7 @@ class RecordFile:
     file: str
     kind: str
     samples: tuple[Fraction, ...]
-    written: tuple[str, ...]
+    digits: tuple[str, ...]
     lines: tuple[int, ...]
     unit: str = ""
     clock: str = ""

@@ -13,7 +13,7 @@ from wavesym.numbers.doubles import midpoint
 _PLAIN = (fmpq(1), "")
 
 
-class Measured(NamedTuple):
+class MeasuredQuantity(NamedTuple):
     """A `value` in a `unit`, which is empty for what has none."""
 
     value: float
@@ -29,8 +29,8 @@ class LinkSummary(NamedTuple):
 
     place: str
     law: str
-    set: Measured
-    dissipated: Measured
+    set: MeasuredQuantity
+    dissipated: MeasuredQuantity
 
 
 def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
@@ -51,8 +51,8 @@ def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
         LinkSummary(
             each.link.place,
             each.link.law,
-            Measured(midpoint(each.set * stretch[0]), stretch[1]),
-            Measured(midpoint(each.dissipated * energy[0]), energy[1]),
+            MeasuredQuantity(midpoint(each.set * stretch[0]), stretch[1]),
+            MeasuredQuantity(midpoint(each.dissipated * energy[0]), energy[1]),
         )
         for each in found
     )

@@ -34,7 +34,7 @@ def _lines(scene: Scene) -> Iterator[str]:
     numbers = InUnits(scene.physical.scale, parts) if scene.physical else Dimensionless()
     yield f"# {scene.name}, a {said.get('type', scene.system.type)}, written out part by part."
     parted = model.labels.system.get("contacts") == "open"
-    if joined := [] if parted else [point.place for point in model.network.points if point.glued]:
+    if joined := [] if parted else [point.place for point in model.network.points if point.is_glued]:
         at = ", ".join(joined)
         yield f"# Its contacts are closed, as in the paper's formal model: the rods are joined at {at}."
     yield from numbers.remarks

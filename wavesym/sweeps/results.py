@@ -34,7 +34,7 @@ class StoredColumn:
     """A field that was varied: its path, its exact values as they are written, and what people read of them."""
 
     path: str
-    written: tuple[str, ...]
+    texts: tuple[str, ...]
     coordinate: tuple[float | str, ...]
     unit: str
 
@@ -57,7 +57,7 @@ class StoredAxis:
     columns: tuple[StoredColumn, ...]
 
     def __len__(self) -> int:
-        return len(self.columns[0].written)
+        return len(self.columns[0].texts)
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class SweepResults:
         fields: dict[str, Any] = self.manifest.scene
         for dimension, k in zip(self.dimensions, self.place(case), strict=True):
             for column in dimension.columns:
-                fields = replace_at_path(fields, column.path, _value(column.written[k]))
+                fields = replace_at_path(fields, column.path, _value(column.texts[k]))
         return fields
 
 
@@ -187,7 +187,7 @@ def _dimensions(store: Store, manifest: Manifest) -> tuple[StoredAxis, ...]:
             own[said.dimensions[0]].append((said.number, column))
     made = tuple(StoredAxis(name, _in_order(columns)) for name, columns in own.items())
     for axis, n in zip(made, manifest.dimensions.values(), strict=True):
-        if {len(each) for column in axis.columns for each in (column.written, column.coordinate)} != {n}:
+        if {len(each) for column in axis.columns for each in (column.texts, column.coordinate)} != {n}:
             raise ValueError("not as many values as cases")
     return made
 

@@ -119,14 +119,15 @@ Rule = Literal["plain", "extrapolated", "wandering"]
 
 @dataclass(frozen=True)
 class Refinement:
-    """Errors at N, 2N and 4N, that of what is best, and what it may be: what lies `between` solutions, and rounding.
+    """Errors at N, 2N and 4N, that of what is best, and what it may be: `method_error`, which is what lies between
+    solutions, and rounding.
 
     `values` are the best ones. Errors are relative to `scale`; without a truth they are differences from the best.
     """
 
     errors: tuple[float, ...]
     best: float
-    between: float
+    method_error: float
     rounding: float
     values: Array
     scale: float
@@ -159,7 +160,7 @@ class Refinement:
     @property
     def allowed(self) -> float:
         """What the best error may be."""
-        return self.between + self.rounding
+        return self.method_error + self.rounding
 
     @property
     def is_right(self) -> bool:
@@ -197,7 +198,7 @@ class Method:
         while True:
             outputs = zip(truths, zip(*solved, strict=True), strict=True)
             found = [Refinement.compare(each, truth, self.rule) for truth, each in outputs]
-            if all(each.between <= FINE for each in found) or not self.is_affordable(8 * finer):
+            if all(each.method_error <= FINE for each in found) or not self.is_affordable(8 * finer):
                 return self.coarsest * finer, found
             finer *= 2
             solved = [*solved[1:], self.solve(4 * finer)]
@@ -210,7 +211,7 @@ class Method:
         outcomes = []
         for name, truth, taus, each in zip(names, truths, self.instants, refined, strict=True):
             integral = IntegratedOutput(taus, each.values, each.allowed * each.scale, self.clear)
-            note = "" if each.between <= FINE else too_coarse(scene, self.name)
+            note = "" if each.method_error <= FINE else too_coarse(scene, self.name)
             passed = integral.judges if truth is None else each.is_right
             outcomes.append(Outcome(name, {**cells, **each.cells(steps)}, passed, note, integral))
         return outcomes

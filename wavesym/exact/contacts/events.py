@@ -82,7 +82,7 @@ def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
     contact touches and no number of bits tells what follows.
     """
     network, until = model.network, rational(model.horizon(real))
-    glued = [number for number, point in enumerate(network.points) if point.glued]
+    glued = [number for number, point in enumerate(network.points) if point.is_glued]
     if not glued:
         return ()
     from wavesym.exact.contacts.schedule import first_opening  # how contacts touch: few scenes have any

@@ -77,7 +77,7 @@ def _orders(law: JointLaw, forces: Sequence[float], prescribed: Sequence[float])
     size = range(len(law.mass))
     orders = [prescribed[k] if law.motions[k] is not None else inf for k in size]
 
-    def pulled(k: int) -> float:
+    def order_of_pull(k: int) -> float:
         """What is known of what acts on a group, but for groups without mass."""
         slow = (orders[b] for b in size if law.damping[k][b] != 0 and b not in law.light)
         sprung = (orders[law.moves[p][0]] + 1 for p, c in enumerate(law.stiffness[k]) if c != 0)
@@ -86,9 +86,9 @@ def _orders(law: JointLaw, forces: Sequence[float], prescribed: Sequence[float])
     while True:
         before = list(orders)
         for row, k in enumerate(law.light):
-            orders[k] = min(pulled(b) for n, b in enumerate(law.light) if law.inverse[row, n] != 0)
+            orders[k] = min(order_of_pull(b) for n, b in enumerate(law.light) if law.inverse[row, n] != 0)
         for k in law.heavy:
-            orders[k] = 1 + min([pulled(k), *(orders[b] for b in law.light if law.damping[k][b] != 0)])
+            orders[k] = 1 + min([order_of_pull(k), *(orders[b] for b in law.light if law.damping[k][b] != 0)])
         if orders == before:
             return [ORDER + 2 * (len(orders) - 1) if order == inf else int(order) for order in orders]
 

@@ -80,7 +80,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
         for subject in source(scene, samples):
             progress(" ".join((*subject.curve, subject.resolution)))
             found.append((subject, judge.errors(subject)))
-    again = _again(scene, samples)
+    again = _new_parameter_calls(scene, samples)
     progress("timing")
     outputs = len(scene.outputs)
     line, *times = medians([floor(outputs, samples, _LINES), *(subject.sample for subject, _ in found), *again])
@@ -105,7 +105,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
     )
 
 
-def _again(scene: Scene, samples: int) -> list[Callable[[], object]]:
+def _new_parameter_calls(scene: Scene, samples: int) -> list[Callable[[], object]]:
     """A call that gives values for new kappa, where a program takes them when it runs."""
     try:
         program = sets_program(lower(scene), ["kappa"])

@@ -53,7 +53,7 @@ class Findings:
         return tuple(record for record in self.records if self.only in ("", record.verdict))
 
     @property
-    def all_tested(self) -> bool:
+    def are_complete(self) -> bool:
         """Whether everything could be tested."""
         return all(record.verdict != "untested" for record in self.records)
 

@@ -134,7 +134,7 @@ class Coefficients(Scope):
         }
 
     def symbol(self, symbol: Symbol) -> Any:
-        return self._coefficient(key(symbol, self)) if symbol.above else super().symbol(symbol)
+        return self._coefficient(key(symbol, self)) if symbol.superscript else super().symbol(symbol)
 
     def step(self, value: Any) -> Any:
         return 1 if self._is_open else super().step(value)

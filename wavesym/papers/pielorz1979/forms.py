@@ -61,7 +61,7 @@ def rows(group: str, m: int, changes: Changes) -> dict[str, list[Function]]:
     for id in ids("function", group):
         head, block, scope = reading_of(id, changes), id.rpartition(".")[0], Scope({"m": m})
         function = head.formula
-        if not isinstance(function, Symbol) or len(function.below) != 1:
+        if not isinstance(function, Symbol) or len(function.subscript) != 1:
             raise MeaninglessError(f"{latex(function)} is no function")
         sizes = (reading_of(block, changes).formula,) if block in entries() else ()
         found[id] = []
@@ -274,10 +274,10 @@ class FormScope(Scope):
 
     def symbol(self, symbol: Symbol) -> Any:
         """Coefficients, loads, rates, and the cells of the tables."""
-        if symbol.above and symbol.name == "F":
+        if symbol.superscript and symbol.name == "F":
             return self.coefficient(self.indices(symbol), self.upper(symbol))
         name = letter_name(symbol)
-        if symbol.above or name != symbol.name or (name in self.letters and symbol.below):
+        if symbol.superscript or name != symbol.name or (name in self.letters and symbol.subscript):
             return super().symbol(symbol)
         indices = self.indices(symbol)
         values = self._values if name in self._changed_letters else self._right_values
@@ -336,7 +336,7 @@ class FormScope(Scope):
 def derivative(tree: Tree) -> Call:
     """F' with two indices, of one argument; MeaninglessError."""
     match tree:
-        case Call(Symbol("F", primes=1, below=(_, _)), (_,)):
+        case Call(Symbol("F", primes=1, subscript=(_, _)), (_,)):
             return tree
     raise MeaninglessError(f"{latex(tree)} is no derivative of a function")
 

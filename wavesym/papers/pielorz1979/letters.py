@@ -25,9 +25,9 @@ Displacement = Callable[[int, Jet, Jet], Jet]
 
 DISPLACEMENTS = {"I": r"\baru", "II": r"\bar\theta", "III": r"\bary"}
 """The U of (2.1) without dimension, Table 1."""
-_C_F = Symbol("c", below=(Symbol("f"),))
-_S_0 = Symbol("S", below=(Number("0"),))
-_X_I = Symbol("x", below=(Symbol("i"),))
+_C_F = Symbol("c", subscript=(Symbol("f"),))
+_S_0 = Symbol("S", subscript=(Number("0"),))
+_X_I = Symbol("x", subscript=(Symbol("i"),))
 _ANY_V_0 = fmpq(7, 5)
 
 

@@ -116,7 +116,7 @@ class Constants(Loads):
     def _defined_symbol(self) -> Symbol:
         left = sides(self.reading.formula)[0]
         function = left.function if isinstance(left, Call) else left
-        if not isinstance(function, Symbol) or len(function.below) != 1:
+        if not isinstance(function, Symbol) or len(function.subscript) != 1:
             raise MeaninglessError(f"{latex(left)} is not defined")
         return function
 
@@ -136,7 +136,7 @@ class Rates(Constants):
     is_alone = False
 
     def _defined_symbol(self) -> Symbol:
-        return Symbol(r"\gamma", below=(Symbol("i"),))
+        return Symbol(r"\gamma", subscript=(Symbol("i"),))
 
     def key(self, equation: Tree, place: Place) -> Key:
         return Loads.key(self, equation, place)

@@ -105,13 +105,13 @@ def _chains(name: str, hypothesis: str) -> Iterator[HighestPowers]:
     """Those for which a hypothesis holds."""
     yield from (highest_powers(name, m) for m in SIZES[name][: 2 if name == "II" else 3])
     if "different" not in hypothesis:
-        yield _like(name)
+        yield _equal_rates(name)
     if name == "I" and "m is at least 4" not in hypothesis:
         yield highest_powers("I", 2)
 
 
 @cache
-def _like(name: str) -> HighestPowers:
+def _equal_rates(name: str) -> HighestPowers:
     """A chain in which rates are equal."""
     one = fmpq(1)
     exact, parameters = {
@@ -150,10 +150,10 @@ def _said_roles(words: Words, scope: FormScope, lower: Indices, upper: Indices, 
     symbol, term = read_formula(words["symbol"]), read_formula(words["term"])
     assert isinstance(symbol, Symbol)
     assert isinstance(term, Symbol)
-    if (len(symbol.below), len(symbol.above)) != (len(lower), len(upper)):
+    if (len(symbol.subscript), len(symbol.superscript)) != (len(lower), len(upper)):
         raise MeaninglessError(f"{latex(symbol)} has not as many indices")
     letters: dict[str, int] = {}
-    for tree, value in zip((*symbol.below, *symbol.above), (*lower, *upper), strict=True):
+    for tree, value in zip((*symbol.subscript, *symbol.superscript), (*lower, *upper), strict=True):
         plain = tree.terms[0] if isinstance(tree, Addition) else tree
         name, number = latex(plain), value if plain == tree else value - 1  # n + 1 is the number of an interval
         if letters.setdefault(name, number) != number:

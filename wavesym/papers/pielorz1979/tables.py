@@ -350,9 +350,13 @@ def coefficients(entry: PaperEntry) -> Test:
 
     def cases(reading: Reading) -> Iterator[Case]:
         stated = [_shape(tree) for tree in items(reading.formula)]
-        bodies = (tree.below[0] for tree in items(reading.formula) if isinstance(tree, Symbol) and len(tree.below) == 2)
+        bodies = (
+            tree.subscript[0]
+            for tree in items(reading.formula)
+            if isinstance(tree, Symbol) and len(tree.subscript) == 2
+        )
         yield Case({"claim": "a letter for the body"}, all(isinstance(body, Symbol) for body in bodies), True)
-        true = {_shape(tree) for name in FORMS for tree in symbols(right_form(name).step) if tree.above}
+        true = {_shape(tree) for name in FORMS for tree in symbols(right_form(name).step) if tree.superscript}
         yield Case({"claim": "coefficients: upper indices, lower ones"}, sorted(stated), sorted(true))
 
     return Test("the coefficients of (4.9), (4.10) and (4.12) as they run against the motion", cases)
@@ -361,17 +365,17 @@ def coefficients(entry: PaperEntry) -> Test:
 def _shape(tree: Tree) -> tuple[str, str]:
     """The letters above, and those below, with a word for the body, which is a number or a letter."""
     match tree:
-        case Symbol("F", below=()):
+        case Symbol("F", subscript=()):
             below = "none"
-        case Symbol("F", below=(Number(digits),)):
+        case Symbol("F", subscript=(Number(digits),)):
             below = digits
-        case Symbol("F", below=(_, last)):
+        case Symbol("F", subscript=(_, last)):
             below = f"body, {latex(last)}"
         case Symbol("F"):
-            below = ", ".join(map(latex, tree.below))
+            below = ", ".join(map(latex, tree.subscript))
         case _:
             raise MeaninglessError(f"{latex(tree)} is no coefficient")
-    return ", ".join(map(latex, tree.above)), below
+    return ", ".join(map(latex, tree.superscript)), below
 
 
 TESTS: Mapping[str, Callable[[PaperEntry], Test]] = {
