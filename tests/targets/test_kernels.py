@@ -15,7 +15,7 @@ from wavesym.programs.making import program
 from wavesym.programs.schemes import SCHEMES
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene, lower
-from wavesym.targets.c.tables import table_declarations, tables_text
+from wavesym.targets.c.tables import Declaration, declarations, tables_text
 
 C = Path(__file__).parents[2] / "templates" / "c"
 KERNELS = sorted(path.relative_to(C).as_posix() for path in C.rglob("*.c"))
@@ -48,9 +48,12 @@ def test_a_kernel_is_c_as_it_stands(kernel, precision):
 def test_tables_are_what_their_header_declares(kernel, name):
     """No table more, none less, each of its type; what NumPy reads is among them, in their order."""
     items = [
-        item for paragraph in table_declarations(f"{kernel}/tables.h") for item in paragraph if isinstance(item, tuple)
+        item
+        for paragraph in declarations(f"{kernel}/tables.h")
+        for item in paragraph
+        if isinstance(item, Declaration) and item.is_table
     ]
-    types = {table: type for type, table in items}
+    types = {item.name: item.type for item in items}
     model = lower(Scene.from_toml(name))
     made = program(model, choose(model, kernel).evaluator).tables
     assert len(items) == len(types) > 0
@@ -102,13 +105,14 @@ def test_a_program_writes_all_tables_that_it_has(of):
 def test_tables_are_written_as_they_are_declared():
     """In order, with the comments above those that there are."""
     values = {"steps": ("1, 2,", "3"), "ring": ("0",), "track": ("7",)}
-    first, second = tables_text("march/tables.h", values)
+    enumeration, first, second = tables_text("march/tables.h", values, {"degree": "7", "span": "2.0"})
+    assert "    DEGREE = 7,\n    SIZE = DEGREE + 1,\n    PANELS = 2,\n" in enumeration
     assert first.startswith("/* tracks: how many windows later it arrives,")
     assert "static const int steps[] = {\n    1, 2,\n    3\n};\n\nstatic const int ring[] = {\n    0\n};\n" in first
     assert first.endswith("and delays. */\nstatic const int track[] = {\n    7\n};\n")
     assert first.count("/*") == 2
-    assert second == ""
-    (lanes,) = tables_text("modes/tables.h", {"moved_row": ("0",)}, {"LANES": "4"})
+    assert second.endswith("where they begin in it. */\nstatic const real span = 2.0;")
+    *_, lanes = tables_text("modes/tables.h", {"moved_row": ("0",)}, words={"LANES": "4"})
     assert lanes.startswith("/* The outputs that y counts in; 4 of them at a time,")
 
 

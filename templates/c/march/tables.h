@@ -18,14 +18,12 @@ enum {
     TRACKS = 5,
     SLOTS = 13,
     CYCLE = 2,
-    WIDEST = 2 * SIZE + 1,
+    WIDEST = 43, /* rows of the matrix of a block */
     MOST_PORTS = 2,
-    POWERS = 3,
+    POWERS = 3, /* of a force */
     BODY = 1,
     BLOCK = 2
 };
-
-extern const real step, span;
 
 /* tracks: how many windows later it arrives, where its ring of windows starts, and what is on its way at tau = 0 */
 extern const int steps[];
@@ -64,6 +62,9 @@ extern const real gain[];
 extern const int summed[];
 extern const int delay[];
 
+/* A window, and a cycle: after so many windows tau is a whole number again; where they begin in it. */
+extern const real step;
+extern const real span;
 extern const real begin[];
 /* Delays: from t >= `from` on, t counted from the start of the cycle, a wave is that of `panel_of`, `back` windows ago,
  * with u = (t - start + excess) / half - 1; an integral over all of a window is from low to high. */

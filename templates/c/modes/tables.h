@@ -13,7 +13,10 @@ enum { OUTPUTS = NAME_OUTPUTS, MODES = NAME_MODES, LOADS = NAME_LOADS, LANES = 8
 void name_init(stream *state);
 int name_step(stream *state, real dtau, const real *load, real *out);
 
-extern const real spacing, shortest, longest;
+extern const real spacing;
+/* A step outside of these is not the spacing, rounded. */
+extern const real shortest;
+extern const real longest;
 
 /* by mode */
 extern const real p11[];

@@ -6,8 +6,6 @@
 
 enum { GRIDS = 2 };
 
-extern const real exact;
-
 /* Of grid g: its outputs member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces
  * start at first_piece[g] + g, as there is one more, the end of the last piece. */
 extern const int first_member[];
@@ -23,3 +21,6 @@ extern const int part[];
  * of all members. */
 extern const int first_power[];
 extern const real coefficient[];
+
+/* Up to here numbers of samples are exact. */
+extern const real exact;

@@ -107,10 +107,14 @@ void slopes_of(const name_parameters *p, int lane, laws *law);
 
 extern const real largest_number;
 extern const real least_number;
-extern const real faint;
-extern const real roundings;
+/* what a window may miss, of the largest wave; a rounding */
 extern const real share;
 extern const real unit;
+/* a law that is less is rounded by less than a rounding of this: it may have underflowed */
+extern const real faint;
+/* how often a law is rounded, at most */
+extern const real roundings;
+/* how long a window is, and CYCLE of them */
 extern const real window_length;
 extern const real span;
 
@@ -179,3 +183,5 @@ extern const real term_high[];
 extern const int gain_output[];
 /* outputs: whether it is 0 whatever the parameters are */
 extern const int is_zero[];
+/* amplitudes of the loads, where they are no parameters */
+extern const real amplitude[];

@@ -69,10 +69,10 @@ enum {
     BLOCKS = 1,
     MOST_STATES = 1,
     ENTRIES = NAME_ENTRIES,
-    DEEPEST = 2,
+    DEEPEST = 2, /* windows that a wave is on its way */
     MOST_PORTS = 2,
-    POWERS = 3,
-    WIDEST = SIZE + 1,
+    POWERS = 3, /* of a force on a panel */
+    WIDEST = 13, /* rows of the matrix of a block */
     BODY = 1,
     BLOCK = 2
 };
@@ -134,6 +134,29 @@ extern const int late[];
 extern const real rest[];
 extern const int shown_force[];
 
+/* A panel in two numbers, 2 / its length, and the length of a window. */
+extern const real panel;
+extern const real panel_low;
+extern const real scale;
+extern const real step_length;
+/* What may be lost, of the largest wave; and by one breakpoint that is given up, for a tau of its step. */
+extern const real tolerance;
+extern const real share;
+/* Of what polynomials miss: what it makes wrong at once, and how steep; how steep the rest becomes in a window; the root of
+ * a panel; and waves that are no larger than rounding. */
+extern const real rough;
+extern const real steep;
+extern const real growth;
+extern const real root_panel;
+extern const real least;
+/* Instants that are one, and what of the time that is past is rounding; the shortest step but 0, the shortest in which
+ * loads do not jump, and the longest. */
+extern const real nearest;
+extern const real rounding;
+extern const real shortest;
+extern const real shortest_ramp;
+extern const real longest;
+
 /* where the laws of a joint begin */
 extern const int at_rates[];
 extern const int at_pushed[];
@@ -163,13 +186,8 @@ int name_build(stream *state, const name_parameters *parameters);
 #define base state->made.base
 #define strength state->made.strength
 #define gain state->made.gain
-#else
-extern const real growth;
 #endif
 
 void name_init(stream *state);
 int name_step(stream *state, real dtau, const real *load, real *out);
 real name_lost(const stream *state);
-
-extern const real panel, panel_low, scale, step_length, tolerance, share, shortest, shortest_ramp, longest;
-extern const real nearest, rounding, least, root_panel, rough, steep;

@@ -95,7 +95,7 @@ class StreamTables:
             "breakpoints": plan.breakpoints,
             "deepest": max(track.steps for track in plan.march.tracks),
             "loads": len(plan.inputs),
-            "loaded_count": len(plan.loaded),
+            "loaded": len(plan.loaded),
             "loaded_ports": sum(len(self._joints[n].space.ports) for n in plan.loaded),
             "most_states": max(1, *(joint.space.states for joint in self._joints), 1),
             "panel": long,

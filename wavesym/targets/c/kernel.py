@@ -13,7 +13,11 @@ def kernel(file: str, scene: Description) -> str:
 
     There `name` and `NAME` stand for the scene's name, `name_real` for its type of numbers.
     """
-    text = text_of(f"c/{file}").partition("\n\n")[2].rstrip()
+    return with_names(text_of(f"c/{file}").partition("\n\n")[2].rstrip(), scene)
+
+
+def with_names(text: str, scene: Description) -> str:
+    """Plain C with the name of a scene, and its type of numbers."""
     text = re.sub(r"\bname_real\b", scene.real, text)
     return re.sub(r"\bname_", f"{scene.name}_", re.sub(r"\bNAME_", f"{scene.prefix}_", text))
 

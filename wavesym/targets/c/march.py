@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
-from wavesym.targets.c.tables import tables_text
+from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description
-from wavesym.targets.literals import c_constants, c_tables
 
 
 @dataclass(frozen=True)
@@ -17,8 +16,7 @@ class CMarch:
     """templates/c/march/march.c.j2."""
 
     scene: Description
-    tables: list[str]
-    constants: dict[str, str]
+    tables: str
     numbers: str
     series: str
     joint: str
@@ -29,8 +27,7 @@ def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     context = CMarch(
         scene=scene,
-        tables=tables_text("march/tables.h", c_tables(program.tables, program.real)),
-        constants=c_constants(program.constants, program.real),
+        tables=program_tables("march/tables.h", scene, program),
         numbers=kernel("real.h", scene),
         series=kernel("series.h", scene),
         joint=kernel("joint.c", scene),

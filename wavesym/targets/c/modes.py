@@ -8,9 +8,9 @@ from wavesym.programs.modes.modal_system import LANES
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
-from wavesym.targets.c.tables import tables_text
+from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, constants
-from wavesym.targets.literals import c_constants, c_tables
+from wavesym.targets.literals import c_constants
 
 
 @dataclass(frozen=True)
@@ -18,11 +18,7 @@ class CModes:
     """templates/c/modes/modes.c.j2."""
 
     scene: Description
-    tables: list[str]
-    constants: dict[str, str]
-    moved: str
-    moving: str
-    lanes: str
+    tables: str
     numbers: str
     kernel: str
 
@@ -41,11 +37,16 @@ def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     context = CModes(
         scene=scene,
-        tables=tables_text("modes/tables.h", c_tables(program.tables, program.real), {"LANES": str(LANES)}),
-        constants=c_constants(program.constants, program.real),
-        moved=str(len(program.tables["moved_row"])),
-        moving=str(len(program.tables["moving_row"])),
-        lanes=str(LANES),
+        tables=program_tables(
+            "modes/tables.h",
+            scene,
+            program,
+            {
+                "lanes": str(LANES),
+                "moved": str(len(program.tables["moved_row"])),
+                "moving": str(len(program.tables["moving_row"])),
+            },
+        ),
         numbers=kernel("real.h", scene),
         kernel=kernel("modes/modes.c", scene),
     )

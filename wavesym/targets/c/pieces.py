@@ -18,8 +18,6 @@ class CPieces:
 
     scene: Description
     tables: list[str]
-    grids: str
-    exact: str
     numbers: str
     kernel: str
 
@@ -27,11 +25,13 @@ class CPieces:
 def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     steps = str(program.constants["steps"])
+    constants = {
+        "grids": str(len(program.tables["scale"])),
+        "exact": c_literal(program.real.nearest(1 / program.real.roundoff), program.real),
+    }
     context = CPieces(
         scene=scene,
-        tables=tables_text("pieces/tables.h", c_tables(program.tables, program.real), {"STEPS": steps}),
-        grids=str(len(program.tables["scale"])),
-        exact=c_literal(program.real.nearest(1 / program.real.roundoff), program.real),
+        tables=tables_text("pieces/tables.h", c_tables(program.tables, program.real), constants, {"STEPS": steps}),
         numbers=kernels(scene, "real.h", "vectors.h"),
         kernel=kernel("pieces/pieces.c", scene),
     )

@@ -18,9 +18,9 @@ from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.memory import Memory
 from wavesym.targets.c.selftest import selftest
-from wavesym.targets.c.tables import tables_text
+from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description
-from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
+from wavesym.targets.literals import Lines, c_literal, c_literals
 
 _SIZES = (
     "windows",
@@ -104,8 +104,8 @@ class CRuntime:
     """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression.
 
     `products` are what is multiplied and added up on the way to them, `slope_products` to their derivatives. `slopes`
-    are these, by the number of a parameter; `load_lane` is that of the first load, -1 for none. Work is `inside` of
-    models where it is too much for a stack. `arrays` are the laws with how many numbers each has.
+    are these, by the number of a parameter. Work is `inside` of models where it is too much for a stack. `arrays` are
+    the laws with how many numbers each has.
     """
 
     scene: Description
@@ -116,13 +116,9 @@ class CRuntime:
     laws: tuple[tuple[str, str], ...]
     slope_products: Lines
     slopes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
-    load_lane: str
-    tables: list[str]
-    constants: dict[str, str]
-    amplitudes: Lines
+    tables: str
     largest: str
     least: str
-    loads: str
     numbers: str
     texts: RuntimeTexts
     arrays: tuple[tuple[str, str], ...]
@@ -145,7 +141,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     context = _context(scene, program, texts)
     structs = CRuntimeStructs(
         scene=scene,
-        sizes=tuple((name.upper(), context.constants[name]) for name in _SIZES),
+        sizes=tuple((name.upper(), str(program.constants[name])) for name in _SIZES),
         fields=context.fields,
         work="\n\n".join((kernel("runtime/wide.h", scene), _one_set(scene), kernel("runtime/work.h", scene))),
         model=kernel("runtime/model.h", scene),
@@ -190,12 +186,22 @@ def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRunt
     laws, real = program.laws, program.real
     assert laws is not None
     own = not any(field.name == "load" for field in laws.fields)
-    derived = "gradients" in program.parts
+    derived, bounded = "gradients" in program.parts, "bound" in program.parts
+    largest, least = (f"{LIMITS[real.name]}_{name}" for name in ("MAX", "MIN"))
+    known = replace(program, tables=program.tables | ({"amplitude": laws.amplitudes} if own else {}))
+    unneeded = () if bounded else ("roundings",)
+    known = replace(known, constants={name: of for name, of in program.constants.items() if name not in unneeded})
+    length, unit = (c_literal(program.constants[name], real) for name in ("step", "unit"))
+    constants = {
+        "load_lane": load_lane(laws),
+        "largest_number": largest,
+        "faint": f"{least} / {unit}",
+        "window_length": length,
+        **({"least_number": least} if bounded else {}),
+    }
     # what energies are made of only bounds need
     needed = {
-        name: functions
-        for name, functions in laws.functions.items()
-        if "bound" in program.parts or name not in ("weight", "impedance")
+        name: functions for name, functions in laws.functions.items() if bounded or name not in ("weight", "impedance")
     }
     return CRuntime(
         scene=scene,
@@ -203,16 +209,12 @@ def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRunt
         inside=False,
         fields=tuple(parameter_fields(laws, real)),
         products=product_lines(laws, laws.every, real),
-        laws=tuple(assignments(laws, needed, real)),
+        laws=(*assignments(laws, needed, real), ("load", "amplitude" if own else "p->load")),
         slope_products=product_lines(laws, laws.every_slope, real) if derived else (),
         slopes=tuple(slopes(laws, needed, real)) if derived else (),
-        load_lane=load_lane(laws),
-        tables=tables_text("runtime/tables.h", c_tables(program.tables, real)),
-        constants=c_constants(program.constants, real),
-        amplitudes=c_literals(laws.amplitudes, real) if own else (),
-        largest=f"{LIMITS[real.name]}_MAX",
-        least=f"{LIMITS[real.name]}_MIN",
-        loads="amplitude" if own else "p->load",
+        tables=program_tables("runtime/tables.h", scene, known, constants),
+        largest=largest,
+        least=least,
         numbers=kernels(scene, "real.h", "vectors.h"),
         texts=texts,
         arrays=tuple((name, str(len(functions))) for name, functions in needed.items()),

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from wavesym.programs.program import Program
 from wavesym.programs.stream.parameters import MADE
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assignments, parameter_fields, product_lines
-from wavesym.targets.c.tables import tables_text
+from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, constants
-from wavesym.targets.literals import Lines, c_constants, c_tables
+from wavesym.targets.literals import Lines, c_constants
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,7 @@ class CStream:
     """
 
     scene: Description
-    tables: list[str]
-    constants: dict[str, str]
+    tables: str
     numbers: str
     series: str
     joint: str
@@ -35,6 +34,7 @@ class CStream:
     products: Lines
     laws: tuple[tuple[str, str], ...]
     terms: str
+    calm: str
     largest: str
     least: str
     elimination: str
@@ -59,20 +59,22 @@ class CStreamHeader:
 def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     laws = program.laws
+    made = (*MADE, "growth") if laws else ()
+    known = replace(program, constants={name: of for name, of in program.constants.items() if name not in made})
     context = CStream(
         scene=scene,
-        tables=tables_text("stream/tables.h", c_tables(program.tables, program.real)),
-        constants=c_constants(program.constants, program.real),
+        tables=program_tables("stream/tables.h", scene, known),
         numbers=kernel("real.h", scene),
         series=kernels(scene, "root.h", "series.h"),
         joint=kernel("joint.c", scene),
         kernel=kernel("stream/stream.c", scene),
         fields=_fields(program),
         functions=tuple((name, str(len(of))) for name, of in laws.functions.items()) if laws else (),
-        made_tables=MADE if laws else (),
+        made_tables=made,
         products=product_lines(laws, laws.every, program.real) if laws else (),
         laws=tuple(assignments(laws, laws.functions, program.real)) if laws else (),
         terms=str(len(laws.functions["gain"])) if laws else "",
+        calm=str(program.constants["calm"]) if laws else "",
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",
         elimination=kernel("elimination.c", scene) if laws else "",

@@ -1,51 +1,103 @@
-"""The tables of a kernel, declared once: in the header that its C is read with, and written from there with values.
+"""The tables and constants of a kernel, declared once: in the header that its C is read with, and written from there.
 
-templates/c/KIND/tables.h stands for what a program has above the text of its kernel. Its paragraphs of
-`extern const real NAME[];` with comments become those of `static const real NAME[] = {...};`, in the same order.
+templates/c/KIND/tables.h stands for what a program has above the text of its kernel. Of its paragraphs those of
+`extern const real NAME[];` and `extern const real NAME;` with comments become definitions, in the same order; in those
+of `enum { NAME = 3 };` constants of a program take the places of numbers.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
+from wavesym.programs.program import Program
 from wavesym.rendering import text_of
-from wavesym.targets.literals import Lines
+from wavesym.targets.c.kernel import with_names
+from wavesym.targets.description import Description
+from wavesym.targets.literals import Lines, c_constants, c_tables
 
-_TABLE = re.compile(r"extern const (int|real) (\w+)\[\];")
+_DECLARATION = re.compile(r"extern const (int|real) (\w+)(\[\])?;")
+_ENUM = re.compile(r"enum \{[^}]*\};")
+_NUMBER = re.compile(r"\b([A-Z][A-Z_]*) = -?\d+\b")
 
 
-def table_declarations(file: str) -> Iterator[list[str | tuple[str, str]]]:
-    """The paragraphs of tables in templates/c/`file`: a comment is its text, a table its type and name."""
+class Declaration(NamedTuple):
+    """A table, or a single number."""
+
+    type: str
+    name: str
+    is_table: bool
+
+
+def declarations(file: str) -> Iterator[list[str | Declaration]]:
+    """The paragraphs of templates/c/`file` that a program has: comments and enumerations are their text."""
     for paragraph in text_of(f"c/{file}").rstrip().split("\n\n"):
-        items: list[str | tuple[str, str]] = []
+        items: list[str | Declaration] = []
         for line in paragraph.splitlines():
-            if table := _TABLE.fullmatch(line):
-                items.append((table[1], table[2]))
-            elif items and isinstance(items[-1], str) and not items[-1].endswith("*/"):
+            if found := _DECLARATION.fullmatch(line):
+                items.append(Declaration(found[1], found[2], bool(found[3])))
+            elif items and isinstance(items[-1], str) and not items[-1].endswith("*/" if items[-1][0] == "/" else "};"):
                 items[-1] += f"\n{line}"
             else:
                 items.append(line)
-        if all(isinstance(item, tuple) or item.startswith("/*") for item in items):
+        # those of an enumeration whose names begin with the scene's are in its header
+        if all(isinstance(item, Declaration) or _is_text(item) for item in items):
             yield items
 
 
-def tables_text(file: str, values: Mapping[str, Lines], words: Mapping[str, str] | None = None) -> list[str]:
-    """The same with `values`, each paragraph as text: tables without any are left out, and comments of nothing else.
+def _is_text(item: str) -> bool:
+    return item.startswith("/*") or bool(_ENUM.fullmatch(item) and not re.search(r"\bNAME_\w+ =", item))
+
+
+def program_tables(file: str, scene: Description, program: Program, constants: Mapping[str, str] | None = None) -> str:
+    """The tables and constants of a program, and more `constants`."""
+    known = c_constants(program.constants, program.real) | dict(constants or {})
+    paragraphs = tables_text(file, c_tables(program.tables, program.real), known)
+    return with_names("\n\n".join(text.rstrip() for text in paragraphs if text), scene)
+
+
+def tables_text(
+    file: str,
+    tables: Mapping[str, Lines],
+    constants: Mapping[str, str] | None = None,
+    words: Mapping[str, str] | None = None,
+) -> list[str]:
+    """The same with values, each paragraph as text: what has none is left out, and comments of nothing else.
 
     In comments `words` are replaced.
     """
-    return ["\n".join(_write(items, values, words or {})) for items in table_declarations(file)]
+    values = tables, constants or {}
+    return ["\n".join(_write(items, *values, words or {})) for items in declarations(file)]
 
 
-def _write(items: list[str | tuple[str, str]], values: Mapping[str, Lines], words: Mapping[str, str]) -> Iterator[str]:
+def _write(
+    items: list[str | Declaration], tables: Mapping[str, Lines], constants: Mapping[str, str], words: Mapping[str, str]
+) -> Iterator[str]:
     comment = ""
     for item in items:
-        if isinstance(item, str):
-            comment = item
-        elif item[1] in values:
-            if comment:
-                yield re.sub(r"\b[A-Z]+\b", lambda word: words.get(word[0], word[0]), comment)
-                comment = ""
-            kind, name = item
-            yield "\n".join((f"static const {kind} {name}[] = {{", *(f"    {line}" for line in values[name]), "};\n"))
+        if isinstance(item, str) and item.startswith("/*"):
+            comment = re.sub(r"\b[A-Z]+\b", lambda word: words.get(word[0], word[0]), item)
+            continue
+        text = _NUMBER.sub(lambda of: _enumerated(of, constants), item) if isinstance(item, str) else ""
+        if isinstance(item, Declaration):
+            text = _defined(item, tables, constants)
+        if text:
+            yield from filter(None, (comment, text))
+            comment = ""
+
+
+def _enumerated(found: re.Match[str], constants: Mapping[str, str]) -> str:
+    value = constants.get(found[1].lower())
+    return found[0] if value is None else f"{found[1]} = {value}"
+
+
+def _defined(item: Declaration, tables: Mapping[str, Lines], constants: Mapping[str, str]) -> str:
+    """Empty where there is no value."""
+    if item.is_table:
+        rows = tables.get(item.name, ())
+        return "\n".join((f"static const {item.type} {item.name}[] = {{", *(f"    {row}" for row in rows), "};\n")) * (
+            item.name in tables
+        )
+    value = constants.get(item.name)
+    return "" if value is None else f"static const {item.type} {item.name} = {value};"
