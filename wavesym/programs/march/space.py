@@ -11,8 +11,8 @@ sends n q - a; what arrives acts with 2 n Z a. The energy of the state is sum of
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import sqrt
 from typing import Any
@@ -178,24 +178,41 @@ class JointRows:
     ports: tuple[Port, ...]
     masses: int
 
+    @property
+    def states(self) -> int:
+        """How many numbers x has."""
+        return len(self.weights)
+
+    @property
+    def points(self) -> int:
+        """How many points there are."""
+        return len(self.passed)
+
+    @property
+    def law(self) -> int:
+        """What its step is, as of a `JointSpace`, whatever the parameters are."""
+        return SCATTERER if not self.states else BODY if self.states == self.masses == self.points == 1 else BLOCK
+
+    def evaluate(self, number: Callable[[Any], fmpq]) -> JointSpace:
+        """The laws in numbers; `number` evaluates a function."""
+
+        def matrix(of: Rows, across: int) -> fmpq_mat:
+            return fmpq_mat(len(of), across, [number(value) for row in of for value in row])
+
+        return JointSpace(
+            matrix(self.rates, self.states),
+            matrix(self.pushed, self.points),
+            matrix(self.shown, self.states),
+            matrix(self.passed, self.points),
+            tuple(map(number, self.weights)),
+            tuple(map(number, self.begun)),
+            tuple(replace(port, impedance=number(port.impedance), push=number(port.push)) for port in self.ports),
+        )
+
 
 def joint_space(network: Network, joint: Joint) -> JointSpace:
     """The laws of one joint of a network."""
-    rows = joint_rows(network, joint)
-    states, points = len(rows.weights), len(joint.points)
-
-    def matrix(of: Rows, across: int) -> fmpq_mat:
-        return fmpq_mat(len(of), across, [value for row in of for value in row])
-
-    return JointSpace(
-        matrix(rows.rates, states),
-        matrix(rows.pushed, points),
-        matrix(rows.shown, states),
-        matrix(rows.passed, points),
-        rows.weights,
-        rows.begun,
-        rows.ports,
-    )
+    return joint_rows(network, joint).evaluate(lambda value: value)
 
 
 def joint_rows(network: Network, joint: Joint) -> JointRows:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -54,10 +54,6 @@ class MarchTables:
     def tables(self, nothing: Sequence[bool]) -> dict[str, tuple[float, ...]]:
         """All tables, by name; `nothing` says of each output whether it is 0 throughout."""
         plan, real = self._plan, self._real
-
-        def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
-            return tuple(map(real.nearest, values))
-
         heard = [() if none else output.heard for output, none in zip(plan.outputs, nothing, strict=True)]
         delays = sorted({one.delay for output in plan.outputs for one in output.heard})
         stretches = [plan.stretches(delay) for delay in delays]
@@ -68,26 +64,26 @@ class MarchTables:
         return {
             "steps": tuple(track.steps for track in plan.tracks),
             "ring": firsts(track.steps + 1 for track in plan.tracks),
-            "held": reals(track.held for track in plan.tracks),
+            "held": real.table(track.held for track in plan.tracks),
             **self.joints(),
-            "half_length": reals(panel.length / 2 for panel in plan.panels),
-            "since": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
+            "half_length": real.table(panel.length / 2 for panel in plan.panels),
+            "since": real.table(panel.start - other.start for panel in plan.panels for other in plan.panels),
             "event_window": tuple(event.window for event in plan.events),
             "event_panel": tuple(event.panel for event in plan.events),
             "event_force": tuple(event.force for event in plan.events),
-            "event_power": reals(power for event in plan.events for power in event.powers),
+            "event_power": real.table(power for event in plan.events for power in event.powers),
             "first_term": firsts(map(len, heard)),
             "track": tuple(one.track for of in heard for one in of),
-            "gain": reals(one.gain for of in heard for one in of),
+            "gain": real.table(one.gain for of in heard for one in of),
             "summed": tuple(int(one.summed) for of in heard for one in of),
             "delay": tuple(delays.index(one.delay) for of in heard for one in of),
             "begin": tuple(map(real.not_below, begins)),
             "first_stretch": firsts(map(len, stretches)),
             "from": tuple(real.not_below(max(start, fmpq(0))) for start in starts),
-            "start": reals(starts),
-            "excess": reals(rational(real.nearest(start)) - start for start in starts),
-            "low": reals(-stretch.start if id(stretch) in first else fmpq(0) for stretch in flat),
-            "high": reals(min(plan.panels[s.panel].length, plan.step - s.start) for s in flat),
+            "start": real.table(starts),
+            "excess": real.table(rational(real.nearest(start)) - start for start in starts),
+            "low": real.table(-stretch.start if id(stretch) in first else fmpq(0) for stretch in flat),
+            "high": real.table(min(plan.panels[s.panel].length, plan.step - s.start) for s in flat),
             "back": tuple(stretch.back for stretch in flat),
             "panel_of": tuple(stretch.panel for stretch in flat),
         }
@@ -96,30 +92,17 @@ class MarchTables:
         """Those of the joints and their ports."""
         plan, real = self._plan, self._real
         spaces = [joint.space for joint in plan.joints]
-        ports = [port for space in spaces for port in space.ports]
         matrix, where = self._matrices()
         drives = [space.drive for space in spaces]
-
-        def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
-            return tuple(map(real.nearest, values))
-
+        pushes = ((drive or 1) * port.push for space, drive in zip(spaces, drives, strict=True) for port in space.ports)
         return {
             "law": tuple(space.law for space in spaces),
-            "first_point": firsts(space.points for space in spaces),
-            "first_state": firsts(space.states for space in spaces),
-            "first_port": firsts(len(space.ports) for space in spaces),
-            "drive": reals(drives),
+            **port_tables(plan.joints, real),
+            "drive": real.table(drives),
             "answer": where,
             "matrix": matrix,
-            "initial_state": reals(value for space in spaces for value in space.begun),
-            "force_on": tuple(force for joint in plan.joints for force in joint.forces),
-            "point_of": tuple(port.point for port in ports),
-            "push": reals(
-                (drive or 1) * port.push for space, drive in zip(spaces, drives, strict=True) for port in space.ports
-            ),
-            "ratio": reals(port.ratio for port in ports),
-            "arrive": tuple(track for joint in plan.joints for track in joint.arrive),
-            "send": tuple(track for joint in plan.joints for track in joint.sends),
+            "initial_state": real.table(value for space in spaces for value in space.begun),
+            "push": real.table(pushes),
         }
 
     def constants(self) -> dict[str, float]:
@@ -171,6 +154,22 @@ class MarchTables:
                 yield from map(rational, block.matrix.T.ravel().tolist())
             case None:
                 yield from joint.space.scattering.transpose().entries()
+
+
+def port_tables(joints: Sequence[MarchedJoint], real: Real) -> dict[str, tuple[float, ...]]:
+    """Where points, states and ports of joints begin, and the ports; joints may be functions of parameters."""
+    spaces = [joint.space for joint in joints]
+    ports = [port for space in spaces for port in space.ports]
+    return {
+        "first_point": firsts(space.points for space in spaces),
+        "first_state": firsts(space.states for space in spaces),
+        "first_port": firsts(len(space.ports) for space in spaces),
+        "force_on": tuple(force for joint in joints for force in joint.forces),
+        "point_of": tuple(port.point for port in ports),
+        "ratio": real.table(port.ratio for port in ports),
+        "arrive": tuple(track for joint in joints for track in joint.arrive),
+        "send": tuple(track for joint in joints for track in joint.sends),
+    }
 
 
 def response_key(joint: MarchedJoint, length: fmpq) -> tuple[object, ...]:

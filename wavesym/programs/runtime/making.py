@@ -13,8 +13,8 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.march.plan import MarchedJoint
-from wavesym.programs.march.space import JointRows
+from wavesym.programs.march.space import BLOCK, BODY, JointRows
+from wavesym.programs.march.tables import port_tables
 from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request, refuse_beside
@@ -101,7 +101,7 @@ def _program(
 
 
 def _refuse_large(made: RuntimePlan) -> None:
-    states = max(len(joint.space.weights) for joint in made.plan.joints)
+    states = max(joint.space.states for joint in made.plan.joints)
     if states > _MOST_STATES:
         raise CostError(
             f"system.parts: {states} masses and springs linked to one another, the limit with --runtime is "
@@ -144,8 +144,8 @@ def _strengths(made: RuntimePlan) -> tuple[Function, ...]:
 
 def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, float]:
     plan = made.plan
-    states = [len(joint.space.weights) for joint in plan.joints]
-    points = [len(joint.forces) for joint in plan.joints]
+    spaces = [joint.space for joint in plan.joints]
+    states, points = ([getattr(space, name) for space in spaces] for name in ("states", "points"))
     cycle, span = plan.cycle
     return {
         "windows": plan.windows,
@@ -153,7 +153,7 @@ def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, fl
         "joints": len(plan.joints),
         "points": sum(points),
         "states": sum(states),
-        "squares": sum(count * count for count, joint in zip(states, plan.joints, strict=True) if _is_block(joint)),
+        "squares": sum(space.states**2 for space in spaces if space.law == BLOCK),
         "bodies": len(_bodies(made)),
         "widest": max(*states, *points),
         "ports": sum(len(joint.space.ports) for joint in plan.joints),
@@ -188,24 +188,17 @@ def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple
     reals = real.table
 
     return {
-        "first_point": firsts(len(joint.forces) for joint in plan.joints),
-        "first_state": firsts(len(space.weights) for space in spaces),
-        "first_port": firsts(len(space.ports) for space in spaces),
+        **port_tables(plan.joints, real),
         **matrix_places(plan.joints),
-        "at_square": firsts(len(joint.space.weights) ** 2 * _is_block(joint) for joint in plan.joints),
+        "at_square": firsts(space.states**2 * (space.law == BLOCK) for space in spaces),
         # one more, where there is none
         "body_joint": (*_bodies(made), 0),
-        "is_body": tuple(int(n in _bodies(made)) for n in range(len(plan.joints))),
-        "point_of": tuple(port.point for space in spaces for port in space.ports),
-        "ratio": reals(port.ratio for space in spaces for port in space.ports),
-        "arrive": tuple(track for joint in plan.joints for track in joint.arrive),
-        "send": tuple(track for joint in plan.joints for track in joint.sends),
+        "is_body": tuple(int(space.law == BODY) for space in spaces),
         "steps": tuple(track.steps for track in plan.tracks),
         "ring": firsts(track.steps + 1 for track in plan.tracks),
         "is_mass": (*_masses(made), 0),
         "half_length": reals(panel.length / 2 for panel in plan.panels),
         "since_panel": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
-        "force_on": tuple(force for joint in plan.joints for force in joint.forces),
         "event_window": tuple(event.window for event in events),
         "event_panel": tuple(event.panel for event in events),
         "event_force": tuple(event.force for event in events),
@@ -237,19 +230,9 @@ def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple
     }
 
 
-def _is_body(joint: MarchedJoint) -> bool:
-    """Whether it is one mass without springs."""
-    rows = joint.space
-    return isinstance(rows, JointRows) and len(rows.weights) == rows.masses == len(joint.forces) == 1
-
-
-def _is_block(joint: MarchedJoint) -> bool:
-    return len(joint.space.weights) > 0 and not _is_body(joint)
-
-
 def _bodies(made: RuntimePlan) -> list[int]:
     """The joints that are bodies."""
-    return [n for n, joint in enumerate(made.plan.joints) if _is_body(joint)]
+    return [n for n, joint in enumerate(made.plan.joints) if joint.space.law == BODY]
 
 
 def _masses(made: RuntimePlan) -> Iterator[int]:

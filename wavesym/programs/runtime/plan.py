@@ -121,10 +121,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
     # as if each weighed 1, so that none of them is left out
     changes = {(change.time, change.source) for load in acting for change in load}
     units = tuple(AppliedLoad(source, time, fmpq(1)) for time, source in sorted(changes))
-    # which points loads act on is all that counts of them here
-    points = zip(free.network.points, model.network.points, strict=True)
-    network = replace(free.network, points=tuple(replace(point, loads=own.loads) for point, own in points))
-    plan = march_plan(replace(model, network=network, loads=units), real, joint_rows, HELPS)
+    plan = free_march(model, free, units, real, HELPS)
     # in the scene each counts as it says, or, where that is 0, once
     known = (
         replace(change, weight=change.weight * (load.weight or 1))
@@ -133,9 +130,8 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
     )
     own = march_plan(replace(model, loads=merge_loads(known)), real, helps=HELPS)
     is_zero = zero_outputs(free.some, loads, real)
-    kept: list[Any] = [free.factors.force if probe.quantity == "force" else fmpq(1) for probe in model.probes]
     output_terms = tuple(
-        (number, replace(wave, gain=fmpq(0) if is_zero[number] else wave.gain * kept[number]))
+        (number, replace(wave, gain=fmpq(0)) if is_zero[number] else wave)
         for number, output in enumerate(plan.outputs)
         for wave in output.heard
     )
@@ -143,6 +139,19 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
     events = ordered_events(_events(plan, free, acting, chosen or [fmpq(1)] * len(loads)))
     strands = tuple(_strands(plan, output_terms))
     return RuntimePlan(model, plan, own, free, events, output_terms, strands, tuple(is_zero))
+
+
+def free_march(model: Model, free: FreeNetwork, loads: tuple[AppliedLoad, ...], real: Real, helps: str) -> MarchPlan:
+    """The plan of a march whose laws and gains are functions; where `loads` act is all that counts of them here."""
+    points = zip(free.network.points, model.network.points, strict=True)
+    network = replace(free.network, points=tuple(replace(point, loads=own.loads) for point, own in points))
+    plan = march_plan(replace(model, network=network, loads=loads), real, joint_rows, helps)
+    factors: list[Any] = [free.factors.force if probe.quantity == "force" else fmpq(1) for probe in model.probes]
+    outputs = (
+        replace(output, heard=tuple(replace(one, gain=one.gain * factor) for one in output.heard))
+        for output, factor in zip(plan.outputs, factors, strict=True)
+    )
+    return replace(plan, outputs=tuple(outputs))
 
 
 def _events(

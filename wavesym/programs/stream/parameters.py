@@ -11,21 +11,21 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from flint import fmpq, fmpq_mat
+from flint import fmpq
 
 from wavesym.errors import CostError, UnservedError, WavesymError
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.march.plan import MarchedJoint, MarchOutput, MarchPlan, march_plan
-from wavesym.programs.march.space import JointRows, JointSpace, Rows, joint_rows
+from wavesym.programs.march.plan import HELPS, MarchedJoint, MarchOutput, MarchPlan
+from wavesym.programs.march.space import JointRows
 from wavesym.programs.march.tables import matrix_size
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places
 from wavesym.programs.runtime.network import RuntimeField, free_network
+from wavesym.programs.runtime.plan import free_march
 from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, breakpoints, paneled, steps_of
 from wavesym.programs.stream.tables import StreamTables, slip_size
 
@@ -102,24 +102,7 @@ class FreeStream:
         rows = joint.space
         if not isinstance(rows, JointRows):  # a load that is read
             return joint
-        states, points = len(rows.weights), len(rows.passed)
-
-        def matrix(of: Rows, across: int) -> fmpq_mat:
-            return fmpq_mat(len(of), across, [self._number(value) for row in of for value in row])
-
-        space = JointSpace(
-            matrix(rows.rates, states),
-            matrix(rows.pushed, points),
-            matrix(rows.shown, states),
-            matrix(rows.passed, points),
-            tuple(map(self._number, rows.weights)),
-            tuple(map(self._number, rows.begun)),
-            tuple(
-                replace(port, impedance=self._number(port.impedance), push=self._number(port.push))
-                for port in rows.ports
-            ),
-        )
-        return replace(joint, space=space)
+        return replace(joint, space=rows.evaluate(self._number))
 
 
 def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], real: Real) -> FreeStream:
@@ -134,24 +117,9 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
     network = free.network
     if any(point.motion is not None and isinstance(point.velocity, Ratio) for point in network.points):
         raise UnservedError("--runtime: velocity, but a motion prescribes that of an end; leave velocity out")
-    steady = replace(model, network=_loaded(network, model.network), loads=steps_of(inputs))
-    march = march_plan(steady, real, joint_rows)
-    kepts: list[Any] = [free.factors.force if probe.quantity == "force" else _ONE for probe in model.probes]
-    outputs = tuple(
-        MarchOutput(
-            output.name,
-            tuple(replace(one, gain=one.gain * kept) for one in output.heard),
-        )
-        for kept, output in zip(kepts, march.outputs, strict=True)
-    )
+    march = free_march(model, free, steps_of(inputs), real, HELPS)
     acting = acting_inputs(network, march.pushed, inputs, free.factors.load)
-    return FreeStream(model, tuple(inputs), free.fields, replace(march, outputs=outputs), tuple(acting))
-
-
-def _loaded(network: Network, own: Network) -> Network:
-    """With loads that are numbers: which points they act on is all that counts of them here."""
-    points = zip(network.points, own.points, strict=True)
-    return replace(network, points=tuple(replace(point, loads=other.loads) for point, other in points))
+    return FreeStream(model, tuple(inputs), free.fields, march, tuple(acting))
 
 
 def refuse_stiff(plan: StreamPlan) -> None:
