@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, deliver, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, deliver, format_option, refuse_out
 from wavesym.cli.progress import progress
 from wavesym.errors import WavesymError
 
@@ -26,9 +26,7 @@ if TYPE_CHECKING:
     metavar="T",
     help="What histories may differ by, in parts of the largest value of each output.",
 )
-@click.option(
-    "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
-)
+@format_option("text", "json")
 @OUT
 def advise(scene: Scene, tolerance: float, format: str, out: Path | None) -> None:
     """Say which model is enough: springs or waves.

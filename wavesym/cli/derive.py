@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.shell_completion import CompletionItem
 
-from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, format_option, refuse_out
 from wavesym.cli.progress import progress
 from wavesym.errors import SceneError
 
@@ -51,13 +51,7 @@ def system_names() -> tuple[str, ...]:
 @click.command()
 @click.argument("source", type=_Source(), metavar="SYSTEM|SCENE")
 @click.option("--m", type=int, metavar="M", help="Write every line out for M elastic elements; a scene has its own.")
-@click.option(
-    "--format",
-    type=click.Choice(["text", "latex", "json"]),
-    default="text",
-    show_default=True,
-    help="How it is written.",
-)
+@format_option("text", "latex", "json")
 @click.option("--walks", is_flag=True, help="Walk polynomials instead, which say why powers are as high as they are.")
 @click.option("--intervals", type=click.IntRange(1), help="With --walks: how many of every function.  [default: 4]")
 @OUT

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, format_option, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -39,13 +39,7 @@ class TimeParameter(ParameterType):
     "--until", type=TimeParameter(), metavar="T", help="An earlier end, in tau; with [units] in that of results."
 )
 @click.option("--symbolic", is_flag=True, help="Coefficients as functions of the parameters: of the paper's systems.")
-@click.option(
-    "--format",
-    type=click.Choice(["text", "latex", "sympy", "c"]),
-    default="text",
-    show_default=True,
-    help="How it is written; sympy: one expression in tau, c: a function.",
-)
+@format_option("text", "latex", "sympy", "c", help="How it is written; sympy: one expression in tau, c: a function.")
 @OUT
 def formula(scene: Scene, output: str, until: Fraction | None, symbolic: bool, format: str, out: Path | None) -> None:
     """Print an output as a formula, exact.

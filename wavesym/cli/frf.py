@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, decimals, is_drawn, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SCENE, decimals, format_option, is_drawn, put, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -32,9 +32,7 @@ POINTS = 400
 @click.option(
     "--peaks", is_flag=True, help="The greatest amplitude of each output in the band, enclosed, in their place."
 )
-@click.option(
-    "--format", type=click.Choice(["csv", "json"]), default="csv", show_default=True, help="How it is written."
-)
+@format_option("csv", "json")
 @click.option("-o", "out", type=PATH, metavar="FILE|PICTURE", help="Where it goes; .svg, .png, .pdf: drawn.")
 def frf(
     scene: Scene,

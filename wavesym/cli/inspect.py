@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, deliver, put, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, deliver, format_option, put, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -19,9 +19,7 @@ STAGES = ["summary", "scene", "model", "laws", "table", "program"]
 @click.command()
 @click.argument("scene", type=SCENE)
 @click.option("--stage", type=click.Choice(STAGES), help="What this stage makes of it.  [default: summary]")
-@click.option(
-    "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
-)
+@format_option("text", "json")
 @OUT
 def inspect(scene: Scene, stage: str | None, format: str, out: Path | None) -> None:
     """Show what each stage makes of a scene.

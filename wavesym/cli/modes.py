@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SceneParameter, is_drawn, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SceneParameter, format_option, is_drawn, put, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -29,9 +29,7 @@ COUNT = 10
 )
 @click.option("--shapes", is_flag=True, help="How far each node moves, too.")
 @click.option("--points", type=click.IntRange(min=2), help="Shapes at so many points of each rod; as json or csv.")
-@click.option(
-    "--format", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True, help="How it is written."
-)
+@format_option("text", "json", "csv")
 @click.option("-o", "out", type=PATH, metavar="FILE|PICTURE", help="Where it goes; .svg, .png, .pdf: shapes, drawn.")
 def modes(
     scene: Scene,

@@ -6,12 +6,12 @@ import math
 import os
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from glob import escape, glob
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from click.shell_completion import CompletionItem
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     ParameterType = click.ParamType[Any]
 else:
     ParameterType = click.ParamType  # click before 8.4 takes no types there
+
+Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 _ARGUMENT = "wavesym.scene"
@@ -163,6 +165,13 @@ PATH = click.Path(path_type=Path)
 
 OUT = click.option("-o", "out", type=PATH, metavar="FILE", help="Where it goes.  [default: standard output]")
 """The option of commands whose result is one text."""
+
+
+def format_option(*names: str, help: str = "How it is written.") -> Callable[[Command], Command]:
+    """The option `--format` of a command that writes so many formats, the first one unless told otherwise."""
+    return click.option("--format", type=click.Choice(names), default=names[0], show_default=True, help=help)
+
+
 PICTURES = (".svg", ".png", ".pdf")
 
 _DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, deliver, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, deliver, format_option, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Of the values at the samples of a record, or at 1001 equally spaced tau, not of those between.",
 )
-@click.option(
-    "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
-)
+@format_option("text", "json")
 @OUT
 def summary(scene: Scene, at_samples: bool, format: str, out: Path | None) -> None:
     """Print the extremes of each output, and when.

@@ -7,7 +7,7 @@ from time import monotonic
 
 import click
 
-from wavesym.cli.parameters import PATH, put, refuse_unwritable
+from wavesym.cli.parameters import PATH, format_option, put, refuse_unwritable
 from wavesym.cli.progress import progress
 
 
@@ -18,7 +18,7 @@ from wavesym.cli.progress import progress
 @click.option("--scheduler", metavar="ADDRESS", help="The workers of this Dask scheduler compute (tcp://HOST:PORT).")
 @click.option("--retry-failed", is_flag=True, help="Cases that failed are tried again.")
 @click.option("--status", "tell", is_flag=True, help="Say what is done in the folder SWEEP, and what failed.")
-@click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="Of --status.")
+@format_option("text", "json", help="Of --status.")
 @click.option("--table", type=PATH, metavar="FILE", help="Write the results in the folder SWEEP as .csv or .parquet.")
 def sweep(
     source: Path,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, put, refuse_scene
+from wavesym.cli.parameters import PATH, SCENE, format_option, put, refuse_scene
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     type=click.IntRange(min=1),
     help="How many of every function.  [default: those that the horizon needs]",
 )
-@click.option(
-    "--format", type=click.Choice(["csv", "json", "latex"]), default="csv", show_default=True, help="How it is written."
-)
+@format_option("csv", "json", "latex")
 @click.option(
     "--symbolic",
     is_flag=True,

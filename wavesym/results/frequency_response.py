@@ -12,7 +12,7 @@ import numpy as np
 from flint import acb, arb, ctx
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError, did_you_mean
+from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.modes.dying import undamped
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.mechanics.model import Model
@@ -20,6 +20,7 @@ from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.optional import require_packages
+from wavesym.results.presentation import output_number
 from wavesym.results.resonance import Peaks, peaks
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
@@ -67,11 +68,7 @@ class FrequencyResponse:
     _load: HarmonicLoad = field(repr=False)
 
     def __getitem__(self, name: str) -> NDArray[np.complex128]:
-        try:
-            return np.asarray(self.values[self.outputs.index(name)])
-        except ValueError:
-            known = f"{', '.join(self.outputs)}. {did_you_mean(str(name), self.outputs)}".rstrip(". ")
-            raise KeyError(f"{name} is no output of {self.name}; there are {known}") from None
+        return np.asarray(self.values[output_number(name, self.outputs, self.name)])
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.outputs)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from html import escape
 from math import pi
 from typing import Any
 
@@ -28,6 +27,7 @@ from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped import damping_ratios
 from wavesym.results.optional import require_packages
 from wavesym.results.participation import Participation, effective_mass, participations
+from wavesym.results.presentation import html_table
 from wavesym.results.shapes import LineShapes, line_shapes
 from wavesym.systems.station import Lines
 
@@ -176,10 +176,7 @@ class Modes:
 
     def _repr_html_(self) -> str:
         rows = self._rows(shapes=False)
-        head = "".join(f"<th>{escape(key)}</th>" for key in rows[0])
-        cells = ("".join(f"<td>{_cell(value)}</td>" for value in row.values()) for row in rows)
-        body = "".join(f"<tr>{row}</tr>" for row in cells)
-        return f"<p>{escape(repr(self))}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        return html_table(repr(self), rows[0], (map(_cell, row.values()) for row in rows))
 
     @property
     def _is_real(self) -> bool:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from html import escape
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wavesym.errors import WavesymError, did_you_mean
+from wavesym.errors import WavesymError
 from wavesym.mechanics.event import ContactEvent
 from wavesym.results.horizon import check_horizon
 from wavesym.results.optional import require_packages
+from wavesym.results.presentation import html_table, output_number
 from wavesym.results.response import Response
 from wavesym.results.rows import instants
 from wavesym.results.summary import Summary, summarise
@@ -63,11 +63,7 @@ class Result:
     _plot: Callable[[Scene, str | PathLike[str] | None], Any] = field(repr=False, compare=False)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
-        try:
-            return np.asarray(self.values[self.outputs.index(name)])
-        except ValueError:
-            known = f"{', '.join(self.outputs)}. {did_you_mean(str(name), self.outputs)}".rstrip(". ")
-            raise KeyError(f"{name} is no output of {self.scene.name}; there are {known}") from None
+        return np.asarray(self.values[output_number(name, self.outputs, self.scene.name)])
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.outputs)
@@ -146,9 +142,7 @@ class Result:
         """A table of the outputs, of long ones the start and the end."""
         rows = range(self.time.size)
         kept = list(rows) if len(rows) <= 2 * _SHOWN + 1 else [*rows[:_SHOWN], -1, *rows[-_SHOWN:]]
-        head = "".join(f"<th>{escape(name)}</th>" for name in (self.time_label, *self.columns))
-        body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in self._cells(k))}</tr>" for k in kept)
-        return f"<p>{escape(repr(self))}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        return html_table(repr(self), (self.time_label, *self.columns), map(self._cells, kept))
 
     def _cells(self, k: int) -> list[str]:
         if k < 0:

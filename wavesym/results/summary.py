@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from html import escape
 from typing import Any, NamedTuple
 
 import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError, did_you_mean
+from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes_and_averages
 from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.mechanics.model import Model
@@ -22,6 +21,7 @@ from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.results.link_losses import LinkSummary, link_summaries
 from wavesym.results.optional import require_packages
+from wavesym.results.presentation import html_table, output_number
 from wavesym.results.response import Response
 from wavesym.results.sampling import sampled_extremes
 from wavesym.results.statistics import STATISTICS
@@ -104,12 +104,7 @@ class Summary:
     links: tuple[LinkSummary, ...] | None = ()
 
     def __getitem__(self, name: str) -> OutputSummary:
-        found = next((output for output in self.outputs if output.name == name), None)
-        if found is None:
-            names = [output.name for output in self.outputs]
-            known = f"{', '.join(names)}. {did_you_mean(str(name), names)}".rstrip(". ")
-            raise KeyError(f"{name} is no output of {self.name}; there are {known}")
-        return found
+        return self.outputs[output_number(name, [output.name for output in self.outputs], self.name)]
 
     def __repr__(self) -> str:
         count = len(self.outputs)
@@ -138,10 +133,7 @@ class Summary:
 
     def _repr_html_(self) -> str:
         rows = self._rows()
-        head = "".join(f"<th>{escape(name)}</th>" for name in rows[0])
-        cells = ("".join(f"<td>{_cell(value)}</td>" for value in row.values()) for row in rows)
-        body = "".join(f"<tr>{row}</tr>" for row in cells)
-        return f"<p>{escape(repr(self))}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        return html_table(repr(self), rows[0], (map(_cell, row.values()) for row in rows))
 
     @property
     def certain(self) -> str:
@@ -152,7 +144,7 @@ class Summary:
 
 
 def _cell(value: float | str | None) -> str:
-    return "never" if value is None else escape(value) if isinstance(value, str) else f"{value:.7g}"
+    return "never" if value is None else value if isinstance(value, str) else f"{value:.7g}"
 
 
 def summarise(model: Model, samples: Sequence[float] | None = None, drifts: Sequence[Probe] = ()) -> Summary:

@@ -20,7 +20,7 @@ from wavesym.pictures.line_histories import limit
 from wavesym.pictures.page.frame import Frame, PlotAxis
 from wavesym.pictures.page.places import colour_bar
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture
-from wavesym.pictures.page.png import address, encode_png
+from wavesym.pictures.page.png import colour_image
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line
 from wavesym.pictures.stations import Opened, open_times, standing
 from wavesym.pictures.timescale import timescale
@@ -53,16 +53,7 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     values = factor * _cells(field, stations, until, _QUANTITIES[name])
     largest = limit([values])
     x, y = PlotAxis(0.0, long, LEFT, WIDTH - RIGHT), PlotAxis(0.0, until * scale.per_tau, TOP + _TALL, TOP)
-    cells = element(
-        "image",
-        href=address(encode_png(values[::-1], -largest, largest, signed=True)),
-        x=x.start,
-        y=y.end,
-        width=x.end - x.start,
-        height=_TALL,
-        preserveAspectRatio="none",
-        class_="cells",
-    )
+    image = colour_image(values, x, y, (-largest, largest), signed=True)
     formal = concatenate(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
     nodes = concatenate(*_nodes(model, stations, open_times(model, field.events), x, scale.per_tau, y))
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
@@ -77,7 +68,7 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     size = float(model.length.size) if model.length else 1.0
     frame = Frame(replace(x, high=size * long), y, axis_text("", model.length), scale.title).draw()
     return PagePicture(
-        title, picture(f"xt-{name}", title, told, height, frame, cells, formal, nodes, bar, class_="plot")
+        title, picture(f"xt-{name}", title, told, height, frame, image, formal, nodes, bar, class_="plot")
     )
 
 

@@ -14,7 +14,7 @@ from wavesym.pictures.histories import Points
 from wavesym.pictures.line_histories import Band, LineHistories, cells, limit
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture, spot
-from wavesym.pictures.page.png import address, colours, encode_png
+from wavesym.pictures.page.png import colour_image, colours
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line, polyline, text
 from wavesym.pictures.timescale import Timescale
 
@@ -125,16 +125,7 @@ def _map(
     places = band.tick_labels(_NUMBERED) if quantity.storeys else None
     upward = "storey" if quantity.storeys else axis_text(band.line, quantity.length)
     rows = _evenly(band, values)
-    image = element(
-        "image",
-        href=address(encode_png(rows[::-1], -largest, largest, signed=True)),
-        x=x.start,
-        y=y.end,
-        width=x.end - x.start,
-        height=tall,
-        preserveAspectRatio="none",
-        class_="cells",
-    )
+    image = colour_image(rows, x, y, (-largest, largest), signed=True)
     frame = Frame(x, y, scale.title, upward, places)
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
     bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), ends, TOP + tall + BELOW, signed=True)

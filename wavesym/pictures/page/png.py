@@ -9,6 +9,8 @@ from zlib import adler32, crc32
 import numpy as np
 
 from wavesym.pictures.histories import Points
+from wavesym.pictures.page.frame import PlotAxis
+from wavesym.pictures.page.svg import Svg, element
 
 SHADES = 15  # of values with a sign 0 is white, in the middle
 _BLOCK = 65535  # bytes, the most that deflate stores in one block
@@ -40,9 +42,19 @@ def encode_png(values: Points, least: float, greatest: float, *, signed: bool) -
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(kind, data) for kind, data in chunks)
 
 
-def address(image: bytes) -> str:
-    """A PNG as a page has it inside."""
-    return "data:image/png;base64," + b64encode(image).decode()
+def colour_image(values: Points, x: PlotAxis, y: PlotAxis, limits: tuple[float, float], *, signed: bool) -> Svg:
+    """Values (rows, columns), the first row at the bottom, as an image between two axes inside a page."""
+    image = encode_png(values[::-1], *limits, signed=signed)
+    return element(
+        "image",
+        href="data:image/png;base64," + b64encode(image).decode(),
+        x=x.start,
+        y=y.end,
+        width=x.end - x.start,
+        height=y.start - y.end,
+        preserveAspectRatio="none",
+        class_="cells",
+    )
 
 
 def _deflate(content: bytes) -> bytes:

@@ -10,8 +10,8 @@ from wavesym.pictures.histories import Points
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.places import colour_bar
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture, spot
-from wavesym.pictures.page.png import address, encode_png
-from wavesym.pictures.page.svg import Svg, element, polyline, text, upright
+from wavesym.pictures.page.png import colour_image
+from wavesym.pictures.page.svg import Svg, polyline, text, upright
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.sweeps.results import StoredAxis, SweepResults
 
@@ -111,16 +111,7 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
         PlotAxis(0.5, len(across) + 0.5, LEFT, WIDTH - RIGHT),
         PlotAxis(0.5, len(upward) + 0.5, TOP + _MAP, TOP),
     )
-    image = element(
-        "image",
-        href=address(encode_png(_fewer(size).T[::-1], low, high if high > low else low + 1, signed=False)),
-        x=x.start,
-        y=y.end,
-        width=x.end - x.start,
-        height=y.start - y.end,
-        preserveAspectRatio="none",
-        class_="cells",
-    )
+    image = colour_image(_fewer(size).T, x, y, (low, high if high > low else low + 1), signed=False)
     worst = np.unravel_index(int(np.nanargmax(size)), size.shape)
     where = ", ".join(_case_label(axis, int(k)) for axis, k in zip(axes, worst, strict=True))
     frame = Frame(x, y, _axis_title(across), _axis_title(upward), _places(upward), _places(across))
