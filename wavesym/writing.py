@@ -126,7 +126,7 @@ def _permissions(place: Path) -> int | None:
         os.close(file)
 
 
-def _put(drafts: Mapping[Path, Path], asked: Mapping[Path, Path]) -> None:
+def _put(drafts: Mapping[Path, Path], files: Mapping[Path, Path]) -> None:
     """Every draft into its place, or none."""
     kept: dict[Path, Path] = {}
     new: list[Path] = []
@@ -137,7 +137,7 @@ def _put(drafts: Mapping[Path, Path], asked: Mapping[Path, Path]) -> None:
                 if there:
                     os.link(place, old)
                     kept[place] = old
-            with _name_errors(asked[place]):
+            with _name_errors(files[place]):
                 os.replace(draft, place)
             if not there:
                 new.append(place)

@@ -102,13 +102,13 @@ def refuse_large(
     interval: int,
     wanted: Mapping[K, int],
     sources: Iterable[str],
-    asked: str,
+    key: str,
     most: float = inf,
 ) -> None:
-    """CostError, for the key or option `asked`, where a table is beyond `LARGEST` bytes, `MOST_WORK` or `most` work."""
+    """CostError, for the key or option `key`, where a table is beyond `LARGEST` bytes, `MOST_WORK` or `most` work."""
     sources = set(sources)
     if not _small(chain, interval, wanted, sources, most):
-        refuse_size(table_size(chain, interval, wanted, sources), asked, most)
+        refuse_size(table_size(chain, interval, wanted, sources), key, most)
 
 
 def _small(chain: Chain, interval: int, wanted: Mapping[K, int], sources: set[str], most: float) -> bool:
@@ -122,18 +122,18 @@ def _small(chain: Chain, interval: int, wanted: Mapping[K, int], sources: set[st
     return increments * size.bytes <= LARGEST and increments * size.work <= min(most, MOST_WORK)
 
 
-def refuse_size(size: Size, asked: str, most: float = inf, parts: str = "fewer rods") -> None:
+def refuse_size(size: Size, key: str, most: float = inf, parts: str = "fewer rods") -> None:
     """The same for a size that is known, of a chain with less to work on where it has fewer `parts`."""
-    fewer = "a shorter horizon" if asked == "output.until" else "fewer intervals"
+    fewer = "a shorter horizon" if key == "output.until" else "fewer intervals"
     if size.bytes > LARGEST:
         raise CostError(
-            f"{asked}: the tables of coefficients would take {size.bytes:.1e} bytes, the limit is {LARGEST:.1e} "
+            f"{key}: the tables of coefficients would take {size.bytes:.1e} bytes, the limit is {LARGEST:.1e} "
             f"({fewer} or {parts} helps)"
         )
     if size.work > min(most, MOST_WORK):
         digits = size.bytes / max(size.coefficients, 1) * log10(2) * 8
         raise CostError(
-            f"{asked}: the tables would hold {size.coefficients:.1e} coefficients of about {digits:.0e} digits, "
+            f"{key}: the tables would hold {size.coefficients:.1e} coefficients of about {digits:.0e} digits, "
             f"work for {size.work:.1e} short ones, the limit is {min(most, MOST_WORK):.1e} ({fewer}, or fewer "
             "digits in the scene's numbers, helps)"
         )

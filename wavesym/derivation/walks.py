@@ -140,10 +140,12 @@ def walks_until(
     return next(islice(walks(chain, unit, letters, values), times - 1, None))
 
 
-def function_walks(chain: Chain, sent: Sequence[SentPolynomials], function: Function, interval: int, step: int) -> Any:
+def function_walks(
+    chain: Chain, polynomials: Sequence[SentPolynomials], function: Function, interval: int, step: int
+) -> Any:
     """The polynomial that a wave function gains in an interval 1, 2, ... of length `step`; 0 where that is before 0."""
     tau = chain.leaves(*function, step * (interval - 1))
-    node = sent[function.rod - 1].right if function.function == "f" else sent[function.rod].left
+    node = polynomials[function.rod - 1].right if function.function == "f" else polynomials[function.rod].left
     return node[tau] if tau >= 0 else 0 * node[0]
 
 

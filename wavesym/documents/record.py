@@ -89,16 +89,16 @@ def record_lines(path: Path, unit: str | None, column: str | None = None) -> tup
     return found, unit or found.unit, lines
 
 
-def _rows(told: RecordFacts) -> Iterator[tuple[str, str]]:
-    count, step = len(told.file.samples), told.step
+def _rows(facts: RecordFacts) -> Iterator[tuple[str, str]]:
+    count, step = len(facts.file.samples), facts.step
     yield "samples", str(count)
     if step is None:
         yield "spacing", "the file does not say; `spacing` in a scene does"
     else:
-        yield "spacing", told.format_time(step)
-        said = "" if told.file.times else " (the file does not say when; `start` in a scene does)"
-        yield "first", f"at {told.format_time(told.start)}{said}"
-        yield "duration", told.format_time((count - 1) * step)
-    yield "peak", told.describe_peak()
-    yield "unit", told.unit or "the file does not say; `unit` in a scene, or --unit, does"
+        yield "spacing", facts.format_time(step)
+        said = "" if facts.file.times else " (the file does not say when; `start` in a scene does)"
+        yield "first", f"at {facts.format_time(facts.start)}{said}"
+        yield "duration", facts.format_time((count - 1) * step)
+    yield "peak", facts.describe_peak()
+    yield "unit", facts.unit or "the file does not say; `unit` in a scene, or --unit, does"
     yield "after it", AFTER

@@ -100,6 +100,6 @@ def _written_ratio(ratio: Fraction) -> str:
 ModalDamping = Annotated[Damping | None, PlainValidator(_damping), PlainSerializer(_serialise)]
 
 
-def without_damping(said: dict[str, Any]) -> dict[str, Any]:
+def without_damping(fields: dict[str, Any]) -> dict[str, Any]:
     """What is said of a system, not that its modes are not damped: so scenes keep the hash that they have had."""
-    return {key: value for key, value in said.items() if key != "damping" or value is not None}
+    return {key: value for key, value in fields.items() if key != "damping" or value is not None}

@@ -151,7 +151,7 @@ class GridMotion:
         self._before, self._u = self._u, self.settle(after, yields)
         self.now[self._placed] = self._grid.spread @ self._u
 
-    def settle(self, after: Array, moved: Array) -> Array:
+    def settle(self, after: Array, influence: Array) -> Array:
         """Where points are after a step, from where they would be, `after`, and how far forces on them move them."""
         return after
 

@@ -16,28 +16,28 @@ _HEIGHT = 3.4  # inches
 
 
 @with_style
-def draw(said: RecordFile, unit: str) -> Figure:
+def draw(record: RecordFile, unit: str) -> Figure:
     """The samples of a file over time, or by their numbers where it does not say when; and the line to 0 after them."""
-    told = RecordFacts(said, unit)
-    times = [told.time(k) for k in range(len(said.samples) + 1)]
+    facts = RecordFacts(record, unit)
+    times = [facts.time(k) for k in range(len(record.samples) + 1)]
     x = [float(k + 1) if time is None else nearest(rational(time)) for k, time in enumerate(times)]
-    y = [nearest(rational(sample)) for sample in said.samples]
+    y = [nearest(rational(sample)) for sample in record.samples]
     figure = new_figure(_HEIGHT)
     axes = figure.add_subplot()
     draw_grid(axes)
     axes.plot(x, [*y, 0.0], color=MAIN, linewidth=0.8)
-    axes.plot(x[told.peak], y[told.peak], "o", color=OTHER, markersize=4)
-    below = y[told.peak] < 0
+    axes.plot(x[facts.peak], y[facts.peak], "o", color=OTHER, markersize=4)
+    below = y[facts.peak] < 0
     axes.annotate(
-        told.describe_peak(),
-        (x[told.peak], y[told.peak]),
+        facts.describe_peak(),
+        (x[facts.peak], y[facts.peak]),
         xytext=(6, -3 if below else 3),
         textcoords="offset points",
         va="top" if below else "bottom",
     )
     axes.margins(x=0.01, y=0.12)
-    set_title(figure, f"{os.path.basename(said.file)}: {said.kind}, {len(said.samples)} samples")
-    axes.set_xlabel("number of the sample" if times[0] is None else _axis("time", told.clock))
+    set_title(figure, f"{os.path.basename(record.file)}: {record.kind}, {len(record.samples)} samples")
+    axes.set_xlabel("number of the sample" if times[0] is None else _axis("time", facts.clock))
     axes.set_ylabel(_axis("sample", unit))
     return figure
 

@@ -45,18 +45,19 @@ class RecordFile:
     times: tuple[Fraction, ...] | None = None
     head: int = 1
 
-    def even(self, told: Fraction | None = None) -> Fraction | None:
-        """The time between two samples, in the file's unit; None where neither the file nor `told` says it.
+    def even(self, spacing: Fraction | None = None) -> Fraction | None:
+        """The time between two samples, in the file's unit; None where neither the file nor `spacing` says it.
 
-        Times must be even to the last digit, or where `told` says it, as digits allow. SceneError where they are not.
+        Times must be even to the last digit, or where `spacing` says it, as digits allow. SceneError where they are
+        not.
         """
         times = self.times
         if times is None:
-            return told if self.spacing is None else self.spacing
-        if told is None and len(times) < 2:
+            return spacing if self.spacing is None else self.spacing
+        if spacing is None and len(times) < 2:
             return None
-        step = times[1] - times[0] if told is None else told
-        if told is None and step > 0 and _in_step(times):
+        step = times[1] - times[0] if spacing is None else spacing
+        if spacing is None and step > 0 and _in_step(times):
             return step
         for k, (before, time) in enumerate(pairwise(times), 1):
             if (since := time - before) <= 0:
@@ -65,11 +66,11 @@ class RecordFile:
                     "write times in rising order"
                 )
                 raise damage_error(self.file, self.lines[k], what)
-            if since == step and told is None:  # as up to here
+            if since == step and spacing is None:  # as up to here
                 continue
             expected = times[0] + k * step
-            if told is None or abs(time - expected) > _NEAR * step:
-                what = f"the time {decimal_text(time)} should be {decimal_text(expected)}; write {_even(step, told)}"
+            if spacing is None or abs(time - expected) > _NEAR * step:
+                what = f"the time {decimal_text(time)} should be {decimal_text(expected)}; write {_even(step, spacing)}"
                 raise damage_error(self.file, self.lines[k], what)
         return step
 
@@ -82,8 +83,8 @@ def _in_step(times: Sequence[Fraction]) -> bool:
     return ticks == list(range(first, first + len(ticks) * step, step))
 
 
-def _even(step: Fraction, told: Fraction | None) -> str:
-    if told is not None:
+def _even(step: Fraction, spacing: Fraction | None) -> str:
+    if spacing is not None:
         return f"samples {decimal_text(step)} apart, as `spacing` says"
     return f"samples {decimal_text(step)} apart, as the first two; of rounded times `spacing` in the scene says it"
 

@@ -27,18 +27,18 @@ class Recording(SceneTable):
 
 
 def read_recording(
-    path: str | PathLike[str], column: str | None, told: Callable[[RecordFile], Fraction | None]
+    path: str | PathLike[str], column: str | None, spacing_in_file: Callable[[RecordFile], Fraction | None]
 ) -> Recording:
-    """What the file at `path` says; `told` is the spacing that a scene says, in the file's unit of time. SceneError."""
-    said = read_record(path, column)
-    spacing = told(said)
-    even = said.even(spacing)
+    """What the file at `path` says, with the spacing that a scene gives it in the file's unit of time. SceneError."""
+    record = read_record(path, column)
+    spacing = spacing_in_file(record)
+    even = record.even(spacing)
     return Recording(
-        samples=said.samples,
-        spacing=even if spacing is None else said.spacing,
-        start=said.times[0] if said.times else None,
-        unit=said.unit,
-        clock=said.clock,
+        samples=record.samples,
+        spacing=even if spacing is None else record.spacing,
+        start=record.times[0] if record.times else None,
+        unit=record.unit,
+        clock=record.clock,
     )
 
 

@@ -312,8 +312,12 @@ def _align_columns(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in rows]
 
 
-def _shape_text(moved: complex) -> str:
-    return f"{moved.real:.5f}" if moved.imag == 0 else f"{abs(moved):.5f} at {np.degrees(np.angle(moved)):.1f} deg"
+def _shape_text(displacement: complex) -> str:
+    return (
+        f"{displacement.real:.5f}"
+        if displacement.imag == 0
+        else f"{abs(displacement):.5f} at {np.degrees(np.angle(displacement)):.1f} deg"
+    )
 
 
 def _cell(value: Any) -> str:

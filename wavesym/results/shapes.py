@@ -65,8 +65,8 @@ def line_shapes(modes: Sequence[Mode], pieces: Cut, model: Model, lines: Lines, 
     return tuple(made)
 
 
-def _size(moved: NDArray[np.complex128]) -> float:
-    return float(np.abs(moved).max())
+def _size(displacements: NDArray[np.complex128]) -> float:
+    return float(np.abs(displacements).max())
 
 
 def _sample_line(

@@ -48,7 +48,7 @@ class Dimensionless:
         """A time."""
         return number_text(value)
 
-    def load(self, value: Number, degree: int, moved: bool) -> str:
+    def load(self, value: Number, degree: int, is_motion: bool) -> str:
         """A step (degree 0) or a slope (1), of a force, or of an end that is moved."""
         return number_text(value)
 
@@ -105,10 +105,10 @@ class InUnits(Dimensionless):
         """A time in seconds."""
         return _quantity(_fraction(value) * self.scale.seconds, "s")
 
-    def load(self, value: Number, degree: int, moved: bool) -> str:
+    def load(self, value: Number, degree: int, is_motion: bool) -> str:
         """A step or slope of a force (a moment), or of the acceleration of an end."""
         scale, number = self.scale, _fraction(value) / self.scale.seconds**degree
-        if moved:
+        if is_motion:
             return _quantity(number * scale.displacement / scale.seconds**2, f"{self._names[0]}/s^{2 + degree}")
         return _quantity(number * scale.force, self._names[2] + degree * "/s")
 

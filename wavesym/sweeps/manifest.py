@@ -142,5 +142,5 @@ def _manifest(plan: SweepPlan, batches: Batches, files: dict[str, str]) -> Manif
         keep=KeptTable(summary=list(plan.summary), histories=plan.histories),
         arrays={each.name: list(each.dimensions) for each in kept_arrays(plan)},
         files=files,
-        scene=plan.said_scene,
+        scene=plan.first_scene,
     )

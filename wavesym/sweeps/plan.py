@@ -93,7 +93,7 @@ class SweepPlan:
         return Scene(**self.fields_at(place))
 
     @property
-    def said_scene(self) -> dict[str, Any]:
+    def first_scene(self) -> dict[str, Any]:
         """The fields of the first case's scene, its record by name."""
         fields = self.fields
         for dimension in self.dimensions:

@@ -155,7 +155,7 @@ def _make(path: Path, plan: SweepPlan, batches: Batches) -> None:
     """All arrays without what is computed, and coordinates."""
     import zarr
 
-    said = {"name": plan.name, "sweep_sha256": plan.sha256, "scene": json.dumps(plan.said_scene)}
+    said = {"name": plan.name, "sweep_sha256": plan.sha256, "scene": json.dumps(plan.first_scene)}
     group = zarr.create_group(path, zarr_format=2, attributes=said)
     for dimension in plan.dimensions:
         _coordinates(group, dimension)

@@ -256,7 +256,7 @@ class _ContactMotion(GridMotion):
         self.changes: list[tuple[int, str, int]] = []
         self.missed = 0.0
 
-    def settle(self, after: Array, moved: Array) -> Array:
+    def settle(self, after: Array, influence: Array) -> Array:
         """Displacements with what contacts push: as little as keeps every gap from being negative."""
         problem, parting = self._problem, self._problem.parting
         if not len(problem.gaps):
@@ -264,13 +264,13 @@ class _ContactMotion(GridMotion):
         gaps = problem.gaps + parting @ after
         length, force = problem.worth
         pushes = np.zeros(len(gaps))
-        yields = parting @ moved @ parting.T
+        yields = parting @ influence @ parting.T
         pushing = np.zeros(len(gaps), dtype=bool)
         while len(wrong := np.flatnonzero(np.where(pushing, pushes < 0, gaps + yields @ pushes < -_ROUNDED * length))):
             pushing[wrong[0]] ^= True  # the first of all: this comes to an end
             pushes = np.zeros(len(gaps))
             pushes[pushing] = np.linalg.solve(yields[np.ix_(pushing, pushing)], -gaps[pushing])
-        after += moved @ parting.T @ pushes
+        after += influence @ parting.T @ pushes
         gaps += yields @ pushes
         for contact in np.flatnonzero(np.where(self._open, pushes > _SIGN * force, gaps > _SIGN * length)).tolist():
             self._open[contact] ^= True

@@ -31,19 +31,19 @@ class Forecast:
     def __init__(self, joints: NetworkJoints) -> None:
         self._joints = joints
 
-    def size(self, source: str, last: Mapping[int, fmpq], most: float = inf, asked: str = "output.until") -> Size:
+    def size(self, source: str, last: Mapping[int, fmpq], most: float = inf, key: str = "output.until") -> Size:
         """How large the response to a source will be. CostError where fronts or coefficients are too many."""
         found: set[fmpq] = set()
         counts: list[int] = []
         coefficients, most = 0, min(most, MOST_WORK)
-        for time, _, shape in self._walk(source, last, asked):
+        for time, _, shape in self._walk(source, last, key):
             counts.append(sum(shape.values()))
             found |= shape.keys()
             coefficients += counts[-1]
             if coefficients > most:
                 raise CostError(
-                    f"{asked}: the tables would hold more than {most:.1e} coefficients by tau = {float(time):g}, "
-                    f"the limit is {most:.1e} ({_fewer(asked)} or fewer parts helps)"
+                    f"{key}: the tables would hold more than {most:.1e} coefficients by tau = {float(time):g}, "
+                    f"the limit is {most:.1e} ({_fewer(key)} or fewer parts helps)"
                 )
         return response_size(counts, mean_bits(found))
 
@@ -69,7 +69,7 @@ class Forecast:
                 break
         return found
 
-    def _walk(self, source: str, last: Mapping[int, fmpq] | None, asked: str) -> Iterator[tuple[fmpq, End, Shape]]:
+    def _walk(self, source: str, last: Mapping[int, fmpq] | None, key: str) -> Iterator[tuple[fmpq, End, Shape]]:
         network = self._joints.network
         units = (unit_at(point, source).get(fmpq(0), ()) for point in network.points)
         first = max(1, *map(len, units))
@@ -87,8 +87,8 @@ class Forecast:
         for count, front in enumerate(departures(network, begun, answer, last), 1):
             if count > MOST_FRONTS:
                 raise CostError(
-                    f"{asked}: fronts leave the ends of rods more than {MOST_FRONTS} times by tau = "
-                    f"{float(front[0]):g}, the limit is {MOST_FRONTS} ({_fewer(asked)} or fewer parts helps)"
+                    f"{key}: fronts leave the ends of rods more than {MOST_FRONTS} times by tau = "
+                    f"{float(front[0]):g}, the limit is {MOST_FRONTS} ({_fewer(key)} or fewer parts helps)"
                 )
             yield front
 
@@ -128,5 +128,5 @@ class Forecast:
         return {each.end for each in ends if each.place in moved}
 
 
-def _fewer(asked: str) -> str:
-    return "a shorter horizon" if asked == "output.until" else "fewer intervals"
+def _fewer(key: str) -> str:
+    return "a shorter horizon" if key == "output.until" else "fewer intervals"

@@ -17,7 +17,7 @@ Answer = Callable[[int, fmpq, Mapping[End, T]], Iterator[tuple[End, T]]]
 
 
 def departures(
-    network: Network, begun: Iterable[int], answer: Answer[T], last: Mapping[int, fmpq] | None
+    network: Network, starts: Iterable[int], answer: Answer[T], last: Mapping[int, fmpq] | None
 ) -> Iterator[tuple[fmpq, End, T]]:
     """All that leaves the ends of bars after something began at some joints at 0; without end where `last` is None.
 
@@ -26,7 +26,7 @@ def departures(
     # in the order of time, joints and what came first: an fmpq is slow to hash
     order = count()
     coming: list[tuple[fmpq, int, int, End | None, Any]] = [
-        (fmpq(0), number, next(order), None, None) for number in begun
+        (fmpq(0), number, next(order), None, None) for number in starts
     ]
     heapify(coming)
     while coming:
@@ -45,10 +45,12 @@ def departures(
                 heappush(coming, (late, other, next(order), there, wave))
 
 
-def reachable(network: Network, begun: Iterable[End], passes: Callable[[int], Mapping[End, Iterable[End]]]) -> set[End]:
+def reachable(
+    network: Network, starts: Iterable[End], passes: Callable[[int], Mapping[End, Iterable[End]]]
+) -> set[End]:
     """The ends that something leaves at some time; `passes` tells of a joint where what arrives at an end goes."""
     found: set[End] = set()
-    coming = list(begun)
+    coming = list(starts)
     while coming:
         end = coming.pop()
         if end not in found:

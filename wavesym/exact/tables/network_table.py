@@ -88,7 +88,7 @@ class RuledNetwork:
         return total
 
     def responses(
-        self, source: str, reach: Mapping[Function, fmpq], most: float | None = inf, asked: str = "output.until"
+        self, source: str, reach: Mapping[Function, fmpq], most: float | None = inf, key: str = "output.until"
     ) -> dict[Function, Timed]:
         """The increments that a unit of `source` gives each function until the tau that is wanted of it, with theirs.
 
@@ -96,7 +96,7 @@ class RuledNetwork:
         """
         last = self._last(reach)
         if most is not None:
-            refuse_size(self.forecast.size(source, last, most, asked), asked, most, "fewer parts")
+            refuse_size(self.forecast.size(source, last, most, key), key, most, "fewer parts")
         found: dict[Function, list[tuple[fmpq, Increment]]] = {function: [] for function in reach}
 
         def answer(number: int, time: fmpq, waves: Mapping[End, Increment]) -> Iterator[tuple[End, Increment]]:

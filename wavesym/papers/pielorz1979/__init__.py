@@ -7,8 +7,8 @@ equations.py   the test of equations: (2.1)-(2.5), (3.1), (3.2), (4.1)-(4.8), (4
                in conditions.py and quantities.py, by equation_group.py
 tables.py      the test of tables: Tables 2 to 4, (4.9), (4.10), (4.12), with forms.py and powers.py
 coefficients.py  III.1 ... III.22, by the same exact tables
-statements.py  the test of sentences: the examples; solutions.py, solution_powers.py: what the text says of the solutions and
-               of their highest powers; sentences.toml: the patterns, those about figures too
+statements.py  the test of sentences: the examples; sentences.toml has the patterns
+solutions.py, solution_powers.py  what the text says of the solutions, and of their highest powers
 figures.py     the test of figures: section 5, with figure_scenes.py, measures.py and figure_loads.toml
 paper.py       the test of every kind of record; all verdicts
 """

@@ -108,7 +108,7 @@ def _figure_entries(number: int, kind: str) -> Iterable[PaperEntry]:
     return (entry for entry in entries().values() if entry.subject.get("figure") == number and entry.kind == kind)
 
 
-def said_of_figure(entry: PaperEntry) -> Test:
+def figure_statement(entry: PaperEntry) -> Test:
     """A sentence about a figure."""
     number = entry.subject["figure"]
     base = " (the base of (4.5))" if number == 8 else ""

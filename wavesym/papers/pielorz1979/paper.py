@@ -9,7 +9,7 @@ from pathlib import Path
 from wavesym.papers.entries import WHOLE, PaperEntry, problems
 from wavesym.papers.pielorz1979 import coefficients
 from wavesym.papers.pielorz1979.equations import GROUPS, equation, solution
-from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
+from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, figure_statement
 from wavesym.papers.pielorz1979.solutions import SOLUTIONS
 from wavesym.papers.pielorz1979.statements import STATEMENTS
 from wavesym.papers.pielorz1979.tables import TESTS
@@ -29,7 +29,7 @@ ADAPTERS: Mapping[str, Adapter] = {
     "caption": caption_of_figure,
     "cell": _cell,
     "contact": end_of_contact,
-    "figure": said_of_figure,
+    "figure": figure_statement,
     "line": coefficients.coefficient,
     "sentence": sentence_test(Path(__file__).with_name("sentences.toml"), {**STATEMENTS, **SOLUTIONS}),
     "sizes": coefficients.sizes,

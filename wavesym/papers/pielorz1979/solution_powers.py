@@ -202,9 +202,9 @@ def changes_3(words: Words) -> Iterator[Case]:
         yield from _stays("III", building(m), dict.fromkeys((1, m), words["step"]))
 
 
-def _stays(example: str, exact: Exact, said: Mapping[int, str]) -> Iterator[Case]:
+def _stays(example: str, exact: Exact, steps: Mapping[int, str]) -> Iterator[Case]:
     """How long the power at a body's rate stays, from its first change to its last."""
-    for (body, step), (letter, rod) in product(said.items(), functions(example, exact.m)):
+    for (body, step), (letter, rod) in product(steps.items(), functions(example, exact.m)):
         numbers = range(1, TABULATED[example] + 1)
         degrees = (exact.degree(letter, rod, number, exact.rates[body]) for number in numbers)
         runs = [len(list(run)) for _, run in groupby(degree for degree in degrees if degree >= 0)]

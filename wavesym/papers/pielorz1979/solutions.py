@@ -70,7 +70,7 @@ def index_roles(name: str, words: Words) -> Iterator[Case]:
             if len(lower) == 2:
                 at = {"m": m, "function": f"{letter}_{rod}", "coefficient": f"F_{lower}^{upper}"}
                 true = _roles(name, motion, lower, upper)
-                yield case(at, lambda: _said_roles(words, meant, lower, upper, motion), true)  # noqa: B023
+                yield case(at, lambda: _stated_roles(words, meant, lower, upper, motion), true)  # noqa: B023
 
 
 def _roles(name: str, motion: LoadedChain, lower: Indices, upper: Indices) -> dict[str, Any]:
@@ -84,7 +84,9 @@ def _roles(name: str, motion: LoadedChain, lower: Indices, upper: Indices) -> di
     return {**found, "begins": begins, "of": AT - begins}
 
 
-def _said_roles(words: Words, scope: FormScope, lower: Indices, upper: Indices, motion: LoadedChain) -> dict[str, Any]:
+def _stated_roles(
+    words: Words, scope: FormScope, lower: Indices, upper: Indices, motion: LoadedChain
+) -> dict[str, Any]:
     symbol, term = read_formula(words["symbol"]), read_formula(words["term"])
     assert isinstance(symbol, Symbol)
     assert isinstance(term, Symbol)

@@ -31,12 +31,12 @@ class PagePicture:
     strip: bool = False
 
 
-def picture(number: str, title: str, told: str, height: float, *content: Svg, **attributes: str | float) -> Svg:
+def picture(number: str, title: str, description: str, height: float, *content: Svg, **attributes: str | float) -> Svg:
     """An SVG that those who do not see it are told of."""
     return element(
         "svg",
         element("title", title, id=f"{number}-title"),
-        element("desc", told, id=f"{number}-told"),
+        element("desc", description, id=f"{number}-told"),
         *content,
         role="img",
         aria_labelledby=f"{number}-title {number}-told",

@@ -119,14 +119,14 @@ def read(load: object, acts: Acts) -> object:
     return {**load, "record": recording}
 
 
-def _spacing_in_file(said: RecordFile, dimension: str, spacing: Fraction | None) -> Fraction | None:
+def _spacing_in_file(record: RecordFile, dimension: str, spacing: Fraction | None) -> Fraction | None:
     """A spacing in the file's unit of time. SceneError where its units are none of a time and of what it acts as."""
     try:
-        if said.unit:
-            unit(said.unit, dimension)
-        clock = _clock(said.clock)
+        if record.unit:
+            unit(record.unit, dimension)
+        clock = _clock(record.clock)
     except PydanticCustomError as error:
-        raise damage_error(said.file, said.head, str(error)) from None
+        raise damage_error(record.file, record.head, str(error)) from None
     return spacing and spacing / clock
 
 

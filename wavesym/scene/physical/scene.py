@@ -101,13 +101,13 @@ def acts(fields: Mapping[str, Any]) -> Acts:
 
 
 @contextmanager
-def _of_quantities(said: Mapping[str, Any]) -> Iterator[None]:
+def _of_quantities(quantities: Mapping[str, Any]) -> Iterator[None]:
     """What is wrong with a number that nobody wrote, such as a kappa, is said of the quantities that make it."""
     faults = Faults()
     with faults.gather():
         yield
     for number, (what, keys) in enumerate(faults.found):
-        if keys and keys[0] not in said:
+        if keys and keys[0] not in quantities:
             faults.found[number] = Fault(f"its quantities make {key_path(keys)}: {what}", ())
     faults.refuse()
 
