@@ -156,6 +156,12 @@ def test_peaks_of_frames_are_those_of_their_scenes(frame):
     assert np.all(bounds <= 2e-4)
 
 
+def test_loads_stay_where_they_are_no_parameters(frame):
+    mass = drawn(frame, 2, "mass")
+    peaks = wavesym.model(FRAME, ["mass"]).peaks(mass=mass)
+    assert np.array_equal(peaks.max, frame.peaks(mass=mass).max)
+
+
 def test_what_differs_little_in_bounds_is_a_bound(frame):
     """Values of sets are not those of the proved program to the last bit, and a bound counts that."""
     assert np.all(frame.bounds() > 0)

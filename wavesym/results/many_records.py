@@ -157,6 +157,8 @@ def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) ->
     """Values at tau, (records, outputs, instants)."""
     count, n, _ = records.samples.shape
     made = np.zeros((count, len(response.system.direct), len(taus)))
+    if not len(taus):
+        return made
     (felt,) = np.nonzero(taus > records.begin)
     since = taus - records.begin
     step = np.clip((since / records.spacing).astype(np.intp), 0, n - 2)

@@ -44,16 +44,15 @@ def tops(response: RecordResponse, steps: SuspectSteps, points: int) -> tuple[Nu
     apart, values = length / (points - 1), values[row]
     s, value = point * apart, values[each, point]
 
-    def signed_response(at: Numbers) -> Numbers:
-        return sign * response.at(inside, at, output)
-
     near = np.clip(point, 1, points - 2)
     shift = _vertex(values[each, near - 1], values[each, near], values[each, near + 1])
     finer = apart / _NEARER
     middle = np.clip((near + shift) * apart, finer, length - finer)
-    trio = [signed_response(middle + k * finer) for k in (-1, 0, 1)]
+    thrice = np.concatenate([middle + k * finer for k in (-1, 0, 1)])
+    trio = np.tile(sign, 3) * response.at(np.tile(inside, (3, 1)), thrice, np.tile(output, 3))
+    trio = trio.reshape(3, -1)
     last = middle + _vertex(*trio) * finer
-    for at, found in ((middle, trio[1]), (last, signed_response(last))):
+    for at, found in ((middle, trio[1]), (last, sign * response.at(inside, last, output))):
         better = found > value
         value, s = np.where(better, found, value), np.where(better, at, s)
     return sign * value, steps.step[row] * response.spacing + s

@@ -44,14 +44,16 @@ class ModalSets:
         """Of shape (sets, 1, outputs, times)."""
         found = no_sets(len(given), (1, len(self.model.probes), len(tau)))
         inside = (tau >= 0) & (tau <= self.tau_max)
-        for row, each in self._each(given, found, tau[inside]):
+        found.values[:] = np.nan
+        for row, each in self._filled(given, found, tau[inside]):
             found.values[row, 0, :, inside] = each.histories[0].T
         return found
 
     def peaks(self, given: Array) -> FoundSets:
         """Of shape (sets, outputs, 4): the least value, its tau, the greatest value, its tau."""
         found = no_sets(len(given), (len(self.model.probes), 4))
-        for row, each in self._each(given, found):
+        found.values[:] = np.nan
+        for row, each in self._filled(given, found, np.empty(0)):
             found.values[row, :, ::2], found.values[row, :, 1::2] = each.values[0], each.taus[0]
         return found
 
@@ -89,13 +91,16 @@ class ModalSets:
                 found.values[row] = bounds + np.where(off > 0, off / largest, 0.0)
         return found
 
-    def _each(self, given: Array, found: FoundSets, tau: Array | None = None) -> Iterator[tuple[int, RecordedExtremes]]:
-        """The sets that are not refused, by their rows; of all of them status and estimate."""
-        bad = self._parameters.refused(given)
-        found.status[:] = np.where(bad, _BAD, 0)
-        found.estimate[:], found.values[:] = np.nan, np.nan
-        (rows,) = np.nonzero(~bad)
-        instants = np.empty(0) if tau is None else tau
+    def _filled(self, given: Array, found: FoundSets, tau: Array) -> Iterator[tuple[int, RecordedExtremes]]:
+        """The responses, once status and estimate of all sets are known but for those to come."""
+        found.status[:], found.estimate[:] = np.where(self._parameters.refused(given), _BAD, 0), np.nan
+        for row, each in self.responses(given, tau):
+            found.estimate[row] = each.bounds[0]
+            yield row, each
+
+    def responses(self, given: Array, tau: Array) -> Iterator[tuple[int, RecordedExtremes]]:
+        """Extremes of the sets whose numbers are good, by their rows, and histories at `tau`."""
+        (rows,) = np.nonzero(~self._parameters.refused(given))
         for first in range(0, len(rows), _TOGETHER):
             some = rows[first : first + _TOGETHER]
             sets, damping = self._parameters.mode_sets(given[some]), self._parameters.damping(given[some])
@@ -103,9 +108,8 @@ class ModalSets:
             for number, row in enumerate(some.tolist()):
                 chain = ModesOfSet(replace(self.model, damping=damping[number]), sets, number)
                 shared = SharedModes(chain, self._spacing)
-                each = shared.extremes(self._records(factors[number]), instants.tolist())
-                found.estimate[row] = each.bounds[0]
-                yield row, each
+                own = None if factors is None else factors[number]
+                yield row, shared.extremes(self._records(own), tau.tolist())
 
     @cached_property
     def _loads(self) -> tuple[Array, tuple[int, ...], tuple[Roughness, ...]]:
@@ -125,11 +129,7 @@ class ModalSets:
         for column, amplitude in zip(samples.T, every, strict=True):
             acting = linear_loads(amplitude.changes, like.sources, like.model.until, like.model.describe_step)
             loads.append(next(j for j, pair in enumerate(like.sources) if amplitude.source in pair))
-            times = np.array([nearest(time / self._step) for time in acting.times])
-            values = np.array([nearest(row[loads[-1]]) for row in acting.samples])
-            slope = nearest(acting.slopes[loads[-1]] * self._step)
-            at = np.arange(count)
-            column[:] = np.interp(at, times, values) + slope * np.maximum(at - times[-1], 0.0)
+            column[:] = acting.sampled(self._step, count)[:, loads[-1]]
         return samples, tuple(loads), tuple(map(sampled_roughness, samples.T))
 
     @property
@@ -140,9 +140,10 @@ class ModalSets:
     def _spacing(self) -> float:
         return nearest(self._step)
 
-    def _records(self, factors: Array) -> ManyRecords:
+    def _records(self, own: Array | None) -> ManyRecords:
         """The loads, each amplitude multiplied by its factor, as one record."""
         samples, loads, rough = self._loads
+        factors = np.ones(len(loads)) if own is None else own
         count = len(self._parameters.like.sources)
         made = np.zeros((len(samples), count))
         for column, load, factor in zip(samples.T, loads, factors, strict=True):
@@ -150,5 +151,5 @@ class ModalSets:
         if len(set(loads)) == len(loads) == count:  # each is one load
             order = np.argsort(loads)
             return ManyRecords(made[None], 0.0, self._spacing, [[rough[k] for k in order]], factors[None, order])
-        own = [sampled_roughness(column) for column in made.T]
-        return ManyRecords(made[None], 0.0, self._spacing, [own], np.ones((1, count)))
+        summed = [sampled_roughness(column) for column in made.T]
+        return ManyRecords(made[None], 0.0, self._spacing, [summed], np.ones((1, count)))

@@ -28,8 +28,8 @@ Task = tuple[int, list[Place] | None]
 class Batches:
     """The cases of a sweep as batches, numbered from 0: blocks of `chunk` cases in each dimension.
 
-    `kind` is how they are computed: "recorded", "parameters" or "single". `together` says of each dimension whether
-    the cases of a batch may differ in it.
+    `kind` is how they are computed: "recorded", "parameters", "structures" or "single". `together` says of each
+    dimension whether the cases of a batch may differ in it.
     """
 
     kind: str
@@ -83,7 +83,7 @@ def batches(plan: SweepPlan, kind: str, together: tuple[bool, ...] = ()) -> Batc
     fit = max(1, _NUMBERS // (len(plan.outputs) * (plan.histories or 1)))
     if kind == "recorded":
         return Batches(kind, plan.shape, (*(1 for _ in plan.shape[:-1]), min(plan.shape[-1], _RECORDS, fit)))
-    if kind == "parameters":
+    if kind in ("parameters", "structures"):
         most = max(_GROUP, min(_SETS, plan.cases // _PARTS // _GROUP * _GROUP))
         return Batches(kind, plan.shape, _blocks(plan.shape, together, min(most, fit)), together)
     return Batches(kind, plan.shape, _blocks(plan.shape, (True,) * len(plan.shape), ceil(plan.cases / _MOST_BATCHES)))

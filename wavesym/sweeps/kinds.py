@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from wavesym.sweeps import parameters, shared_records
+from wavesym.sweeps import parameters, shared_modes, shared_records
 from wavesym.sweeps.plan import SweepPlan
 
 
@@ -12,4 +12,6 @@ def kind(plan: SweepPlan) -> tuple[str, tuple[bool, ...]]:
         return "recorded", ()
     if joined := parameters.shared_axes(plan):
         return "parameters", joined
+    if shared_modes.serves(plan):
+        return "structures", (True,) * len(plan.dimensions)
     return "single", (True,) * len(plan.dimensions)

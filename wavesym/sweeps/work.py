@@ -12,6 +12,7 @@ from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches, Place
 from wavesym.sweeps.parameters import parameters
 from wavesym.sweeps.plan import SweepPlan
+from wavesym.sweeps.shared_modes import structure_cases
 from wavesym.sweeps.shared_records import record_cases
 from wavesym.sweeps.single import single
 from wavesym.sweeps.values import BatchValues, CaseValues
@@ -43,6 +44,8 @@ def _shared_cases(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict
             return dict(record_cases(plan, group))
         if batches.kind == "parameters":
             return dict(parameters(plan, group, batches.together))
+        if batches.kind == "structures":
+            return dict(structure_cases(plan, group))
         return {}
     except Exception:  # each by itself says what is wrong
         return {}

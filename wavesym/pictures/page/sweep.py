@@ -99,6 +99,7 @@ def _variation_rows(dimension: StoredAxis) -> Iterator[tuple[str, str]]:
 def _accuracy_note(found: SweepResults) -> str:
     return {
         "parameters": "an estimate, as parameters came at run time",
+        "structures": "an estimate, as modes are those of doubles",
         "recorded": "of values; extremes between samples are an estimate",
     }.get(found.manifest.computed.kind, "of values; wavesym summary says of a scene whether it is proved")
 

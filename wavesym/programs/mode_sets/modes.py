@@ -17,7 +17,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
 from wavesym.exact.modes.frequencies import searched
 from wavesym.exact.modes.shape import rigid
-from wavesym.exact.modes.statics import Statics
+from wavesym.exact.modes.statics import Shape, Statics
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
@@ -42,8 +42,10 @@ from wavesym.programs.modes.projection import (
     share,
     static_shapes,
 )
+from wavesym.programs.modes.truncation import truncated
 from wavesym.programs.modes.undamped import UndampedModes
 
+_MORE = 1.1  # times as many modes as one set of numbers needs
 _SPARE = 1e-12  # of sums of squares, for the roundings of their terms
 
 
@@ -91,7 +93,7 @@ class ModeSets:
         modes = ModeColumns(stiffness, w, stiffness.point_motions(rows))
         shapes = [static_shapes(statics, driver) for driver in self.drivers]
         pairs = list(zip(self.drivers, shapes, strict=True))
-        imposed = [[0.0 if s is None else o.value(s) * d.gain for d, (s, _) in pairs] for o in self.outputs]
+        imposed = [[_imposed(o, s) * d.gain for d, (s, _) in pairs] for o in self.outputs]
         static = [[o.value(s) * d.gain for d, (_, s) in pairs] for o in self.outputs]
         sizes = [(t.points[d.point] if s is None else statics.mass(s.points)) * d.gain**2 for d, (s, t) in pairs]
         one = len(w), 1
@@ -114,6 +116,15 @@ class ModeSets:
 def _side_by_side(columns: Sequence[Columns | float], shape: tuple[int, ...]) -> Columns:
     """(sets, how many columns, ...)."""
     return np.stack([np.broadcast_to(each, shape) for each in columns], axis=1)
+
+
+def _imposed(output: ModalOutput, shape: Shape | None) -> Any:
+    """What an output is of the shape that a load imposes: 0 where it is that but for rounding, as of a drift."""
+    if shape is None:
+        return 0.0
+    value = output.value(shape)
+    size: Columns = sum(abs(weight) for weight in output.points.values())
+    return np.where(np.abs(value) > _SPARE * size, value, 0.0)
 
 
 class StaticsSets(Statics):
@@ -201,6 +212,15 @@ class ModesOfSet(UndampedModes):
             size = np.where(w > 0, np.abs(known.shares).max(axis=0) * np.abs(known.outputs) * w ** (orders - 2.0), 0.0)
             loose = size @ off / size.max(axis=1)
         return np.where(size.any(axis=1), np.nan_to_num(loose, nan=np.inf), 0.0)
+
+
+def enough_modes(model: Model) -> int:
+    """As many modes as a model needs for its tolerance, and some more for others like it.
+
+    UnservedError, ToleranceError as for `modal_system`.
+    """
+    chain = UndampedModes(model.to_horizon())
+    return min(int(_MORE * truncated(chain).count) + 1, chain.most)
 
 
 def mode_sets(models: Sequence[Model], fewest: int) -> ModeSets:

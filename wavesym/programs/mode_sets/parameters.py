@@ -25,16 +25,13 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Network
 from wavesym.mechanics.parameters import ModelParameter, PartParameters, describe_part
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.programs.mode_sets.modes import ModeSets, generic_zeros
+from wavesym.programs.mode_sets.modes import ModeSets, enough_modes, generic_zeros
 from wavesym.programs.mode_sets.network import Columns, double, stacked
 from wavesym.programs.modes.loads import Numbers
 from wavesym.programs.modes.projection import ModalOutput
-from wavesym.programs.modes.truncation import truncated
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.programs.request import refuse_others
 from wavesym.programs.runtime.network import PLAIN, ParameterUnit, RuntimeField, field_of, unit_of_load
-
-_MORE = 1.1  # times as many modes as the scene's own numbers need
 
 
 @dataclass(frozen=True)
@@ -52,8 +49,8 @@ class ModeParameters:
 
     @cached_property
     def fewest(self) -> int:
-        """As many modes as the model's own numbers need, and some more. ToleranceError where no number does."""
-        return min(int(_MORE * truncated(self.like).count) + 1, self.like.most)
+        """The modes to begin with. ToleranceError where no number of them is enough."""
+        return enough_modes(self.model)
 
     def numbers(self, given: Numbers) -> dict[str, Numbers]:
         """The numbers of each field without units, (sets, numbers)."""
@@ -94,10 +91,9 @@ class ModeParameters:
         modes = own.modes if own else None
         return [Damping(tuple(map(rational, row)), modes) for row in numbers["damping"].tolist()]
 
-    def factors(self, given: Numbers) -> Numbers:
-        """What each of the load's `amplitudes` is multiplied by, (sets, amplitudes)."""
-        own = np.ones((len(given), len(self.amplitudes)))
-        return self.numbers(given).get("load", own)
+    def factors(self, given: Numbers) -> Numbers | None:
+        """What each of the loads' `amplitudes` is multiplied by, (sets, amplitudes); None where they are not given."""
+        return self.numbers(given).get("load")
 
     def exact(self, given: Numbers) -> Model:
         """The model with one set of numbers, (numbers,), which are exact but for the delay of a rod: a root."""
@@ -192,6 +188,11 @@ def mode_parameters(
         fields.append(field_of("load", [(about, load.weight, unit_of_load(model, load)) for about, load in amplitudes]))
         return ModeParameters(model, tuple(fields), tuple(load for _, load in amplitudes))
     return ModeParameters(model, tuple(fields), ())
+
+
+def names_of(model: Model) -> tuple[str, ...]:
+    """The fields that a model has, but for its loads."""
+    return tuple(name for name, numbers in _numbers(model) if numbers)
 
 
 def _numbers(model: Model) -> Iterator[tuple[str, list[ModelParameter]]]:

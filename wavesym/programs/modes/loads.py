@@ -54,6 +54,14 @@ class LinearLoads:
         """The largest absolute value at one of the times."""
         return max((abs(value) for row in self.samples for value in row), default=fmpq(0))
 
+    def sampled(self, step: fmpq, count: int) -> Numbers:
+        """Loads at multiples of a step that all times are: (count, loads)."""
+        at, times = np.arange(count), np.array([nearest(time / step) for time in self.times])
+        values = np.array([[nearest(value) for value in row] for row in self.samples])
+        after = np.maximum(at - times[-1], 0.0)
+        slopes = [nearest(slope * step) for slope in self.slopes]
+        return np.stack([np.interp(at, times, v) + b * after for v, b in zip(values.T, slopes, strict=True)], axis=1)
+
     def spacing(self, until: fmpq, sampled: fmpq | None = None) -> fmpq:
         """The step of a stream: `sampled`, where all times but the first lie so far apart, or their common measure."""
         lengths, kind = self.distinct

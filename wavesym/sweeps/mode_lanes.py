@@ -1,0 +1,89 @@
+"""Columns of a sweep that are numbers of modes times a factor: known without making the scene of each case.
+
+Stiffnesses and masses of storeys and of parts of a chain, and a damping ratio: nothing else of a scene depends on them.
+Which numbers a column is, and with what factor, is seen from two scenes with other values of it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from wavesym.errors import WavesymError
+from wavesym.mechanics.model import Model
+from wavesym.programs.mode_sets.parameters import ModeParameters, mode_parameters, names_of
+from wavesym.programs.modes.loads import Numbers
+from wavesym.scene import Scene, lower
+from wavesym.scene.paths import replace_at_path
+from wavesym.sweeps.batches import Place
+from wavesym.sweeps.dimension import Column
+from wavesym.sweeps.plan import SweepPlan
+
+_PATHS = re.compile(
+    r"system\.(damping|storey\[\d+\]\.(stiffness|column_mass|floor_mass)|(branch\[\d+\]\.)?parts\[\d+\]\.(mass|spring))"
+)
+_PROBES = (Fraction(5, 4), Fraction(3, 2))  # times the first value of a column
+_SAME = 1e-13
+
+
+@dataclass(frozen=True)
+class ModeLanes:
+    """The numbers of modes of a sweep: those of the first case, and the `places` and `factors` of each column."""
+
+    parameters: ModeParameters
+    own: Numbers
+    places: dict[str, Any]
+    factors: dict[str, Numbers]
+
+    def given(self, plan: SweepPlan, places: Sequence[Place]) -> Numbers:
+        """The numbers of cases, a row for each."""
+        rows = np.tile(self.own, (len(places), 1))
+        for axis, dimension in enumerate(plan.dimensions):
+            chosen = [place[axis] for place in places]
+            for column in dimension.columns:
+                values = np.array(column.coordinate)[chosen]
+                rows[:, self.places[column.path]] = values[:, None] * self.factors[column.path]
+        return rows
+
+
+def mode_lanes(plan: SweepPlan, model: Model, bare: SweepPlan) -> ModeLanes | None:
+    """Those of a sweep whose first case has this model; `bare` is the sweep with next to no samples in its loads."""
+    columns = [column for dimension in plan.dimensions for column in dimension.columns]
+    if not all(_PATHS.fullmatch(column.path) and isinstance(column.coordinate[0], float) for column in columns):
+        return None
+    own = _numbers(model)
+    places, factors, taken = dict[str, Any](), dict[str, Numbers](), set[int]()
+    for column in columns:
+        try:
+            probes = [_numbers(lower(Scene(**_probe(bare, column, times)))) for times in _PROBES]
+        except WavesymError:
+            return None
+        ratios = [probe / np.where(own == 0, 1.0, own) for probe in probes]
+        (varied,) = np.nonzero(np.abs(ratios[0] - 1) > _SAME)
+        expected = np.ones(len(own))
+        for ratio, times in zip(ratios, _PROBES, strict=True):
+            expected[varied] = float(times)
+            if np.any(np.abs(np.where(own == 0, 1.0, ratio) - expected) > _SAME):
+                return None
+        if not len(varied) or taken & set(varied.tolist()):
+            return None
+        taken |= set(varied.tolist())
+        places[column.path], factors[column.path] = varied, own[varied] / float(column.coordinate[0])
+    return ModeLanes(mode_parameters(model, names_of(model), ()), own, places, factors)
+
+
+def _numbers(model: Model) -> Numbers:
+    """All numbers of modes, in the units of the scene."""
+    fields = mode_parameters(model, names_of(model), ()).fields
+    return np.array([float(value) for field in fields for value in field.values])
+
+
+def _probe(plan: SweepPlan, column: Column, times: Fraction) -> dict[str, Any]:
+    """The fields of the first case with another value of a column."""
+    value = times * Fraction(column.coordinate[0])
+    return replace_at_path(plan.fields, column.path, f"{value} {column.unit}" if column.unit else str(value))
