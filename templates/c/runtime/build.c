@@ -19,24 +19,17 @@ typedef struct {
     num missed[OF(parts)], size[OF(parts)], weight[OF(parts)], leak[OF(parts)], seen[OF(parts)];
 } OF(progress);
 
-static void OF(clear)(num *x, size_t count)
-{
-    for (size_t k = 0; k < count; ++k) {
-        x[k] = ZERO;
-    }
-}
-
 /* Nothing gathered, no load; waves as they are at first, as series of so many numbers, and states. */
 static void OF(start_set)(OF(march_state) *m, const OF(laws) *law, int count)
 {
     OF(clear)(m->total, NAME_GAINS);
-    OF(clear)((num *)m->load, sizeof m->load / sizeof(num));
-    OF(clear)((num *)m->force, sizeof m->force / sizeof(num));
-    OF(clear)((num *)&m->extremes, sizeof m->extremes / sizeof(num));
+    OF(clear)((num *)m->load, (int)(sizeof m->load / sizeof(num)));
+    OF(clear)((num *)m->force, (int)(sizeof m->force / sizeof(num)));
+    OF(clear)((num *)&m->extremes, (int)(sizeof m->extremes / sizeof(num)));
     for (int track = 0; track < NAME_TRACKS; ++track) {
         for (int place = ring[track]; place <= ring[track] + steps[track]; ++place) {
             for (int panel = 0; panel < NAME_PANELS; ++panel) {
-                OF(clear)(m->waves[place][panel], (size_t)count);
+                OF(clear)(m->waves[place][panel], count);
                 m->waves[place][panel][0] = law->initial_wave[track];
             }
         }
@@ -116,7 +109,7 @@ static void OF(lengthen)(OF(march_state) *m, int degree, int higher)
 {
     for (int place = 0; place < NAME_SLOTS; ++place) {
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            OF(clear)(m->waves[place][panel] + degree + 1, (size_t)(higher - degree + SPARE - 1));
+            OF(clear)(m->waves[place][panel] + degree + 1, higher - degree + SPARE - 1);
         }
     }
 }

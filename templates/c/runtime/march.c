@@ -26,11 +26,18 @@ static void locate(int window, places *now)
 }
 #endif
 
-/* y += factor a, of series to a degree */
+/* y += factor a, of series to a degree; zeros behind them stay */
 static void OF(add)(num *y, const num *factor, const num *a, int degree)
 {
-    for (int k = 0; k <= degree; ++k) {
-        y[k] += *factor * a[k];
+    for (int k = 0; k <= degree; k += OF(packed)) {
+        *(OF(pack) *)(y + k) += *factor * *(const OF(pack) *)(a + k);
+    }
+}
+
+static void OF(clear)(num *x, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        x[k] = ZERO;
     }
 }
 
@@ -97,7 +104,7 @@ static void OF(gather)(OF(march_state) *m, const OF(laws) *law, const OF(forcing
     for (int point = 0; point < points_of(joint); ++point) {
         const num *acting;
         const int count = OF(acting_on)(m, by, joint, first_point[joint] + point, panel, degree, &acting);
-        for (int k = 0; k <= degree + 1; ++k) {
+        for (int k = 0; k < degree + SPARE; ++k) {
             s[point][k] = k < count ? acting[k] : ZERO;
         }
     }
@@ -110,8 +117,7 @@ static void OF(gather)(OF(march_state) *m, const OF(laws) *law, const OF(forcing
  * what acts besides, what goes back, velocities, states, and where sizes of waves and truncation errors are collected. */
 typedef struct {
     int count;
-    num (*table[ABREAST_BODIES])[3];
-    const num *a[ABREAST_BODIES], *b[ABREAST_BODIES], *acting[ABREAST_BODIES];
+    const num *table[ABREAST_BODIES], *a[ABREAST_BODIES], *b[ABREAST_BODIES], *acting[ABREAST_BODIES];
     int most[ABREAST_BODIES];
     num rate[ABREAST_BODIES], drive[ABREAST_BODIES], one[ABREAST_BODIES], other[ABREAST_BODIES];
     num *left[ABREAST_BODIES], *right[ABREAST_BODIES];
@@ -124,8 +130,7 @@ WITHIN void OF(step_abreast)(OF(bodies) *e, int count, real half, int degree)
 {
     num y[ABREAST_BODIES], at_first[ABREAST_BODIES], at_last[ABREAST_BODIES], above[ABREAST_BODIES], here[ABREAST_BODIES];
     num highest[ABREAST_BODIES], one[ABREAST_BODIES], other[ABREAST_BODIES];
-    num(*table[ABREAST_BODIES])[3];
-    const num *a[ABREAST_BODIES], *b[ABREAST_BODIES];
+    const num *table[ABREAST_BODIES], *a[ABREAST_BODIES], *b[ABREAST_BODIES];
     num *q[ABREAST_BODIES], *left[ABREAST_BODIES], *right[ABREAST_BODIES];
     real on_left[ABREAST_BODIES], on_right[ABREAST_BODIES];
     int most = 0;
@@ -157,18 +162,19 @@ WITHIN void OF(step_abreast)(OF(bodies) *e, int count, real half, int degree)
                 below += e->drive[j] * e->acting[j][k - 1];
             }
             const num change = (k == 1 ? (num)(2 * below) : below) - above[j];
-            y[j] = table[j][k][RATIO] * y[j] + table[j][k][RATIO] * change;
+            const num *const row = table[j] + 3 * k;
+            y[j] = row[RATIO] * y[j] + row[RATIO] * change;
             q[j][k] = y[j];
-            at_first[j] += table[j][k][SUM_FIRST] * y[j];
-            at_last[j] += table[j][k][SUM_LAST] * y[j];
+            at_first[j] += row[SUM_FIRST] * y[j];
+            at_last[j] += row[SUM_LAST] * y[j];
             above[j] = here[j];
             here[j] = below;
         }
     }
     for (int j = 0; j < count; ++j) {
         const num rest = *e->state[j] - at_first[j];
-        const num mean = rest - table[j][0][SLACK] * rest;
-        *e->state[j] = mean + (at_last[j] - table[j][0][LOSS] * mean);
+        const num mean = rest - table[j][SLACK] * rest;
+        *e->state[j] = mean + (at_last[j] - table[j][LOSS] * mean);
         q[j][0] = mean;
         left[j][0] = on_left[j] * mean - a[j][0];
         right[j][0] = on_right[j] * mean - b[j][0];
@@ -182,7 +188,7 @@ WITHIN void OF(step_abreast)(OF(bodies) *e, int count, real half, int degree)
     for (int k = 1; k <= degree; ++k) {
         UNROLLED
         for (int j = 0; j < count; ++j) {
-            y[j] = q[j][k] - table[j][k][RATIO] * y[j];
+            y[j] = q[j][k] - table[j][3 * k + RATIO] * y[j];
             left[j][k] = on_left[j] * y[j] - a[j][k];
             right[j][k] = on_right[j] * y[j] - b[j][k];
         }
@@ -234,7 +240,7 @@ static void OF(march_bodies)(OF(march_state) *all, OF(march_tables) *tables, con
         for (int set = 0; set < sets; ++set) {
             OF(march_state) *const m = all + set;
             const int j = some.count++;
-            some.table[j] = tables[set].body[panel][body];
+            some.table[j] = tables[set].body[panel][body][0];
             some.rate[j] = -law[set].rates[at_rates[joint]];
             some.drive[j] = tables[set].drive[body];
             some.a[j] = m->waves[now->arrived[arrive[port]]][panel];
@@ -297,9 +303,7 @@ static void OF(add_series)(const num *matrix, int rows, int columns, num (*serie
                            num (*f)[NAME_ROW])
 {
     for (int i = 0; i < rows; ++i) {
-        for (int k = 0; k <= degree + 1 && !more; ++k) {
-            f[i][k] = ZERO;
-        }
+        OF(clear)(f[i], more ? 0 : degree + SPARE);
         for (int j = 0; j < columns; ++j) {
             OF(add)(f[i], &matrix[i * columns + j], series[j], degree);
         }
@@ -348,6 +352,9 @@ static void OF(march_joint)(OF(march_state) *m, OF(march_tables) *table, const O
         OF(block_tables) block;
         OF(locate_block)(table, joint, panel, &block);
         OF(solve_block)(&block, half_length[panel], degree, f, m->state[1] + first, x);
+        for (int i = 0; i < n; ++i) {
+            OF(clear)(x[i] + degree + 1, SPARE - 1);
+        }
         OF(add_missed)(law, joint, panel, degree, f, x, missed);
         OF(add_series)(law->shown + at_shown[joint], points, n, x, degree, 1, q);
     }

@@ -94,7 +94,7 @@ static void force_joint(name_tangent *tangent, const laws *law, const laws *slop
     add_series(slope->shown + at_shown[joint], points, n, x, degree, 1, shifted);
     tangent->acts[lane] = larger(tangent->acts[lane], largest_acting(law, slope, joint, x, s));
     for (int point = 0; point < points; ++point) {
-        clear(acting[point], (size_t)degree + 2);
+        clear(acting[point], degree + SPARE);
         for (int k = 0; k < 3 && NAME_FORCES > 0 && force_on[first + point] >= 0; ++k) {
             acting[point][k] = tangent->lane[lane].force[panel][force_on[first + point]][k];
         }
