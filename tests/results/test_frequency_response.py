@@ -539,3 +539,19 @@ def test_a_loss_is_for_frequency_responses_alone() -> None:
     sampled = np.abs(wavesym.frf(scene, np.linspace(0.5, 2.5, 801).round(6))["velocity@1"]).max()
     assert peak.low <= peak.amplitude <= peak.high
     assert peak.amplitude == pytest.approx(sampled, rel=1e-4)
+
+
+def test_without_a_band_it_goes_to_the_fifth_mode_without_dashpots() -> None:
+    """Of soil on rock, which nothing but a dashpot holds, the first of these has no strain, and the fifth 4 pi."""
+    scene = Scene(
+        name="soil",
+        system={
+            "type": "chain",
+            "parts": [{"motion": "acceleration", "name": "rock"}, {"dashpot": 3}, {"rod": 1}, "free"],
+        },
+        load=[{"at": "rock", "spacing": 1, "samples": [0, 1, 0]}],
+        output={"until": 1, "velocity": [1]},
+    )
+    frequency = wavesym.frf(scene, points=9).frequency
+    assert frequency[0] > 0
+    assert frequency[-1] == float(f"{4 * np.pi:.3g}")

@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.modes.dying import undamped
-from wavesym.exact.modes.frequencies import Spectrum
+from wavesym.exact.modes.frequencies import searched
+from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 
 _MODES_SHOWN, _STEPS = 5, 400
+_RIGID = 1e-6  # of what is above a frequency, one that is 0 but for rounding
 _MOST_POINTS = 1_000_000
 _BITS, _MOST_BITS = 128, 1 << 13
 _FIRST_MODES, _MOST_MODES = 32, 2048
@@ -202,14 +205,21 @@ def equally_spaced(model: Model, low: float | None, high: float | None, points: 
     WavesymError for a band that is none. CostError for too many points.
     """
     if high is None:
-        fifth = Spectrum(undamped(model.network)).first(_MODES_SHOWN)[-1].frequency
-        high = float(f"{midpoint(fifth / angular(model, 1.0)):.3g}")
+        high = float(f"{_last_shown(undamped(model.network)) / midpoint(angular(model, 1.0)):.3g}")
     _refuse_many(points)
     if low is None:
         low = high / max(points, _STEPS)
     if not 0 <= low < high or points < 2:
         raise WavesymError(f"--from {low:g} --to {high:g} --points {points}: no band of frequencies")
     return np.linspace(low, high, points)
+
+
+def _last_shown(network: Network) -> float:
+    """The frequency of the fifth mode, or of the last one, in doubles; 0 where that has no strain."""
+    stiffness = Stiffness(network)
+    count = _MODES_SHOWN if stiffness.modes is None else min(_MODES_SHOWN, stiffness.modes)
+    last = float(searched(stiffness, count)[-1]) if count else 0.0
+    return last if last > _RIGID * float(stiffness.above(np.array([count]))[0]) else 0.0
 
 
 def _refuse_many(points: int) -> None:

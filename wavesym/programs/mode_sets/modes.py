@@ -124,6 +124,9 @@ def _imposed(output: ModalOutput, shape: Shape | None) -> Any:
         return 0.0
     value = output.value(shape)
     size: Columns = sum(abs(weight) for weight in output.points.values())
+    if output.slope:
+        weight, end = output.slope
+        size = abs(weight) / shape.statics.stiffness.network.bars[end.bar].delay
     return np.where(np.abs(value) > _SPARE * size, value, 0.0)
 
 
