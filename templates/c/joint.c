@@ -23,9 +23,7 @@ static void scatter(int joint, const joint_on_panel *on, const real *acting)
     const real *factor = on->table;
     const int ports = first_port[joint + 1] - first_port[joint];
     for (int port = 0; port < ports; ++port) {
-        for (int k = 0; k < SIZE; ++k) {
-            on->sent[port][k] = 0;
-        }
+        clear(on->sent[port], SIZE);
     }
     for (int port = 0; port < ports; ++port) {
         for (int other = 0; other < ports; ++other) {
@@ -71,9 +69,7 @@ static real step_body(const real *rows, const real *p, real initial, real *q)
 /* A block: velocities of its points, followed by x at the end less x, from what acts on them, followed by x. */
 static void step_block(const real *columns, const real *given, real *velocities, int width)
 {
-    for (int k = 0; k < width; ++k) {
-        velocities[k] = 0;
-    }
+    clear(velocities, width);
     for (int k = 0; k < width; ++k) {
         if (!(given[k] == 0)) { /* as where loads alone act */
             add(velocities, given[k], columns + k * width, width);
@@ -99,9 +95,7 @@ static void step_joint(int joint, const joint_on_panel *on, const real *acting, 
             given[k] = on->pushes[0] * on->arriving[0][k];
         }
     } else {
-        for (int k = 0; k < points * SIZE; ++k) {
-            given[k] = 0;
-        }
+        clear(given, points * SIZE);
     }
     for (int port = first + body; port < first_port[joint + 1]; ++port) {
         add(given + point_of[port] * SIZE, on->pushes[port - first], on->arriving[port - first], SIZE);

@@ -1,6 +1,13 @@
 /* series.h: Chebyshev series of DEGREE, as marches and streams read them.
  * Plain C of a program of a scene called `name`. Generated files have what stands below the first empty line. */
 
+static void clear(real *y, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        y[k] = 0;
+    }
+}
+
 /* y += factor a */
 static void add(real *y, real factor, const real *a, int count)
 {

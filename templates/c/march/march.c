@@ -142,22 +142,17 @@ static void start_march(march *state)
     for (int k = 0; k < STATES; ++k) {
         state->x[k] = initial_state[k];
     }
-    for (int output = 0; output < OUTPUTS; ++output) {
-        state->total[output] = 0;
-    }
+    clear(state->total, OUTPUTS);
     for (int force = 0; force < FORCES; ++force) {
-        for (int power = 0; power < 3; ++power) {
-            state->load[force][power] = 0;
-        }
+        clear(state->load[force], 3);
         state->changed[force][0] = 0;
         state->changed[force][1] = 0;
     }
     for (int k = 0; k < TRACKS; ++k) {
         for (int slot = ring[k]; slot <= ring[k] + steps[k]; ++slot) {
             for (int panel = 0; panel < PANELS; ++panel) {
-                for (int power = 0; power < SIZE; ++power) {
-                    state->waves[slot][panel][power] = power == 0 ? held[k] : (real)0;
-                }
+                clear(state->waves[slot][panel], SIZE);
+                state->waves[slot][panel][0] = held[k];
             }
         }
     }

@@ -4,6 +4,7 @@
 #include "lanes.c"
 #include "laws.h"
 #include "set.h"
+void spread(laws_batch *all, int lane, const laws *law);
 #include "build.c"
 
 /* Lanes of sets are where sets are, and as large; else this is no type. */

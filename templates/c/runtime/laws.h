@@ -1,16 +1,15 @@
-/* laws.h: stands for what runtime.c.j2 writes above the text of lanes.c, where that is read by itself. */
+/* laws.h: stands for what runtime.c.j2 writes of laws, of numbers `num`, where that is read by itself. */
 typedef struct {
-    wide rates[5 + 1];
-    wide pushed[5 + 1];
-    wide shown[5 + 1];
-    wide passed[5 + 1];
-    wide push[4 + 1];
-    wide initial_wave[4 + 1];
-    wide initial[3 + 1];
-    wide weight[3 + 1];
-    wide impedance[4 + 1];
-    wide strength[1 + 1];
-    wide gain[4 + 1];
-} laws_batch;
-
-void spread(laws_batch *all, int lane, const laws *law);
+    num rates[5 + 1];
+    num pushed[5 + 1];
+    num shown[5 + 1];
+    num passed[5 + 1];
+    num push[4 + 1];
+    num initial_wave[4 + 1];
+    num initial[3 + 1];
+    num weight[3 + 1];
+    num impedance[4 + 1];
+    num strength[1 + 1];
+    num gain[4 + 1];
+    const real *load;
+} OF(laws);

@@ -61,6 +61,20 @@ enum { TOGETHER = NAME_OUTPUTS < 4 ? NAME_OUTPUTS : 4, ABREAST = 4 };
 enum { TOGETHER = 1, ABREAST = 1 };
 #endif
 
+/* `width` vectors of the next T_k(u), which take the place of those `before`, and what they count in values of series. */
+WITHIN void next_terms(int count, int width, const real *c, size_t size, const slice *twice, const slice *now, slice *before,
+                       slice *sum)
+{
+    UNROLLED
+    for (int j = 0; j < width; ++j) {
+        before[j] = twice[j] * now[j] - before[j];
+        UNROLLED
+        for (int i = 0; i < count; ++i) {
+            sum[i * width + j] += c[(size_t)i * size] * before[j];
+        }
+    }
+}
+
 /* `width` vectors of values of series of `size` numbers, one behind the other, all at the same instants u: sums of
  * c_k T_k(u), which share the T_k. */
 WITHIN void together(int count, int width, const real *series, size_t size, const slice *u, slice *sum)
@@ -78,32 +92,11 @@ WITHIN void together(int count, int width, const real *series, size_t size, cons
         }
     }
     for (; c + 1 < series + size; c += 2) {
-        UNROLLED
-        for (int j = 0; j < width; ++j) {
-            before[j] = twice[j] * now[j] - before[j];
-            UNROLLED
-            for (int i = 0; i < count; ++i) {
-                sum[i * width + j] += c[(size_t)i * size] * before[j];
-            }
-        }
-        UNROLLED
-        for (int j = 0; j < width; ++j) {
-            now[j] = twice[j] * before[j] - now[j];
-            UNROLLED
-            for (int i = 0; i < count; ++i) {
-                sum[i * width + j] += c[(size_t)i * size + 1] * now[j];
-            }
-        }
+        next_terms(count, width, c, size, twice, now, before, sum);
+        next_terms(count, width, c + 1, size, twice, before, now, sum);
     }
     if (c < series + size) {
-        UNROLLED
-        for (int j = 0; j < width; ++j) {
-            before[j] = twice[j] * now[j] - before[j];
-            UNROLLED
-            for (int i = 0; i < count; ++i) {
-                sum[i * width + j] += c[(size_t)i * size] * before[j];
-            }
-        }
+        next_terms(count, width, c, size, twice, now, before, sum);
     }
 }
 

@@ -83,21 +83,11 @@ void name_batch_misfit(const name_batch *batch, const name_data *data, name_real
 
 enum { LEAST = 8, LOAD_LANE = -1, SECTIONS = 3, CYCLE = 2 };
 
-/* What parameters make of joints, rods, loads and outputs. */
-typedef struct {
-    real rates[5 + 1];
-    real pushed[5 + 1];
-    real shown[5 + 1];
-    real passed[5 + 1];
-    real push[4 + 1];
-    real initial_wave[4 + 1];
-    real initial[3 + 1];
-    real weight[3 + 1];
-    real impedance[4 + 1];
-    real strength[1 + 1];
-    real gain[4 + 1];
-    const real *load;
-} laws;
+#define num real
+#define OF(name) name
+#include "laws.h"
+#undef num
+#undef OF
 
 int good(const name_parameters *p);
 int good_for_slopes(const name_parameters *p);

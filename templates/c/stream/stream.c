@@ -203,9 +203,7 @@ static void step_joints(stream *state, int breakpoint, const real *acting)
             step_joint_of(state, joint, &on, acting, breakpoint >= 0, breakpoint < 0 ? panel : panel - state->place[breakpoint]);
         } else {
             for (int k = 0; k < ports; ++k) {
-                for (int power = 0; power < SIZE; ++power) {
-                    on.sent[k][power] = 0;
-                }
+                clear(on.sent[k], SIZE);
             }
         }
     }
@@ -223,9 +221,7 @@ static int drop_small_waves(stream *state, int breakpoint)
             left = 1;
         } else if (much > 0) {
             lose(state, root_panel * much, much);
-            for (int j = 0; j < SIZE; ++j) {
-                out[j] = 0;
-            }
+            clear(out, SIZE);
         }
     }
     return left;
@@ -348,9 +344,7 @@ static int new_breakpoint(stream *state)
     state->next_breakpoint[found] = state->first_breakpoint[state->phase];
     state->first_breakpoint[state->phase] = found;
     for (int slot = NAME_SLOTS + found * ENTRIES; slot < NAME_SLOTS + (found + 1) * ENTRIES; ++slot) {
-        for (int k = 0; k < SIZE; ++k) {
-            state->waves[slot][k] = 0;
-        }
+        clear(state->waves[slot], SIZE);
     }
     return found;
 }
@@ -369,9 +363,7 @@ static void interpolate(real *instead, const real *wave, real delay)
 /* The jump, kink and bend with which a wave begins, and how much it bends elsewhere at most. */
 static void derivatives_at_start(const real *wave, real *known)
 {
-    for (int order = 0; order < 4; ++order) {
-        known[order] = 0;
-    }
+    clear(known, 4);
     for (int k = 0; k < SIZE; ++k) {
         const real square = (real)k * (real)k;
         const real turned = k % 2 ? -wave[k] : wave[k];
@@ -528,28 +520,23 @@ void name_init(stream *state)
         state->at[k] = 0;
         state->turn[k] = 0;
         for (int slot = 0; slot < slots[k]; ++slot) {
-            for (int power = 0; power < SIZE; ++power) {
-                state->waves[first_slot[k] + slot][power] = power == 0 ? held[k] : (real)0;
-            }
+            clear(state->waves[first_slot[k] + slot], SIZE);
+            state->waves[first_slot[k] + slot][0] = held[k];
         }
         if (slots[k] > 1 && root_impedance[k] * absolute(held[k]) > state->size) {
             state->size = root_impedance[k] * absolute(held[k]);
         }
     }
-    for (int j = 0; j < LOADS; ++j) {
-        state->load[j] = 0;
-        state->slope[j] = 0;
-    }
+    clear(state->load, LOADS);
+    clear(state->slope, LOADS);
     for (int force = 0; force < FORCES; ++force) {
         state->force[force] = base[force];
     }
     for (int k = 0; k < STATES; ++k) {
         state->x[k] = initial_state[k];
     }
-    for (int output = 0; output < OUTPUTS; ++output) {
-        state->total[output] = 0;
-        state->largest[output] = 0;
-    }
+    clear(state->total, OUTPUTS);
+    clear(state->largest, OUTPUTS);
     start_panel(state);
 }
 
