@@ -80,11 +80,11 @@ def _own(path: str, numbers: Mapping[str, Any]) -> Sequence[float]:
             assert arrival.time is not None  # the scene has units
             return [arrival.time]
         case "response":
-            amplitudes: list[float] = abs(wavesym.frf(scene, numbers["frequencies"])[numbers["output"]]).tolist()
-            return amplitudes
+            found = wavesym.frf(scene, numbers["frequencies"])[numbers["output"]]
+            parts: list[float] = (getattr(found, numbers["part"]) if "part" in numbers else abs(found)).tolist()
+            return parts
         case "peak":
-            found = wavesym.frf(scene, numbers["band"])
-            return [found.peaks()[numbers["output"]].amplitude]
+            return [wavesym.frf(scene, numbers["band"]).peaks()[numbers["output"]].amplitude]
     raise AssertionError(numbers["read"])
 
 
