@@ -18,11 +18,11 @@ from wavesym.scene import Scene, lower
 from wavesym.verification.checks import invariants
 from wavesym.verification.collocation import UndecidedError, integrate
 from wavesym.verification.integrations import (
-    ContactHistory,
+    CornerHistory,
     _grid,
     collocation,
     compare_events,
-    contact_changes,
+    corner_changes,
     differences,
 )
 from wavesym.verification.problem import Change, match_changes, problem_of
@@ -62,7 +62,7 @@ def test_collocation_finds_when_a_bar_bounces() -> None:
 
 
 def test_central_differences_find_when_a_bar_bounces() -> None:
-    made = _grid(bouncing()).resolve_contacts(5.0, MANY)
+    made = _grid(bouncing()).resolve_changes(5.0, MANY)
     assert made is not None
     stepped, found = made
     assert [change.kind for change, _ in found] == ["closes", "opens"] * 2
@@ -76,7 +76,7 @@ def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None
     small = model([body, "contact", {"rod": length, "impedance": impedance}, "fixed"], 4 * length, velocity=["0-"])
     (change,) = integrate(problem_of(small), 4.0 * length, 12, 200).changes
     assert change.tau / length == pytest.approx(3.06766764161830635, rel=1e-12)
-    stepped = _grid(small).resolve_contacts(4.0 * length, MANY)
+    stepped = _grid(small).resolve_changes(4.0 * length, MANY)
     assert stepped is not None
     ((late, slack),) = stepped[1]
     assert abs(late.tau - change.tau) <= slack
@@ -87,18 +87,18 @@ def test_collocation_is_exact_where_all_is_polynomial(points: int) -> None:
     parts = [{"rod": 1, "velocity": 1}, {"contact": "1/4"}, {"rod": 2}, {"contact": "1/8"}, {"rod": 1, "impedance": 2}]
     found = integrate(problem_of(model(parts, 6, velocity=["1/2"])), 6.0, points, 200)
     first = [(0, "closes", 0.25), (0, "opens", 4.25)]
-    assert [(c.contact, c.kind, pytest.approx(c.tau, abs=1e-12)) for c in found.changes if not c.contact][:2] == first
+    assert [(c.corner, c.kind, pytest.approx(c.tau, abs=1e-12)) for c in found.changes if not c.corner][:2] == first
 
 
 def test_all_checks_hold_where_contacts_open_and_close() -> None:
     seen = known_outputs(on_a_bar("3.3"))
-    outcomes = [*collocation(seen), *contact_changes(seen), *differences(seen), *invariants(seen)]
+    outcomes = [*collocation(seen), *corner_changes(seen), *differences(seen), *invariants(seen)]
     assert [outcome for outcome in outcomes if not outcome.passed] == []
     assert {"0 opens", "momentum", "energy", "contacts"} <= {outcome.subject for outcome in outcomes}
 
 
 def test_what_happens_is_found_by_both_integrations() -> None:
-    outcomes = contact_changes(known_outputs(on_a_bar()))
+    outcomes = corner_changes(known_outputs(on_a_bar()))
     assert [outcome.subject for outcome in outcomes] == ["0 opens", "0 closes", "0 opens"]
     assert all(outcome.passed and float(outcome.cells["fronts"]) < 1e-9 for outcome in outcomes)
     assert all(float(outcome.cells["grid"]) < float(outcome.cells["grid allowed"]) < 0.2 for outcome in outcomes)
@@ -114,14 +114,14 @@ def train() -> Model:
 
 def test_a_contact_without_force_may_part_by_nothing_on_a_grid() -> None:
     """But no method may part it that is exact there, nor the grid where it is alone."""
-    outcomes = contact_changes(known_outputs(train()))
+    outcomes = corner_changes(known_outputs(train()))
     assert all(outcome.passed for outcome in outcomes)
     parted = [outcome for outcome in outcomes if outcome.cells["tau"] == "-"]
     assert parted
     struck = [(Change(0, "opens", 8.0), 0.1)]
-    methods = {"fronts": ContactHistory([], 0.0), "grid": ContactHistory(struck, 0.0)}
+    methods = {"fronts": CornerHistory([], 0.0), "grid": CornerHistory(struck, 0.0)}
     verdicts = {
-        "both see it": {"fronts": ContactHistory(struck, 0.0), "grid": ContactHistory(struck, 0.0)},
+        "both see it": {"fronts": CornerHistory(struck, 0.0), "grid": CornerHistory(struck, 0.0)},
         "only the grid": methods,
         "the grid alone": methods | {"fronts": None},
     }
@@ -132,7 +132,7 @@ def test_a_contact_without_force_may_part_by_nothing_on_a_grid() -> None:
 def test_too_many_fronts_are_refused_in_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("wavesym.verification.integrations._MOST_PANELS", 3)
     seen = known_outputs(on_a_bar())
-    outcomes = [*collocation(seen), *contact_changes(seen)]
+    outcomes = [*collocation(seen), *corner_changes(seen)]
     assert all(outcome.passed for outcome in outcomes)
     assert any("3 panels end at tau" in outcome.note for outcome in outcomes)
     with pytest.raises(UndecidedError):
@@ -219,10 +219,10 @@ def test_faults_of_a_network_with_contacts_are_found(
     monkeypatch.setattr("wavesym.verification.integrations.Reference", lambda _: Reference(wrong))
     found = [
         check
-        for check in (collocation, contact_changes, differences)
+        for check in (collocation, corner_changes, differences)
         if not all(outcome.passed for outcome in check(seen))
     ]
-    assert {collocation, contact_changes} <= {*found}
+    assert {collocation, corner_changes} <= {*found}
     assert differences in found or fault is wider  # that comes too late for the outputs
 
 
@@ -245,7 +245,7 @@ def test_an_event_that_is_late_on_one_side_is_found(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("wavesym.verification.checks.Reference", OneSideLate)
     monkeypatch.setattr("wavesym.verification.integrations.Reference", OneSideLate)
     seen = known_outputs(right)
-    assert all(outcome.passed for outcome in contact_changes(seen))
+    assert all(outcome.passed for outcome in corner_changes(seen))
     assert [outcome.passed for outcome in collocation(seen)] == [True, False]
     for check in (differences, invariants):
         assert not all(outcome.passed for outcome in check(seen)), check.__name__

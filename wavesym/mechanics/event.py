@@ -36,12 +36,13 @@ class ContactEvent(KnownInstant):
     """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball; what rubs there slips or sticks.
 
     A spring that acts on one side engages and lets go; one that yields does so until it holds again. A contact that is
-    closed from the start is no event.
+    closed from the start is no event. `link` is its number in the network.
     """
 
     x: str
     kind: Happening
     tau: arb
+    link: int = -1
 
     @property
     def subject(self) -> str:

@@ -10,7 +10,7 @@ from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Network
+from wavesym.mechanics.network import Link, Network
 from wavesym.methods.problem import LOAD_TERMS, Array, LoadEvent, Problem
 from wavesym.numbers.doubles import fraction, nearest
 
@@ -21,21 +21,22 @@ Stated = TypeVar("Stated", bound=Problem)
 
 
 def network_problem(model: Model, kind: type[Stated]) -> Stated:
-    """State the problem of a model, contacts and modal damping included, as a `kind` of Problem."""
+    """State the problem of a model, contacts and modal damping included, as a `kind` of Problem.
+
+    Of links with other laws that have corners it has the dashpots alone.
+    """
     network = model.network
     points, bars = network.points, network.bars
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
     gaps, parting = [], []
     for link in network.links:
-        if link.has_corner and not link.contact:
-            raise UnservedError(f"system: {link.changes}, which integrations do not support; take `run`")
-        pair = np.zeros(len(points))
-        pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
+        pair = opening(network, link)
         if link.contact:
             gaps.append(nearest(link.gap))
             parting.append(pair)
-        else:
-            damping = damping + nearest(link.damping) * np.outer(pair, pair)
+            continue
+        damping = damping + nearest(link.damping) * np.outer(pair, pair)
+        if not link.has_corner:
             stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
     events = tuple(_load_events(model))
     velocity = np.array([nearest(_start_velocity(network, number)) for number in range(len(points))])
@@ -65,15 +66,22 @@ def network_problem(model: Model, kind: type[Stated]) -> Stated:
     )
 
 
+def opening(network: Network, link: Link) -> Array:
+    """How much longer a link gets where each point moves by 1: (points,)."""
+    pair = np.zeros(len(network.points))
+    pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
+    return pair
+
+
 def problem_of(model: Model) -> Problem:
-    """State the problem of a model without contacts, modal damping included.
+    """State the problem of a model without corners, modal damping included.
 
     Raises:
-        UnservedError: contacts open and close.
+        UnservedError: contacts open and close, or other links have laws with corners.
     """
-    if any(link.contact for link in model.network.links):
+    for number in model.network.corners:
         raise UnservedError(
-            "system: a contact that opens and closes is not supported by other methods; take pieces or `run`"
+            f"system: {model.network.links[number].changes}, which other methods do not support; take pieces or `run`"
         )
     return network_problem(model, Problem)
 

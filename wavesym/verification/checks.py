@@ -15,7 +15,14 @@ from wavesym.exact.extremes import extremes
 from wavesym.exact.reference import Reference
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
-from wavesym.verification.integrations import collocation, collocation_beyond, contact_changes, differences, elements
+from wavesym.verification.integrations import (
+    collocation,
+    collocation_beyond,
+    corner_changes,
+    differences,
+    elements,
+    midpoints,
+)
 from wavesym.verification.invariants import Balance, Balancing
 from wavesym.verification.outcome import FINE, REFUSED, Check, Outcome, format_error, refused_outcomes, too_coarse
 from wavesym.verification.reference import ReferenceOutputs
@@ -118,9 +125,14 @@ CHECKS = (
         differences,
     ),
     Check(
-        "When contacts open and close: how far integrations are from it, and what is allowed (between fronts: the\n"
-        "difference of N and 2N points; central differences: those of N, 2N and 4N cells, and four steps):",
-        contact_changes,
+        "Characteristics and the midpoint rule, a complementarity problem in each step, with N, 2N and 4N steps a\n"
+        "rod, where no front is within one. Allowed: the differences from N and 2N, and rounding:",
+        midpoints,
+    ),
+    Check(
+        "When laws change at corners: how far integrations are from it, and what is allowed (between fronts: the\n"
+        "difference of N and 2N points; steps: those of N, 2N and 4N a rod, and four steps):",
+        corner_changes,
     ),
     Check(
         "Momentum less impulse and energy less work of the whole chain at parts of the horizon: in the reference, and\n"

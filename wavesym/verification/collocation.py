@@ -29,7 +29,7 @@ from wavesym.mechanics.quantities import order_of
 from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import gauss
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
-from wavesym.verification.problem import Change, ContactProblem
+from wavesym.verification.problem import Change, CornerProblem
 
 # where contacts open and close, instants closer than this part of the longest delay are one, and so are fronts, and
 # forces and gaps smaller than this part of the largest are 0
@@ -61,7 +61,7 @@ class Motion:
     a contact's opening or closing causes, which are known to rounding only.
     """
 
-    problem: ContactProblem
+    problem: CornerProblem
     points: int
     until: float
     starts: list[Fraction] = field(default_factory=list)
@@ -174,7 +174,7 @@ class Motion:
         return np.asarray(np.where(panel < 0, before * times, moved) + before * float(late))
 
 
-def integrate(problem: ContactProblem, until: float, points: int, most: int = 100_000) -> Motion:
+def integrate(problem: CornerProblem, until: float, points: int, most: int = 100_000) -> Motion:
     """Integrate a motion from tau = 0.
 
     Args:
@@ -184,15 +184,17 @@ def integrate(problem: ContactProblem, until: float, points: int, most: int = 10
         most: panels at most.
 
     Raises:
-        Undecided: it takes more panels, or contacts have no state.
+        Undecided: it takes more panels, contacts have no state, or other links have corners.
     """
+    if problem.laws:
+        raise UndecidedError("what rubs or yields, or acts on one side, is not followed")
     return _Integration(problem, Motion(problem, points, until), most).motion()
 
 
 class _Integration:
     """The displacements and velocities of points now, and which contacts are open."""
 
-    def __init__(self, problem: ContactProblem, found: Motion, most: int) -> None:
+    def __init__(self, problem: CornerProblem, found: Motion, most: int) -> None:
         self._problem, self._found, self._most = problem, found, most
         self._rule = gauss(found.points)
         self._looked = self._rule.interpolation(_LOOKED)
@@ -286,7 +288,8 @@ class _Integration:
     def _store(self, now: Fraction, width: Fraction) -> None:
         problem, found, velocities = self._problem, self._found, self._velocities
         for contact in np.flatnonzero(self._states != self._open).tolist():
-            found.changes.append(Change(contact, "opens" if self._states[contact] else "closes", float(now)))
+            happens = "opens" if self._states[contact] else "closes"
+            found.changes.append(Change(self._problem.contacts[contact], happens, float(now)))
         self._open = self._states
         sent = problem.end_ratios[:, np.newaxis] * velocities[problem.end_points] - self._arriving
         bars = len(problem.delays)

@@ -4,7 +4,8 @@
 within a cell: errors are a series in h^2 there.
 
 Contacts push in the mean from t - h to t + h what keeps gaps at t + h from being negative, and only where they are 0:
-what opens inside a step is late by a part of it, which counts among what may be wrong.
+what opens inside a step is late by a part of it, which counts among what may be wrong. What rubs pulls in the mean
+what keeps it from moving, as much as it can; springs with a corner what they do at t, by return mapping.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import ceil, lcm
+from math import ceil, inf, lcm
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ from wavesym.methods.differences import Grid, GridMotion, point_steps
 from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import lagrange
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
-from wavesym.verification.problem import Change, ContactProblem, KnownChanges, match_changes
+from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, LinkLaw, match_changes
 
 Instants = NDArray[np.int_]
 
@@ -69,7 +70,7 @@ class GridReadings:
 class SpaceTimeGrid:
     """A network whose bars have cells of a step of tau. An instant k is tau = k * step."""
 
-    problem: ContactProblem
+    problem: CornerProblem
     step: Fraction
 
     @property
@@ -120,9 +121,14 @@ class SpaceTimeGrid:
                     free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
         return instants[free]
 
-    def resolve_contacts(self, until: float, most: float) -> tuple[SpaceTimeGrid, KnownChanges] | None:
-        """The coarsest grid which, halved twice, has the same happen at contacts, and that; None if it costs more."""
-        grid = self
+    def resolve_changes(
+        self, until: float, most: float, sharp: float = inf
+    ) -> tuple[SpaceTimeGrid, KnownChanges] | None:
+        """The coarsest grid which, halved twice, has the same happen at corners, and that; None if it costs more.
+
+        It is known when within `sharp` parts of all of the time, if that does not cost more.
+        """
+        grid, best = self, None
         while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
             last = np.array([int(until / float(grid.step))])
             changes = [grid.finer(k).integrate(k * last).changes for k in (1, 2, 4)]
@@ -130,9 +136,11 @@ class SpaceTimeGrid:
             if first is not None and then is not None:
                 known = [after + before for (_, after), (_, before) in zip(first, then, strict=True)]
                 late = LATE * float(grid.step) / 4
-                return grid, [(change, each + late) for (change, _), each in zip(first, known, strict=True)]
+                best = grid, [(change, each + late) for (change, _), each in zip(first, known, strict=True)]
+                if all(slack <= sharp * until for _, slack in best[1]):
+                    return best
             grid = grid.finer(2)
-        return None
+        return best
 
     def integrate(self, instants: Instants) -> GridReadings:
         """The readings at positive instants in ascending order. At a front, the mean of what is before and after it."""
@@ -154,11 +162,11 @@ class SpaceTimeGrid:
             for later, place, weight in some:
                 value += weight * history[rows + later, np.searchsorted(places, place)]
         unsure = largest * self._roundoff(int(instants[-1])) + motion.missed * self._impulse_effects
-        return GridReadings(values, unsure, tuple(self._lasting(motion.changes)))
+        return GridReadings(values, unsure, tuple(self.lasting(motion.changes)))
 
     @cached_property
     def _impulse_effects(self) -> Array:
-        """What an impulse at a contact changes of the readings, at most: rods' ends move, masses are faster."""
+        """What an impulse at a corner changes of the readings, at most: rods' ends move, masses are faster."""
         impedance, heavy = self.problem.impedance, self.problem.mass[self.problem.mass > 0]
         slowest, lightest = float(np.min(self.problem.speed)), float(np.min(heavy, initial=np.inf))
         most = {
@@ -169,16 +177,19 @@ class SpaceTimeGrid:
         }
         return np.array([most[reading.quantity] for reading in self.problem.readings])
 
-    def _lasting(self, changes: Sequence[tuple[int, str, int]]) -> Iterator[Change]:
-        """What happened at contacts and stayed so for some steps: the rest is what fronts between instants do."""
-        for contact in range(len(self.problem.gaps)):
-            kept: list[tuple[str, int]] = []
-            for _, kind, step in (change for change in changes if change[0] == contact):
-                if kept and step - kept[-1][1] < LATE:
-                    kept.pop()
-                else:
-                    kept.append((kind, step))
-            yield from (Change(contact, kind, float(step * self.step)) for kind, step in kept)
+    def lasting(self, changes: Sequence[BranchChange]) -> Iterator[Change]:
+        """What happened at corners and stayed so for some steps: the rest is what fronts between instants do."""
+        kept: dict[int, list[BranchChange]] = {}
+        for change in changes:
+            here = kept.setdefault(change.corner, [])
+            if here and change.step - here[-1].step < LATE:
+                last = here.pop()
+                change = change._replace(before=last.before, step=last.step)
+            if change.before != change.after:
+                here.append(change)
+        for corner in sorted(kept):
+            for change in kept[corner]:
+                yield Change(corner, self.problem.happens(change), float(change.step * self.step))
 
     def _roundoff(self, steps: int) -> Array:
         """What rounding adds to the readings for displacements of 1, at most.
@@ -233,15 +244,15 @@ class SpaceTimeGrid:
             yield from ((later, first + k, weight * factor) for later, k, factor in terms)
 
 
-def coarsest_grid(problem: ContactProblem, until: Fraction) -> SpaceTimeGrid:
-    """The coarsest grid: loads and readings are on it where their denominators are small."""
+def coarsest_grid(problem: CornerProblem, until: Fraction, kind: type[SpaceTimeGrid] = SpaceTimeGrid) -> SpaceTimeGrid:
+    """The coarsest grid of a kind: loads and readings are on it where their denominators are small."""
     measure, common = problem.measure, 1
     offsets = [fraction(each.place) * problem.delays[each.rod - 1] for each in problem.readings if each.point is None]
     for time in (*(event.time for event in problem.events), *offsets):
         if lcm(common, (time / measure).denominator) <= _FINEST_ALIGNED:
             common = lcm(common, (time / measure).denominator)
     shortest = min(*problem.delays, until)
-    return SpaceTimeGrid(problem, measure / common / ceil(COARSEST * measure / common / shortest))
+    return kind(problem, measure / common / ceil(COARSEST * measure / common / shortest))
 
 
 class _ContactMotion(GridMotion):
@@ -253,14 +264,36 @@ class _ContactMotion(GridMotion):
         self._h = float(grid.step)
         self._open = problem.gaps > 0
         self._pushed = np.zeros((LATE, len(problem.gaps)))
-        self.changes: list[tuple[int, str, int]] = []
+        self._longer, self._pulls = np.zeros(len(problem.laws)), np.zeros(len(problem.laws))
+        self._branches = [law.first for law in problem.laws]
+        self.changes: list[BranchChange] = []
         self.missed = 0.0
 
     def settle(self, after: Array, influence: Array) -> Array:
+        """Displacements with what links with corners pull and push."""
+        for number, law in enumerate(self._problem.laws):
+            after -= influence @ law.row * self._pull(number, law, after, influence)
+        return self._parted(after, influence) if len(self._problem.gaps) else after
+
+    def _pull(self, number: int, law: LinkLaw, after: Array, influence: Array) -> float:
+        """What a link pulls: of friction what keeps it from moving, as much as it can."""
+        if law.friction:
+            pull = float(law.row @ (after - self._before) / (law.row @ influence @ law.row))
+        else:
+            longer = float(law.row @ self._u)
+            since = law.side * law.gap if law.side else self._longer[number]
+            pull = law.stiffness * (longer - since) + (0.0 if law.side else self._pulls[number])
+            self._longer[number], self._pulls[number] = longer, law.limit(pull)
+        before = self._branches[number]
+        branch = self._branches[number] = law.branch(pull, _SIGN * self._problem.worth[1], before)
+        if branch != before and self.step > 2:  # what it is from the start is no event
+            self.changes.append(BranchChange(law.corner, before, branch, self.step))
+            self.missed += 2 * self._h * law.friction  # it may turn inside the step
+        return law.limit(pull)
+
+    def _parted(self, after: Array, influence: Array) -> Array:
         """Displacements with what contacts push: as little as keeps every gap from being negative."""
         problem, parting = self._problem, self._problem.parting
-        if not len(problem.gaps):
-            return after
         gaps = problem.gaps + parting @ after
         length, force = problem.worth
         pushes = np.zeros(len(gaps))
@@ -275,7 +308,8 @@ class _ContactMotion(GridMotion):
         for contact in np.flatnonzero(np.where(self._open, pushes > _SIGN * force, gaps > _SIGN * length)).tolist():
             self._open[contact] ^= True
             self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
-            self.changes.append((contact, "opens" if self._open[contact] else "closes", self.step))
+            closed = int(not self._open[contact])
+            self.changes.append(BranchChange(problem.contacts[contact], 1 - closed, closed, self.step))
         self._pushed[self.step % LATE] = pushes
         return after
 

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import fmpq
 
@@ -37,15 +37,24 @@ from wavesym.systems.building import Building
 from wavesym.systems.collision import Collision
 from wavesym.systems.drive import Drive
 from wavesym.systems.explicit import ExplicitChain
-from wavesym.systems.parts import ContactPart, LinkPart, MotionPart, PointPart, RodPart
+from wavesym.systems.parts import ContactPart, LinkPart, MotionPart, PointPart, RodPart, SpringLaw
 from wavesym.systems.place import Position, position_of
 
 Span = tuple[Bar | Link, ...]
 """What is between two points; which points these are, the sketch knows."""
-Row = Sequence[Point | Span]
-"""Points and spans by turns."""
 Push = tuple[int, Fraction]
 """The point that a load acts on, and what 1 of the load is there."""
+
+
+class Node(NamedTuple):
+    """A point, and the links between it and the ground whose laws have corners."""
+
+    point: Point
+    held: tuple[Link, ...] = ()
+
+
+Row = Sequence[Point | Node | Span]
+"""Points and spans by turns."""
 _FREE = Point(fmpq(0))
 
 
@@ -68,17 +77,20 @@ class Sketch:
         """A line; a branch starts at a point that is there, with a span that moves `ratio` times as fast as it."""
         x, turns = Fraction(0), rational(ratio)
         span: Span = ()
+        held: list[Link] = []
         spots, rods = self.spots.setdefault(name, []), self.rods.setdefault(name, [])
         if start is not None:
             spots.append((x, start))
         for each in row:
-            if not isinstance(each, Point):
-                span = each
+            node = Node(each) if isinstance(each, Point) else each
+            if not isinstance(node, Node):
+                span = node
                 continue
             here = len(self.points)
-            self.points.append(each)
-            if each.name:
-                self.names[each.name] = here
+            self.points.append(node.point)
+            if node.point.name:
+                self.names[node.point.name] = here
+            held += [replace(link, right=here) for link in node.held]
             for part in span:
                 before = spots[-1][1]
                 if isinstance(part, Link):
@@ -89,6 +101,9 @@ class Sketch:
             x = rods[-1][1] if rods else x
             spots.append((x, here))
             turns = fmpq(1) if span else turns
+        for link in held:
+            self.links.append(replace(link, left=len(self.points)))
+            self.points.append(Point(fmpq(0), motion="fixed"))
 
     def point(self, position: Position) -> int:
         """The point at a place: of several the left one, unless the right side is asked for."""
@@ -231,7 +246,7 @@ def _chain(system: ExplicitChain) -> Sketch:
         first, start = branch.parts[0], sketch.names[branch.from_]
         parts = branch.parts[isinstance(first, PointPart) :]
         if isinstance(first, PointPart):  # a wheel of the node
-            wheel, node, square = _point(first, ()), sketch.points[start], rational(branch.ratio) ** 2
+            (wheel, _), node, square = _point(first, ()), sketch.points[start], rational(branch.ratio) ** 2
             names = ("mass", "damping", "stiffness")
             gathered = {name: getattr(node, name) + square * getattr(wheel, name) for name in names}
             sketch.points[start] = replace(node, **gathered)
@@ -261,7 +276,7 @@ _SPANS = (RodPart, LinkPart, ContactPart)
 def _span(part: RodPart | LinkPart | ContactPart) -> Span:
     if isinstance(part, ContactPart):
         return (Link(0, 0, contact=True, gap=rational(part.contact)),)
-    held = (Link(0, 0, rational(part.spring), rational(part.dashpot)),) if part.spring or part.dashpot else ()
+    held = _springs(part, part.dashpot) if part.spring or part.dashpot else ()
     if isinstance(part, LinkPart):
         return held
     rod, speed, impedance, velocity, strain = map(
@@ -270,14 +285,28 @@ def _span(part: RodPart | LinkPart | ContactPart) -> Span:
     return (Bar(0, 0, rod, speed, impedance, velocity=velocity, strain=strain), *held)
 
 
-def _point(part: Any, beside: Sequence[Any]) -> Point:
+def _springs(part: SpringLaw, dashpot: Fraction) -> tuple[Link, ...]:
+    """A spring and a dashpot beside it; two springs that act on one side each."""
+    linear = Link(0, 0, rational(part.spring), rational(dashpot))
+    if part.yields is not None:
+        pull, push = map(rational, part.yields)
+        return (replace(linear, limits=(pull, push)),)
+    sides = tuple(replace(linear, side=side, gap=rational(gap)) for side, gap in part.sides)
+    return sides or (linear,)
+
+
+def _point(part: Any, beside: Sequence[Any]) -> Node:
     rods = [other for other in beside if isinstance(other, RodPart)]
     if isinstance(part, MotionPart):
-        return Point(fmpq(0), velocity=rational(part.velocity), motion=part.motion, name=part.name or "")
+        return Node(Point(fmpq(0), velocity=rational(part.velocity), motion=part.motion, name=part.name or ""))
     if isinstance(part, PointPart):
         velocity = part.velocity if part.velocity is not None else rods[0].velocity if rods else 0
-        mass, dashpot, spring = map(rational, (getattr(part, "mass", 0), part.dashpot, part.spring))
-        return Point(mass, dashpot, spring, rational(velocity), name=part.name or "")
+        spring = 0 if part.has_law else part.spring
+        mass, dashpot, stiffness = map(rational, (getattr(part, "mass", 0), part.dashpot, spring))
+        rubbing = (Link(0, 0, friction=rational(part.friction)),) if part.friction else ()
+        sprung = _springs(part, Fraction(0)) if part.has_law else ()
+        return Node(Point(mass, dashpot, stiffness, rational(velocity), name=part.name or ""), (*rubbing, *sprung))
     if part == "fixed":
-        return Point(fmpq(0), motion="fixed")
-    return Point(fmpq(0), damping=rational(rods[0].impedance), absorbing=True) if part == "absorbing" else _FREE
+        return Node(Point(fmpq(0), motion="fixed"))
+    absorbing = Point(fmpq(0), damping=rational(rods[0].impedance), absorbing=True) if part == "absorbing" else _FREE
+    return Node(absorbing)

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, UndecidedError, integrate
 from wavesym.verification.differences import LATE, SpaceTimeGrid, coarsest_grid
+from wavesym.verification.midpoint import MidpointGrid
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
 from wavesym.verification.problem import Change, KnownChanges, match_changes, problem_of
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly, spread_taus
@@ -36,6 +38,12 @@ _MOST_DOUBLES, _MOST_PANELS = 4_000_000, 400
 
 # values are not compared where a front that a contact causes is as close as this; closer instants are the same
 _CLOSE = 1e-7
+
+# steps are this part, at most, of the time that friction takes to stop what moves at first
+_STOPPED = 1 / 8
+
+# when a law changes is looked for on ever finer grids, until it is known to this part of all of the time
+_SHARP = 1e-3
 
 # central differences move no more points than that
 MOST_MOVED = 2e8
@@ -52,7 +60,7 @@ _SWING = 0.25
 # finite elements of the shortest rod, unknowns, and instants besides those at which loads change
 _COARSEST_ELEMENTS, _MOST_UNKNOWNS, _ELEMENT_INSTANTS = 2, 400, 400
 
-_NO_GRID = "on no grid that is not too fine the same happens at contacts"
+_NO_GRID = "on no grid that is not too fine the same happens at corners"
 
 
 # collocation
@@ -161,18 +169,33 @@ def _cached_solutions(known: ReferenceOutputs) -> _Solutions | str:
 
 
 def differences(known: ReferenceOutputs) -> list[Outcome]:
-    """Central differences with N, 2N and 4N cells a rod, at instants away from fronts.
+    """Central differences with N, 2N and 4N cells a rod, at instants away from fronts."""
+    return _stepped(known, SpaceTimeGrid)
 
-    As far as they can be had; where they stay coarse that is said, but no failure: what they allow is in the table.
-    With contacts N is so large that the same happens at them with 2N and 4N, and that is one more front.
+
+def midpoints(known: ReferenceOutputs) -> list[Outcome]:
+    """The midpoint rule with N, 2N and 4N steps a rod, away from fronts, where links have corners."""
+    return _stepped(known, MidpointGrid) if known.integration_model.network.corners else []
+
+
+def _stepped(known: ReferenceOutputs, kind: type[SpaceTimeGrid]) -> list[Outcome]:
+    """Steps of a kind, as far as they can be had.
+
+    Where they stay coarse that is said, but no failure: what they allow is in the table. With corners N is so large
+    that the same happens at them with 2N and 4N, and that is one more front.
     """
     model = known.integration_model
     if not model.network.bars:
         return refused_outcomes(known, "to", "there is no rod for a grid")
-    first, struck = _grid(model), list[tuple[Change, float]]()
+    first, struck = _grid(model, kind), list[tuple[Change, float]]()
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
-    if len(first.problem.gaps):
-        if (found := first.resolve_contacts(until, MOST_MOVED)) is None:
+    while first.tau(1) > _STOPPED * first.problem.soonest:
+        if first.finer(8).cost(until) > MOST_MOVED:
+            why = f"friction stops what moves within {first.problem.soonest:.1g}, sooner than steps that can be taken"
+            return refused_outcomes(known, "to", why)
+        first = first.finer(2)
+    if model.network.corners:
+        if (found := first.resolve_changes(until, MOST_MOVED)) is None:
             return refused_outcomes(known, "to", _NO_GRID)
         first, struck = found
     while len(first.instants(until, struck)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
@@ -181,11 +204,11 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
     while finest.finer(8).cost(until) <= MOST_MOVED:
         finest = finest.finer(2)
     if (swing := first.problem.swings * finest.tau(1) / 4) > _SWING:
-        why = f"springs swing {swing:.2g} radians in the shortest step that central differences can take"
+        why = f"springs swing {swing:.2g} radians in the shortest step that can be taken"
         return refused_outcomes(known, "to", why)
     instants = sample_evenly(first.instants(until, struck), _MOST_INSTANTS)
     if not len(instants):
-        why = f"to step between the fronts, central differences would take too long (at {first.tau(1):.1g} a step)"
+        why = f"to step between the fronts would take too long (at {first.tau(1):.1g} a step)"
         return refused_outcomes(known, "to", why)
     taus = [first.tau(k) for k in instants.tolist()]
     truths = [
@@ -207,8 +230,8 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
     return method.outcomes(model.name, known.names, truths, {"to": f"{until:.4g}"})
 
 
-def _grid(model: Model) -> SpaceTimeGrid:
-    return coarsest_grid(problem_of(model), fraction(model.until))
+def _grid(model: Model, kind: type[SpaceTimeGrid] = SpaceTimeGrid) -> SpaceTimeGrid:
+    return coarsest_grid(problem_of(model), fraction(model.until), kind)
 
 
 # finite elements
@@ -246,45 +269,52 @@ def elements(known: ReferenceOutputs) -> list[Outcome]:
     return method.outcomes(model.name, names, [None] * len(names), {})
 
 
-# contacts
+# corners
 
 
-def contact_changes(known: ReferenceOutputs) -> list[Outcome]:
-    """When contacts open and close, against collocation between fronts and central differences."""
+def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
+    """When laws change at corners, against collocation between fronts and two ways of stepping."""
     model, judged = known.model, known.integration_model
     if not judged.network.corners:
         return []
-    solved, stepped = _cached_solutions(known), _grid(judged).resolve_contacts(known.until, MOST_MOVED)
-    seen = {
-        "fronts": None if isinstance(solved, str) else ContactHistory(solved.struck, 0.0),
-        "grid": ContactHistory(stepped[1], LATE * float(stepped[0].step)) if stepped else None,
-    }
+    solved = _cached_solutions(known)
+    seen: dict[str, CornerHistory | None] = {}
+    if all(model.network.links[link].contact for link in model.network.corners):
+        seen["fronts"] = None if isinstance(solved, str) else CornerHistory(solved.struck, 0.0)
     notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
-    notes += [] if stepped else [f"{model.name}: {_NO_GRID}"]
-    outcomes = [Outcome("contacts", {}, True, note) for note in notes]
+    for name, kind in (("grid", SpaceTimeGrid), ("midpoint", MidpointGrid)):
+        sharp = _SHARP if isinstance(solved, str) else inf  # nothing else is
+        stepped = (
+            _grid(judged, kind).resolve_changes(known.until, MOST_MOVED / 8, sharp) if judged.network.bars else None
+        )
+        seen[name] = CornerHistory(stepped[1], LATE * float(stepped[0].step)) if stepped else None
+        notes += [] if stepped else [f"{model.name}: {_NO_GRID} ({name})"]
+    outcomes = [Outcome("corners", {}, True, note) for note in notes]
     claimed, reaching = events(model), model.contacts(rational(model.horizon()))
     for number, link in enumerate(model.network.corners):
         if link in reaching:
-            place = model.network.links[link].place
             here = {name: each and each.select(number) for name, each in seen.items()}
-            outcomes += compare_events(place, [event for event in claimed if event.x == place], here, known.until)
+            happened = [event for event in claimed if event.link == link]
+            outcomes += compare_events(model.network.links[link].place, happened, here, known.until)
     return outcomes
 
 
 @dataclass(frozen=True)
-class ContactHistory:
+class CornerHistory:
     """What a method found at contacts, and what it does not see as it does not last as long."""
 
     changes: KnownChanges
     shortest: float
 
-    def select(self, contact: int) -> ContactHistory:
-        """At one contact."""
-        return ContactHistory([each for each in self.changes if each[0].contact == contact], self.shortest)
+    def select(self, corner: int) -> CornerHistory:
+        """At one of them."""
+        return CornerHistory([each for each in self.changes if each[0].corner == corner], self.shortest)
 
     def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
-        """The numbers of the events of a contact that it can have seen: without those that hardly last, if it must."""
+        """The numbers of events that it can have seen: without those at the start or that hardly last, if it must."""
         kept = list(range(len(claimed)))
+        while len(kept) > len(self.changes) and claimed[kept[0]].double < self.shortest:
+            del kept[0]
         while len(kept) > max(len(self.changes), 1):
             lasting = [claimed[then].double - claimed[now].double for now, then in pairwise(kept)]
             if min(lasting) >= self.shortest:
@@ -295,7 +325,7 @@ class ContactHistory:
 
 
 def compare_events(
-    place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, ContactHistory | None], until: float
+    place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, CornerHistory | None], until: float
 ) -> Iterator[Outcome]:
     """A row for each event of a contact, and for each that a method has besides.
 
@@ -323,7 +353,7 @@ def compare_events(
         for change, slack in method.changes[len(visible) :]:
             if change.tau + slack < until:
                 cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": format_error(slack)}
-                parts_by_nothing = name == "grid" and methods["fronts"] is not None
+                parts_by_nothing = name == "grid" and methods.get("fronts") is not None
                 more.append(Outcome(f"{place} {change.kind}", cells, parts_by_nothing))
     for event, row, right in zip(claimed, rows, passed, strict=True):
         yield Outcome(f"{place} {event.kind}", row, right)

@@ -13,6 +13,9 @@ between bars and points cancel through gears, too. Nothing asks how long the del
 
 A contact pushes what is on its two sides alike, and takes no energy: what it pushes with follows from the balance of
 the sides without mass. Where one has a prescribed motion, that is an impulse, and work.
+
+Other links with corners take energy and may give it back: a spring pulls what its law says of how long it has been, and
+friction the way it slides. What holds a point that sticks is not known from its motion; momentum is counted without it.
 """
 
 from __future__ import annotations
@@ -26,6 +29,7 @@ from math import ceil
 
 import numpy as np
 from flint import fmpq
+from numpy.typing import NDArray
 
 from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
@@ -33,7 +37,7 @@ from wavesym.mechanics.probe import Probe
 from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import gauss
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
-from wavesym.verification.problem import ContactProblem, problem_of
+from wavesym.verification.problem import CornerProblem, LinkLaw, problem_of
 
 Evaluate = Callable[[Array], Array]
 """tau, shape (n,), to the outputs, shape (outputs, n)."""
@@ -73,6 +77,12 @@ class BoundedValues:
     def __add__(self, other: BoundedValues | Array | float) -> BoundedValues:
         other = other if isinstance(other, BoundedValues) else BoundedValues(np.asarray(other), np.zeros(1))
         return BoundedValues(self.value + other.value, self.error + other.error)
+
+    def times(self, other: BoundedValues) -> BoundedValues:
+        """Products."""
+        size, wrong = np.abs(self.value), self.error
+        error = size * other.error + wrong * (np.abs(other.value) + other.error)
+        return BoundedValues(self.value * other.value, error)
 
     def sums(self, rows: Array) -> BoundedValues:
         """Weighted sums: rows @ values."""
@@ -153,8 +163,8 @@ class Balancing:
 
     def _fronts(self, watched: Model, until: Fraction, most: int) -> tuple[list[Fraction], Fraction]:
         """When something not smooth can come to a point, so often at most, and until when that is all of them."""
-        sides = {link.place: link.left for link in watched.network.links if link.contact}
-        more = [(Fraction(event.double), sides[event.x]) for event in events(watched)] if sides else []
+        links = watched.network.links
+        more = [(Fraction(event.double), links[event.link].right) for event in events(watched)]
         times: list[Fraction] = []
         for time, _ in self.problem.fronts(more):
             if time > until:
@@ -169,10 +179,32 @@ def _end(end: int) -> tuple[int, fmpq, None]:
     return end // 2 + 1, fmpq(end % 2), None
 
 
-def _end_at(problem: ContactProblem, point: int) -> tuple[int, fmpq, int | None]:
+def _end_at(problem: CornerProblem, point: int) -> tuple[int, fmpq, int | None]:
     """Where a point is watched: at the end of a bar there, or by itself."""
     ends = np.flatnonzero(problem.end_points == point)
     return _end(int(ends[0])) if len(ends) else (0, fmpq(0), point)
+
+
+def _pulls(
+    law: LinkLaw,
+    rates: BoundedValues,
+    row: Array,
+    known: tuple[BoundedValues, BoundedValues],
+    order: NDArray[np.int_],
+) -> BoundedValues:
+    """What a link pulls at instants, `known` there and at more, by how long it is then, `row` @ values; in `order`."""
+    if law.friction:
+        return BoundedValues(law.friction * np.sign(rates.value), np.zeros(1))
+    longer = np.concatenate([row @ each.value for each in known])
+    pulls, pull, before = np.zeros(len(longer)), 0.0, 0.0
+    for k in order.tolist():
+        if law.side:
+            pull = law.limit(law.stiffness * (longer[k] - law.side * law.gap))
+        else:
+            pull = law.limit(pull + law.stiffness * (longer[k] - before))
+        before, pulls[k] = longer[k], pull
+    wrong = max(float(np.max(np.abs(row) @ each.error)) for each in known)
+    return BoundedValues(pulls[: len(rates.value)], np.full(len(rates.value), 2 * law.stiffness * wrong))
 
 
 class _Books:
@@ -208,6 +240,14 @@ class _Books:
         self._coming = (self._v - sign[:, np.newaxis] * self._strain) / 2  # into the bar at each end
         self._resisted = problem.damping @ self._q + problem.stiffness @ self._u
         self._free = problem.is_free.astype(float)
+        # how springs have got longer is followed through all instants, and through those at which they may turn
+        turns = state(balancing.cuts)
+        instants = np.concatenate([self._times, balancing.cuts])
+        order = np.argsort(instants, kind="stable")
+        self._pulls = [
+            _pulls(law, self._all.sums(law.row @ self._q), law.row @ self._u, (self._all, turns), order)
+            for law in problem.laws
+        ]
 
     def _content(self, power: int, weights: Array) -> BoundedValues:
         """The sum over bars of weights times the integral of their waves, to a power, when balances are struck."""
@@ -252,7 +292,10 @@ class _Books:
         work = self._q.T @ (free[:, np.newaxis] * self._load) - self._q.T @ problem.damping @ self._q
         reaction = self._resisted - problem.incidence @ self._force - problem.parting.T @ self._push
         work += self._q.T @ ((1 - free)[:, np.newaxis] * reaction)
-        return self._balance(self.stored_energy, self._all.form(work), self.initial_energy)
+        rate = self._all.form(work)
+        for law, pull in zip(problem.laws, self._pulls, strict=True):
+            rate += pull.times(self._all.sums(-(law.row * free) @ self._q))
+        return self._balance(self.stored_energy, rate, self.initial_energy)
 
     # momentum
 
@@ -281,6 +324,9 @@ class _Books:
         stored = self._content(1, moving) + self._ends.sums(counted * problem.mass @ self._q)
         across = counted @ problem.incidence - np.repeat(bars, 2)  # 0 but where prescribed motion holds
         rate = self._all.sums(counted @ (self._load - self._resisted) + across @ self._force)
+        for law, pull in zip(problem.laws, self._pulls, strict=True):
+            share = float(counted @ law.row)
+            rate += BoundedValues(-share * pull.value, abs(share) * pull.error)
         before = counted * problem.mass @ problem.velocity + moving * self._delays @ problem.start_velocity
         return self._balance(stored, rate, float(before))
 
@@ -288,12 +334,13 @@ class _Books:
 
     @cached_property
     def _free_weights(self) -> Array:
-        """0 for points without mass that contacts may hold to a prescribed motion, 1 for others."""
+        """0 for points that friction may hold, or without mass contacts to a prescribed motion; 1 for others."""
         problem, held = self._problem, 1 - self._free
         touching = problem.parting != 0
         for _ in problem.parting:
             held = np.maximum(held, np.any(touching[np.any(touching & (held > 0), axis=1)], axis=0))
-        return np.where(problem.mass == 0, 1 - held, 1.0)
+        rubbing = np.any([law.row != 0 for law in problem.laws if law.friction], axis=0)
+        return np.where(rubbing, 0.0, np.where(problem.mass == 0, 1 - held, 1.0))
 
     @cached_property
     def _push(self) -> Array:

@@ -3,46 +3,133 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
+from math import inf
+from typing import NamedTuple
 
 import numpy as np
+from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.mechanics.model import Model
-from wavesym.methods.network_problem import network_problem
-from wavesym.methods.problem import Problem
+from wavesym.mechanics.network import Network
+from wavesym.methods.network_problem import network_problem, opening
+from wavesym.methods.problem import Array, Problem
+from wavesym.numbers.doubles import nearest
 
 
 @dataclass(frozen=True)
 class Change:
-    """The contact with this number opens or closes at tau."""
+    """What happens at tau at the link with this number among those with corners: a contact opens, a spring yields."""
 
-    contact: int
+    corner: int
     kind: str
     tau: float
 
 
 KnownChanges = list[tuple[Change, float]]
-"""What happens at contacts in the order of time, and how well it is known when."""
+"""What happens at corners in the order of time, and how well it is known when."""
 
 
 def match_changes(finer: Sequence[Change], coarser: Sequence[Change]) -> KnownChanges | None:
     """What happens in two solutions, and how far apart in time; None where it is not the same."""
     found: KnownChanges = []
-    for contact in {change.contact for change in (*finer, *coarser)}:
-        both = [[change for change in changes if change.contact == contact] for changes in (finer, coarser)]
+    for corner in {change.corner for change in (*finer, *coarser)}:
+        both = [[change for change in changes if change.corner == corner] for changes in (finer, coarser)]
         if [change.kind for change in both[0]] != [change.kind for change in both[1]]:
             return None
         found += [(one, abs(one.tau - other.tau)) for one, other in zip(*both, strict=True)]
-    return sorted(found, key=lambda each: (each[0].tau, each[0].contact))
+    return sorted(found, key=lambda each: (each[0].tau, each[0].corner))
 
 
 @dataclass(frozen=True)
-class ContactProblem(Problem):
-    """A network in which contacts may open and close."""
+class LinkLaw:
+    """Friction, or a spring with a corner, between two points: its pull depends on how much longer it gets.
+
+    That is `row` @ displacements; it pulls on the points by `row` transposed. `corner` is its number among the links
+    with corners. Friction takes `friction` either way. A spring has a `stiffness`; with a `side` it acts where it is
+    longer (1) or shorter (-1) by more than `gap`, else it yields at the largest `pull` and `push`.
+    """
+
+    corner: int
+    row: Array
+    friction: float
+    stiffness: float
+    side: int
+    gap: float
+    pull: float
+    push: float
+
+    @classmethod
+    def of(cls, network: Network, corner: int) -> LinkLaw:
+        """That of a link that is no contact."""
+        link = network.links[network.corners[corner]]
+        pull, push = map(nearest, link.limits or (fmpq(0), fmpq(0)))
+        friction, stiffness, gap = map(nearest, (link.friction, link.stiffness, link.gap))
+        return cls(corner, opening(network, link), friction, stiffness, link.side, gap, pull, push)
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Between which its pull is."""
+        if self.side:
+            return (0.0, inf) if self.side > 0 else (-inf, 0.0)
+        return (-self.friction, self.friction) if self.friction else (-self.push, self.pull)
+
+    def limit(self, pull: float) -> float:
+        """What it pulls where it would pull so much."""
+        least, most = self.limits
+        return min(max(pull, least), most)
+
+    @property
+    def first(self) -> int:
+        """The branch that it is on at rest: what only touches acts."""
+        return int(self.side != 0 and self.gap <= 0)
+
+    def branch(self, pull: float, noise: float, before: int) -> int:
+        """Which branch it is on where it would pull so much: 1 where it acts, which way it slides or yields, else 0.
+
+        What no more than touches stays on that of `before`.
+        """
+        if self.side:
+            return before if abs(pull) <= noise else int(self.side * pull > 0)
+        least, most = self.limits
+        return int(pull > most + noise) - int(pull < least - noise)
+
+    def happens(self, branch: int) -> str:
+        """What it does when it comes to a branch."""
+        if self.side:
+            return "engages" if branch else "lets go"
+        if self.friction:
+            return "slips" if branch else "sticks"
+        return "yields" if branch else "holds"
+
+
+class BranchChange(NamedTuple):
+    """A link with a corner goes from one branch to another in a step: 1 is a closed contact, else see `LinkLaw`."""
+
+    corner: int
+    before: int
+    after: int
+    step: int
+
+
+@dataclass(frozen=True)
+class CornerProblem(Problem):
+    """A network in which contacts may open and close, and links may have other laws with corners.
+
+    `contacts` are the numbers of the contacts among the links with corners.
+    """
+
+    contacts: tuple[int, ...] = ()
+    laws: tuple[LinkLaw, ...] = ()
+
+    def happens(self, change: BranchChange) -> str:
+        """What a link does when it changes its branch."""
+        law = next((law for law in self.laws if law.corner == change.corner), None)
+        return ("closes" if change.after else "opens") if law is None else law.happens(change.after)
 
     @cached_property
     def is_free(self) -> NDArray[np.bool_]:
@@ -68,10 +155,18 @@ class ContactProblem(Problem):
         return float(np.sqrt(np.max(stiff[heavy] / self.mass[heavy], initial=0.0)))
 
     @cached_property
+    def soonest(self) -> float:
+        """How soon friction alone would stop what moves at first."""
+        stops = [
+            np.abs(law.row) @ (self.mass * np.abs(self.velocity)) / law.friction for law in self.laws if law.friction
+        ]
+        return float(min((stop for stop in stops if stop > 0), default=inf))
+
+    @cached_property
     def groups(self) -> tuple[tuple[int, ...], ...]:
         """The points that springs, dashpots and contacts join, which are solved together."""
         pairs = np.eye(self.points) + (self.damping != 0) + (self.stiffness != 0)
-        for row in self.parting:
+        for row in (*self.parting, *(law.row for law in self.laws)):
             pairs += np.outer(row != 0, row != 0)
         reached = np.linalg.matrix_power(pairs > 0, self.points)
         return tuple(dict.fromkeys(tuple(np.flatnonzero(row).tolist()) for row in reached))
@@ -105,7 +200,10 @@ class ContactProblem(Problem):
                 yield now + self.delays[end // 2], self.group_of[int(self.end_points[end ^ 1])]
 
 
-def problem_of(model: Model) -> ContactProblem:
+def problem_of(model: Model) -> CornerProblem:
     """State the problem of a model. UnservedError where modes are damped."""
     model.refuse_damping()
-    return network_problem(model, ContactProblem)
+    network = model.network
+    contacts = tuple(k for k, number in enumerate(network.corners) if network.links[number].contact)
+    laws = tuple(LinkLaw.of(network, k) for k in range(len(network.corners)) if k not in contacts)
+    return replace(network_problem(model, CornerProblem), contacts=contacts, laws=laws)

@@ -47,9 +47,10 @@ def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
         return ()
     seen = model.contacts(until)
     return tuple(
-        ContactEvent(model.network.links[each.link].place, _kind(model.network.links[each.link], each), each.instant)
+        ContactEvent(link.place, _kind(link, each), each.instant, each.link)
         for each in known.changes
         if each.link in seen and each.low <= until
+        for link in [model.network.links[each.link]]
     )
 
 

@@ -1,0 +1,241 @@
+"""Waves by their characteristics, and the implicit midpoint rule at points: a complementarity problem in every step.
+
+Waves are known by their means over steps; a rod sends on what came in as many steps ago as it has cells. With q and u
+at the start of a step, v the mean velocity in it and a the means of what arrives,
+
+    (2 mass/h + damping + sum of ratio^2 impedance + stiffness h/2) v
+        = 2 mass/h q - stiffness u + sum of 2 ratio impedance a + loads + what links with corners pull,
+
+q goes on to 2 v - q and u to u + h v. What such links pull depends on v: a contact pushes as little as keeps its gap
+from being negative, friction takes what keeps its sides together, as much as it can, and springs have the mean of their
+pulls at both ends of the step. Each of these is monotone in v, so they are found one after another, again and again.
+Nothing is looked for inside a step. Errors fall as its square, and as the step where a law changes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from wavesym.mechanics.gauge import Gauge
+from wavesym.methods.problem import Array
+from wavesym.numbers.doubles import UNIT_ROUNDOFF
+from wavesym.verification.differences import GridReadings, Instants, SpaceTimeGrid
+from wavesym.verification.problem import BranchChange, CornerProblem, LinkLaw
+
+# pulls of links are found as exactly as this, relative to the largest, in so many rounds
+_EXACT, _ROUNDS = 1e-15, 1000
+
+# parts of what pushes and gaps are worth that tell whether a contact is closed
+_SIGN = 1e-9
+
+# so many roundings of a step are kept for good
+_ROUNDINGS = 8
+
+
+class MidpointGrid(SpaceTimeGrid):
+    """The steps of tau, which divide all delays."""
+
+    def integrate(self, instants: Instants) -> GridReadings:
+        """The readings at positive instants in ascending order, off fronts."""
+        steps = int(instants[-1]) + 2
+        motion = _Motion(self, steps)
+        for step in range(steps):
+            motion.advance(step)
+        taus: Array = float(self.step) * instants.astype(np.float64)
+        values = np.array([motion.evaluate(reading, taus) for reading in self.problem.readings])
+        rounded = _ROUNDINGS * float(UNIT_ROUNDOFF) * steps * np.max(np.abs(values), axis=1, initial=0.0)
+        return GridReadings(values.reshape(-1, len(instants)), rounded, tuple(self.lasting(motion.changes)))
+
+
+class _Motion:
+    """What is sent from the ends of bars, and how points move, step by step."""
+
+    def __init__(self, grid: MidpointGrid, steps: int) -> None:
+        problem = self._problem = grid.problem
+        h = self._h = float(grid.step)
+        times: Array = h * np.arange(steps + 1, dtype=np.float64)
+        self._ends, self._middles = times, times[:-1] + h / 2
+        self._lags = np.repeat([int(delay / grid.step) for delay in problem.delays], 2)
+        self._beyond = np.arange(2 * len(problem.delays)) ^ 1
+        self._sent = np.zeros((steps, 2 * len(problem.delays)))
+        self._v, self._u = np.zeros((steps, problem.points)), np.zeros((steps + 1, problem.points))
+        self._q = problem.velocity.copy()
+        self._loads = problem.load_means(times[:-1], times[1:])
+        self._impedance = np.repeat(problem.impedance, 2)
+        matrix: Array = np.diag(2 * problem.mass / h + problem.incidence**2 @ self._impedance)
+        matrix += problem.damping + h / 2 * problem.stiffness
+        prescribed = list(problem.prescribed)
+        matrix[prescribed] = np.eye(problem.points)[prescribed]
+        self._inverse: Array = np.linalg.inv(matrix).astype(np.float64)
+        self._links = _Links(problem, self._inverse, h)
+        self.changes = self._links.changes
+
+    def advance(self, step: int) -> None:
+        """One step."""
+        problem, h, u = self._problem, self._h, self._u[step]
+        came = np.where(
+            step < self._lags,
+            problem.start_waves.ravel()[self._beyond],
+            self._sent[np.maximum(step - self._lags, 0), self._beyond],
+        )
+        acting = 2 * problem.mass / h * self._q - problem.stiffness @ u + self._loads[step]
+        acting += 2 * problem.incidence @ (self._impedance * came)
+        prescribed = list(problem.prescribed)
+        acting[prescribed] = self._loads[step, prescribed]
+        v = self._links.settle(self._inverse @ acting, self._q, u, step)
+        self._v[step], self._u[step + 1], self._q = v, u + h * v, 2 * v - self._q
+        self._sent[step] = problem.incidence.T @ v - came
+
+    def evaluate(self, reading: Gauge, taus: Array) -> Array:
+        """A strain, a velocity or a displacement at instants."""
+        displaced = reading.quantity == "displacement"
+        if reading.point is not None:
+            known = (self._ends, self._u) if displaced else (self._middles, self._v)
+            return np.interp(taus, known[0], known[1][:, reading.point])
+        bar, place = reading.rod - 1, float(reading.place)
+        right, left = (
+            self._wave(2 * bar + side, taus, float(part * self._problem.delay[bar]), displaced)
+            for side, part in enumerate((place, 1 - place))
+        )
+        return (left - right) / self._problem.speed[bar] if reading.quantity == "strain" else left + right
+
+    def _wave(self, end: int, taus: Array, late: float, summed: bool) -> Array:
+        """What was sent from an end so long ago, or its integral from tau = 0."""
+        since, begun = taus - late, float(self._problem.start_waves.ravel()[end])
+        if summed:
+            return begun * np.minimum(taus, late) + np.interp(since, self._ends, self._sums[:, end])
+        return np.where(since < 0, begun, np.interp(since, self._middles, self._sent[:, end]))
+
+    @cached_property
+    def _sums(self) -> Array:
+        """The integrals of what is sent, at the ends of steps."""
+        return np.concatenate([np.zeros((1, self._sent.shape[1])), self._h * np.cumsum(self._sent, axis=0)])
+
+
+@dataclass
+class _Spring:
+    """A spring with a corner: its pull, what that would be without limits, and its branch."""
+
+    law: LinkLaw
+    branch: int
+    pull: float = 0.0
+    trial: float = 0.0
+
+    def mean(self, rate: float, longer: float, given: float, h: float) -> float:
+        """Its mean pull in a step, where it would get longer at a `rate` without, and less by `given` times that."""
+        law, stiff = self.law, self.law.stiffness * h / 2
+        if law.side:
+            self.trial = law.stiffness * (longer + h / 2 * rate - law.side * law.gap) / (1 + stiff * given)
+            return law.limit(self.trial)
+        self.trial = 2 * (self.pull + stiff * rate) / (1 + stiff * given) - self.pull
+        return (self.pull + law.limit(self.trial)) / 2
+
+    def end(self) -> None:
+        """The step is done."""
+        self.pull = self.law.limit(self.trial)
+
+
+@dataclass
+class _Friction:
+    """What rubs on the ground: how fast it is, if it has mass, and its branch.
+
+    `heavy` is how fast it would be in the mean, and nothing else acted, for each unit of that: 0 without mass.
+    """
+
+    law: LinkLaw
+    branch: int
+    heavy: float
+    speed: float = 0.0
+    trial: float = 0.0
+
+    def mean(self, rate: float, _: float, given: float, __: float) -> float:
+        """Its mean pull in a step, where it would go at a mean `rate` without, and less by `given` times that.
+
+        What comes to rest and goes back is pulled one way first, and the other way for the rest of the step.
+        """
+        most, before = self.law.friction, abs(self.speed)
+        way = 1.0 if self.speed > 0 else -1.0
+        held = (rate - self.heavy * self.speed) / given  # what keeps it at rest
+        if before == 0:
+            self.trial = held
+            return self.law.limit(held)
+        after = 2 * (way * rate - given * most) - before
+        self.trial = 2 * most * way
+        if after >= 0:
+            return most * way
+        if abs(held) <= most:
+            self.trial = held
+            return (rate - self.speed / 2) / given
+        self.trial = -self.trial
+        return most * way * (2 * before / (before - after) - 1)
+
+    def end(self) -> None:
+        """The step is done."""
+
+
+class _Links:
+    """All links with corners: contacts, then others."""
+
+    def __init__(self, problem: CornerProblem, inverse: Array, h: float) -> None:
+        self._problem, self._h = problem, h
+        self._rows = np.array([*problem.parting, *(law.row for law in problem.laws)]).reshape(-1, problem.points)
+        # what is prescribed gives no way
+        self._given = inverse @ (self._rows * problem.is_free).T
+        self._compliance = self._rows @ self._given
+        self._pulls = np.zeros(len(self._rows))
+        self._springs = [self._link(law, inverse) for law in problem.laws]
+        self._open = problem.gaps > 0
+        self.changes: list[BranchChange] = []
+
+    def _link(self, law: LinkLaw, inverse: Array) -> _Spring | _Friction:
+        if not law.friction:
+            return _Spring(law, law.first)
+        point = int(np.flatnonzero(law.row * self._problem.is_free)[0])
+        heavy = float(inverse[point, point]) * 2 * float(self._problem.mass[point]) / self._h
+        return _Friction(law, law.first, heavy)
+
+    def settle(self, free: Array, q: Array, u: Array, step: int) -> Array:
+        """The mean velocities of points in a step, from those without links, `free`, and their state before it."""
+        if not len(self._rows):
+            return free
+        for link in self._springs:
+            if isinstance(link, _Friction):
+                link.speed = float(link.law.row @ (q * (self._problem.mass > 0)))
+        rates, longer = self._rows @ free, self._rows @ u
+        for _ in range(_ROUNDS):
+            before = self._pulls.copy()
+            for k in range(len(self._rows)):
+                given = self._compliance[k, k]
+                rate = float(rates[k] - self._compliance[k] @ self._pulls + given * self._pulls[k])
+                self._pulls[k] = self._mean(k, rate, float(longer[k]), float(given))
+            if np.max(np.abs(self._pulls - before)) <= _EXACT * np.max(np.abs(self._pulls)):
+                break
+        v = free - self._given @ self._pulls
+        self._note(longer + self._h * (self._rows @ v), step)
+        return np.asarray(v)
+
+    def _mean(self, k: int, rate: float, longer: float, given: float) -> float:
+        contacts = len(self._problem.gaps)
+        if k >= contacts:
+            return self._springs[k - contacts].mean(rate, longer, given, self._h)
+        return min(((float(self._problem.gaps[k]) + longer) / self._h + rate) / given, 0.0)
+
+    def _note(self, longer: Array, step: int) -> None:
+        """On which branches links are at the end of a step."""
+        problem = self._problem
+        length, force = problem.worth
+        for k, number in enumerate(problem.contacts):
+            apart = problem.gaps[k] + longer[k]
+            if -self._pulls[k] > _SIGN * force if self._open[k] else apart > _SIGN * length:
+                self._open[k] ^= True
+                closed = int(not self._open[k])
+                self.changes.append(BranchChange(number, 1 - closed, closed, step))
+        for spring in self._springs:
+            law, before = spring.law, spring.branch
+            spring.end()
+            spring.branch = law.branch(spring.trial, _SIGN * force, before)
+            if spring.branch != before and step:  # what it is from the start is no event
+                self.changes.append(BranchChange(law.corner, before, spring.branch, step))
