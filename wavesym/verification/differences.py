@@ -273,7 +273,7 @@ class _ContactMotion(GridMotion):
         """Displacements with what links with corners pull and push."""
         for number, law in enumerate(self._problem.laws):
             after -= influence @ law.row * self._pull(number, law, after, influence)
-        return self._parted(after, influence) if len(self._problem.gaps) else after
+        return self._separate(after, influence) if len(self._problem.gaps) else after
 
     def _pull(self, number: int, law: LinkLaw, after: Array, influence: Array) -> float:
         """What a link pulls: of friction what keeps it from moving, as much as it can."""
@@ -291,7 +291,7 @@ class _ContactMotion(GridMotion):
             self.missed += 2 * self._h * law.friction  # it may turn inside the step
         return law.limit(pull)
 
-    def _parted(self, after: Array, influence: Array) -> Array:
+    def _separate(self, after: Array, influence: Array) -> Array:
         """Displacements with what contacts push: as little as keeps every gap from being negative."""
         problem, parting = self._problem, self._problem.parting
         gaps = problem.gaps + parting @ after

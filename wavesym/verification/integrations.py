@@ -170,15 +170,15 @@ def _cached_solutions(known: ReferenceOutputs) -> _Solutions | str:
 
 def differences(known: ReferenceOutputs) -> list[Outcome]:
     """Central differences with N, 2N and 4N cells a rod, at instants away from fronts."""
-    return _stepped(known, SpaceTimeGrid)
+    return _compare_steps(known, SpaceTimeGrid)
 
 
 def midpoints(known: ReferenceOutputs) -> list[Outcome]:
     """The midpoint rule with N, 2N and 4N steps a rod, away from fronts, where links have corners."""
-    return _stepped(known, MidpointGrid) if known.integration_model.network.corners else []
+    return _compare_steps(known, MidpointGrid) if known.integration_model.network.corners else []
 
 
-def _stepped(known: ReferenceOutputs, kind: type[SpaceTimeGrid]) -> list[Outcome]:
+def _compare_steps(known: ReferenceOutputs, kind: type[SpaceTimeGrid]) -> list[Outcome]:
     """Steps of a kind, as far as they can be had.
 
     Where they stay coarse that is said, but no failure: what they allow is in the table. With corners N is so large

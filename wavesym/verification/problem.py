@@ -64,7 +64,7 @@ class LinkLaw:
     push: float
 
     @classmethod
-    def of(cls, network: Network, corner: int) -> LinkLaw:
+    def from_network(cls, network: Network, corner: int) -> LinkLaw:
         """That of a link that is no contact."""
         link = network.links[network.corners[corner]]
         pull, push = map(nearest, link.limits or (fmpq(0), fmpq(0)))
@@ -205,5 +205,5 @@ def problem_of(model: Model) -> CornerProblem:
     model.refuse_damping()
     network = model.network
     contacts = tuple(k for k, number in enumerate(network.corners) if network.links[number].contact)
-    laws = tuple(LinkLaw.of(network, k) for k in range(len(network.corners)) if k not in contacts)
+    laws = tuple(LinkLaw.from_network(network, k) for k in range(len(network.corners)) if k not in contacts)
     return replace(network_problem(model, CornerProblem), contacts=contacts, laws=laws)
