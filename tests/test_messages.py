@@ -15,7 +15,7 @@ PACKAGE = Path(wavesym.__file__).parent
 COSTS = {"CostError", "_TooLarge"}
 KEY = (
     r"(output|output\.until|load|frequency|system|system\.(m|parts)|"
-    r"--below|--count|--intervals|--peaks|--points|--to|--until|\{asked\})"
+    r"--below|--count|--intervals|--peaks|--points|--to|--until|\{key\})"
 )
 FORM = re.compile(rf"{KEY}: .+, the limit.* is .+ \(.+ helps?\)")
 PASSED_ON = re.compile(r".*\{error\} \(.+ helps?\)")  # the sentence of another error, which says how much
@@ -45,7 +45,7 @@ def complete(message: str) -> bool:
     """Whether it has a key, a size, a limit, and help."""
     if PASSED_ON.fullmatch(message):
         return True
-    left = message.replace("{asked}", "", 1)
+    left = message.replace("{key}", "", 1)
     return bool(FORM.fullmatch(message)) and left.count("{") > 1 and ";" not in message
 
 
