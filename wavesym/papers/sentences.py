@@ -112,19 +112,21 @@ class SentenceReader:
         return self.patterns[sentence.pattern].data
 
 
-def read_patterns(path: Path) -> list[SentencePattern]:
+def read_patterns(path: Path) -> tuple[SentencePattern, ...]:
     """The patterns of a TOML file, by name: `text`, `words`, and what else is said of them."""
     data = tomllib.loads(path.read_text(encoding="utf-8"))
-    return [SentencePattern(name, known["text"], known["words"], data=known) for name, known in data.items()]
+    return tuple(SentencePattern(name, known["text"], known["words"], data=known) for name, known in data.items())
 
 
-def sentence_test(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Case]]]) -> Adapter:
-    """How the sentences of a file are tried: `cases` go by the names of their patterns.
+def sentence_test(
+    patterns: Iterable[SentencePattern], cases: Mapping[str, Callable[[Words], Iterable[Case]]]
+) -> Adapter:
+    """How sentences are tried, those of the `patterns` whose names `cases` have.
 
     Of the cases those count that are within the ranges of a sentence. A pattern says what it is compared with, and may
     have a convention: other words that the text may mean.
     """
-    reader = SentenceReader(read_patterns(path))
+    reader = SentenceReader(pattern for pattern in patterns if pattern.name in cases)
 
     def cases_in_range(reading: Reading) -> Iterator[Case]:
         none = True

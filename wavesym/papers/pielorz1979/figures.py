@@ -2,7 +2,7 @@
 
 The load curves of Figs. 7 and 8 are not in the text: a statement is tried under several loads, and is either said of
 all of them, or of those only that it names. A caption is judged by what is said of its figure. The patterns of the
-sentences are in figure_sentences.toml.
+sentences are in sentences.toml.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache, partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,11 +31,11 @@ from wavesym.papers.pielorz1979.figure_scenes import (
     loads,
     read_caption,
 )
-from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding
-from wavesym.papers.pielorz1979.transcript import entries
+from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding, Measure
+from wavesym.papers.pielorz1979.transcript import entries, patterns
 from wavesym.papers.reader import UnreadableError, read_formula
 from wavesym.papers.record import Case, NoValue, Reproduction, Sentence, Test, case, format_value
-from wavesym.papers.sentences import LIST, SentenceReader, read_patterns
+from wavesym.papers.sentences import LIST, SentenceReader
 from wavesym.papers.tree import Number, Relation, Tree, latex
 from wavesym.scene import lower
 from wavesym.scene.lowering import named_chain
@@ -44,12 +43,11 @@ from wavesym.scene.lowering import named_chain
 NEAR = 0.01
 """How far a time that is read off a figure may be out, as a part of itself."""
 ONLY = ", of the loads tried under these: "
-_PATTERNS = read_patterns(Path(__file__).with_name("figure_sentences.toml"))
 READERS = {
     number: SentenceReader(
         replace(pattern, list_opening=ONLY, list_words=tuple(load.name for load in loads(number)))
-        for pattern in _PATTERNS
-        if pattern.data["figure"] == number
+        for pattern in patterns()
+        if pattern.data.get("figure") == number
     )
     for number in PLOTTED
 }
@@ -62,19 +60,23 @@ def statements(number: int) -> dict[str, Sentence]:
 
 
 def _pattern_data(sentence: Sentence) -> Mapping[str, Any]:
-    return next(pattern.data for pattern in _PATTERNS if pattern.name == sentence.pattern)
+    return next(pattern.data for pattern in patterns() if pattern.name == sentence.pattern)
+
+
+def _measure(sentence: Sentence) -> Measure:
+    return MEASURES[_pattern_data(sentence)["measure"]]
 
 
 def _bound(sentence: Sentence) -> tuple[str, Callable[[float], bool]]:
     """When what is measured is as a sentence says, in words and as a test."""
-    judged = _pattern_data(sentence)["bound"]
-    return BOUNDS[sentence.words.get(judged, judged)]
+    bound = _measure(sentence).bound
+    return BOUNDS[sentence.words.get(bound, bound)]
 
 
 def meaning(sentence: Sentence) -> str:
     """What a sentence says of a measure, in words."""
-    words: str = _pattern_data(sentence)["meaning"].format(**{**sentence.words, "bound": _bound(sentence)[0]})
-    return words
+    words: str = _pattern_data(sentence).get("meaning", _measure(sentence).meaning)
+    return words.format(**{**sentence.words, "bound": _bound(sentence)[0]})
 
 
 def loads_tried(number: int, sentence: Sentence) -> tuple[TriedLoad, ...]:
@@ -86,12 +88,12 @@ def finding(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> Finding:
     """What is measured under a load. MeaninglessError where there is nothing to measure."""
     (drawn,) = (drawn for drawn in loads_tried(scene.figure, sentence) if drawn.name == load.name)
     words = {place: word for place, word in sentence.words.items() if place != "listed"}
-    return _measure(scene, drawn, Sentence(sentence.pattern, words))
+    return _find(scene, drawn, Sentence(sentence.pattern, words))
 
 
 @cache
-def _measure(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> Finding:
-    return MEASURES[_pattern_data(sentence)["measure"]](sentence.words, partial(scene.curve, load))
+def _find(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> Finding:
+    return _measure(sentence).find(sentence.words, partial(scene.curve, load))
 
 
 def is_true(scene: FigureScene, load: TriedLoad, sentence: Sentence) -> bool:

@@ -165,10 +165,19 @@ def _combine(found: Sequence[Finding], worst: Callable[[Iterable[float]], float]
     return Finding(worst(finding.value for finding in found), tuple(spots))
 
 
-MEASURES: Mapping[str, Callable[[Words, Curve], Finding]] = {
-    "distance": _distance,
-    "turn": _turn,
-    "outside": _excursion,
-    "peaks": _peaks,
-    "unevenness": _unevenness,
+class Measure(NamedTuple):
+    """What is measured of curves, the bound that it is judged by (of the word in a place, or always the same), and how
+    that is put."""
+
+    find: Callable[[Words, Curve], Finding]
+    bound: str
+    meaning: str
+
+
+MEASURES: Mapping[str, Measure] = {
+    "distance": Measure(_distance, "degree", "largest distance {bound} of the largest value"),
+    "turn": Measure(_turn, "there and back", "one way and back, the smaller {bound} of the largest value"),
+    "outside": Measure(_excursion, "between", "{bound}"),
+    "peaks": Measure(_peaks, "size", "ratio of the largest values, x = {place} to x = {other}, {bound}"),
+    "unevenness": Measure(_unevenness, "swings", "{bound}"),
 }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from pathlib import Path
 
 from wavesym.papers.entries import WHOLE, PaperEntry, problems
 from wavesym.papers.pielorz1979 import coefficients
@@ -14,6 +13,7 @@ from wavesym.papers.pielorz1979.solutions import SOLUTIONS
 from wavesym.papers.pielorz1979.statements import STATEMENTS
 from wavesym.papers.pielorz1979.tables import TESTS
 from wavesym.papers.pielorz1979.transcript import paper as paper
+from wavesym.papers.pielorz1979.transcript import patterns
 from wavesym.papers.record import Adapter, Record, Test, judge
 from wavesym.papers.sentences import sentence_test
 
@@ -31,7 +31,7 @@ ADAPTERS: Mapping[str, Adapter] = {
     "contact": end_of_contact,
     "figure": figure_statement,
     "line": coefficients.coefficient,
-    "sentence": sentence_test(Path(__file__).with_name("sentences.toml"), {**STATEMENTS, **SOLUTIONS}),
+    "sentence": sentence_test(patterns(), {**STATEMENTS, **SOLUTIONS}),
     "sizes": coefficients.sizes,
     "solution": solution,
 }

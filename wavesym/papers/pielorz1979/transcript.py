@@ -10,6 +10,7 @@ from wavesym.papers.entries import Paper, PaperEntry, read_paper
 from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.reader import UnreadableError
 from wavesym.papers.record import Reading, reading
+from wavesym.papers.sentences import SentencePattern, read_patterns
 
 _DATA = Path(__file__).with_name("data")
 
@@ -18,6 +19,12 @@ _DATA = Path(__file__).with_name("data")
 def paper() -> Paper:
     """The data."""
     return read_paper(_DATA)
+
+
+@cache
+def patterns() -> tuple[SentencePattern, ...]:
+    """The patterns of sentences that can be judged, those about a `figure` among them."""
+    return read_patterns(Path(__file__).with_name("sentences.toml"))
 
 
 def entries() -> Mapping[str, PaperEntry]:
