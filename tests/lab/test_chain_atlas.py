@@ -32,7 +32,7 @@ def test_knots_are_the_ways_back_and_forth(gap):
     """The middle mass is met at 0, when all begins, and at 1 + 2 i + 2 j (1 + gap)."""
     ways = {1 + 2 * i + 2 * j * (1 + gap) for i in range(10) for j in range(10)}
     model = lower(evaluators.nearly_equal(gap))
-    assert evaluators.most_knots(model) == 1 + sum(way <= evaluators.LENGTHS_UNTIL for way in ways)
+    assert evaluators.most_breakpoints(model) == 1 + sum(way <= evaluators.LENGTHS_UNTIL for way in ways)
 
 
 def test_steps_of_a_common_grid():

@@ -85,7 +85,7 @@ class TimedLoad(Load):
 
     @field_validator("times")
     @classmethod
-    def _increasing(cls, times: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+    def _check_times(cls, times: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         if times and times[0] < 0:
             raise refusal(f"{show(times[0])} is before the start; write a time of 0 or later", 0)
         for k, (before, time) in enumerate(pairwise(times), 1):
@@ -97,7 +97,7 @@ class TimedLoad(Load):
         return times
 
     @model_validator(mode="after")
-    def _one_a_time(self) -> Self:
+    def _check_lengths(self) -> Self:
         for name, numbers in zip(self.lists, self._numbers, strict=True):
             if numbers and len(numbers) != len(self.times):
                 raise refusal(
@@ -143,7 +143,7 @@ class SampledLoad(Load):
 
     @field_validator("samples")
     @classmethod
-    def _some(cls, samples: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+    def _check_samples(cls, samples: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         if not samples:
             raise refusal("no numbers; write at least 1")
         return samples

@@ -65,7 +65,7 @@ class ShapedLoad(Load):
     _tolerance: Fraction = PrivateAttr(default=Fraction(1, 10**10))
 
     @model_validator(mode="after")
-    def _one_pace(self) -> Self:
+    def _check_frequency(self) -> Self:
         needed = SHAPES[self.shape]
         other = "duration" if needed == "frequency" else "frequency"
         if getattr(self, needed) is None:

@@ -45,7 +45,7 @@ class ManyRecords:
     rough: Sequence[Sequence[Roughness]]
     factors: Numbers
 
-    def some(self, which: Sequence[int]) -> ManyRecords:
+    def select(self, which: Sequence[int]) -> ManyRecords:
         """Those of them."""
         rough, rows = [self.rough[k] for k in which], list(which)
         return ManyRecords(self.samples[rows], self.begin, self.spacing, rough, self.factors[rows])
@@ -65,7 +65,7 @@ class ManyRecords:
             [[np.linalg.norm(rough.kinks) for rough in loads] for loads in self.rough] * np.abs(self.factors), axis=1
         )
         rough = np.divide(kinks, sizes, out=np.zeros_like(kinks), where=sizes > 0)
-        return self.some(np.argsort(-rough, kind="stable")[:_HARDEST].tolist())
+        return self.select(np.argsort(-rough, kind="stable")[:_HARDEST].tolist())
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class _Modes(NamedTuple):
     """The first modes of a chain, and what records do to them."""
 
     chain: ModalModel[Any]
-    known: Any
+    projection: Any
     number: int
     response: RecordResponse
 

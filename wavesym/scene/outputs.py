@@ -83,7 +83,7 @@ class Output(SceneTable):
 
     @field_validator("until")
     @classmethod
-    def _reachable(cls, until: Fraction) -> Fraction:
+    def _check_horizon(cls, until: Fraction) -> Fraction:
         if until > LONGEST_HORIZON:
             # the longest intervals of a system are 2 long
             cost = f"{show(until)} would cost at least {show(until // 2)} intervals of every function"
@@ -92,13 +92,13 @@ class Output(SceneTable):
 
     @field_validator("tolerance")
     @classmethod
-    def _useful(cls, tolerance: Fraction) -> Fraction:
+    def _check_tolerance(cls, tolerance: Fraction) -> Fraction:
         if not 0 < tolerance < 1:
             raise refusal(f"{show(tolerance)} is not between 0 and 1; write a tolerance such as 1e-10")
         return tolerance
 
     @model_validator(mode="after")
-    def _something(self) -> Self:
+    def _require_positions(self) -> Self:
         if not isinstance(self, NoOutput) and not any(getattr(self, quantity) for quantity in QUANTITIES):
             *others, last = QUANTITIES
             raise refusal(f"no positions; write at least one of {', '.join(others)} or {last}")

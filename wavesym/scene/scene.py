@@ -156,7 +156,7 @@ class Scene(SceneTable):
 
     @field_validator("system", mode="wrap")
     @classmethod
-    def _known_system(cls, table: object, _: object) -> SystemTable:
+    def _read_system(cls, table: object, _: object) -> SystemTable:
         if isinstance(table, SystemTable):
             return table
         *others, last = (f'"{name}"' for name in SYSTEMS)
@@ -172,12 +172,12 @@ class Scene(SceneTable):
 
     @field_validator("load", mode="wrap")
     @classmethod
-    def _loads_on_the_system(cls, tables: object, _: object, info: ValidationInfo) -> tuple[Load, ...]:
+    def _read_loads(cls, tables: object, _: object, info: ValidationInfo) -> tuple[Load, ...]:
         # without a system there is nothing to check against; that it is wrong is said first
         return loads(tables, info.data["system"]) if "system" in info.data else ()
 
     @model_validator(mode="after")
-    def _watches_the_chain(self) -> Self:
+    def _check_outputs(self) -> Self:
         rods = sum(station.right is not None for station in self.system.lines[""])
         vars(self)["output"] = self.output.of_every_rod(rods)
         _ = self.outputs

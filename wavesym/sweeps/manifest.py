@@ -58,7 +58,7 @@ class Manifest(SealedFile):
     scene: dict[str, Any]
 
     @model_validator(mode="after")
-    def _consistent(self) -> Self:
+    def _check_consistency(self) -> Self:
         """What else is wrong with one that somebody else has made."""
         shape, chunk = list(self.dimensions.values()), self.computed.together
         fits = len(chunk) == len(shape) and all(part <= n for part, n in zip(chunk, shape, strict=True))

@@ -32,7 +32,7 @@ class Span(SceneTable):
 
     @field_validator("count")
     @classmethod
-    def _some(cls, count: int) -> int:
+    def _check_count(cls, count: int) -> int:
         if count < 1:
             raise refusal(f"{count} values; write at least 1")
         return count
@@ -82,7 +82,7 @@ class KeepTable(SceneTable):
         return count
 
     @model_validator(mode="after")
-    def _something(self) -> Self:
+    def _require_results(self) -> Self:
         if not self.summary and self.histories is None:
             raise refusal("keeps nothing; write a summary or histories")
         return self
@@ -126,13 +126,13 @@ class SweepRequest(SceneTable):
 
     @field_validator("zip", mode="before")
     @classmethod
-    def _true_or_false(cls, value: object) -> object:
+    def _check_zip(cls, value: object) -> object:
         if not isinstance(value, bool):
             raise refusal(f"{show(value)} is not a truth value; write true or false")
         return value
 
     @model_validator(mode="after")
-    def _something(self) -> Self:
+    def _require_variation(self) -> Self:
         if not self.vary and not self.records:
             raise refusal("nothing is varied; write a table [vary], or records")
         return self

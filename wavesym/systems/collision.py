@@ -115,7 +115,7 @@ class Collision(Preset):
 
     @field_validator("velocity")
     @classmethod
-    def _closing(cls, velocity: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+    def _check_velocities(cls, velocity: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         for k in range(1, len(velocity)):
             if velocity[k] > velocity[k - 1]:
                 left = show(velocity[k - 1])

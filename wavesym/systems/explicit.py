@@ -35,7 +35,7 @@ class ExplicitChain(SceneTable):
     damping: ModalDamping = None
 
     @model_validator(mode="after")
-    def _possible(self, info: ValidationInfo) -> ExplicitChain:
+    def _check_network(self, info: ValidationInfo) -> ExplicitChain:
         # which is refused where it cannot be drawn; a scene with units says what its places are told in
         network = self.drawing.network({}, info.context if isinstance(info.context, LengthUnit) else None)
         if self.damping and (other := _damper(network)):

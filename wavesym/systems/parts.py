@@ -115,7 +115,7 @@ class SpringLaw(SceneTable):
     )
 
     @model_validator(mode="after")
-    def _one_law(self) -> SpringLaw:
+    def _check_law(self) -> SpringLaw:
         keys = {"only": self.only, "gap": self.gap, "yield": self.yields}
         written = [key for key, value in keys.items() if value is not None]
         if not written:
@@ -222,7 +222,7 @@ class LinkPart(ChainPart, SpringLaw):
     dashpot: NotNegative = Fraction(0)
 
     @model_validator(mode="after")
-    def _something(self) -> LinkPart:
+    def _require_stiffness(self) -> LinkPart:
         if self.spring == self.dashpot == 0:
             raise refusal("0 holds nothing; write a spring or a dashpot above 0")
         return self

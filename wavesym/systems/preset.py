@@ -47,7 +47,7 @@ class Preset(SceneTable):
 
     @field_validator("m")
     @classmethod
-    def _possible(cls, m: int) -> int:
+    def _check_size(cls, m: int) -> int:
         system = cls.variants[0]
         fewest = cls.fewest or system.smallest
         if m < fewest or m % system.step:

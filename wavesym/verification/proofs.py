@@ -41,7 +41,7 @@ class Law(NamedTuple):
     outgoing: tuple[tuple[str, Expr], ...]
     solution: tuple[Expr, ...]
     determinant: Expr
-    known: dict[Expr, Expr]
+    substitutions: dict[Expr, Expr]
 
 
 def node_law(system: System, equations: Iterable[DelayEquation]) -> Iterator[Outgoing]:
@@ -52,7 +52,7 @@ def node_law(system: System, equations: Iterable[DelayEquation]) -> Iterator[Out
     given = list(equations)
     for law in _laws(system):
         own = [_image(*wave) for wave in law.outgoing]
-        derived = [_image_of(_wave_equation(given, law.family, *wave)).subs(law.known) for wave in law.outgoing]
+        derived = [_image_of(_wave_equation(given, law.family, *wave)).subs(law.substitutions) for wave in law.outgoing]
         solution, determinant = _solution(derived, own)
         for wave, one, other in zip(law.outgoing, solution, law.solution, strict=True):
             yield Outgoing(*wave, cancel(together(one - other)), (determinant, law.determinant))

@@ -28,7 +28,7 @@ def law_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
     yield light_cone(model)
     yield joint_laws(model)
     if chain is None:
-        yield not_served(model)
+        yield unsupported_facts(model)
         return
     rules = Rules(chain)
     reached = model.joints_in_reach(rational(model.horizon()))
@@ -44,7 +44,7 @@ def law_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
     )
 
 
-def not_served(model: Model) -> Facts:
+def unsupported_facts(model: Model) -> Facts:
     """What named systems have and written-out chains have not."""
     try:
         model.network.refuse_corners()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from wavesym.documents.inspection.laws import joints, not_served
+from wavesym.documents.inspection.laws import joints, unsupported_facts
 from wavesym.documents.inspection.model import light_cone, outputs, part_counts
 from wavesym.documents.inspection.program import choice, contacts, stream, variants
 from wavesym.documents.inspection.section import Display, Facts, Listing, Plain, Section
@@ -40,7 +40,7 @@ def summary_sections(
     yield stream(model, sources)
     yield variants(model, tried)
     if chain is None:
-        yield not_served(model)
+        yield unsupported_facts(model)
 
 
 def _parameters(model: Model, chain: Chain | None) -> dict[str, Plain]:

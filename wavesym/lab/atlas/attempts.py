@@ -98,6 +98,6 @@ def _bounds_by_horizon(form: ClosedForm, taus: Array) -> Array:
     return bounds
 
 
-def not_tried(known: Truth, name: str, why: str) -> Attempt:
+def skipped_attempt(known: Truth, name: str, why: str) -> Attempt:
     """An evaluator that the atlas leaves out, and why."""
     return Attempt(name, known.taus, None, np.full(len(known.taus), math.inf), f"not tried: {why}")

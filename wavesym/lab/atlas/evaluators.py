@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 
 from wavesym.exact.breakpoints import Breakpoints
-from wavesym.lab.atlas.attempts import EVALUATORS, attempt, not_tried, truth
+from wavesym.lab.atlas.attempts import EVALUATORS, attempt, skipped_attempt, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import AIM, LEGEND, atlas_scene, chain, drive, with_tolerance
 from wavesym.mechanics.model import Model
@@ -130,7 +130,7 @@ def kappa(progress: Progress, exponents: Sequence[int] = EXPONENTS) -> CurveFami
         known = truth(drive([kappa], [1, 1], 2 * _COUNT), per_unit=8)
         for name in EVALUATORS:
             tried = name != "pieces" or kappa <= _PIECES_TO
-            one = attempt(known, name) if tried else not_tried(known, name, _WHY)
+            one = attempt(known, name) if tried else skipped_attempt(known, name, _WHY)
             points.append(one.point(panel, name, float(kappa)))
     return CurveFamily(
         "kappa",
@@ -226,7 +226,7 @@ def nearly_equal(gap: Fraction) -> Scene:
 def lengths(progress: Progress, gaps: Sequence[Fraction] = LENGTH_GAPS) -> CurveFamily:
     """Knots, steps, and the error of pieces, as the lengths come together."""
     models = {float(gap): lower(nearly_equal(gap)) for gap in gaps}
-    knots = [AtlasPoint("", "knots, the most at one joint", x, most_knots(model)) for x, model in models.items()]
+    knots = [AtlasPoint("", "knots, the most at one joint", x, most_breakpoints(model)) for x, model in models.items()]
     steps = [
         AtlasPoint("", "steps of the common measure to the horizon", x, common_steps(m)) for x, m in models.items()
     ]
@@ -242,7 +242,7 @@ def lengths(progress: Progress, gaps: Sequence[Fraction] = LENGTH_GAPS) -> Curve
     )
 
 
-def most_knots(model: Model) -> int:
+def most_breakpoints(model: Model) -> int:
     """How many knots the joint with most of them has by the horizon."""
     joints = Breakpoints(model, rational(model.horizon())).joints
     return max(sum(knot <= model.until for knot in times) for times in joints.values())
