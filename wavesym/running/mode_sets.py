@@ -45,7 +45,7 @@ class ModalSets:
         found = no_sets(len(given), (1, len(self.model.probes), len(tau)))
         inside = (tau >= 0) & (tau <= self.tau_max)
         found.values[:] = np.nan
-        for row, each in self._filled(given, found, tau[inside]):
+        for row, each in self._fill(given, found, tau[inside]):
             found.values[row, 0, :, inside] = each.histories[0].T
         return found
 
@@ -53,7 +53,7 @@ class ModalSets:
         """Of shape (sets, outputs, 4): the least value, its tau, the greatest value, its tau."""
         found = no_sets(len(given), (len(self.model.probes), 4))
         found.values[:] = np.nan
-        for row, each in self._filled(given, found, np.empty(0)):
+        for row, each in self._fill(given, found, np.empty(0)):
             found.values[row, :, ::2], found.values[row, :, 1::2] = each.values[0], each.taus[0]
         return found
 
@@ -91,7 +91,7 @@ class ModalSets:
                 found.values[row] = bounds + np.where(off > 0, off / largest, 0.0)
         return found
 
-    def _filled(self, given: Array, found: FoundSets, tau: Array) -> Iterator[tuple[int, RecordedExtremes]]:
+    def _fill(self, given: Array, found: FoundSets, tau: Array) -> Iterator[tuple[int, RecordedExtremes]]:
         """The responses, once status and estimate of all sets are known but for those to come."""
         found.status[:], found.estimate[:] = np.where(self._parameters.refused(given), _BAD, 0), np.nan
         for row, each in self.responses(given, tau):

@@ -40,7 +40,7 @@ class ModeLanes:
     places: dict[str, Any]
     factors: dict[str, Numbers]
 
-    def given(self, plan: SweepPlan, places: Sequence[Place]) -> Numbers:
+    def rows(self, plan: SweepPlan, places: Sequence[Place]) -> Numbers:
         """The numbers of cases, a row for each."""
         rows = np.tile(self.own, (len(places), 1))
         for axis, dimension in enumerate(plan.dimensions):

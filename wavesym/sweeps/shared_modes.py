@@ -94,7 +94,7 @@ def _as_sets(
 ) -> Iterator[tuple[Place, CaseValues]]:
     """Cases that are numbers of the first one's modes."""
     tau = instants(first.model, plan.histories) if plan.histories else []
-    for row, found in first.sets.responses(lanes.given(plan, places), np.array(tau)):
+    for row, found in first.sets.responses(lanes.rows(plan, places), np.array(tau)):
         if found.bounds[0] <= nearest(first.model.tolerance):
             yield places[row], _case(plan, first.model, found)
 

@@ -79,20 +79,20 @@ def _write(
         if isinstance(item, str) and item.startswith("/*"):
             comment = re.sub(r"\b[A-Z]+\b", lambda word: words.get(word[0], word[0]), item)
             continue
-        text = _NUMBER.sub(lambda of: _enumerated(of, constants), item) if isinstance(item, str) else ""
+        text = _NUMBER.sub(lambda of: _enumerate_constant(of, constants), item) if isinstance(item, str) else ""
         if isinstance(item, Declaration):
-            text = _defined(item, tables, constants)
+            text = _define_item(item, tables, constants)
         if text:
             yield from filter(None, (comment, text))
             comment = ""
 
 
-def _enumerated(found: re.Match[str], constants: Mapping[str, str]) -> str:
+def _enumerate_constant(found: re.Match[str], constants: Mapping[str, str]) -> str:
     value = constants.get(found[1].lower())
     return found[0] if value is None else f"{found[1]} = {value}"
 
 
-def _defined(item: Declaration, tables: Mapping[str, Lines], constants: Mapping[str, str]) -> str:
+def _define_item(item: Declaration, tables: Mapping[str, Lines], constants: Mapping[str, str]) -> str:
     """Empty where there is no value."""
     if item.is_table:
         rows = tables.get(item.name, ())
