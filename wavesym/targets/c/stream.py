@@ -67,7 +67,7 @@ def source(scene: Description, program: Program) -> str:
         numbers=kernel("real.h", scene),
         series=kernels(scene, "root.h", "series.h"),
         joint=kernel("joint.c", scene),
-        kernel=kernel("stream/stream.c", scene),
+        kernel=kernels(scene, *(f"stream/{part}.c" for part in ("waves", "panels", "breakpoints", "stream"))),
         fields=_fields(program),
         functions=tuple((name, str(len(of))) for name, of in laws.functions.items()) if laws else (),
         made_tables=made,

@@ -1,0 +1,141 @@
+/* breakpoints.c: loads of a stream that jump and bend, at breakpoints and where there is no room for one.
+ * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
+ * the first empty line. */
+#include "panels.c"
+#include "../root.h"
+
+/* The breakpoint that is now, or the start of the panel, or none. */
+static int breakpoint_now(const stream *state)
+{
+    const real near = nearness(state);
+    int found = state->time <= near ? EDGE : NONE;
+    for (int after = state->first_breakpoint[state->phase]; found == NONE && after >= 0;
+         after = state->next_breakpoint[after]) {
+        found = absolute(state->time - state->place[after]) <= near ? after : NONE;
+    }
+    return found;
+}
+
+/* By how much what happens now is moved, to a breakpoint or an edge that is near; and what rounding makes of instants. */
+static real time_moved(const stream *state, int breakpoint)
+{
+    const real place = breakpoint >= 0 ? state->place[breakpoint] : breakpoint == EDGE ? (real)0 : state->time;
+    return absolute(state->time - place) + rounding * panel;
+}
+
+/* One more, at this instant, if there is room. */
+static int new_breakpoint(stream *state)
+{
+    int found = state->spare;
+    if (found >= 0) {
+        state->spare = state->next_breakpoint[found];
+    } else if (state->breakpoints < NAME_BREAKPOINTS) {
+        found = state->breakpoints;
+        state->breakpoints += 1;
+    } else {
+        return NONE;
+    }
+    state->place[found] = state->time;
+    state->silent[found] = 0;
+    state->next_breakpoint[found] = state->first_breakpoint[state->phase];
+    state->first_breakpoint[state->phase] = found;
+    for (int slot = NAME_SLOTS + found * ENTRIES; slot < NAME_SLOTS + (found + 1) * ENTRIES; ++slot) {
+        clear(state->waves[slot], SIZE);
+    }
+    return found;
+}
+
+/* The polynomial on the panel through the values, at its instants, of a wave that begins so late. */
+static void interpolate(real *instead, const real *wave, real delay)
+{
+    real at[SIZE];
+    for (int k = 0; k < SIZE; ++k) {
+        at[k] = instant[k] >= delay ? series(wave, (instant[k] - delay) * scale - 1) : (real)0;
+        instead[k] = 0;
+    }
+    add_rows(instead, transform, at, SIZE, SIZE);
+}
+
+/* The jump, kink and bend with which a wave begins, and how much it bends elsewhere at most. */
+static void derivatives_at_start(const real *wave, real *known)
+{
+    clear(known, 4);
+    for (int k = 0; k < SIZE; ++k) {
+        const real square = (real)k * (real)k;
+        const real turned = k % 2 ? -wave[k] : wave[k];
+        known[0] += turned;
+        known[1] -= turned * square * scale;
+        known[2] += turned * square * (square - 1) / 3 * scale * scale;
+        known[3] += absolute(wave[k]) * square * (square - 1) * absolute(square - 4) / 15 * scale * scale * scale;
+    }
+}
+
+/* How wrong a polynomial is then, at most; and the root of the integral of the square. */
+static void interpolation_error(const real *known, real delay, real factor, real *wrong, real *square_root)
+{
+    /* between an edge and the instant next to it nothing is wrong but there */
+    const int at_edge = delay <= instant[0] || delay > instant[DEGREE];
+    const real left = panel - delay;
+    const real span = delay <= instant[0] ? delay : left;
+    real edge = 1;
+    for (int order = 0; order < 3; ++order) {
+        const real size = factor * absolute(known[order]);
+        *wrong += size * (at_edge ? edge : kink[2 * order]);
+        *square_root += size * (at_edge ? edge * root(span) : kink[2 * order + 1]);
+        edge *= span / (real)(order + 1);
+    }
+    *wrong += factor * known[3] * left * kink[4];
+    *square_root += factor * known[3] * left * kink[5];
+}
+
+/* Loads jump and bend now, at the start of a step: from here on joints send more. */
+static void change_loads(stream *state, const real *jump, const real *bend, real dtau)
+{
+    static const real nothing[SIZE] = {0};
+    const real span = dtau > 0 && dtau < panel ? dtau : panel; /* a load bends for this step, and stays where it is then */
+    real acting[(FORCES + 1) * POWERS] = {0};
+    real more[LOADED_PORTS + 1][SIZE];
+    int breakpoint = breakpoint_now(state);
+    const real late_by = time_moved(state, breakpoint);
+    real missed = 0;
+    real energy = 0;
+    int all = 0;
+    set_forces(state, acting, jump, bend, 1);
+    for (int n = 0; n < LOADED; ++n) {
+        const int first = first_port[loaded[n]];
+        const int ports = first_port[loaded[n] + 1] - first;
+        joint_on_panel on = no_ends;
+        for (int port = 0; port < ports; ++port) {
+            on.arriving[port] = nothing;
+            on.sent[port] = more[all + port];
+        }
+        step_joint_of(state, loaded[n], &on, acting, 1, breakpoint == EDGE ? panel : panel - state->time);
+        for (int port = 0; port < ports; ++port, ++all) {
+            const real factor = root_impedance[send[first + port]];
+            real known[4];
+            derivatives_at_start(more[all], known);
+            state->rounded += rounding * factor * size_of(more[all]);
+            state->rounded += late_by * factor * (absolute(known[0]) / panel + absolute(known[1]) + panel * absolute(known[2]));
+            state->due += factor * (absolute(known[0]) + span * (absolute(known[1]) + panel * absolute(known[2])));
+            if (breakpoint == NONE) {
+                interpolation_error(known, state->time, factor, &missed, &energy);
+            }
+        }
+    }
+    if (breakpoint == NONE && !(missed <= share * dtau * state->size)) {
+        breakpoint = new_breakpoint(state);
+    }
+    all = 0;
+    for (int n = 0; n < LOADED; ++n) {
+        for (int port = first_port[loaded[n]]; port < first_port[loaded[n] + 1]; ++port, ++all) {
+            real instead[SIZE];
+            if (breakpoint == NONE) {
+                interpolate(instead, more[all], state->time);
+            }
+            add(sent_wave(state, breakpoint, send[port]), 1, breakpoint == NONE ? instead : more[all], SIZE);
+        }
+    }
+    if (breakpoint == NONE) {
+        lose(state, energy, missed);
+    }
+}
