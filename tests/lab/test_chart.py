@@ -227,7 +227,7 @@ def test_where_nothing_jumps_there_is_one_panel():
     from wavesym.lab.chart.drawing import draw
 
     smooth = [replace(row, error_at_fronts=np.nan) for row in MEASURED.rows]
-    figure = draw(SCENE, replace(MEASURED, rows=tuple(smooth), known=3e-9))
+    figure = draw(SCENE, replace(MEASURED, rows=tuple(smooth), reference_bound=3e-9))
     assert len(figure.axes) == 2
     assert "3e-09" in figure._suptitle.get_text()
     assert "nan" not in to_csv(replace(MEASURED, rows=tuple(smooth)))

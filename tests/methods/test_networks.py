@@ -194,5 +194,5 @@ OPEN = {"type": "collision", "m": 4, "kappa": ["1/10", "1/5"], "velocity": [1, "
 )
 def test_none_takes_contacts_that_open(method, system):
     given = Scene(name="scene", system=system, output={"until": 5, "velocity": ["1/2"]})
-    with pytest.raises(UnservedError, match="the contact at [12] opens and closes"):
+    with pytest.raises(UnservedError, match=r"the contact at [12] opens and closes"):
         method.state(lower(given))

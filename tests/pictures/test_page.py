@@ -451,12 +451,12 @@ def test_all_that_a_chain_is_made_of_is_drawn() -> None:
     load = [{"at": "shaker", "times": [0], "steps": [1]}, {"at": "tip", "times": [0], "steps": [1]}]
     scene = Scene(name="chain", system=CHAIN, load=load, output={"until": 4, "velocity": ["hub", "arm:1/2"]})
     made = structure(lower(scene), scene.system.lines)
-    assert faults(f"<script></script>{made.drawn}") == []
+    assert faults(f"<script></script>{made.markup}") == []
     for name in ("shaker", "first", "hub", "ring", "arm", "tip"):
-        assert made.drawn.count(f">{name}<") == 1
-    assert made.drawn.count('class="mass"') == 3
-    assert made.drawn.count('class="rod"') == 4
-    assert made.drawn.count('class="place"') == 2
+        assert made.markup.count(f">{name}<") == 1
+    assert made.markup.count('class="mass"') == 3
+    assert made.markup.count('class="rod"') == 4
+    assert made.markup.count('class="place"') == 2
     assert "1 contact" in made.description
 
 

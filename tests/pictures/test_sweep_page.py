@@ -124,9 +124,9 @@ def test_a_map_has_the_colours_of_its_values() -> None:
     found = results_of(axes)
     made = output_picture("p", SweepOutput("strain@1", "", -values, values), found)
     assert made is not None
-    (encoded,) = re.findall('base64,([^"]*)"', made.drawn)
+    (encoded,) = re.findall('base64,([^"]*)"', made.markup)
     assert pixels(b64decode(encoded)) == [[SHADES // 2, SHADES], [0, SHADES - 1]]
-    assert "the largest where system.a = 2, system.b = 1" in made.drawn
+    assert "the largest where system.a = 2, system.b = 1" in made.markup
 
 
 @pytest.mark.parametrize("numbers", [True, False])
@@ -143,10 +143,10 @@ def test_a_hundred_thousand_cases_are_a_small_picture_with_their_extremes(number
         axes = (StoredAxis("system.a", (column,)),)
         made = output_picture("p", SweepOutput("strain@1", "", values[kept] - 1, values[kept] + 1), results_of(axes))
         assert made is not None
-        paths = dict(re.findall(r'class="(least|greatest)" d="([^"]*)"', made.drawn))
+        paths = dict(re.findall(r'class="(least|greatest)" d="([^"]*)"', made.markup))
         heights = {class_: [float(y) for y in re.findall(r"[ V]([\d.]+)", path)] for class_, path in paths.items()}
         told[len(kept)] = max(heights["least"]), min(heights["greatest"])
-        assert len(made.drawn) < 40_000
+        assert len(made.markup) < 40_000
     assert told[n] == told[len(few)]
 
 

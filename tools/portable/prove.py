@@ -60,7 +60,7 @@ class ProofVerdict(NamedTuple):
     """Of one run: alarms (None: it did not come to an end), statements reached of those there are, and each alarm."""
 
     alarms: int | None
-    reached: int
+    statements_reached: int
     statements: int
     alarm_texts: list[str]
 
@@ -116,6 +116,6 @@ def rows(
                 f"`{subject.generate_command}`",
                 ", ".join(f"`{name}`" for name in subject.called_functions),
                 ", ".join(map(str, subject.counts)) or "",
-                f"{max(one.reached for one in found)} of {max(one.statements for one in found)}",
+                f"{max(one.statements_reached for one in found)} of {max(one.statements for one in found)}",
                 "not finished" if None in alarms else str(max(one for one in alarms if one is not None)),
             )

@@ -228,9 +228,7 @@ def refuse_costly(chain: Chain, intervals: int | None, until: fmpq) -> None:
     count = intervals if intervals is not None else int((until / interval).floor()) + 1
     terms = symbolic_terms(chain, interval, count)
     if terms > LARGEST_SYMBOLIC:
-        key, fewer = (
-            ("output.until", "a shorter horizon") if intervals is None else ("--intervals", "fewer intervals")
-        )
+        key, fewer = ("output.until", "a shorter horizon") if intervals is None else ("--intervals", "fewer intervals")
         foretold = f"about {terms:.1e}" if terms < inf else "more than 1e+30"
         raise CostError(
             f"{key}: the symbolic tables would have {foretold} terms in {count} intervals, the limit is "

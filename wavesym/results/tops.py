@@ -25,7 +25,7 @@ class SuspectSteps:
     output: Places
     sign: Numbers
     length: Numbers
-    inside: Numbers
+    samples: Numbers
 
 
 def tops(response: RecordResponse, steps: SuspectSteps, points: int) -> tuple[Numbers, Numbers]:
@@ -39,7 +39,7 @@ def tops(response: RecordResponse, steps: SuspectSteps, points: int) -> tuple[Nu
     order = np.lexsort((steps.step, -estimate.max(axis=1), steps.group))
     _, firsts = np.unique(steps.group[order], return_index=True)
     row = order[firsts]
-    length, output, sign, inside = steps.length[row], steps.output[row], steps.sign[row], steps.inside[row]
+    length, output, sign, inside = steps.length[row], steps.output[row], steps.sign[row], steps.samples[row]
     point, each = estimate[row].argmax(axis=1), np.arange(len(row))
     apart, values = length / (points - 1), values[row]
     s, value = point * apart, values[each, point]
@@ -66,7 +66,7 @@ def _signed_values(response: RecordResponse, steps: SuspectSteps, points: int) -
         of_length = steps.length == length
         for output in range(reads.shape[2]):
             rows = np.flatnonzero(of_length & (steps.output == output))
-            made[rows] = steps.inside[rows] @ reads[:, :, output].T
+            made[rows] = steps.samples[rows] @ reads[:, :, output].T
     made *= steps.sign[:, None]
     return made
 

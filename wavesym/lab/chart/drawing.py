@@ -82,7 +82,9 @@ def draw(scene: Scene, measured: Measurements) -> Figure:
 def _title(scene: Scene, measured: Measurements) -> str:
     parts = scene.system
     outputs = len(scene.outputs)
-    known = f" Errors are known to {measured.known:.0e}, which is in them." if measured.known else ""
+    known = (
+        f" Errors are known to {measured.reference_bound:.0e}, which is in them." if measured.reference_bound else ""
+    )
     return (
         f"{scene.name}: {parts.type}, {_rods(parts)}, "
         f"{outputs} output{'s' * (outputs > 1)}, tau to {float(scene.output.until):g}\n"

@@ -66,7 +66,7 @@ class Measurements:
     rows: tuple[ChartRow, ...]
     floor: float
     samples: int
-    known: float = 0.0
+    reference_bound: float = 0.0
     new_parameters: float | None = None
 
 

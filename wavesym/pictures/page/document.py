@@ -46,7 +46,7 @@ class Report:
     credit: str
     headline: tuple[Figure, ...]
     storeys: PageTable
-    neglected: tuple[str, ...]
+    neglected_effects: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     structure: PagePicture
     motion: Motion | None
@@ -58,8 +58,8 @@ class Report:
     extremes: PageTable
     advice: PageTable
     maps: tuple[PagePicture, ...]
-    along: tuple[PagePicture, ...]
-    refused: str
+    line_pictures: tuple[PagePicture, ...]
+    refusal: str
     scene: str
     command: str
     version: str
@@ -104,11 +104,11 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         credit=block.credit if block else "",
         headline=tuple(headline(scene, model, summary, found, loads)),
         storeys=storeys(scene, found, scale),
-        neglected=tuple(filter(None, neglected_effects(model))),
+        neglected_effects=tuple(filter(None, neglected_effects(model))),
         facts=tuple(_facts(model, made, found, loads, scale)),
         structure=PagePicture(
             title,
-            picture("structure", title, structured.description, structured.height, structured.drawn, class_="plot"),
+            picture("structure", title, structured.description, structured.height, structured.markup, class_="plot"),
         ),
         motion=motion(model, found, scale),
         histories=(),
@@ -119,8 +119,8 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         extremes=first_rows(extremes_table(model, summary, scale)),
         advice=first_rows(advice_table(model)),
         maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
-        along=tuple(along_pictures(model, found, scale)),
-        refused=refused,
+        line_pictures=tuple(along_pictures(model, found, scale)),
+        refusal=refused,
         scene=first_text(scene.text),
         command=f"wavesym report {model.name}.toml -o {model.name}.html",
         version=__version__,

@@ -29,7 +29,7 @@ _ROD, _LEFT = 44.0, 60.0
 class Motion:
     """The picture, and its frames: `values[place * count + frame]` in two digits each."""
 
-    shown: PagePicture
+    picture: PagePicture
     values: str
     count: int
     sways: bool

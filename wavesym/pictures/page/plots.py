@@ -26,7 +26,7 @@ class PagePicture:
     """A picture: what it is called, its markup, and its curves: their look, their name, and their values as CSV."""
 
     title: str
-    drawn: Svg
+    markup: Svg
     curves: tuple[tuple[int, str, str], ...] = ()
     strip: bool = False
 

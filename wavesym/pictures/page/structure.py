@@ -34,7 +34,7 @@ _STOREY, _TALLEST, _FLOOR = 46.0, 520.0, 190.0
 class Picture:
     """Markup, how high it is, and what it says for those who do not see it."""
 
-    drawn: Svg
+    markup: Svg
     height: float
     description: str
 
@@ -53,7 +53,7 @@ def structure_html(title: str, model: Model, lines: Lines) -> str:
     alone = element(
         "svg",
         element("style", Svg(text_of("html/report.css"))),
-        found.drawn,
+        found.markup,
         xmlns="http://www.w3.org/2000/svg",
         viewBox=f"0 0 {WIDTH:g} {found.height:g}",
     )

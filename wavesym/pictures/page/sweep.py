@@ -43,7 +43,7 @@ class SweepPage:
     pictures: tuple[PagePicture, ...]
     notes: tuple[str, ...]
     cases: PageTable
-    failed: PageTable
+    failures: PageTable
     scenes: tuple[WorstCase, ...]
     folder: str
     version: str
@@ -68,7 +68,7 @@ def sweep_page(folder: Path) -> str:
         pictures=tuple(filter(None, drawn)),
         notes=tuple(_notes(found, outputs)),
         cases=_cases(found, outputs, set(extremes)),
-        failed=_failure_table(found),
+        failures=_failure_table(found),
         scenes=tuple(_worst_case(found, case) for case in sorted(set(extremes))),
         folder=folder.resolve().name,
         version=found.manifest.wavesym,
