@@ -11,7 +11,7 @@ from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.pictures import xt
 from wavesym.pictures.field import Field
-from wavesym.pictures.stations import open_times
+from wavesym.pictures.stations import loose_times
 from wavesym.scene import Scene, lower
 
 CHAIN = {
@@ -69,7 +69,7 @@ def test_contacts_are_white_while_they_are_open_and_masses_black(tmp_path):
 
     parts = [{"mass": 1, "velocity": 1}, {"contact": 2}, {"rod": 10, "velocity": "1/2"}, "fixed"]
     model, lines = _made(parts, until=8, strain=["5"])
-    assert open_times(model, Field(model).events) == {"0": [(0.0, 4.0)]}
+    assert loose_times(model, Field(model).events) == {model.network.links[0]: [(0.0, 4.0)]}
     figure = xt.draw(model, lines)
     figure.savefig(tmp_path / "open.png")
     picture = imread(tmp_path / "open.png")[:, :, :3]
@@ -88,9 +88,22 @@ def test_contacts_are_white_while_they_are_open_and_masses_black(tmp_path):
 def test_contacts_open_at_first_and_at_last():
     """A gap is open from the start; what has not closed again is open to the end."""
     model, _ = _made([{"rod": 1}, {"contact": 1}, {"rod": 1}, "contact", {"rod": 1}], until=9, strain=["1/2"])
-    said = [("1", "closes", 2), ("2", "opens", 3), ("1", "opens", 5), ("1", "closes", 6)]
-    events = [ContactEvent(x, kind, arb(tau)) for x, kind, tau in said]
-    assert open_times(model, events) == {"1": [(0.0, 2.0), (5.0, 6.0)], "2": [(3.0, 9.0)]}
+    said = [(0, "closes", 2), (1, "opens", 3), (0, "opens", 5), (0, "closes", 6)]
+    events = [ContactEvent("", kind, arb(tau), link) for link, kind, tau in said]
+    first, second = model.network.links
+    assert loose_times(model, events) == {first: [(0.0, 2.0), (5.0, 6.0)], second: [(3.0, 9.0)]}
+
+
+def test_what_slides_or_yields_is_told_from_when_to_when():
+    """What moves at first slides; a limit holds at first; friction that turns goes on sliding."""
+    model, _ = _made(
+        [{"mass": 1, "velocity": 1, "friction": 1}, {"rod": 1}, {"spring": 1, "yield": 1}, "fixed"], until=9
+    )
+    spring, friction = model.network.links
+    assert friction.friction
+    said = [(1, "slips", 1), (1, "sticks", 2), (0, "yields", 1), (0, "holds", 3)]
+    events = [ContactEvent("", kind, arb(tau), link) for link, kind, tau in said]
+    assert loose_times(model, events) == {friction: [(0.0, 2.0)], spring: [(1.0, 3.0)]}
 
 
 def test_units_are_on_the_axes_and_in_the_colours():

@@ -1,4 +1,4 @@
-"""What stands at the stations of a line, however it is drawn, and when contacts there are open."""
+"""What stands at the stations of a line, however it is drawn, and when links there are loose."""
 
 from __future__ import annotations
 
@@ -10,23 +10,33 @@ from wavesym.mechanics.network import Link, Network, Point
 from wavesym.numbers.doubles import nearest
 from wavesym.systems.station import Station
 
-Opened = Mapping[str, Sequence[tuple[float, float]]]
-"""When the contacts are open, by their places."""
+Loose = Mapping[Link, Sequence[tuple[float, float]]]
+"""When links with corners are open, idle, slide or yield."""
+
+_LOOSENS = ("opens", "lets go", "slips", "yields")
 
 
-def open_times(model: Model, events: Iterable[ContactEvent]) -> Opened:
-    """From when to when each contact is open."""
-    contacts = [link for link in model.network.links if link.contact]
-    found: dict[str, list[tuple[float, float]]] = {link.place: [] for link in contacts}
-    since = {link.place: 0.0 for link in contacts if link.gap}
+def loose_times(model: Model, events: Iterable[ContactEvent]) -> Loose:
+    """From when to when links with corners are loose: contacts open, springs idle or yield, friction slides."""
+    network = model.network
+    found: dict[Link, list[tuple[float, float]]] = {network.links[number]: [] for number in network.corners}
+    since = {link: 0.0 for link in found if _is_loose(network, link)}
     for event in events:
-        if event.kind == "opens":
-            since[event.x] = event.double
-        elif event.kind == "closes":
-            found[event.x].append((since.pop(event.x), event.double))
-    for place, begun in since.items():
-        found[place].append((begun, nearest(model.until)))
+        link = network.links[event.link]
+        if event.kind in _LOOSENS:
+            since.setdefault(link, event.double)
+        elif link in since:
+            found[link].append((since.pop(link), event.double))
+    for link, begun in since.items():
+        found[link].append((begun, nearest(model.until)))
     return found
+
+
+def _is_loose(network: Network, link: Link) -> bool:
+    """At tau = 0."""
+    if link.friction != 0:
+        return network.points[link.right].velocity != link.ratio * network.points[link.left].velocity
+    return link.gap > 0 and link.limits is None
 
 
 def standing(network: Network, station: Station) -> Iterator[Point | Link]:
@@ -36,3 +46,9 @@ def standing(network: Network, station: Station) -> Iterator[Point | Link]:
         point = network.points[number]
         if point.mass or point.motion or len(station.points) == 1:
             yield point
+
+
+def ground_links(network: Network, point: int) -> tuple[Link, ...]:
+    """Friction, and the springs with a corner that hold a point to the ground, which is a point that nothing shows."""
+    held = (link for link in network.links if link.has_corner and link.right == point and link.left > point)
+    return tuple(link for link in held if network.points[link.left].motion == "fixed")

@@ -24,7 +24,7 @@ from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.field import Field
-from wavesym.pictures.stations import open_times
+from wavesym.pictures.stations import loose_times
 from wavesym.pictures.style import WIDTH, colours, new_figure, with_style
 from wavesym.pictures.timescale import timescale
 from wavesym.pictures.units import unit_text
@@ -69,9 +69,9 @@ def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> F
     units = physical.scale if physical else None
     shown = {name: stations for name, stations in lines.items() if stations[-1].x}
     until = nearest(model.until) * scale.per_tau
-    opened = {
-        place: [(low * scale.per_tau, high * scale.per_tau) for low, high in times]
-        for place, times in open_times(model, field.events).items()
+    loose = {
+        link: [(low * scale.per_tau, high * scale.per_tau) for low, high in times]
+        for link, times in loose_times(model, field.events).items()
     }
     widths = _widths(shown)
     wide = WIDTH - _LEFT - _RIGHT
@@ -102,7 +102,7 @@ def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> F
             _frame(axes, name, stations, until, scale.title if left == _LEFT else "")
             if model.length is not None:
                 _lengths(axes, axis_text(name, model.length), float(model.length.size))
-            draw_nodes(axes, model.network, stations, opened, until)
+            draw_nodes(axes, model.network, stations, loose, until)
             if not name:
                 _formal(axes, model, float(stations[-1].x))
             left += own

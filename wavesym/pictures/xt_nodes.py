@@ -13,12 +13,12 @@ from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
 from wavesym.mechanics.network import Link, Network, Point
-from wavesym.pictures.stations import Opened, standing
+from wavesym.pictures.stations import Loose, ground_links, standing
 from wavesym.pictures.style import FONT
 from wavesym.systems.station import Lines, Station
 
 _MASS, _LINK, _CONTACT, _THIN = 4.0, 2.5, 5.0, 0.6  # points
-_MOVED, _HELD = "0.55", "gold"
+_MOVED, _HELD, _SLIPS = "0.55", "gold", "darkviolet"
 _LETTER, _ROW = 0.62, 15  # of the font's size; points
 
 
@@ -30,13 +30,15 @@ def legend(network: Network, lines: Lines) -> str:
     said = {
         "thick black: a mass": any(point.mass for point in points),
         "thick grey: fixed, or of given motion": any(point.motion for point in points),
-        "yellow: a spring or dashpot": any(not link.contact for link in links),
+        "yellow: a spring or dashpot": any(link.stiffness or link.damping for link in links),
         "white between two lines: an open contact": any(link.contact for link in links),
+        "white in yellow: a spring that does not act": any(link.side for link in links),
+        "purple: what slides or yields": any(link.friction or link.limits for link in links),
     }
     return "; ".join(words for words, occurs in said.items() if occurs)
 
 
-def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], opened: Opened, until: float) -> None:
+def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], loose: Loose, until: float) -> None:
     """The stations of a line, and the names of their points above them."""
     rows: list[float] = []
     for station in stations:
@@ -49,7 +51,7 @@ def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], opened
         elif station.right is None:
             at = _outside_width(items[::-1]) - width
         for item in items:
-            _draw_item(_Pen(axes, float(station.x), at + item.width / 2), item, opened, until)
+            _draw_item(_Pen(axes, float(station.x), at + item.width / 2), item, loose, until)
             at += item.width
         if names := _names(network, station):
             _write(axes, float(station.x), names, rows)
@@ -71,6 +73,8 @@ def _items(network: Network, station: Station) -> Iterator[_Item]:
             yield _Item(what, _CONTACT if what.contact else _LINK)
         else:
             yield _Item(what, _MASS if what.mass or what.motion else _THIN)
+    for number in station.points:
+        yield from (_Item(link, _LINK) for link in ground_links(network, number))
 
 
 def _outside_width(items: Sequence[_Item]) -> float:
@@ -102,18 +106,20 @@ class _Pen:
         )
 
 
-def _draw_item(pen: _Pen, item: _Item, opened: Opened, until: float) -> None:
+def _draw_item(pen: _Pen, item: _Item, loose: Loose, until: float) -> None:
     if isinstance(item.what, Point):
         pen.line(0, until, item.width, _MOVED if item.what.motion else "black")
         return
-    if not item.what.contact:
-        pen.line(0, until, item.width, _HELD)
-        return
-    pen.line(0, until, _THIN)
-    for low, high in opened[item.what.place]:
+    link = item.what
+    if not link.friction:  # what sticks is a point
+        pen.line(0, until, *((_THIN,) if link.contact else (item.width, _HELD)))
+    for low, high in loose.get(link, ()):
+        if link.friction or link.limits:
+            pen.line(low, high, item.width, _SLIPS)
+            continue
         pen.line(low, high, item.width, "white")
         for side in (-1, 1):
-            pen.line(low, high, _THIN, farther=side * item.width / 2)
+            pen.line(low, high, _THIN, "black" if link.contact else _HELD, side * item.width / 2)
 
 
 def _write(axes: Axes, x: float, name: str, rows: list[float]) -> None:

@@ -9,6 +9,7 @@ from flint import fmpq
 from wavesym.errors import CostError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
+from wavesym.results.statistics import number_text
 
 _PLAIN = (fmpq(1), "")
 
@@ -18,6 +19,9 @@ class MeasuredQuantity(NamedTuple):
 
     value: float
     unit: str
+
+    def __str__(self) -> str:
+        return f"{number_text(self.value)} {self.unit}".rstrip()
 
 
 class LinkSummary(NamedTuple):

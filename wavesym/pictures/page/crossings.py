@@ -22,7 +22,7 @@ from wavesym.pictures.page.places import colour_bar
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture
 from wavesym.pictures.page.png import colour_image
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line
-from wavesym.pictures.stations import Opened, open_times, standing
+from wavesym.pictures.stations import Loose, ground_links, loose_times, standing
 from wavesym.pictures.timescale import timescale
 from wavesym.scene.physical.scale import Scale
 from wavesym.systems.station import Lines, Station
@@ -55,7 +55,7 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     x, y = PlotAxis(0.0, long, LEFT, WIDTH - RIGHT), PlotAxis(0.0, until * scale.per_tau, TOP + _TALL, TOP)
     image = colour_image(values, x, y, (-largest, largest), signed=True)
     formal = concatenate(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
-    nodes = concatenate(*_nodes(model, stations, open_times(model, field.events), x, scale.per_tau, y))
+    nodes = concatenate(*_nodes(model, stations, loose_times(model, field.events), x, scale.per_tau, y))
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
     words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
     bar = colour_bar(words, ends, TOP + _TALL + BELOW, signed=True)
@@ -97,19 +97,19 @@ def _cells(field: Field, stations: tuple[Station, ...], until: float, quantity: 
 
 
 def _nodes(
-    model: Model, stations: tuple[Station, ...], opened: Opened, x: PlotAxis, per_tau: float, y: PlotAxis
+    model: Model, stations: tuple[Station, ...], loose: Loose, x: PlotAxis, per_tau: float, y: PlotAxis
 ) -> Iterator[Svg]:
-    """Masses and ends as thick lines; a contact is a thin line, and a white gap while it is open."""
+    """Masses and ends as thick lines; links as lines, a white gap while they are open, purple while they slide."""
     for station in stations:
         at = x.pixel(float(station.x))
-        for what in standing(model.network, station):
-            if isinstance(what, Link) and what.contact:
-                yield line(at, y.start, at, y.end, "thin")
-                for low, high in opened[what.place]:
+        held = (link for point in station.points for link in ground_links(model.network, point))
+        for what in (*standing(model.network, station), *held):
+            if isinstance(what, Link):
+                if not what.friction:  # what sticks is a point
+                    yield line(at, y.start, at, y.end, "thin" if what.contact else "held")
+                for low, high in loose.get(what, ()):
                     top, bottom = y.pixel(high * per_tau), y.pixel(low * per_tau)
-                    yield box(at - 2, top, 4, bottom - top, "gap")
-            elif isinstance(what, Link):
-                yield line(at, y.start, at, y.end, "held")
+                    yield box(at - 2, top, 4, bottom - top, "slip" if what.friction or what.limits else "gap")
             elif what.mass:
                 yield line(at, y.start, at, y.end, "body")
             elif what.motion:

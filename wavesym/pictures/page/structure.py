@@ -15,7 +15,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.pictures.loads import load_histories
 from wavesym.pictures.page import symbols
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line, polyline, text
-from wavesym.pictures.stations import standing
+from wavesym.pictures.stations import ground_links, standing
 from wavesym.rendering import text_of
 from wavesym.systems.station import Lines, Station
 
@@ -177,7 +177,7 @@ class _Pen:
                         self._write_above(x + width * shrink / 2, y - 36 - self.name_height, what.name, names)
                 x += width * shrink
             self.positions.update({point: ((begun + x) / 2, y) for point in new if point not in self.positions})
-            held = any(self.network.points[point].damping or self.network.points[point].stiffness for point in new)
+            held = any(any(self._held(point)) for point in new)
             self._write_below((begun + x) / 2, y + 52, place_text(station.x, unit=self.length), numbers, beside=held)
             if following is not None and station.right is not None:
                 length = unit * float(following.x - station.x)
@@ -242,12 +242,20 @@ class _Pen:
                 )
             if point.motion and point.motion != "fixed":
                 self.parts.append(symbols.motion_arrow(edge, y - 26, ""))
-            if point.stiffness or point.damping:
+            if any(held := self._held(number)):
+                elastic, damped, rubs = held
                 below = y + 62
                 self.parts.append(line(x, y + 6, x, below, "thin"))
-                self.parts.append(
-                    symbols.ground_link(x, below, elastic=bool(point.stiffness), damped=bool(point.damping))
-                )
+                if elastic or damped:
+                    self.parts.append(symbols.ground_link(x, below, elastic=elastic, damped=damped))
+                if rubs:
+                    self.parts.append(symbols.sole(x, below))
+
+    def _held(self, number: int) -> tuple[bool, bool, bool]:
+        """Whether a spring, a dashpot, friction hold a point to the ground."""
+        point, links = self.network.points[number], ground_links(self.network, number)
+        elastic = bool(point.stiffness) or any(link.stiffness for link in links)
+        return elastic, bool(point.damping), any(link.friction for link in links)
 
     def _loads(self, model: Model) -> None:
         acting = {load.source for load in model.loads}

@@ -59,6 +59,11 @@ def ground(x: float, y: float) -> Svg:
     return concatenate(line(x - 12, y, x + 12, y, "face"), *hatches)
 
 
+def sole(x: float, y: float) -> Svg:
+    """What rubs on the ground below a place."""
+    return concatenate(box(x - 9, y, 18, 6, "rod"), ground(x, y + 7))
+
+
 def ground_link(x: float, y: float, *, elastic: bool, damped: bool) -> Svg:
     """A spring, a dashpot or both from a place down to the ground."""
     inner = link(0, 0, 36, elastic=elastic, damped=damped)
