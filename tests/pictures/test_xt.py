@@ -97,7 +97,9 @@ def test_contacts_open_at_first_and_at_last():
 def test_what_slides_or_yields_is_told_from_when_to_when():
     """What moves at first slides; a limit holds at first; friction that turns goes on sliding."""
     model, _ = _made(
-        [{"mass": 1, "velocity": 1, "friction": 1}, {"rod": 1}, {"spring": 1, "yield": 1}, "fixed"], until=9
+        [{"mass": 1, "velocity": 1, "friction": 1}, {"rod": 1}, {"spring": 1, "yield": 1}, "fixed"],
+        until=9,
+        strain=["1/2"],
     )
     spring, friction = model.network.links
     assert friction.friction

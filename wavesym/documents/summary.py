@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from wavesym.results.link_losses import MeasuredQuantity
 from wavesym.results.statistics import STATISTICS, Statistic, cells, headings, number_text
 from wavesym.results.summary import OutputSummary, Summary
 
@@ -59,15 +58,10 @@ def _lines(summary: Summary) -> Iterable[str]:
     if (drift := summary.largest_drift) is not None:
         peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
         yield f"largest drift: {drift.label}, {number_text(peak.value)}{unit} at {number_text(peak.at.in_scene_time)}"
-    for link in summary.links or ():
-        yield f"{link.law} at {link.place}: set {_with_unit(link.set)}, dissipated {_with_unit(link.dissipated)}"
+    yield from map(str, summary.links or ())
     if summary.links is None:
         yield "sets and what is dissipated would cost too much (a shorter horizon helps)"
     yield f"{summary.how}: {summary.certain}"
-
-
-def _with_unit(found: MeasuredQuantity) -> str:
-    return f"{number_text(found.value)} {found.unit}".rstrip()
 
 
 def _row(output: OutputSummary) -> tuple[str, ...]:

@@ -36,6 +36,9 @@ class LinkSummary(NamedTuple):
     set: MeasuredQuantity
     dissipated: MeasuredQuantity
 
+    def __str__(self) -> str:
+        return f"{self.law} at {self.place}: set {self.set}, dissipated {self.dissipated}"
+
 
 def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
     """Those of a model's links that can reach an output; None where that would cost too much.
