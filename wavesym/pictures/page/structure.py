@@ -177,7 +177,7 @@ class _Pen:
                         self._write_above(x + width * shrink / 2, y - 36 - self.name_height, what.name, names)
                 x += width * shrink
             self.positions.update({point: ((begun + x) / 2, y) for point in new if point not in self.positions})
-            held = any(any(self._held(point)) for point in new)
+            held = any(any(self._supports(point)) for point in new)
             self._write_below((begun + x) / 2, y + 52, place_text(station.x, unit=self.length), numbers, beside=held)
             if following is not None and station.right is not None:
                 length = unit * float(following.x - station.x)
@@ -242,7 +242,7 @@ class _Pen:
                 )
             if point.motion and point.motion != "fixed":
                 self.parts.append(symbols.motion_arrow(edge, y - 26, ""))
-            if any(held := self._held(number)):
+            if any(held := self._supports(number)):
                 elastic, damped, rubs = held
                 below = y + 62
                 self.parts.append(line(x, y + 6, x, below, "thin"))
@@ -251,7 +251,7 @@ class _Pen:
                 if rubs:
                     self.parts.append(symbols.sole(x, below))
 
-    def _held(self, number: int) -> tuple[bool, bool, bool]:
+    def _supports(self, number: int) -> tuple[bool, bool, bool]:
         """Whether a spring, a dashpot, friction hold a point to the ground."""
         point, links = self.network.points[number], ground_links(self.network, number)
         elastic = bool(point.stiffness) or any(link.stiffness for link in links)
