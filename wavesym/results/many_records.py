@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import ceil, inf
+from math import ceil, inf, prod
+from threading import local
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -106,9 +107,21 @@ class SharedModes:
         """Those under each of many records. ToleranceError as for `modal_system`."""
         found = _enough(self._modes, self._chain, records.hardest, self._chain.fewest)
         if len(records.samples) > _HARDEST:
-            found = _enough(self._modes, self._chain, records, found.modes)
+            found = _enough(self._modes, self._chain, records, self._fewest(records.hardest, found))
         histories = _histories(self._modes(found.modes).response, records, np.array(instants, dtype=np.float64))
         return replace(found, histories=histories)
+
+    def _fewest(self, records: ManyRecords, found: RecordedExtremes) -> int:
+        """As few modes as leave half of the tolerance of what was found by more of them."""
+        chain, known = self._chain, self._modes(found.modes).known
+        allowed = nearest(chain.model.tolerance) / 2 * np.abs(found.values).max(axis=2)
+        rough = [records.roughness(k, chain.model.horizon()) for k in range(len(records.samples))]
+        low, high = min(chain.least, found.modes) - 1, found.modes
+        while high - low > 1:
+            middle = (low + high) // 2
+            enough = np.all([chain.errors(known, middle, each) for each in rough] <= allowed)
+            low, high = (low, middle) if enough else (middle, high)
+        return high
 
 
 class _Modes(NamedTuple):
@@ -183,7 +196,8 @@ def _extremes(response: RecordResponse, model: Model, begin: float, samples: Num
     parts = []
     for first in range(0, records, each):
         here = slice(first, first + each)
-        number, *rest = _candidates(response.in_blocks(known[here], samples[here]), end)
+        shape = len(samples[here]), known.shape[1], outputs, _PARTS, response.steps
+        number, *rest = _candidates(response.in_blocks(known[here], samples[here], _room("seen", shape)), end)
         parts.append((number + first, *rest))
     # and of all of them the last step, which may be a part of one
     if (whole := _whole(end)) < end - 1e-9 and whole < n - 1:
@@ -217,7 +231,8 @@ def _candidates(seen: Numbers, end: float) -> tuple[Places, Places, Places, Plac
     after = np.arange(blocks) >= end // steps
     for values, reached in ((middle, end - 0.5), (last, end - 1.0)):
         values[:, after] = np.where(number[after] <= reached + 1e-9, values[:, after], 0.0)
-    bent = last - 2 * middle
+    bent = np.multiply(middle, -2.0, out=_room("bent", middle.shape))
+    bent += last
     bent[..., 1:] += last[..., :-1]
     bent[:, 1:, :, 0] += last[:, :-1, :, -1]
     bent[:, after] = np.where(number[after] < whole, bent[:, after], 0.0)
@@ -228,7 +243,8 @@ def _candidates(seen: Numbers, end: float) -> tuple[Places, Places, Places, Plac
     high = np.where(moved, greatest - higher, np.inf)[:, None, :, None, None]
     low = np.where(moved, least + higher, -np.inf)[:, None, :, None, None]
     keys = []
-    for side, found in enumerate((seen <= low, seen >= high)):
+    for side, (compare, limit) in enumerate(((np.less_equal, low), (np.greater_equal, high))):
+        found = compare(seen, limit, out=_room("found", seen.shape, np.bool_))
         record, block, output, part, place = np.unravel_index(np.flatnonzero(found), seen.shape)
         step = block * steps + place
         key = ((record * outputs + output) * 2 + side) * (blocks * steps)
@@ -236,6 +252,18 @@ def _candidates(seen: Numbers, end: float) -> tuple[Places, Places, Places, Plac
     group, step = np.divmod(np.unique(np.concatenate(keys)), blocks * steps)
     record, rest = np.divmod(group, outputs * 2)
     return record, *np.divmod(rest, 2), step
+
+
+_ROOMS = local()
+
+
+def _room(name: str, shape: tuple[int, ...], kind: type[Any] = np.float64) -> Any:
+    """An array in memory that the thread keeps: new memory may cost more than what is computed in it."""
+    kept = getattr(_ROOMS, name, None)
+    if kept is None or len(kept) < prod(shape):
+        kept = np.empty(prod(shape), kind)
+        setattr(_ROOMS, name, kept)
+    return kept[: prod(shape)].reshape(shape)
 
 
 def _whole(end: float) -> int:

@@ -194,11 +194,16 @@ class RecordResponse:
             known[:, block + 1, : 2 * self._modes] = state.reshape(records, -1)
         return known
 
-    def in_blocks(self, known: Numbers, samples: Numbers) -> Numbers:
-        """All outputs: (records, blocks, outputs, parts, steps), also after the last sample; of records `known`."""
+    def in_blocks(self, known: Numbers, samples: Numbers, room: Numbers | None = None) -> Numbers:
+        """All outputs: (records, blocks, outputs, parts, steps), also after the last sample; of records `known`.
+
+        They are in `room` where that is given: an array of that many numbers.
+        """
         records, blocks, numbers = known.shape
-        made = known.reshape(-1, numbers) @ self._matrices[0]
-        made = made.reshape(records, blocks, len(self.system.direct), self.parts, self.steps)
+        shape = records, blocks, len(self.system.direct), self.parts, self.steps
+        matrix = self._matrices[0]
+        out = None if room is None else room.reshape(records * blocks, -1)
+        made = np.matmul(known.reshape(-1, numbers), matrix, out=out).reshape(shape)
         if self._summing:
             self._add_sums(made, samples)
         return made
