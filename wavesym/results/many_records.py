@@ -113,7 +113,7 @@ class SharedModes:
 
     def _fewest(self, records: ManyRecords, found: RecordedExtremes) -> int:
         """As few modes as leave half of the tolerance of what was found by more of them."""
-        chain, known = self._chain, self._modes(found.modes).known
+        chain, known = self._chain, self._modes(found.modes).projection
         allowed = nearest(chain.model.tolerance) / 2 * np.abs(found.values).max(axis=2)
         rough = [records.roughness(k, chain.model.horizon()) for k in range(len(records.samples))]
         low, high = min(chain.least, found.modes) - 1, found.modes
