@@ -1,20 +1,10 @@
-/* elimination.c: tables of bodies and blocks on a panel, of numbers that come at run time, and how blocks move. Where nobody
- * says what a number `num` is, with OF(name) for what is called name, it is real. Generated files have what stands below the
- * first empty line. */
+/* elimination.c: tables of bodies and blocks on a panel, of numbers that come at run time, and how blocks move. Generated files
+ * have what stands below the first empty line, under the text of polynomials.c. */
 #ifndef TABLES
 #define NAME_RUNTIME
 #include "stream/tables.h"
 #include "series.h"
 #include "joint.c"
-#endif
-
-#ifndef num
-#define num real
-#define OF(name) name
-#define PICK(test, one, other) ((test) ? (one) : (other))
-#define SIZE_OF(x) ((x) < 0 ? -(x) : (x))
-#define ZERO ((real)0)
-#define WITHIN static
 #endif
 
 /* c = a b, of n rows and columns */

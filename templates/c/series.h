@@ -1,5 +1,7 @@
 /* series.h: Chebyshev series of DEGREE, as marches and streams read them.
- * Plain C of a program of a scene called `name`. Generated files have what stands below the first empty line. */
+ * Plain C of a program of a scene called `name`. Generated files have what stands below the first empty line, under the text
+ * of polynomials.c. */
+#include "polynomials.c"
 
 static void clear(real *y, int count)
 {
@@ -19,15 +21,9 @@ static void add(real *y, real factor, const real *a, int count)
 /* sum of c_k T_k(u) */
 static real series(const real *c, real u)
 {
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE; k > 0; --k) {
-        const real now = (twice * next - after) + c[k];
-        after = next;
-        next = now;
-    }
-    return (u * next - after) + c[0];
+    real sum;
+    series_at(c, 1, DEGREE, u, &sum);
+    return sum;
 }
 
 /* Its antiderivative, times 1 / half the length of the panel. */

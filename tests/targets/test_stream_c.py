@@ -385,7 +385,7 @@ BREAKS = {
     "a state": ("*x = step_body(on->table, given, *x, velocities);", "step_body(on->table, given, *x, velocities);"),
     "a state inside": ("1, breakpoint == EDGE ? panel : panel - state->time);", "1, panel);"),
     "a state later": ("breakpoint < 0 ? panel : panel - state->place[breakpoint]);", "panel);"),
-    "a force": ("constant += strength[force * LOADS + j] * load[j];", ""),
+    "a force": ("power[0] += strength[force * LOADS + j] * load[j];", ""),
     "what is sent": (
         "add(sent_wave(state, breakpoint, send[port]), 1, breakpoint == NONE ? instead : more[all], SIZE);",
         "",

@@ -82,18 +82,6 @@ static void read_at(const march *state, real t, real out[OUTPUTS])
     }
 }
 
-/* A force on a panel: three coefficients. */
-static void force_of(const march *state, int force, int panel, real *c)
-{
-    const real *const power = state->load[force];
-    const int *const then = state->changed[force];
-    const real half = half_length[panel];
-    const real middle = ((real)(state->window - then[0]) * step + since[panel * PANELS + then[1]]) + half;
-    c[0] = (power[0] + middle * power[1]) + (middle * middle + half * half / 2) * power[2];
-    c[1] = half * (power[1] + 2 * middle * power[2]);
-    c[2] = half * half / 2 * power[2];
-}
-
 /* The changes of the loads at the start of a panel. */
 static void change_loads(march *state, int panel)
 {
@@ -116,7 +104,10 @@ static void advance(march *state)
         real acting[(FORCES + 1) * POWERS] = {0};
         change_loads(state, panel);
         for (int force = 0; force < FORCES; ++force) {
-            force_of(state, force, panel, acting + force * POWERS);
+            const int *const then = state->changed[force];
+            const real half = half_length[panel];
+            const real middle = ((real)(state->window - then[0]) * step + since[panel * PANELS + then[1]]) + half;
+            load_series(state->load[force], middle, half, acting + force * POWERS);
         }
         for (int joint = 0; joint < JOINTS; ++joint) {
             const int first = first_port[joint];

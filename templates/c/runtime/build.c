@@ -93,11 +93,7 @@ static int OF(apply_loads)(OF(march_state) *all, int sets, int (*since)[2], int 
         for (int f = 0; f < NAME_FORCES; ++f) {
             const real middle = time_since(since[f], window, panel) + half;
             for (int set = 0; set < sets; ++set) {
-                const num *const c = all[set].load[f];
-                num *const force = all[set].force[panel][f];
-                force[0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
-                force[1] = half * (c[1] + 2 * middle * c[2]);
-                force[2] = half * half / 2 * c[2];
+                OF(load_series)(all[set].load[f], middle, half, all[set].force[panel][f]);
             }
         }
     }

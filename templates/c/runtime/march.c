@@ -4,6 +4,7 @@
 #ifndef num
 #include "one.c"
 #endif
+#include "../polynomials.c"
 #include "../elimination.c"
 
 #ifndef STEPS

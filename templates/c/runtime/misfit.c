@@ -18,13 +18,6 @@ static int columns_of(int group)
     return strands_of(group) * (NAME_DEGREE + 2);
 }
 
-static int belongs(real tau, int window, int section)
-{
-    const real t = tau - cycle_begin(window);
-    const int at = in_cycle(window, section);
-    return tau >= 0 && tau <= NAME_TAU_MAX && t >= from[at] && t < from[at + 1];
-}
-
 /* Whole blocks. */
 static size_t most_rows(size_t points, int group)
 {
@@ -104,12 +97,10 @@ static int triangle(const real *tau, const real *values, size_t count, int windo
     for (int column = 0; points > 0 && column < columns; ++column) {
         real *const v = work + row * points;
         const int s = strand_at[first_strand[group] + column % strands];
-        const int here = window % CYCLE * NAME_STRANDS + s;
         size_t point = 0;
         for (size_t k = 0; k < count; ++k) {
             if (belongs(tau[k], window, section) && values[k] - values[k] == 0) {
-                const real t = tau[k] - cycle_begin(window);
-                const real u = ((t - strand_start[here]) + strand_excess[here]) * strand_scale[s] - 1;
+                const real u = place_on(s, window, tau[k] - cycle_begin(window));
                 real now = 1, next = u;
                 for (int n = 0; n < column / strands; ++n) {
                     const real after = 2 * u * next - now;

@@ -14,19 +14,7 @@ static void OF(integrate)(const real *inverse, const num *w, int degree, real ha
     c[degree + 1] = w[degree] * (half * inverse[degree + 1]);
 }
 
-/* sum of c_k T_k(u), where c_k are `stride` apart */
-static void OF(series_at)(const num *c, int stride, int degree, real u, num *sum)
-{
-    num next = ZERO, after = ZERO;
-    for (int k = degree; k > 0; --k) {
-        const num now = (2 * u * next - after) + c[k * stride];
-        after = next;
-        next = now;
-    }
-    *sum = (u * next - after) + c[0];
-}
-
-/* The same, sooner at both ends of a panel and in its middle. */
+/* sum of c_k T_k(u), sooner at both ends of a panel and in its middle. */
 static void OF(end_value)(const num *c, int degree, real u, num *sum)
 {
     const int by = u < 0 || u > 0 ? 1 : 2;

@@ -152,10 +152,8 @@ static void search(const name_model *m, int output, summit *least, summit *great
     for (int window = 0; window < NAME_WINDOWS; ++window) {
         for (int section = 0; section < SECTIONS; ++section) {
             real t[BLOCK], found[BLOCK];
-            const int at = in_cycle(window, section);
-            const real reach = NAME_TAU_MAX - cycle_begin(window);
-            const real end = from[at + 1] < reach ? from[at + 1] : reach;
-            part p = {m, window, section, output, from[at], end - from[at], 0};
+            const real begin = from[in_cycle(window, section)];
+            part p = {m, window, section, output, begin, section_end(window, section) - begin, 0};
             if (p.length < 0 || !beyond(m, window, section * NAME_OUTPUTS + output, least, greatest)) {
                 continue;
             }

@@ -191,26 +191,23 @@ static void run(const name_model *m, int window, int section, const samples *s, 
     }
 }
 
-static int on_section(const name_model *m, int window, int section, const samples *s, size_t k)
+static int on_section(int window, int section, const samples *s, size_t k)
 {
-    const real tau = instant(s->tau0, s->dtau, s->one, (real)k);
-    const real t = tau - cycle_begin(window);
-    const int at = in_cycle(window, section);
-    return inside(m, tau) && t >= from[at] && t < from[at + 1];
+    return belongs(instant(s->tau0, s->dtau, s->one, (real)k), window, section);
 }
 
 /* The first sample after k that is not where sample k is, or count. */
-static size_t run_end(const name_model *m, int window, int section, const samples *s, size_t k)
+static size_t run_end(int window, int section, const samples *s, size_t k)
 {
     const int at = in_cycle(window, section);
     const real edge = cycle_begin(window) + (s->dtau < 0 ? from[at] : from[at + 1]);
     const real reach = (edge - s->tau0) * s->per_tau; /* about where the run ends */
     size_t end = reach == reach && reach < (real)s->count ? (reach > (real)k ? (size_t)reach : k) + 1 : s->count;
     end = end > s->count ? s->count : end;
-    while (end > k + 1 && !on_section(m, window, section, s, end - 1)) {
+    while (end > k + 1 && !on_section(window, section, s, end - 1)) {
         --end;
     }
-    while (end < s->count && on_section(m, window, section, s, end)) {
+    while (end < s->count && on_section(window, section, s, end)) {
         ++end;
     }
     return end;
@@ -224,11 +221,9 @@ static int sample_series(const name_model *m, const real *series, real tau0, rea
     size_t k = 0;
     while (k < count) {
         const real tau = instant(tau0, dtau, s.one, (real)k);
-        if (m->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX) {
-            const int at = section_at(tau);
-            const int window = at / SECTIONS;
-            const int section = at % SECTIONS;
-            const size_t end = run_end(m, window, section, &s, k);
+        if (inside(m, tau)) {
+            const int at = section_at(tau), window = at / SECTIONS, section = at % SECTIONS;
+            const size_t end = run_end(window, section, &s, k);
             run(m, window, section, &s, k, end);
             k = end;
         } else {

@@ -128,23 +128,17 @@ static void set_forces(const stream *state, real *acting, const real *load, cons
 {
     const real half = panel / 2;
     for (int force = 0; force < FORCES; ++force) {
-        real constant = change ? (real)0 : base[force];
-        real linear = 0;
-        real square = 0;
+        real power[3] = {change ? (real)0 : base[force], 0, 0};
         for (int j = 0; j < LOADS; ++j) {
-            constant += strength[force * LOADS + j] * load[j];
-            linear += strength[force * LOADS + j] * slope[j];
+            power[0] += strength[force * LOADS + j] * load[j];
+            power[1] += strength[force * LOADS + j] * slope[j];
         }
         if (integrated[force]) {
-            square = linear / 2;
-            linear = constant - (change ? (real)0 : base[force]);
-            constant = change ? (real)0 : state->force[force];
+            power[2] = power[1] / 2;
+            power[1] = power[0] - (change ? (real)0 : base[force]);
+            power[0] = change ? (real)0 : state->force[force];
         }
-        linear *= half;
-        square *= half * half / 2;
-        acting[force * POWERS] = constant + linear + 3 * square;
-        acting[force * POWERS + 1] = linear + 4 * square;
-        acting[force * POWERS + 2] = square;
+        load_series(power, half, half, acting + force * POWERS);
     }
 }
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from wavesym.programs.program import Program
 from wavesym.rendering import render
-from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description
 
@@ -29,7 +29,7 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables=program_tables("march/tables.h", scene, program),
         numbers=kernel("real.h", scene),
-        series=kernel("series.h", scene),
+        series=kernels(scene, "polynomials.c", "series.h"),
         joint=kernel("joint.c", scene),
         kernel=kernel("march/march.c", scene),
     )

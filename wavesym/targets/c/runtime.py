@@ -126,7 +126,7 @@ class CRuntime:
 
 def files(scene: Description, program: Program) -> dict[str, str]:
     """NAME.h, NAME.c and NAME_selftest.c of a program."""
-    march = ("elimination.c", *(f"runtime/{name}.c" for name in ("march", "outputs", "build")))
+    march = ("polynomials.c", "elimination.c", *(f"runtime/{name}.c" for name in ("march", "outputs", "build")))
     texts = RuntimeTexts(
         kernel=kernels(scene, *(f"runtime/{name}.c" for name in ("series", "reach", "one")), *march, "runtime/model.c"),
         read=kernel("runtime/read.c", scene),

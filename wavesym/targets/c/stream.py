@@ -65,7 +65,7 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables=program_tables("stream/tables.h", scene, known),
         numbers=kernel("real.h", scene),
-        series=kernels(scene, "root.h", "series.h"),
+        series=kernels(scene, "root.h", "polynomials.c", "series.h"),
         joint=kernel("joint.c", scene),
         kernel=kernels(scene, *(f"stream/{part}.c" for part in ("waves", "panels", "breakpoints", "stream"))),
         fields=_fields(program),
