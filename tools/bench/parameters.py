@@ -73,7 +73,7 @@ void batches(const NAME_parameters *p, size_t sets, NAME_batch *batch)
 
 def scenes(folder: Path) -> dict[str, Scene]:
     """The building, the drive and the collision of the benchmark, and one shaft for long."""
-    told = {
+    texts = {
         "building, m = 2, to 20": Scene.from_toml(folder / "b.toml"),
         "drive, m = 3, to 40": Scene.from_toml(folder / "d.toml"),
         "collision, m = 4, to 10": Scene.from_toml(folder / "c.toml"),
@@ -81,7 +81,7 @@ def scenes(folder: Path) -> dict[str, Scene]:
             {"output.until": 200, "output.strain": ["1/2"], "output.velocity": [0], "output.displacement": []}
         ),
     }
-    return {label: scene.with_({"output.tolerance": "1e-12"}) for label, scene in told.items()}
+    return {label: scene.with_({"output.tolerance": "1e-12"}) for label, scene in texts.items()}
 
 
 def light(scene: Scene) -> Scene:
@@ -132,11 +132,11 @@ class TimedSets:
 def rows(folder: Path) -> Iterator[Sequence[str]]:
     """Scene, way, microseconds to coefficients, to 1001 samples, error, estimate, proved bound."""
     for label, scene in scenes(folder).items():
-        for told, each in ((label, scene), (f"{label}, kappa = {LIGHT}", light(scene))):
+        for name, each in ((label, scene), (f"{label}, kappa = {LIGHT}", light(scene))):
             truth = _truth(each)
-            yield from ((told, *row) for row in _ours(scene, each, truth))
+            yield from ((name, *row) for row in _ours(scene, each, truth))
             if each is scene:
-                yield from ((told, *row) for row in _theirs(each, truth))
+                yield from ((name, *row) for row in _theirs(each, truth))
 
 
 def _truth(scene: Scene) -> Array:
@@ -207,16 +207,16 @@ def many_rows(folder: Path) -> Iterator[Sequence[str]]:
         kappa = _kappa(building) * np.random.default_rng(1).uniform(0.8, 1.2, (_MANY, len(_kappa(building))))
         turns = [timed.call("batches", kappa, ctypes.c_size_t(_MANY), timed.batch()) for timed in built]
         for flags, seconds in zip(EVERY, medians(turns), strict=True):
-            told = f"building to coefficients, {precision}, sets side by side, `{' '.join(flags)}`"
-            yield told, f"{_MANY / seconds / 1e6:.2f} million sets/s"
+            text = f"building to coefficients, {precision}, sets side by side, `{' '.join(flags)}`"
+            yield text, f"{_MANY / seconds / 1e6:.2f} million sets/s"
     program = sets_program(lower(building), ["kappa"])
     model = compiled_model(program)
     tau = _instants(model.tau_max)
     data = model.values(tau, kappa=model.parameters["kappa"])[0] + 0.01
     kappa = model.parameters["kappa"] * np.random.default_rng(1).uniform(0.8, 1.2, (_MANY, 3))
     (seconds,) = medians([partial(model.misfit(tau, data), kappa=kappa)])
-    told = f"{_MANY / seconds / 1e6:.2f} million sets/s"
-    yield f"building with the misfit of {SAMPLES} samples of 4 outputs, from Python", told
+    text = f"{_MANY / seconds / 1e6:.2f} million sets/s"
+    yield f"building with the misfit of {SAMPLES} samples of 4 outputs, from Python", text
     drive = Scene.from_toml(folder / "d.toml").with_({"output.tolerance": "1e-6"})
     start = perf_counter()
     program = sets_program(lower(drive), ["kappa"])

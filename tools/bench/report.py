@@ -316,12 +316,12 @@ def _generate_row(label: str, text: str, evaluator: str = "auto") -> Sequence[st
         path.write_text(text, encoding="utf-8")
         command = [sys.executable, "-m", "wavesym", "generate", str(path), "-o", directory, "--evaluator", evaluator]
         done = ran(command)
-        told = label, f"{done.seconds:.2f}", f"{done.megabytes:.0f}"
+        cells = label, f"{done.seconds:.2f}", f"{done.megabytes:.0f}"
         if not done.well:
-            return *told, "refused"
+            return *cells, "refused"
         header = next(Path(directory).glob("*.h")).read_text(encoding="utf-8")
         chosen = next(line for line in header.splitlines() if line.startswith(" * Evaluator: "))
-    return *told, chosen.removeprefix(" * Evaluator: ")
+    return *cells, chosen.removeprefix(" * Evaluator: ")
 
 
 def _toml(each: Scene) -> str:

@@ -148,8 +148,8 @@ def growth() -> Iterator[Sequence[str]]:
         inputs(folder, records=0)
         with cluster(folder, 1) as running:
             for sets in GROWING:
-                told = run_sweep(folder, BOTH.format(sets=sets), running)
-                yield f"{10 * sets}", *told, f"{running.megabytes:.0f}"
+                row = run_sweep(folder, BOTH.format(sets=sets), running)
+                yield f"{10 * sets}", *row, f"{running.megabytes:.0f}"
 
 
 def overheads() -> Iterator[Sequence[str]]:
@@ -219,7 +219,7 @@ class Running(NamedTuple):
             every = [Path(f"/proc/{worker}/status").read_text(encoding="ascii") for worker in self.workers]
         except OSError:
             return nan
-        return max(float(told.partition("VmHWM:")[2].split()[0]) / 1000 for told in every)
+        return max(float(status.partition("VmHWM:")[2].split()[0]) / 1000 for status in every)
 
     @property
     def busy(self) -> float:
@@ -228,7 +228,7 @@ class Running(NamedTuple):
             every = [Path(f"/proc/{worker}/stat").read_text(encoding="ascii") for worker in self.workers]
         except OSError:
             return nan
-        return sum(float(ticks) for told in every for ticks in told.split()[13:15]) / os.sysconf("SC_CLK_TCK")
+        return sum(float(ticks) for stat in every for ticks in stat.split()[13:15]) / os.sysconf("SC_CLK_TCK")
 
 
 _NOBODY = Running("", ())
@@ -251,13 +251,13 @@ def cluster(folder: Path, workers: int) -> Iterator[Running]:
     file = folder / "scheduler.json"
     file.unlink(missing_ok=True)
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": os.environ | _ONE_THREAD}
-    dask, told = [sys.executable, "-m", "dask"], ["--no-dashboard", "--scheduler-file", str(file)]
-    started = [subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *told], **quiet)]  # type: ignore[call-overload]
+    dask, options = [sys.executable, "-m", "dask"], ["--no-dashboard", "--scheduler-file", str(file)]
+    started = [subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *options], **quiet)]  # type: ignore[call-overload]
     try:
         _wait(lambda: file.exists() and file.read_text(encoding="utf-8").endswith("}"))
         address = str(json.loads(file.read_text(encoding="utf-8"))["address"])
         alone = ["--nthreads", "1", "--no-nanny"]
-        started += [subprocess.Popen([*dask, "worker", *told, *alone], **quiet) for _ in range(workers)]  # type: ignore[call-overload]
+        started += [subprocess.Popen([*dask, "worker", *options, *alone], **quiet) for _ in range(workers)]  # type: ignore[call-overload]
         from distributed import Client
 
         with Client(address, set_as_default=False) as client:

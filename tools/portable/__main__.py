@@ -41,25 +41,25 @@ def main(what: str, page: Path, seconds: str = "0") -> int:
         match what:
             case "prove":
                 made = table(prove.HEAD, _report_rows(prove.rows(PROVED, folder, KEPT, failed)))
-                told = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
+                description = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
             case "misra":
                 seen = misra.all_findings(CHECKED, folder, KEPT)
                 made = table(misra.HEAD, _report_rows(misra.rows(seen, failed)))
                 write_whole({page.with_name(misra.LIST): misra.by_function(seen)})
-                told = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
+                description = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
             case "fuzz":
                 assert clang
                 learning = Path("build", "fuzz").resolve()  # the next run goes on with what this one has learnt
                 made = table(
                     fuzz.HEAD, _report_rows(fuzz.rows(fuzz.FUZZED, clang, learning, fuzz.CORPUS, int(seconds), failed))
                 )
-                told = f"{fuzz.tool(clang)}."
+                description = f"{fuzz.tool(clang)}."
             case _:
                 found = list(_report_rows(targets.rows(COMPILED, targets.TARGETS, folder, KEPT, failed)))
                 lines = targets.status(found, targets.TARGETS, proved_programs(page))
                 made = f"{table(targets.STATUS_HEAD, lines)}\n{table(targets.HEAD, found)}"
-                told = f"{targets.compiler()}, `-Os`."
-    put(page, what, f"{told}\n\n{made}")
+                description = f"{targets.compiler()}, `-Os`."
+    put(page, what, f"{description}\n\n{made}")
     print(*failed, sep="\n", end="\n" if failed else "")
     return 1 if failed else 0
 

@@ -146,13 +146,13 @@ def fuzz(program: FuzzedProgram, clang: str, folder: Path, corpus: Path, seconds
     (where / "learnt").mkdir(exist_ok=True)
     options = (f"-max_total_time={seconds}", f"-max_len={program.longest}", "-len_control=0", f"-timeout={_SLOWEST}")
     unpack_corpus(corpus, program.driver, where / "kept")
-    said = run_command(
+    result = run_command(
         ["./run", *options, "-print_final_stats=1", "learnt", "kept"], where, seconds + 2 * _SLOWEST + _COMPILING
     )
-    count = re.search(r"number_of_executed_units: (\d+)", said.errors)
-    bytes_ = re.search(r"Base64: (\S*)", said.errors)
-    told = list(dict.fromkeys(_SAID.findall(said.errors))) or [said.errors[-500:]]
-    found = "" if said.status == 0 else f"{'; '.join(told)}; bytes {bytes_[1] if bytes_ else 'not known'}"
+    count = re.search(r"number_of_executed_units: (\d+)", result.errors)
+    bytes_ = re.search(r"Base64: (\S*)", result.errors)
+    findings = list(dict.fromkeys(_SAID.findall(result.errors))) or [result.errors[-500:]]
+    found = "" if result.status == 0 else f"{'; '.join(findings)}; bytes {bytes_[1] if bytes_ else 'not known'}"
     return FuzzVerdict(int(count[1]) if count else 0, found)
 
 
@@ -205,5 +205,9 @@ def replayer(program: FuzzedProgram, compiler: str, folder: Path, sanitizers: Se
 
 def replay(run: Path, files: Sequence[Path]) -> str:
     """What does not hold for these bytes; "" where all does."""
-    said = run_command([str(run), *map(str, files)], run.parent, _COMPILING)
-    return "" if said.status == 0 else "; ".join(_SAID.findall(said.errors)) or said.errors[-500:] or f"{said.status}"
+    result = run_command([str(run), *map(str, files)], run.parent, _COMPILING)
+    return (
+        ""
+        if result.status == 0
+        else "; ".join(_SAID.findall(result.errors)) or result.errors[-500:] or f"{result.status}"
+    )

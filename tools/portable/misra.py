@@ -55,10 +55,10 @@ def findings(subject: PortableProgram, folder: Path) -> list[MisraFinding]:
     texts = {file: text.splitlines() for file, text in subject.files().items()}
     for file, lines in texts.items():
         (folder / file).write_text("\n".join((*lines, "")), encoding="utf-8")
-    said = run_command([*_COMMAND, f"{subject.name}.c"], folder, _SECONDS)
-    if said.status != 0:
-        raise RuntimeError(f"{subject.name}: {said.errors[-500:]}")
-    found = re.findall(r"^(\S+):(\d+):(\S+)$", said.errors, re.MULTILINE)
+    result = run_command([*_COMMAND, f"{subject.name}.c"], folder, _SECONDS)
+    if result.status != 0:
+        raise RuntimeError(f"{subject.name}: {result.errors[-500:]}")
+    found = re.findall(r"^(\S+):(\d+):(\S+)$", result.errors, re.MULTILINE)
     return [
         MisraFinding(
             rule.removeprefix("misra-c2012-"),
@@ -72,8 +72,8 @@ def findings(subject: PortableProgram, folder: Path) -> list[MisraFinding]:
 def function_at(lines: Sequence[str], number: int) -> str:
     """The function that a line, counted from 1, is in."""
     for place in range(number - 1, -1, -1):
-        if begun := _FUNCTION.match(lines[place]):
-            return begun[1]
+        if start := _FUNCTION.match(lines[place]):
+            return start[1]
         if lines[place].startswith("}") and place < number - 1:
             break
     return ""

@@ -74,13 +74,13 @@ def verdict(subject: PortableProgram, count: int, machine: str, folder: Path) ->
     """Prove a program, whose files are in `folder`, under its driver."""
     driver = f"{subject.name}_{subject.driver}_{count}_{machine}_driver.c"
     (folder / driver).write_text(subject.driver_text(count), encoding="utf-8")
-    said = run_command([*command(subject), "-machdep", machine, driver, f"{subject.name}.c"], folder, _SECONDS)
-    found = re.search(r"(\d+) alarms? generated", said.output)
-    covered = re.search(r"(\d+) statements reached \(out of (\d+)\)", said.output)
-    if said.status != 0 or not found or not covered:
-        return ProofVerdict(None, 0, 0, [said.errors or said.output[-500:]])
-    told = re.findall(r"^\[eva:alarm\] (.*?): Warning:\s*(.*(?:\n  .*)*)", said.output, re.MULTILINE)
-    alarms = [f"{place}: {' '.join(what.split())}" for place, what in told]
+    result = run_command([*command(subject), "-machdep", machine, driver, f"{subject.name}.c"], folder, _SECONDS)
+    found = re.search(r"(\d+) alarms? generated", result.output)
+    covered = re.search(r"(\d+) statements reached \(out of (\d+)\)", result.output)
+    if result.status != 0 or not found or not covered:
+        return ProofVerdict(None, 0, 0, [result.errors or result.output[-500:]])
+    alarm_texts = re.findall(r"^\[eva:alarm\] (.*?): Warning:\s*(.*(?:\n  .*)*)", result.output, re.MULTILINE)
+    alarms = [f"{place}: {' '.join(what.split())}" for place, what in alarm_texts]
     return ProofVerdict(int(found[1]), int(covered[1]), int(covered[2]), alarms)
 
 

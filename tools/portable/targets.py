@@ -163,13 +163,13 @@ def compile_bare(subject: PortableProgram, target: TargetMachine, folder: Path) 
     single = subject.request.precision == "single"
     flags = (*_STRICT, *(_NO_DOUBLES if single else ()), *target.options)
     frames = ("-Wframe-larger-than=0", "-Wno-error=frame-larger-than")  # tells the frame of each function
-    said = run_command(
+    result = run_command(
         [*_ZIG, "-target", triple, *flags, *frames, "-c", f"{subject.name}.c", "-o", "object"], folder, _SECONDS
     )
-    warned = re.findall(r"^.*(?:warning|error): .*$", said.errors, re.MULTILINE)
+    warned = re.findall(r"^.*(?:warning|error): .*$", result.errors, re.MULTILINE)
     sizes = [re.search(r"stack frame size \((\d+)\) exceeds limit \(0\)", line) for line in warned]
-    if said.status != 0 or None in sizes:
-        raise CompilerError(said.errors)
+    if result.status != 0 or None in sizes:
+        raise CompilerError(result.errors)
     stack = sum(int(size[1]) for size in sizes if size)
     found = sections(folder / "object")
     size = MachineBytes(
@@ -204,11 +204,11 @@ def selftest(subject: PortableProgram, target: TargetMachine, folder: Path) -> s
     if missing := absent(*(program for program in target.runner[:1] if not program.startswith("."))):
         return f"not run: no {missing[0]}"
     files = (f"{subject.name}.c", f"{subject.name}_selftest.c")
-    said = run_command([*_ZIG, "-target", target.hosted, *files, "-o", "selftest", "-lm"], folder, _SECONDS)
-    if said.status == 0:
-        said = run_command(target.runner, folder, _SECONDS)
-    if said.status != 0:
-        raise CompilerError(f"self-test: {said.output}{said.errors}")
+    result = run_command([*_ZIG, "-target", target.hosted, *files, "-o", "selftest", "-lm"], folder, _SECONDS)
+    if result.status == 0:
+        result = run_command(target.runner, folder, _SECONDS)
+    if result.status != 0:
+        raise CompilerError(f"self-test: {result.output}{result.errors}")
     return "passes"
 
 

@@ -53,11 +53,11 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
     if out is not None:
         refuse_scene(out)
     with progress(f"run {scene.name}"):
-        said: list[str] = []
-        lines = api.run_csv(scene, samples or DEFAULT_SAMPLES, taus, said.append)
+        notes: list[str] = []
+        lines = api.run_csv(scene, samples or DEFAULT_SAMPLES, taus, notes.append)
         if out is not None:
             write_whole({out: lines})
-    for line in said:
+    for line in notes:
         click.echo(f"{scene.name}: {line}", err=True)
     if out is None:
         put(lines)

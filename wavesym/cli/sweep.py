@@ -71,8 +71,8 @@ def sweep(
 
 def _progress_text(cases: int, done: int, before: int, seconds: float) -> str:
     """How far it is, how fast, and how long it will take."""
-    told = f"{done} of {cases} cases"
+    text = f"{done} of {cases} cases"
     if done == before:
-        return told
+        return text
     rate = (done - before) / seconds
-    return f"{told}, {rate:.3g} a second, about {(cases - done) / rate:.0f} s left"
+    return f"{text}, {rate:.3g} a second, about {(cases - done) / rate:.0f} s left"

@@ -93,9 +93,11 @@ def verify(
             text, passed = api.verify_derivation(lambda systems: line.each(systems, attrgetter("name")))
         else:
             scenes = [scene for scene in asked if isinstance(scene, Scene)]
-            told = line.each(scenes or [Scene.from_toml(name) for name in builtin_names()], attrgetter("name"))
+            watched_scenes = line.each(
+                scenes or [Scene.from_toml(name) for name in builtin_names()], attrgetter("name")
+            )
             with ExitStack() as blame:
-                seen = blame_each(told, blame) if scenes else told
+                seen = blame_each(watched_scenes, blame) if scenes else watched_scenes
                 text, passed = api.verify(seen, evaluator, precision, runtime or (), stream=stream)
     deliver(text, out)
     return 0 if passed else 1

@@ -18,17 +18,17 @@ from wavesym.numbers.ratio import Ratio, Ring
 
 def in_rates(symbols: SymbolicChain) -> SymbolicChain:
     """The same chain, computed in letters and told in its symbols."""
-    told = symbols.ring.context
-    names = [f"letter_{number}" for number in range(told.nvars())]
+    context = symbols.ring.context
+    names = [f"letter_{number}" for number in range(context.nvars())]
     free = Ring(names)
     letters = list(free.symbols().values())
     found = [rate.compose(letters) for rate in rates(symbols.chain).values()]
     if any(rate.denominator for rate in found):
         return symbols
-    images, inverse = list(told.gens()), letters
+    images, inverse = list(context.gens()), letters
     for place, slope, rest in _letters([rate.numerator for rate in found]):
         letter = slope * free.context.gens()[place] + rest
-        images[place] = letter.compose(*images, ctx=told)
+        images[place] = letter.compose(*images, ctx=context)
         change = list(letters)
         change[place] = (letters[place] - Ratio(free, rest)) / Ratio(free, slope)
         inverse = [symbol.compose(change) for symbol in inverse]

@@ -69,8 +69,8 @@ class Advice:
             models[each.name] = {"refused": each.refusal} if each.refusal else {"outputs": rows}
         largest = [{"name": name, "unit": unit, "largest": value} for name, unit, value in self.outputs]
         models[WAVES] = {"program": self.program, "outputs": largest}
-        said = {"name": self.scene, "tolerance": self.tolerance, "enough": self.enough, "instants": self.instants}
-        return json.dumps({**said, "models": models}, indent=2, allow_nan=False) + "\n"
+        fields = {"name": self.scene, "tolerance": self.tolerance, "enough": self.enough, "instants": self.instants}
+        return json.dumps({**fields, "models": models}, indent=2, allow_nan=False) + "\n"
 
     def text(self) -> str:
         """The advice in words, and a table."""

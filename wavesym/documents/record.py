@@ -96,8 +96,8 @@ def _rows(facts: RecordFacts) -> Iterator[tuple[str, str]]:
         yield "spacing", "the file does not say; `spacing` in a scene does"
     else:
         yield "spacing", facts.format_time(step)
-        said = "" if facts.file.times else " (the file does not say when; `start` in a scene does)"
-        yield "first", f"at {facts.format_time(facts.start)}{said}"
+        remark = "" if facts.file.times else " (the file does not say when; `start` in a scene does)"
+        yield "first", f"at {facts.format_time(facts.start)}{remark}"
         yield "duration", facts.format_time((count - 1) * step)
     yield "peak", facts.describe_peak()
     yield "unit", facts.unit or "the file does not say; `unit` in a scene, or --unit, does"

@@ -68,9 +68,9 @@ def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[
     forms: dict[str, None] = {}
     for row in table.rows():
         value = row.value if isinstance(row.value, Ratio) else symbols.ring.constant(fmpq(str(row.value)))
-        told = value.factorization
-        forms |= dict.fromkeys(polynomial_text(form) for form, _ in told.denominator)
-        above, below = told.parts
+        factors = value.factorization
+        forms |= dict.fromkeys(polynomial_text(form) for form, _ in factors.denominator)
+        above, below = factors.parts
         fields = row._asdict() | {"rate": str(row.rate), "numerator": above, "denominator": below}
         del fields["value"]
         yield separator + json.dumps(fields)

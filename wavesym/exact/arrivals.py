@@ -108,11 +108,13 @@ class _Fronts:
             highest = _highest(self._model.sums[probe])
             for weight, reading in self._model.sums[probe]:
                 if (point := reading.point) is None:
-                    for end, way, heard in self._end_contributions(weight, reading, highest):
+                    for end, way, weighted in self._end_contributions(weight, reading, highest):
                         bar = network.bars[end.bar]
-                        ends[end].append((k, way * bar.delay, heard))
+                        ends[end].append((k, way * bar.delay, weighted))
                         # what a bar holds is there until something is sent into it
-                        sums[k][fmpq(0)] = (sums[k][fmpq(0)] + heard * _modular(bar.initial_wave(end.side))) % _MODULUS
+                        sums[k][fmpq(0)] = (
+                            sums[k][fmpq(0)] + weighted * _modular(bar.initial_wave(end.side))
+                        ) % _MODULUS
                 elif reading.quantity == "load":
                     for time, value in self._joints[network.joint_of[point]].acts(point):
                         if time <= self._until:

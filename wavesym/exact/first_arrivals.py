@@ -47,20 +47,20 @@ def first_arrivals(model: Model) -> list[fmpq | None]:
 def light_arrivals(model: Model) -> list[fmpq | None]:
     """When the first load can be felt by each output of a chain that rests until then; None: not on the horizon."""
     network, last = model.network, rational(model.horizon())
-    begun: dict[int, fmpq] = {}
+    starts: dict[int, fmpq] = {}
     for number, point in enumerate(network.points):
         sources = {unit.source for unit in point.loads}
         times = [load.time for load in model.loads if load.source in sources]
         if times:
             joint = network.joint_of[number]
-            begun[joint] = min([begun[joint], *times] if joint in begun else times)
+            starts[joint] = min([starts[joint], *times] if joint in starts else times)
     found: list[fmpq | None] = []
     for probe in model.probes:
         readings = [reading for _, reading in model.sums[probe]]
         places = [(reading.rod - 1, reading.place) for reading in readings if reading.point is None]
         points = [reading.point for reading in readings if reading.point is not None]
         distances = network.distances(places, points)
-        times = [time + distances[joint] for joint, time in begun.items() if joint in distances]
+        times = [time + distances[joint] for joint, time in starts.items() if joint in distances]
         found.append(min((time for time in times if time <= last), default=None))
     return found
 

@@ -101,8 +101,8 @@ def _parts(network: Network, probe: Probe) -> Iterator[ReadingTerm]:
 
 def ground(network: Network) -> int:
     """The point that relative displacements count from: the only one that moves as it is told, or the first one."""
-    told = [number for number, point in enumerate(network.points) if point.motion in ("velocity", "acceleration")]
-    return told[0] if len(told) == 1 else 0
+    prescribed = [number for number, point in enumerate(network.points) if point.motion in ("velocity", "acceleration")]
+    return prescribed[0] if len(prescribed) == 1 else 0
 
 
 def _forces_on(network: Network, point: int, before: int | None = None) -> Iterator[ReadingTerm]:

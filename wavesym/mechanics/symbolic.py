@@ -117,9 +117,9 @@ def _images(ring: Ring, chain: Chain, values: Mapping[str, fmpq]) -> list[Ratio]
                 "symbol can be told from by the others; there is no symbolic table for that",
                 "system",
             )
-        told = list(ring.symbols().values())
-        told[place] = told[place] - Ratio(ring, relation) / Ratio(ring, relation.derivative(place))
-        images = [image.compose(told) for image in images]
+        letters = list(ring.symbols().values())
+        letters[place] = letters[place] - Ratio(ring, relation) / Ratio(ring, relation.derivative(place))
+        images = [image.compose(letters) for image in images]
     return images
 
 

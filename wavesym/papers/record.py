@@ -64,11 +64,11 @@ class Case:
         where = ", ".join(f"{name} = {format_value(value)}" for name, value in self.place.items())
         match self.printed_value, self.true_value:
             case bool(), bool():
-                said = f"what is printed is {'' if self.agrees else 'not '}so"
+                sentence = f"what is printed is {'' if self.agrees else 'not '}so"
             case printed, true:
                 verb = "has" if isinstance(printed, NoValue) else "gives"
-                said = f"what is printed {verb} {format_value(printed)}; it should be {format_value(true)}"
-        return f"With {where}, {said}" if where else said[0].upper() + said[1:]
+                sentence = f"what is printed {verb} {format_value(printed)}; it should be {format_value(true)}"
+        return f"With {where}, {sentence}" if where else sentence[0].upper() + sentence[1:]
 
 
 @dataclass(frozen=True, eq=False)

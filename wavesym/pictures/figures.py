@@ -96,8 +96,8 @@ def write_page(directory: Path) -> Path:
 @cache
 def figure_verdicts(number: int) -> Mapping[str, Record]:
     """The verdicts on what the paper says of a figure."""
-    said = [e for e in entries().values() if e.subject.get("figure") == number and e.kind != "caption"]
-    return {record.id: record for record in records(said)}
+    statements = [e for e in entries().values() if e.subject.get("figure") == number and e.kind != "caption"]
+    return {record.id: record for record in records(statements)}
 
 
 def judged_figure(number: int) -> JudgedFigure:
@@ -124,8 +124,8 @@ def redraw_figure(number: int) -> Figure:
 
 def best_load(number: int) -> TriedLoad:
     """The load that a figure is drawn with: the first of those under which most of its statements are true."""
-    said = statements(number).values()
-    return max(loads(number), key=lambda load: sum(is_true(figure(number), load, statement) for statement in said))
+    sentences = statements(number).values()
+    return max(loads(number), key=lambda load: sum(is_true(figure(number), load, statement) for statement in sentences))
 
 
 def marks(number: int, found: Finding, text: str, load: TriedLoad) -> Iterator[Mark]:

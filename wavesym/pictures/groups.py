@@ -145,5 +145,5 @@ def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
         for k in sorted({int(np.argmax(points[:, 1])), int(np.argmin(points[:, 1]))}):
             tau, value = points[k]
             if value:
-                told = f"{value:.4g} {unit_text(shown[0].output.unit)}".rstrip()
-                yield Mark(f"{told} at {scale.time_text(tau)}", points[k : k + 1], "normal")
+                text = f"{value:.4g} {unit_text(shown[0].output.unit)}".rstrip()
+                yield Mark(f"{text} at {scale.time_text(tau)}", points[k : k + 1], "normal")

@@ -163,8 +163,8 @@ def _motions(line: str, stations: tuple[Station, ...], parts: int, length: Lengt
     xs = [in_unit(x, length) for x, _ in places]
     for k, (x, side) in enumerate(places):
         low, high = xs[max(k - 1, 0)], xs[min(k + 1, len(xs) - 1)]
-        spoken = place_text(x, line, side, length)
-        yield Spot(place_text(x, line, side), spoken, xs[k], (low + xs[k]) / 2, (xs[k] + high) / 2)
+        label = place_text(x, line, side, length)
+        yield Spot(place_text(x, line, side), label, xs[k], (low + xs[k]) / 2, (xs[k] + high) / 2)
 
 
 def _quantity_histories(made: Histories, quantity: str, lines: list[tuple[str, tuple[Spot, ...]]]) -> LineHistories:

@@ -33,8 +33,8 @@ def load_histories(model: Model, scale: Scale | None = None) -> tuple[History, .
             kind, name = _load_name(model, point, scale)
             factor = fmpq(1) if scale is None else rational(scale.factor(kind, 1))
             probe = Probe(name, "load", 1, fmpq(0), factor=factor, unit=scale.unit(kind) if scale else "")
-            told = [(replace(load, weight=factor * load.weight), power) for load, power in acting]
-            found.append(History(probe, tuple(stretches(told, model.until))))
+            physical_loads = [(replace(load, weight=factor * load.weight), power) for load, power in acting]
+            found.append(History(probe, tuple(stretches(physical_loads, model.until))))
     return tuple(found)
 
 

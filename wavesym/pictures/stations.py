@@ -27,8 +27,8 @@ def loose_times(model: Model, events: Iterable[ContactEvent]) -> Loose:
             since.setdefault(link, event.double)
         elif link in since:
             found[link].append((since.pop(link), event.double))
-    for link, begun in since.items():
-        found[link].append((begun, nearest(model.until)))
+    for link, start in since.items():
+        found[link].append((start, nearest(model.until)))
     return found
 
 

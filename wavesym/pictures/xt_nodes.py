@@ -27,7 +27,7 @@ def legend(network: Network, lines: Lines) -> str:
     items = [item.what for stations in lines.values() for station in stations for item in _items(network, station)]
     points = [item for item in items if isinstance(item, Point)]
     links = [item for item in items if isinstance(item, Link)]
-    said = {
+    texts = {
         "thick black: a mass": any(point.mass for point in points),
         "thick grey: fixed, or of given motion": any(point.motion for point in points),
         "yellow: a spring or dashpot": any(link.stiffness or link.damping for link in links),
@@ -35,7 +35,7 @@ def legend(network: Network, lines: Lines) -> str:
         "white in yellow: a spring that does not act": any(link.side for link in links),
         "purple: what slides or yields": any(link.friction or link.limits for link in links),
     }
-    return "; ".join(words for words, occurs in said.items() if occurs)
+    return "; ".join(words for words, occurs in texts.items() if occurs)
 
 
 def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], loose: Loose, until: float) -> None:

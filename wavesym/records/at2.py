@@ -55,7 +55,7 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
         for number, line in enumerate(lines[: _HEADER - 1], 1)
         for word in _UNITS.findall(line)
     )
-    unit, head = next((said for said in units if said[0]), ("", _HEADER - 1))
+    unit, head = next((unit_there for unit_there in units if unit_there[0]), ("", _HEADER - 1))
     return RecordFile(
         file, "AT2", tuple(samples), tuple(written), tuple(places), unit, clock="s", spacing=step, head=head
     )

@@ -172,15 +172,15 @@ def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) ->
     made = np.zeros((count, len(response.system.direct), len(taus)))
     if not len(taus):
         return made
-    (felt,) = np.nonzero(taus > records.begin)
+    (later_instants,) = np.nonzero(taus > records.begin)
     since = taus - records.begin
     step = np.clip((since / records.spacing).astype(np.intp), 0, n - 2)
     later = np.maximum(since - step * records.spacing, 0.0)
     for first in range(0, count, _RECORDS):
         samples = records.samples[first : first + _RECORDS]
         known, rows = response.known(samples), np.arange(len(samples))
-        for begin in range(0, len(felt), _RECORDS):
-            at = felt[begin : begin + _RECORDS]
+        for begin in range(0, len(later_instants), _RECORDS):
+            at = later_instants[begin : begin + _RECORDS]
             record, steps = (each.ravel() for each in np.meshgrid(rows, step[at]))
             inside = response.inside(samples, known, record, steps).reshape(len(at), len(rows), -1)
             made[first : first + _RECORDS, :, at] = (inside @ response.reads(later[at])).transpose(1, 2, 0)

@@ -153,8 +153,8 @@ class CompiledSets:
         found: FoundSets,
     ) -> FoundSets:
         even = len(tau) > 1 and _even(tau)
-        told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
-        function(address(given), len(given), *map(_place, room), address(told), even, len(tau), *_places(found))
+        instants = np.array([tau[0], tau[1] - tau[0]]) if even else tau
+        function(address(given), len(given), *map(_place, room), address(instants), even, len(tau), *_places(found))
         return found
 
 

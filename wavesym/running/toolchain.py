@@ -45,8 +45,8 @@ class Compiler:
     @property
     def version(self) -> str:
         """What it says of itself, in one line."""
-        told = subprocess.run([*self.command, "--version"], capture_output=True, text=True, check=False).stdout
-        line = next(iter(told.splitlines()), "of an unknown version")
+        output = subprocess.run([*self.command, "--version"], capture_output=True, text=True, check=False).stdout
+        line = next(iter(output.splitlines()), "of an unknown version")
         return f"{_PACKAGE} {metadata.version(_PACKAGE)}, {line}" if self.name == _PACKAGE else line
 
     def run(self, arguments: Sequence[str], folder: Path) -> None:

@@ -25,14 +25,14 @@ def explicit_text(scene: Scene) -> str:
 
 
 def _lines(scene: Scene) -> Iterator[str]:
-    said = scene.physical.fields_in_units["system"] if scene.physical else {}
-    if said.get("type", scene.system.type) == "chain":
+    system_fields = scene.physical.fields_in_units["system"] if scene.physical else {}
+    if system_fields.get("type", scene.system.type) == "chain":
         raise UnservedError(
             "system.type: a chain has all of its parts written already; write collision, drive or building"
         )
     model, parts = lower(scene), scene.system.parts
     numbers = InUnits(scene.physical.scale, parts) if scene.physical else Dimensionless()
-    yield f"# {scene.name}, a {said.get('type', scene.system.type)}, written out part by part."
+    yield f"# {scene.name}, a {system_fields.get('type', scene.system.type)}, written out part by part."
     parted = model.labels.system.get("contacts") == "open"
     if joined := [] if parted else [point.place for point in model.network.points if point.is_glued]:
         at = ", ".join(joined)

@@ -135,10 +135,10 @@ def sample_comb(scene: Scene) -> tuple[fmpq, fmpq] | None:
 
 
 def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
-    said = scene.dimensionless().model_dump(mode="json")
+    fields = scene.dimensionless().model_dump(mode="json")
     if scene.scale is not None:
-        said["units"] = scene.scale.canonical
-    canonical = json.dumps(said, sort_keys=True, separators=(",", ":"))
+        fields["units"] = scene.scale.canonical
+    canonical = json.dumps(fields, sort_keys=True, separators=(",", ":"))
     return Labels(
         system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
         loads=scene.physical.loads if scene.physical else tuple(load.description for load in scene.load),

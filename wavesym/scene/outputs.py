@@ -107,8 +107,8 @@ class Output(SceneTable):
     @model_serializer(mode="wrap")
     def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Without new quantities that are not asked for: so scenes keep the hash that they have had."""
-        said: dict[str, Any] = handler(self)
-        return {key: value for key, value in said.items() if value or key not in QUANTITIES or QUANTITIES[key].usual}
+        fields: dict[str, Any] = handler(self)
+        return {key: value for key, value in fields.items() if value or key not in QUANTITIES or QUANTITIES[key].usual}
 
     def of_every_rod(self, count: int) -> Self:
         """The same with a drift for each of the rods of the main line, where it says "all"."""

@@ -42,16 +42,16 @@ class Column:
         values = tuple(plain(value) for value in given)
         found = [number_of(value) for value in values]
         units = {each[1] for each in found if each is not None}
-        told = tuple(value if isinstance(value, str) else json.dumps(value, default=str) for value in values)
+        texts = tuple(value if isinstance(value, str) else json.dumps(value, default=str) for value in values)
         if None in found or len(units) != 1:
-            return cls(path, values, told, told)
+            return cls(path, values, texts, texts)
         numbers = tuple(float(each[0]) for each in found if each is not None)
-        return cls(path, values, told, numbers, units.pop())
+        return cls(path, values, texts, numbers, units.pop())
 
     @cached_property
     def keys(self) -> tuple[object, ...]:
         """What tells two values apart: 0.5 and "1/2" are the same."""
-        return tuple(number or told for number, told in zip(map(number_of, self.values), self.labels, strict=True))
+        return tuple(number or label for number, label in zip(map(number_of, self.values), self.labels, strict=True))
 
 
 @dataclass(frozen=True)

@@ -51,8 +51,8 @@ def _content(file: str, load: Mapping[str, Any], acts: Acts | None) -> dict[str,
             assert isinstance(given, Mapping)  # as the load
             return dict(given["record"].model_dump(exclude_defaults=True))
         spacing = load.get("spacing")
-        told = None if spacing is None else exact(spacing)
-        return read_recording(file, load.get("column"), lambda _: told).model_dump(exclude_defaults=True)
+        exact_spacing = None if spacing is None else exact(spacing)
+        return read_recording(file, load.get("column"), lambda _: exact_spacing).model_dump(exclude_defaults=True)
     except SceneError as error:
         return Unreadable(str(error))
     except PydanticCustomError as error:

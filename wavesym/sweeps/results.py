@@ -182,9 +182,9 @@ def _dimensions(store: Store, manifest: Manifest) -> tuple[StoredAxis, ...]:
     for each in manifest.files:
         name, _, last = each.rpartition("/")
         if last == ATTRIBUTES and "path" in (fields := json.loads((store.path / each).read_bytes())):
-            said = _CoordinateLabels.model_validate(fields)
-            column = StoredColumn(said.path, tuple(said.written), _coordinate(store.path / name), said.units)
-            own[said.dimensions[0]].append((said.number, column))
+            labels = _CoordinateLabels.model_validate(fields)
+            column = StoredColumn(labels.path, tuple(labels.written), _coordinate(store.path / name), labels.units)
+            own[labels.dimensions[0]].append((labels.number, column))
     made = tuple(StoredAxis(name, _in_order(columns)) for name, columns in own.items())
     for axis, n in zip(made, manifest.dimensions.values(), strict=True):
         if {len(each) for column in axis.columns for each in (column.texts, column.coordinate)} != {n}:

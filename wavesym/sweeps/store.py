@@ -155,8 +155,8 @@ def _make(path: Path, plan: SweepPlan, batches: Batches) -> None:
     """All arrays without what is computed, and coordinates."""
     import zarr
 
-    said = {"name": plan.name, "sweep_sha256": plan.sha256, "scene": json.dumps(plan.first_scene)}
-    group = zarr.create_group(path, zarr_format=2, attributes=said)
+    attributes = {"name": plan.name, "sweep_sha256": plan.sha256, "scene": json.dumps(plan.first_scene)}
+    group = zarr.create_group(path, zarr_format=2, attributes=attributes)
     for dimension in plan.dimensions:
         _coordinates(group, dimension)
     _plain(group, OUTPUT, OUTPUT, np.array(plan.outputs))
@@ -198,8 +198,8 @@ def _coordinates(group: Any, dimension: SweepAxis) -> None:
 
 
 def _plain(group: Any, name: str, dimension: str, values: Any, **attributes: object) -> None:
-    said = {DIMENSIONS: [dimension], **attributes}
-    group.create_array(name, data=values, chunks=values.shape, compressors=None, attributes=said)
+    metadata = {DIMENSIONS: [dimension], **attributes}
+    group.create_array(name, data=values, chunks=values.shape, compressors=None, attributes=metadata)
 
 
 def open_dataset(folder: str | PathLike[str]) -> Any:

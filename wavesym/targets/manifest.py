@@ -89,9 +89,9 @@ def _runtime(program: Program) -> dict[str, object]:
         for field in program.laws.fields
         if any(unit.text for unit in field.units)
     }
-    told: dict[str, object] = {"runtime": given, **({"runtime_units": units} if units else {})}
-    told["with"] = list(program.parts)
-    return told | {name: program.constants[name] for name in ("degree", "kappa_max") if name in program.constants}
+    entries: dict[str, object] = {"runtime": given, **({"runtime_units": units} if units else {})}
+    entries["with"] = list(program.parts)
+    return entries | {name: program.constants[name] for name in ("degree", "kappa_max") if name in program.constants}
 
 
 def _events(description: Description) -> dict[str, object]:

@@ -102,8 +102,8 @@ def determinants(waves: Sequence[Outgoing]) -> str:
     nodes: dict[tuple[Expr, Expr], list[str]] = {}
     for wave in waves:
         nodes.setdefault(wave.determinants, []).append(_TEXT.with_index(wave.function, wave.rod))
-    told = (f"{_and(names)}: {_image(one)} and {_image(other)}" for (one, other), names in nodes.items())
-    return f"Determinants, of the delay equations and of the node law: {'; '.join(told)}."
+    texts = (f"{_and(names)}: {_image(one)} and {_image(other)}" for (one, other), names in nodes.items())
+    return f"Determinants, of the delay equations and of the node law: {'; '.join(texts)}."
 
 
 def _image(expression: Expr) -> str:

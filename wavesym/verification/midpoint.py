@@ -104,10 +104,10 @@ class _Motion:
 
     def _wave(self, end: int, taus: Array, late: float, summed: bool) -> Array:
         """What was sent from an end so long ago, or its integral from tau = 0."""
-        since, begun = taus - late, float(self._problem.start_waves.ravel()[end])
+        since, start = taus - late, float(self._problem.start_waves.ravel()[end])
         if summed:
-            return begun * np.minimum(taus, late) + np.interp(since, self._ends, self._sums[:, end])
-        return np.where(since < 0, begun, np.interp(since, self._middles, self._sent[:, end]))
+            return start * np.minimum(taus, late) + np.interp(since, self._ends, self._sums[:, end])
+        return np.where(since < 0, start, np.interp(since, self._middles, self._sent[:, end]))
 
     @cached_property
     def _sums(self) -> Array:

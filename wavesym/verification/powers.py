@@ -107,7 +107,7 @@ def _law_steps(family: PowerFamily, law: CoefficientLaw, at: Region) -> Iterator
     row, place = _row(family, law.function, law.rod, at)
     since, budget = (_evaluate_row(value, place, at) for value in (row.start, row.budget))
     own = law.own.jump != 0 and _of_family(family, _evaluate_row(row.node, place, at), at)
-    said = {
+    names = {
         "function": f"{law.function}_{law.rod}",
         "where": ", ".join(f"{name} = {value}" for name, value in at.items()),
     }
@@ -116,14 +116,16 @@ def _law_steps(family: PowerFamily, law: CoefficientLaw, at: Region) -> Iterator
         earlier = {**at, INTERVAL: INTERVAL - term.back}
         visit = family.period if own and _adds_a_visit(law, term) else 0
         because = f"{term.function}_{term.rod}, {term.back} before"
-        yield Step(because=f"since, {because}", slack=exact(since - _evaluate_row(other.start, there, earlier)), **said)
+        yield Step(
+            because=f"since, {because}", slack=exact(since - _evaluate_row(other.start, there, earlier)), **names
+        )
         yield Step(
             because=f"budget, {because}",
             slack=exact(budget - _evaluate_row(other.budget, there, earlier) - visit),
-            **said,
+            **names,
         )
     if own:
-        yield Step(because="a first visit", slack=exact(budget - since), **said)
+        yield Step(because="a first visit", slack=exact(budget - since), **names)
     for load in law.loads:
         start = {**at, INTERVAL: Integer(load.back + 1)}
         if load.number is not None:
@@ -132,7 +134,7 @@ def _law_steps(family: PowerFamily, law: CoefficientLaw, at: Region) -> Iterator
             if (start[SOURCE] - first).is_negative or (last - start[SOURCE]).is_negative:
                 continue
         for value in (row.start, row.budget) if own else (row.start,):
-            yield Step(because=f"load {load.kind}", slack=_evaluate_row(value, place, start), **said)
+            yield Step(because=f"load {load.kind}", slack=_evaluate_row(value, place, start), **names)
 
 
 def _row(family: PowerFamily, function: str, rod: Expr, at: Region) -> tuple[PowerRow, Expr]:

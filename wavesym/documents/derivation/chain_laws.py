@@ -39,8 +39,8 @@ def meanings(symbols: SymbolicChain) -> tuple[Meaning, ...]:
 
 def merged_parameters(symbols: SymbolicChain) -> tuple[Meaning, ...]:
     """The parameters that are told by the symbols that are left."""
-    told = (_meaning(name, ratio) for name, ratio in symbols.meaning.items())
-    return tuple(meaning for meaning in told if meaning.value != meaning.symbol)
+    meanings = (_meaning(name, ratio) for name, ratio in symbols.meaning.items())
+    return tuple(meaning for meaning in meanings if meaning.value != meaning.symbol)
 
 
 def _meaning(name: str, value: Ratio | fmpq) -> Meaning:

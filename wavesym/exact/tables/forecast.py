@@ -56,8 +56,8 @@ class Forecast:
 
     def nth(self, source: str, count: int) -> dict[End, fmpq]:
         """When the first `count` fronts have left each end that something leaves at all."""
-        begun = {end for number in self._joints.acting_joints(source) for end in self._starts(number, source)}
-        waiting = dict.fromkeys(reachable(self._joints.network, begun, self._passes), count)
+        starts = {end for number in self._joints.acting_joints(source) for end in self._starts(number, source)}
+        waiting = dict.fromkeys(reachable(self._joints.network, starts, self._passes), count)
         found: dict[End, fmpq] = {}
         for time, end, _ in self._walk(source, None, "--intervals"):
             if end in waiting:
@@ -83,8 +83,8 @@ class Forecast:
                 shape[pole.rate] = shape.get(pole.rate, 0) + len(pole.residues)
             return ((end, shape) for end in self._leaves(number, source if time == 0 else "", waves))
 
-        begun = [number for number in self._joints.acting_joints(source) if last is None or number in last]
-        for count, front in enumerate(departures(network, begun, answer, last), 1):
+        starts = [number for number in self._joints.acting_joints(source) if last is None or number in last]
+        for count, front in enumerate(departures(network, starts, answer, last), 1):
             if count > MOST_FRONTS:
                 raise CostError(
                     f"{key}: fronts leave the ends of rods more than {MOST_FRONTS} times by tau = "

@@ -111,8 +111,8 @@ class RuledNetwork:
                         found[watched].append((time, gained))
             return self._outgoing_waves(number, acts, waves, velocities)
 
-        begun = [number for number in self.joints.acting_joints(source) if number in last]
-        for time, end, wave in departures(self.network, begun, answer, last):
+        starts = [number for number in self.joints.acting_joints(source) if number in last]
+        for time, end, wave in departures(self.network, starts, answer, last):
             if time <= reach.get(function := function_of(end), -1):
                 found[function].append((time, wave))
         return dict(found)

@@ -301,8 +301,8 @@ def right_lines(but: str = "") -> list[Reading]:
 
 
 def _printed_reading(id: str) -> Reading:
-    told = transcribed(id)
-    return reading(told.printed, (*told.ranges, *told.inferred_ranges))
+    record = transcribed(id)
+    return reading(record.printed, (*record.ranges, *record.inferred_ranges))
 
 
 @cache

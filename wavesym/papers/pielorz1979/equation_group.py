@@ -103,11 +103,11 @@ class EquationGroup(ABC):
 
     def cases(self, at: Place) -> Iterator[Case]:
         """Both sides of each equation wherever it is said to hold, and what is said how often."""
-        said: Counter[Key] = Counter()
+        statements: Counter[Key] = Counter()
         for equation in items(self.reading.formula):
             for place in self.places(equation):
                 self.scope.variables |= place
-                said[self.key(equation, place)] += 1
+                statements[self.key(equation, place)] += 1
                 here = {**at, **{name: place[name] for name in ("i", "x") if name in place}}
                 yield from self.further_cases(equation, place, here)
                 for name, bound in self.instants(place):
@@ -115,10 +115,10 @@ class EquationGroup(ABC):
         if (needed := self.required_keys()) is None:
             return
         beside = Counter[Key]() if self.is_alone else self.statements_elsewhere()
-        total, required = said + beside, Counter(needed)
+        total, required = statements + beside, Counter(needed)
         for key in sorted(total.keys() | required.keys(), key=str):
             found = Case(
-                {**at, "how often it is given": "_".join(map(str, key))}, total[key], required[key], key in said
+                {**at, "how often it is given": "_".join(map(str, key))}, total[key], required[key], key in statements
             )
             yield found if found.agrees else replace(found, example=self.scene(at, found))
 

@@ -126,8 +126,8 @@ def is_complete(number: str, m: int) -> bool:
     if (m - known.system.smallest) % known.system.step:
         return False
     entry = PaperEntry(id=number, kind="delay", printed="")
-    said = Delays(entry, Reading(None), loaded_chain(known.name, m)).statements_elsewhere()
-    return said == Counter((name, rod) for name in "fg" for rod in range(1, m + 1))
+    statements = Delays(entry, Reading(None), loaded_chain(known.name, m)).statements_elsewhere()
+    return statements == Counter((name, rod) for name in "fg" for rod in range(1, m + 1))
 
 
 # solutions
@@ -146,10 +146,12 @@ def _solution_cases(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
         for m in sizes:
             group = Definitions(entry, reading, loaded_chain(name, m))
             scope, at = group.scope, {"example": name, "m": m}
-            said = Counter(group.key(reading.formula, place) for place in group.places(reading.formula))
+            statements = Counter(group.key(reading.formula, place) for place in group.places(reading.formula))
             required = Counter(group.required_keys())
-            for key in sorted(said.keys() | required.keys()):
-                yield Case({**at, "how often it is given": f"rod_{key[1]}"}, said[key], required[key], is_telling=False)
+            for key in sorted(statements.keys() | required.keys()):
+                yield Case(
+                    {**at, "how often it is given": f"rod_{key[1]}"}, statements[key], required[key], is_telling=False
+                )
             for tau in (fmpq(2, 3), fmpq(31, 9)):
                 for x in range(m + 1):
                     where = {**at, "t": tau * scope.units.l / scope.units.c_f, "node": x}

@@ -213,7 +213,7 @@ def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
 
 def end_of_contact(entry: PaperEntry) -> Test:
     """When the contact of Fig. 6 opens: to as many places as are printed."""
-    return Test("when the contact at x = 2 opens, in ball arithmetic", lambda said: _end_cases(said.formula))
+    return Test("when the contact at x = 2 opens, in ball arithmetic", lambda reading: _end_cases(reading.formula))
 
 
 def printed_end(entry: PaperEntry) -> float:
@@ -231,9 +231,9 @@ def _approximate(formula: Tree) -> tuple[Tree, Number]:
 def _end_cases(formula: Tree) -> Iterator[Case]:
     left, number = _approximate(formula)
     exact = Fraction(contact_end(figure(6)))
-    said = Scope({r"\tau": fmpq(exact.numerator, exact.denominator)}).value(left)
+    claim = Scope({r"\tau": fmpq(exact.numerator, exact.denominator)}).value(left)
     places = len(number.digits.partition(".")[2])
-    opens = f"{Decimal(int(said.numer())) / Decimal(int(said.denom())):.{places}f}"
+    opens = f"{Decimal(int(claim.numer())) / Decimal(int(claim.denom())):.{places}f}"
     yield Case({"x": 2, "places": places}, number.digits, opens, example=partial(_opening, float(number.digits)))
 
 

@@ -61,10 +61,10 @@ def _of_rates(name: str, hypothesis: str) -> Iterator[Case]:
     """Whether no power is higher than in the table just where the hypothesis holds."""
     for exact, true in chains_of_rates(name):
         kappa, gamma = exact.chain.parameters.kappa, exact.rates
-        said = "rates" not in hypothesis or len(set(gamma.values())) == len(gamma)
-        said = said and ("2" not in hypothesis or 2 * kappa[1] != kappa[exact.m])
+        claim = "rates" not in hypothesis or len(set(gamma.values())) == len(gamma)
+        claim = claim and ("2" not in hypothesis or 2 * kappa[1] != kappa[exact.m])
         at = {"m": exact.m, "kappa": dict(kappa), "rates": tuple(gamma.values())}
-        yield Case({**at, "claim": "no power is higher than in the table"}, said, true)
+        yield Case({**at, "claim": "no power is higher than in the table"}, claim, true)
 
 
 def _chains(name: str, hypothesis: str) -> Iterator[HighestPowers]:
@@ -159,17 +159,17 @@ def chains_of_rates(name: str) -> tuple[tuple[Exact, bool], ...]:
 
 def meetings(words: Words) -> Iterator[Case]:
     """Highest powers by what waves have met."""
-    for at, count, true, told in _meeting_counts(reflected_only=words["met"] == "reflected"):
-        said = count - {"one less than": 1, "": 0}[words["less"]]
-        yield Case(at, max(said, -1), true, true >= 0, told)
+    for at, count, true, scene in _meeting_counts(reflected_only=words["met"] == "reflected"):
+        claim = count - {"one less than": 1, "": 0}[words["less"]]
+        yield Case(at, max(claim, -1), true, true >= 0, scene)
 
 
 def connection(words: Words) -> Iterator[Case]:
     """Whether places with the same number have the same highest power, in each example."""
     powers: dict[tuple[object, int], int] = {}
-    for at, count, true, told in _meeting_counts(reflected_only=words["met"] == "reflected from"):
-        said = powers.setdefault((at["example"], max(count, 0)), true)
-        yield Case(at, said, true, true >= 0, told)
+    for at, count, true, scene in _meeting_counts(reflected_only=words["met"] == "reflected from"):
+        claim = powers.setdefault((at["example"], max(count, 0)), true)
+        yield Case(at, claim, true, true >= 0, scene)
 
 
 def _meeting_counts(
@@ -192,8 +192,8 @@ def _meeting_counts(
 def changes_1(words: Words) -> Iterator[Case]:
     """How long the highest powers of example I stay."""
     for m in (4, 6, 8):
-        said = {body: words["ends"] if body in (1, m - 1) else words["others"] for body in range(1, m, 2)}
-        yield from _stays("I", collision(m), said)
+        steps = {body: words["ends"] if body in (1, m - 1) else words["others"] for body in range(1, m, 2)}
+        yield from _stays("I", collision(m), steps)
 
 
 def changes_3(words: Words) -> Iterator[Case]:

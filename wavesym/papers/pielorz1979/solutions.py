@@ -144,11 +144,11 @@ def acting_moments(words: Words) -> Iterator[Case]:
             moments = range(1, m + 2)
             gains = {s: [exact.increment(f"M{s}", letter, i, n) for n in range(1, number + 1)] for s in moments}
             come = {s for s in moments if any(gains[s])}
-            said = {s for s in moments if s % 2 == ((words["odd"] if i % 2 else words["even"]) == "odd")}
+            claim = {s for s in moments if s % 2 == ((words["odd"] if i % 2 else words["even"]) == "odd")}
             true = come if words["quantity"] == "functions" else {s for s in moments if gains[s][-1]}
             at = {"m": m, "z": z, "function": f"{letter}'_{i}"}
-            told = table_scene(exact, (letter, i), number)
-            yield Case(at, said & come if words["arrived"] else said, true, bool(true), told)
+            scene = table_scene(exact, (letter, i), number)
+            yield Case(at, claim & come if words["arrived"] else claim, true, bool(true), scene)
 
 
 def missing_function(words: Words) -> Iterator[Case]:
@@ -172,9 +172,9 @@ def masses(words: Words) -> Iterator[Case]:
             kappa = {i: value / (2 if i == body else 1) for i, value in p.kappa.items()}
             inertia = p.inertia and {i: value * (2 if i == body else 1) for i, value in p.inertia.items()}
             heavier = Chain(exact.chain.system, exact.m, replace(p, kappa=kappa, inertia=inertia))
-            said = {"all rigid bodies": True, "no body": False}.get(words["bodies"], body > 0)
+            claim = {"all rigid bodies": True, "no body": False}.get(words["bodies"], body > 0)
             at = {"example": example, "m": exact.m, "mass of body": body, "claim": "exponents change"}
-            yield Case(at, said, _exponents(heavier) != _exponents(exact.chain))
+            yield Case(at, claim, _exponents(heavier) != _exponents(exact.chain))
 
 
 def _exponents(chain: Chain) -> frozenset[fmpq]:
@@ -192,8 +192,8 @@ def series(words: Words) -> Iterator[Case]:
             scope = FormScope(right_form(example), motion, "f")
             time = motion.loads[{"II": "M2", "III": "a"}[example]][1].time if example != "I" else 0
             with scope.bind({"n": n, "d": 2 * n + 1, "half": "even", "z": AT, "k": 1, "s": 2, "i": 1}):
-                said, at = read_formula(words[example]), {"form": form, "n": n}
-                yield case(at, lambda: scope.value(said), AT - 2 * n - time)  # noqa: B023
+                claim, at = read_formula(words[example]), {"form": form, "n": n}
+                yield case(at, lambda: scope.value(claim), AT - 2 * n - time)  # noqa: B023
 
 
 def earlier_intervals(words: Words) -> Iterator[Case]:

@@ -65,8 +65,8 @@ def _count(words: Words) -> Iterator[Case]:
 def _sizes(words: Words) -> Iterator[Case]:
     system = EXAMPLES[words["example"]].system
     for m in range(system.smallest, system.smallest + 5):
-        said = {"even": m % 2 == 0, "odd": m % 2 == 1, "any number": True}[words["sizes"]]
-        yield Case({"m": m}, said, (m - system.smallest) % system.step == 0)
+        claim = {"even": m % 2 == 0, "odd": m % 2 == 1, "any number": True}[words["sizes"]]
+        yield Case({"m": m}, claim, (m - system.smallest) % system.step == 0)
 
 
 def _origin(words: Words) -> Iterator[Case]:
@@ -85,8 +85,8 @@ def _masses(words: Words) -> Iterator[Case]:
         floors = [x for x, node in enumerate(chain.nodes) if node.left and node.right]
         scope = Scope(at)
         yield Case({**at, "mass of": "the foundation"}, places.get(int(words["foundation"])), 0)
-        said = [places.get(i) for i in span(read_range(f"i = {words['floors']}"), scope)]
-        yield Case({**at, "masses of": "the floors, in their order"}, said, floors)
+        claim = [places.get(i) for i in span(read_range(f"i = {words['floors']}"), scope)]
+        yield Case({**at, "masses of": "the floors, in their order"}, claim, floors)
         yield Case({**at, "mass of": "the roof"}, places.get(scope.whole(read_formula(words["roof"]))), chain.m)
 
 
@@ -135,18 +135,18 @@ def _zero(words: Words) -> Iterator[Case]:
 
 
 def _orders(words: Words) -> Iterator[Case]:
-    said = {{"first": 1, "second": 2, "third": 3}[word] for word in words["orders"].split(" and ")}
+    claim = {{"first": 1, "second": 2, "third": 3}[word] for word in words["orders"].split(" and ")}
     for name, known in EXAMPLES.items():
         true = {1 if equation.own.a == 0 else 2 for equation in delay_equations(known.system)}
-        yield Case({"example": name, "orders": "of the equations"}, said, true)
+        yield Case({"example": name, "orders": "of the equations"}, claim, true)
 
 
 def _list_sizes(words: Words) -> Iterator[Case]:
     numbers = words["sizes"].removeprefix(", where m = ").split(", ") if words["sizes"] else ("2", "4")
     first, second, *_ = map(int, numbers[:2])
     for m in range(2, 12, 2):
-        said = m >= first and (m - first) % (second - first) == 0
-        yield Case({"m": m, "what": "every function is given once"}, said, is_complete("(4.6)", m))
+        claim = m >= first and (m - first) % (second - first) == 0
+        yield Case({"m": m, "what": "every function is given once"}, claim, is_complete("(4.6)", m))
 
 
 def _follows(words: Words) -> Iterator[Case]:
@@ -165,8 +165,8 @@ def _while_closed(velocities: tuple[int, ...], words: Words) -> Iterator[Case]:
     if "than" in words:
         for x, strain in zip(contacts, at_first, strict=True):
             left, right = velocities[x // 2 - 1], velocities[x // 2]
-            said = right <= left if words["than"] == "faster than" else right >= left
-            yield Case({"velocities": velocities, "contact": x, "what": "closed at first"}, said, strain <= 0)
+            claim = right <= left if words["than"] == "faster than" else right >= left
+            yield Case({"velocities": velocities, "contact": x, "what": "closed at first"}, claim, strain <= 0)
     strains = {"strain": [str(x) for x in contacts]}
     look = "the strain at a contact becomes positive: (4.6) goes on as if it could pull"
     falling = list(velocities) == sorted(velocities, reverse=True)  # as in every scene

@@ -87,11 +87,13 @@ def part_of_form(entry: PaperEntry) -> Test:
         right = right_form(name)
         own = {part for part in parts_of(right.step) if _is_step(part) or _is_exponential(part)}
         (part,) = (part for part in own if isinstance(part, Call) is is_step)
-        said = [int(Scope().value(value)) for left, value in constants_in(reading.ranges).items() if left == _AT_0]
-        if len(said) != len(reading.ranges):
+        values_at_0 = [
+            int(Scope().value(value)) for left, value in constants_in(reading.ranges).items() if left == _AT_0
+        ]
+        if len(values_at_0) != len(reading.ranges):
             raise MeaninglessError("a range of something else")
         tried = replace(right, step=replace_part(right.step, part, reading.formula))
-        for value in said or at_0:
+        for value in values_at_0 or at_0:
             scope = type("At0", (FormScope,), {"heaviside_at_0": value})
             for found in form_cases(tried, scope=scope, chains=2):
                 yield replace(found, place={"H(0)": value, **found.place}) if is_step else found

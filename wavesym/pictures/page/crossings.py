@@ -59,7 +59,7 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
     words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
     bar = colour_bar(words, ends, TOP + _TALL + BELOW, signed=True)
-    told = (
+    description = (
         f"Colours show the {name} of every rod of the main line, place to the right and time upward to "
         f"{scale.format(until)}; waves are bands that slope by one rod in one crossing."
     )
@@ -68,7 +68,7 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     size = float(model.length.size) if model.length else 1.0
     frame = Frame(replace(x, high=size * long), y, axis_text("", model.length), scale.title).draw()
     return PagePicture(
-        title, picture(f"xt-{name}", title, told, height, frame, image, formal, nodes, bar, class_="plot")
+        title, picture(f"xt-{name}", title, description, height, frame, image, formal, nodes, bar, class_="plot")
     )
 
 

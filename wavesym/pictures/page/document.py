@@ -131,8 +131,8 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         curves = (
             panel(f"history-{k}", each, columns, until, scale, last=k == len(stack) - 1) for k, each in enumerate(stack)
         )
-        said = f"Curves have {columns} columns of time, not {most}, so that the page stays small"
-        notes = (*report.notes, *[said] * (columns < most))
+        note = f"Curves have {columns} columns of time, not {most}, so that the page stays small"
+        notes = (*report.notes, *[note] * (columns < most))
         return replace(report, histories=tuple(curves), columns=columns, notes=notes)
 
     return with_columns
@@ -188,8 +188,8 @@ def _facts(
     yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
     if model.damping is not None:
         yield "Damping", f"of modes: {model.damping.description}"
-    if told := _loads(model, loads):
-        yield "Loads", told
+    if load_texts := _loads(model, loads):
+        yield "Loads", load_texts
     yield "Horizon", scale.format(nearest(model.until))
     if model.clock is not None:
         yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross a rod of length 1"

@@ -59,9 +59,9 @@ def motion(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Mo
     still = int(np.argmax(np.max(np.abs(frames), axis=0)))
     title = "How the building sways" if sways else "How waves pass along the chain"
     name = axis_title(model, quantity.quantity, quantity.unit).replace("\n", " ")
-    told = f"Drawn at {scale.format(float(instants[still]))}; the largest {name} is {largest:.4g}."
+    description = f"Drawn at {scale.format(float(instants[still]))}; the largest {name} is {largest:.4g}."
     content, height = (_building if sways else _chain)(frames[:, still], quantity)
-    drawn = picture("motion", title, told, height, *content, class_="plot moving")
+    drawn = picture("motion", title, description, height, *content, class_="plot moving")
     return Motion(PagePicture(title, drawn), "".join(f"{each:02x}" for each in bytes_.ravel().tolist()), count, sways)
 
 

@@ -31,13 +31,13 @@ def along_pictures(model: Model, found: Sequence[LineHistories], scale: Timescal
             name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
             where = "height" if upright else "chain"
             title = f"Least and greatest {name} along the {where}"
-            told = " ".join(
+            description = " ".join(
                 f"{word}: {each.describe(scale)}."
                 for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
             )
             make = _over_height if upright else _along_line
             content, height = make(model, quantity, band, scale)
-            yield PagePicture(title, picture(f"along-{k}-{j}", title, told, height, content, class_="plot"))
+            yield PagePicture(title, picture(f"along-{k}-{j}", title, description, height, content, class_="plot"))
 
 
 def _over_height(model: Model, quantity: LineHistories, band: Band, scale: Timescale) -> tuple[Svg, float]:
@@ -107,12 +107,12 @@ def maps(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Iter
         for j, (band, own) in enumerate(zip(quantity.bands, values, strict=True)):
             name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
             title = f"{name} over place and time".capitalize()
-            told = " ".join(
+            description = " ".join(
                 f"{word}: {each.describe(scale)}."
                 for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
             )
             content, height = _map(model, quantity, band, own, largest, scale)
-            yield PagePicture(title, picture(f"map-{k}-{j}", title, told, height, content, class_="plot"))
+            yield PagePicture(title, picture(f"map-{k}-{j}", title, description, height, content, class_="plot"))
 
 
 def _map(

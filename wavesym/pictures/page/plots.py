@@ -66,13 +66,13 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
         marks.append(text(LEFT + 4, TOP + 11, given.summary, "start", class_="halo"))
     else:
         marks += [_label_near(at, y.pixel(value), words, above) for (value, at, words), above in _ends(spots)]
-    told = " ".join(_describe(history, scale) for history in given.histories)
+    description = " ".join(_describe(history, scale) for history in given.histories)
     quantity = given.histories[0].name if given.limits else given.title.split("\n")[0]
     title = f"{quantity} over time".capitalize()
     svg = picture(
         number,
         title,
-        told,
+        description,
         TOP + height + (BELOW if last else 8),
         frame.draw(numbers=last),
         placed,

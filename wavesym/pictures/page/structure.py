@@ -90,8 +90,8 @@ def _building(model: Model) -> Picture:
         for y in sorted({base - nearest(probe.rod - 1 + probe.place) * storey for probe in model.probes})
     ]
     kind = "moves with the ground" if network.points[0].motion else "is pushed by the force of the paper's (4.5)"
-    told = f"A building of {m} storeys, elastic columns between rigid floors; its foundation {kind}."
-    return Picture(concatenate(*parts), base + (60 if acting else 30), told)
+    description = f"A building of {m} storeys, elastic columns between rigid floors; its foundation {kind}."
+    return Picture(concatenate(*parts), base + (60 if acting else 30), description)
 
 
 def _floor_note(k: int, m: int) -> str:
@@ -129,8 +129,10 @@ class _Pen:
             f"{len(self.network.corners)} contacts" * bool(self.network.corners),
             "springs or dashpots" * any(not link.contact for link in self.network.links),
         ]
-        told = f"A chain of {len(self.network.bars)} rods and {bodies} rigid bodies"
-        return Picture(concatenate(*self.parts), y - _ROW + 90, f"{', with '.join([told, *filter(None, more)])}.")
+        description = f"A chain of {len(self.network.bars)} rods and {bodies} rigid bodies"
+        return Picture(
+            concatenate(*self.parts), y - _ROW + 90, f"{', with '.join([description, *filter(None, more)])}."
+        )
 
     @property
     def name_height(self) -> float:
@@ -167,7 +169,7 @@ class _Pen:
         if name:
             self.parts.append(text(8, y + 4, name, "start", class_="name"))
         for station, following in zip(stations, [*stations[1:], None], strict=True):
-            begun = x
+            start = x
             new = [point for point in station.points if point not in self.positions]
             for what, width in self._widths(station):
                 self._sign(what, x, y, width * shrink)
@@ -176,9 +178,9 @@ class _Pen:
                         self.positions[point] = x + width * shrink / 2, y
                         self._write_above(x + width * shrink / 2, y - 36 - self.name_height, what.name, names)
                 x += width * shrink
-            self.positions.update({point: ((begun + x) / 2, y) for point in new if point not in self.positions})
+            self.positions.update({point: ((start + x) / 2, y) for point in new if point not in self.positions})
             held = any(any(self._supports(point)) for point in new)
-            self._write_below((begun + x) / 2, y + 52, place_text(station.x, unit=self.length), numbers, beside=held)
+            self._write_below((start + x) / 2, y + 52, place_text(station.x, unit=self.length), numbers, beside=held)
             if following is not None and station.right is not None:
                 length = unit * float(following.x - station.x)
                 self._rod(station.right, x, length, y)

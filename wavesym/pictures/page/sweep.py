@@ -116,11 +116,11 @@ def _worst(outputs: list[SweepOutput]) -> PageTable:
     for output in outputs:
         for case, values in zip(_extremes(output), (output.least, output.greatest), strict=False):
             rows += [f"{values.flat[case]:.6g}", _link(case)]
-    told = [output for output in outputs if _extremes(output)]
+    with_extremes = [output for output in outputs if _extremes(output)]
     lines = zip(*[iter(rows)] * 4, strict=True)
     return PageTable(
         ("Output", "Least", "in", "Greatest", "in"),
-        tuple((_output_label(output), *line) for output, line in zip(told, lines, strict=True)),
+        tuple((_output_label(output), *line) for output, line in zip(with_extremes, lines, strict=True)),
         (),
     )
 
@@ -154,8 +154,8 @@ def _cases(found: SweepResults, outputs: list[SweepOutput], linked: set[int]) ->
     rows = []
     for case in _worst_first(outputs)[:most]:
         values = (f"{side.flat[case]:.6g}" for output in outputs for side in (output.least, output.greatest))
-        told = (value.replace("nan", "\u2013") for value in values)
-        rows.append((_link(case) if case in linked else str(case), *found.labels_at(case).values(), *told))
+        texts = (value.replace("nan", "\u2013") for value in values)
+        rows.append((_link(case) if case in linked else str(case), *found.labels_at(case).values(), *texts))
     note = f"{len(rows)} of {found.status.cases} cases, the worst first; wavesym sweep --table writes all"
     return PageTable(head, tuple(rows), (note,))
 

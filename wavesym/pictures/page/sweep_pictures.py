@@ -88,7 +88,7 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
     worst = int(np.nanargmax(output.size.ravel()))
     value = float(greatest[worst] if greatest[worst] >= -least[worst] else least[worst])
     title = f"{output.name} over {axis.name}"
-    told = f"Largest: {_value_text(value, output.unit)} where {_case_label(axis, worst)}."
+    description = f"Largest: {_value_text(value, output.unit)} where {_case_label(axis, worst)}."
     parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).draw()]
     for values, class_, sign in ((least, "least", -1.0), (greatest, "greatest", 1.0)):
         points = np.column_stack([along[done] - x.low, values[done]])
@@ -100,7 +100,7 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
         places = [(x.pixel(at + x.low), y.pixel(value)) for at, value in points.tolist()]
         parts.append(polyline(places, class_) if ordered else upright(places, y.pixel(0.0), class_))
     parts += _labelled_spot(x.pixel(float(along[worst])), y.pixel(value), _case_label(axis, worst), above=value > 0)
-    return PagePicture(title, picture(number, title, told, TOP + _TALL + BELOW, *parts, class_="plot"))
+    return PagePicture(title, picture(number, title, description, TOP + _TALL + BELOW, *parts, class_="plot"))
 
 
 def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis], beyond: list[str]) -> PagePicture:
@@ -119,12 +119,13 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     bar = colour_bar(name, (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW, signed=False)
     title = f"{output.name} over {across.name} and {upward.name}"
     ends = f"from {_value_text(low, output.unit)} to {_value_text(high, output.unit)}"
-    told = f"Colours show the size, {ends}, the largest where {where}."
+    description = f"Colours show the size, {ends}, the largest where {where}."
     marks = _labelled_spot(
         x.pixel(float(worst[0] + 1)), y.pixel(float(worst[1] + 1)), where, above=y.pixel(worst[1] + 1.0) > TOP + 30
     )
     return PagePicture(
-        title, picture(number, title, told, TOP + _MAP + BELOW + 34, frame.draw(), image, *marks, bar, class_="plot")
+        title,
+        picture(number, title, description, TOP + _MAP + BELOW + 34, frame.draw(), image, *marks, bar, class_="plot"),
     )
 
 
@@ -163,8 +164,8 @@ def _labelled_spot(x: float, y: float, words: str, *, above: bool) -> list[Svg]:
     """A spot and what it is, written towards the middle."""
     right = x < (LEFT + WIDTH - RIGHT) / 2
     short = _short(words)
-    said = text(x + (8 if right else -8), y + (-7 if above else 15), short, "start" if right else "end", class_="halo")
-    return [spot(x, y), said]
+    label = text(x + (8 if right else -8), y + (-7 if above else 15), short, "start" if right else "end", class_="halo")
+    return [spot(x, y), label]
 
 
 def _short(words: str) -> str:

@@ -29,7 +29,9 @@ Acts = Callable[[Mapping[str, Any]], LoadUnit]
 def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
     """A load's table. Raises the error of `table.refusal`."""
     table: dict[str, Any] = {}
-    said = {"unit", "samples"} | ({"record", "start", "column"} if "record" in load else set())  # converted below
+    physical_keys = {"unit", "samples"} | (
+        {"record", "start", "column"} if "record" in load else set()
+    )  # converted below
     for key, value in load.items():
         new = acting.renames.get(key, key)
         with key_context(key):
@@ -47,7 +49,7 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
                 table[new] = read_quantity(value, "time", int(key == "duration")) / seconds
             elif key == "spacing":
                 table[new] = read_quantity(value, "time", 1) / seconds
-            elif key not in said:
+            elif key not in physical_keys:
                 table[new] = value
     if "record" in load:
         table |= _read_record(load, acting, seconds)
@@ -112,7 +114,7 @@ def read(load: object, acts: Acts) -> object:
     with key_context("record"):
         try:
             recording = read_recording(
-                path, load.get("column"), lambda said: _spacing_in_file(said, dimension, spacing)
+                path, load.get("column"), lambda record: _spacing_in_file(record, dimension, spacing)
             )
         except SceneError as error:
             raise refusal(str(error)) from None
@@ -137,21 +139,21 @@ def _read_record(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -
             raise refusal(f"{show(load['record'])} is not a path; write that of a file")
         recording = Recording.model_validate(load["record"])  # as it is, or as it was dumped
         clock = _clock(recording.clock)
-        said = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
-    factor = _unit(load, acting) if said is None or "unit" in load else said
-    if said is not None and said != factor:
+        size = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
+    factor = _unit(load, acting) if size is None or "unit" in load else size
+    if size is not None and size != factor:
         written = show(WrittenDecimal(recording.unit))
         raise refusal(f"{show(load['unit'])}, but the file says {written}; write that, or nothing", "unit")
     made: dict[str, Any] = {"samples": [sample * factor for sample in recording.samples]}
     table: dict[str, Any] = {"record": made}
-    for key, least, told in (("spacing", 1, recording.spacing), ("start", 0, recording.start)):
-        if told is not None:
-            made[key] = told * clock / seconds
+    for key, least, value in (("spacing", 1, recording.spacing), ("start", 0, recording.start)):
+        if value is not None:
+            made[key] = value * clock / seconds
         if key in load:
             with key_context(key):
                 time = read_quantity(load[key], "time", least)
-                if told is not None and time != told * clock:
-                    written = f"{decimal_text(told)} {recording.clock or 's'}"
+                if value is not None and time != value * clock:
+                    written = f"{decimal_text(value)} {recording.clock or 's'}"
                     raise refusal(f"{show(load[key])}, but the file says {written}; write that, or nothing")
             table[key] = time / seconds
     return table

@@ -75,24 +75,24 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
         length = results.length(found.lengths[0]) if found.lines is not None else None
         made["system"] = _table(found.system).model_validate(found.system, context=length)
     seconds = found.rods.seconds
-    said = dict(fields)
+    table = dict(fields)
     inputs = []
     faults = Faults()
     if isinstance(loads := fields.get("load"), list | tuple):
-        said["load"], made["load"] = [], []
+        table["load"], made["load"] = [], []
         for k, load in enumerate(loads):
             with faults.gather("load", k):
-                said["load"].append(read(load, found.load_unit))
-                made["load"].append(_load(said["load"][-1], found, seconds))
+                table["load"].append(read(load, found.load_unit))
+                made["load"].append(_load(table["load"][-1], found, seconds))
     if isinstance(output := fields.get("output"), Mapping):
         with faults.gather("output"):
             made["output"] = _output(output, found, seconds)
     faults.refuse()
-    for acting in (found.load_unit(load) for load in said.get("load", ()) if isinstance(load, Mapping)):
+    for acting in (found.load_unit(load) for load in table.get("load", ()) if isinstance(load, Mapping)):
         size, text = results.unit_of(acting.dimension)
         inputs.append((acting.size / size, text))
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
-    return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
+    return PhysicalScene(plain(table), made, scale, found.kappa, tuple(inputs))
 
 
 def acts(fields: Mapping[str, Any]) -> Acts:

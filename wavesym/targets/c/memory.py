@@ -80,9 +80,9 @@ class Memory:
 
     def _value(self, expression: str) -> int:
         """An integer of constants."""
-        told = re.sub(r"sizeof\((\w+)\)", lambda of: str(self.size(of[1])), expression)
-        told = _CHOSEN.sub(r"(\2) if (\1) else (\3)", told)
-        return self._evaluate(ast.parse(told.strip(), mode="eval").body)
+        text = re.sub(r"sizeof\((\w+)\)", lambda of: str(self.size(of[1])), expression)
+        text = _CHOSEN.sub(r"(\2) if (\1) else (\3)", text)
+        return self._evaluate(ast.parse(text.strip(), mode="eval").body)
 
     def _evaluate(self, node: ast.expr) -> int:
         match node:

@@ -224,7 +224,7 @@ def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRunt
 def _struct_sizes(scene: Description, parts: Sequence[str], memory: Memory, inside: bool) -> Iterator[tuple[str, str]]:
     """The size of each struct, and what it is."""
     where = "kept in a model: it is too much for a stack" if inside else "`build` has it on its stack"
-    for struct, part, told in (
+    for struct, part, description in (
         ("model", "", "of each set of parameters that is kept"),
         ("work", "", f"while one is built; {where}"),
         ("tangent", "gradients", "with all that it needs while it is built"),
@@ -232,7 +232,7 @@ def _struct_sizes(scene: Description, parts: Sequence[str], memory: Memory, insi
         ("data", "misfit", "and besides as many numbers as data_size says"),
     ):
         if not part or part in parts:
-            yield str(memory.size(f"{scene.name}_{struct}")), f"{scene.name}_{struct}, {told}"
+            yield str(memory.size(f"{scene.name}_{struct}")), f"{scene.name}_{struct}, {description}"
 
 
 def _stack_sizes(
@@ -250,8 +250,8 @@ def _stack_sizes(
         yield str(building + memory.stack(texts.read, texts.gradients)), "functions of a tangent"
     if "batch" in parts:
         misfit = (texts.misfit,) if "misfit" in parts else ()
-        told = "functions of a batch and of data" if misfit else "functions of a batch"
-        yield str(building + memory.stack(texts.lanes, texts.batch, *misfit, num="wide")), told
+        description = "functions of a batch and of data" if misfit else "functions of a batch"
+        yield str(building + memory.stack(texts.lanes, texts.batch, *misfit, num="wide")), description
     if "bound" in parts:
         bounded = building + memory.stack(texts.read, texts.blocks, texts.bound)
         yield str(bounded + work), "error_bound"

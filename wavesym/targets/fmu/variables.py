@@ -93,8 +93,8 @@ def _variables(program: Program) -> Iterator[Variable]:
             about = "what the model was made with; a change takes another one"
             yield Variable(f"{name}_{index}", "local", "constant", about, literal(nearest(value)))
     for field in settable:
-        for label, told, value, given in zip(field.labels, field.captions, field.values, field.units, strict=True):
-            about = f"{told}; may be set until initialization is over"
+        for label, caption, value, given in zip(field.labels, field.captions, field.values, field.units, strict=True):
+            about = f"{caption}; may be set until initialization is over"
             yield Variable(label, "parameter", "fixed", about, literal(nearest(value)), given.text)
     about = "whether a load goes in a straight line to its value at the end of a step; else it is held over the step"
     yield Variable("linear", "parameter", "fixed", about, str(stepped).lower(), kind="Boolean")
