@@ -43,7 +43,7 @@ def test_sets_side_by_side_are_what_they_are_alone(make, flags, tmp_path):
     "change",
     [
         ("all->rates[k], lane) = law->rates[k]", "all->rates[k], 0) = law->rates[k]"),
-        ("panel] + degree + 1, (size_t)(higher", "panel] + degree + 1, 0 * (size_t)(higher"),
+        ("panel] + degree + 1, higher - degree + SPARE - 1)", "panel] + degree + 1, 0 * higher)"),
         ("AT((x)[(set) / SETS], (set) % SETS)", "AT((x)[(set) / SETS], 0)"),
     ],
 )

@@ -35,7 +35,7 @@ MORE = {
     "bound": {"error_bound", "error_bound_with"},
 }
 OF_BOUNDS = re.compile(
-    r"^ +for [^\n]*\{\n[^\n]*->(?:weight|impedance)\b[^\n]*\n +\}\n|^ +law->(?:weight|impedance)\b[^\n]*\n",
+    r"^ +for [^\n]*\{\n[^\n]*->(?:weight|impedance)\b[^\n]*\n +\}\n|^ +(?:law|values)->(?:weight|impedance)\b[^\n]*\n",
     re.MULTILINE,
 )
 """Where they have their laws."""
