@@ -17,7 +17,7 @@ import pytest
 
 from tests.papers.small import ENTRIES, PAPER, SCENE, entry, findings, records
 from wavesym.papers.pages.document import SIGNS, Findings, counts, fields, statistics
-from wavesym.papers.pages.formats import CHARACTERS, FORMATS, as_json, as_latex, html, markdown, plain, tex, text
+from wavesym.papers.pages.formats import CHARACTERS, FORMATS, TEXT, as_json, as_latex, html, markdown, tex, text
 from wavesym.papers.pages.lines import Different, correction, readable, statement
 from wavesym.papers.record import VERDICTS
 
@@ -141,7 +141,7 @@ def test_counts_add_up() -> None:
     assert sum(count for _, count in made.counts) == len(ENTRIES)
     table = statistics(made).table
     assert table is not None
-    assert [[plain(cell.line) for cell in row] for row in (table.heads, *table.rows)] == [
+    assert [[TEXT.line(cell.line) for cell in row] for row in (table.heads, *table.rows)] == [
         ["", "holds", "misprint", "unreadable"],
         ["Section 1", "1", "1", "1"],
         ["Table 1", "3", "2", ""],
@@ -173,10 +173,10 @@ def test_a_counterexample_can_be_run() -> None:
     wrong, right, unreadable = ({field.name: field for field in fields(record, found)} for record in found.records)
     assert wrong["reproduce"].listing == SCENE
     assert tomllib.loads(wrong["reproduce"].listing)["name"] == "counterexample"
-    assert plain(wrong["then type"].line) == "wavesym tables 1.2.1.toml"
+    assert TEXT.line(wrong["then type"].line) == "wavesym tables 1.2.1.toml"
     assert "reproduce" not in right
     assert not unreadable["reproduce"].listing
-    assert "no chain behind it" in plain(unreadable["reproduce"].line)
+    assert "no chain behind it" in TEXT.line(unreadable["reproduce"].line)
     for name, page in PAGES.items():
         told = page(findings(reproduce=True))
         assert "wavesym tables 1.2.1.toml" in told.replace(r"\_", "_"), name
@@ -333,7 +333,7 @@ def test_sentences_are_compared_word_by_word_and_their_formulas_are_read() -> No
     wrong = entry("text.2", "Cztery pręty.", "section 1", slip, english=said)
     record = records(wrong)[0]
     sides = statement(record)[0], correction(record)[0]
-    one, other = ([plain((part,)) for part in side if isinstance(part, Different)] for side in sides)
+    one, other = ([TEXT.line((part,)) for part in side if isinstance(part, Different)] for side in sides)
     assert (one, other) == (["m + 1", "four"], ["m - 1"])
     found = Findings(PAPER, records(wrong))
     assert '<mark><span class="formula"><math displaystyle="true">' in html(found)

@@ -32,6 +32,47 @@ from wavesym.rendering import render
 WIDTH = 120
 
 
+@dataclass(frozen=True)
+class Style:
+    """How a format writes the parts of a line: words, code, a formula, and what is marked as different."""
+
+    words: Callable[[str], str] = str
+    code: Callable[[str], str] = lambda text: " ".join(text.split())
+    formula: Callable[[Formula], str] = lambda formula: " ".join(formula.text.split())
+    mark: Callable[[str], str] = str
+
+    def line(self, line: Line) -> str:
+        """A line in this format."""
+        return "".join(map(self._part, line))
+
+    def _part(self, part: Inline) -> str:
+        match part:
+            case Formula():
+                return self.formula(part)
+            case Code(text):
+                return self.code(text)
+            case Different(inner):
+                return self.mark(self._part(inner))
+        return self.words(part)
+
+
+TEXT = Style()
+"""Formulas as they stand in the data."""
+MARKDOWN = Style(code=lambda text: f"`{TEXT.code(text)}`", formula=lambda formula: f"`{TEXT.formula(formula)}`")
+HTML = Style(
+    words=escape,
+    code=lambda text: f"<code>{escape(text)}</code>",
+    formula=lambda formula: f'<span class="formula">{mathml(formula.tree)}</span>',
+    mark=lambda part: f"<mark>{part}</mark>",
+)
+LATEX = Style(
+    words=lambda text: tex(text),
+    code=lambda text: rf"\texttt{{{tex(TEXT.code(text))}}}",
+    formula=lambda formula: f"$\\displaystyle {latex(formula.tree)}$",
+    mark=lambda part: rf"\markedtext{{{part}}}",
+)
+
+
 # text
 
 
@@ -76,8 +117,8 @@ def _text_field(field: Field) -> Iterator[str]:
     for number, line in enumerate(field.lines):
         name = "range" if number and field.name in ("printed", "corrected", "in English") else field.name
         yield fill(
-            f"{name:11}{plain(line)}", WIDTH, initial_indent="    ", subsequent_indent=" " * 15, break_long_words=False,
-            break_on_hyphens=False,
+            f"{name:11}{TEXT.line(line)}", WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 15,
+            break_long_words=False, break_on_hyphens=False,
         )  # fmt: skip
     if field.listing:
         yield f"\n{indent(field.listing.rstrip(), ' ' * 4)}\n"
@@ -85,7 +126,7 @@ def _text_field(field: Field) -> Iterator[str]:
 
 def _text_table(table: Table) -> str:
     """Columns as wide as their cells, the last one as wide as need be; rows that do not fit are wrapped."""
-    rows = [[plain(cell.line) for cell in row] for row in (table.heads, *table.rows)]
+    rows = [[TEXT.line(cell.line) for cell in row] for row in (table.heads, *table.rows)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)][:-1]
     if sum(widths) > WIDTH // 2:
         lines = (": ".join(filter(None, row)) for row in rows[1:])
@@ -94,20 +135,6 @@ def _text_table(table: Table) -> str:
         "  ".join([*(f"{cell:{width}}" for cell, width in zip(row, widths, strict=False)), row[-1]]) for row in rows
     )
     return "\n".join(line.rstrip() for line in padded)
-
-
-def plain(line: Line) -> str:
-    """A line as words, formulas as they stand in the data."""
-    return "".join(map(_plain, line))
-
-
-def _plain(part: Inline) -> str:
-    match part:
-        case Code(words) | Formula(words):
-            return " ".join(words.split())
-        case Different(inner):
-            return _plain(inner)
-    return part
 
 
 # JSON
@@ -120,7 +147,7 @@ def as_json(findings: Findings) -> str:
 
 def _object(record: Record, findings: Findings) -> dict[str, object]:
     entry, slip, mutations = record.entry, record.entry.slip, record.mutations
-    by_name = {field.name: plain(field.line) for field in fields(record, findings)}
+    by_name = {field.name: TEXT.line(field.line) for field in fields(record, findings)}
     found: dict[str, object] = {
         "id": record.id,
         "where": entry.where,
@@ -175,7 +202,7 @@ def _json_reproduction(record: Record) -> dict[str, str] | None:
 def markdown(findings: Findings) -> str:
     """A document that lies beside the code: the errata that are kept in generated/."""
     made = document(findings, "markdown")
-    parts = ["# Errata", f"{to_markdown(made.source)} {made.introduction}"]
+    parts = ["# Errata", f"{MARKDOWN.line(made.source)} {made.introduction}"]
     for section in made.sections:
         parts += [f"## {section.title}"] * bool(section.title)
         for block in section.blocks:
@@ -189,18 +216,13 @@ def _markdown_block(block: Block) -> Iterator[str]:
     if block.text:
         yield block.text
     if block.table:
-        heads, *rows = ([to_markdown(cell.line) for cell in row] for row in (block.table.heads, *block.table.rows))
+        heads, *rows = ([MARKDOWN.line(cell.line) for cell in row] for row in (block.table.heads, *block.table.rows))
         lines = [heads, ["---"] * len(heads), *rows]
         yield "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
     for entry in block.entries:
         yield f"**{entry.id}**"
-        yield "\n".join(f"- {field.name}: {to_markdown(field.line)}" for field in entry.fields)
+        yield "\n".join(f"- {field.name}: {MARKDOWN.line(field.line)}" for field in entry.fields)
         yield from (f"```toml\n{field.listing.rstrip()}\n```" for field in entry.fields if field.listing)
-
-
-def to_markdown(line: Line) -> str:
-    """A line as markdown."""
-    return "".join(f"`{_plain(part)}`" if isinstance(part, (Code, Formula)) else _plain(part) for part in line)
 
 
 # HTML and LaTeX
@@ -214,23 +236,7 @@ class _HtmlContext:
 
 def html(findings: Findings) -> str:
     """One file: MathML, no script, nothing from the network. WavesymError without the library that writes MathML."""
-    return render("papers/errata.html.j2", _HtmlContext(document(findings, "html"), html_line))
-
-
-def html_line(line: Line) -> str:
-    """A line as HTML."""
-    return "".join(map(_html, line))
-
-
-def _html(part: Inline) -> str:
-    match part:
-        case Formula(_, tree):
-            return f'<span class="formula">{mathml(tree)}</span>'
-        case Code(words):
-            return f"<code>{escape(words)}</code>"
-        case Different(inner):
-            return f"<mark>{_html(inner)}</mark>"
-    return escape(part)
+    return render("papers/errata.html.j2", _HtmlContext(document(findings, "html"), HTML.line))
 
 
 @dataclass(frozen=True)
@@ -242,23 +248,7 @@ class _LatexContext:
 
 def as_latex(findings: Findings) -> str:
     """An appendix that can be cited, for pdfLaTeX and LuaLaTeX; pure ASCII."""
-    return render("papers/errata.tex.j2", _LatexContext(document(findings, "latex"), latex_line, tex))
-
-
-def latex_line(line: Line) -> str:
-    """A line as LaTeX."""
-    return "".join(map(_latex, line))
-
-
-def _latex(part: Inline) -> str:
-    match part:
-        case Formula(_, tree):
-            return f"$\\displaystyle {latex(tree)}$"
-        case Code(words):
-            return rf"\texttt{{{tex(' '.join(words.split()))}}}"
-        case Different(inner):
-            return rf"\markedtext{{{_latex(inner)}}}"
-    return tex(part)
+    return render("papers/errata.tex.j2", _LatexContext(document(findings, "latex"), LATEX.line, tex))
 
 
 CHARACTERS: Mapping[str, str] = {
