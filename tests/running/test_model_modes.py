@@ -2,11 +2,17 @@
 
 import numpy as np
 import pytest
+from flint import fmpq
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.linalg import eigh
 from scipy.signal import lsim
 
 import wavesym
+from tests.support.drawn import systems
 from wavesym.errors import UnservedError, WavesymError
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.modes.evaluator import modes
 
 STOREYS = 4
 SPACING = 0.05
@@ -207,3 +213,65 @@ def test_a_number_that_changes_a_delay_is_refused_for_marches_with_what_takes_it
     undamped = FRAME.with_({"system.damping": 0})
     with pytest.raises(UnservedError, match=r"--runtime: stiffness changes how long a wave takes .* wavesym.model"):
         wavesym.generate(undamped, runtime=["stiffness"])
+
+
+def test_where_doubles_have_no_shape_nothing_is_claimed():
+    """The node between two rods alike is at rest in some modes: there K has no value."""
+    scene = wavesym.Scene(
+        name="alike",
+        system={
+            "type": "chain",
+            "parts": [
+                {"motion": "acceleration", "name": "g"},
+                {"rod": 1},
+                {"mass": 1, "name": "n"},
+                {"rod": 1},
+                "fixed",
+            ],
+            "damping": "1/20",
+        },
+        load=[{"at": "g", "times": [0, 1], "ramps": [1, -1]}],
+        output={"until": 9, "tolerance": "1e-2", "strain": ["0"], "relative": ["n"]},
+    )
+    model = wavesym.model(scene, ["mass"])
+    values, checks = model.values([4.0, 9.0], mass=[1.0, 1.2]), model.check(mass=[1.0, 1.2])
+    assert np.all(np.isfinite(values[np.isfinite(checks.estimate)]))
+    true = np.stack([wavesym.run(scene, times=[4.0, 9.0])[name] for name in model.outputs])
+    assert np.abs(values[0] - true).max() <= checks.estimate[0] * np.abs(true).max() * 2
+
+
+@pytest.mark.slow
+@settings(max_examples=20, deadline=None)
+@given(st.data())
+def test_errors_of_drawn_frames_are_within_estimates(data):
+    """Equal and nearly equal storeys, few and many modes; beside a program of proved modes of the same numbers."""
+    table = data.draw(systems(("building",), largest=3)) | {"base": "ground"}
+    damping = data.draw(st.sampled_from(["1/100", "1/20", ["1/10", "1/50"], {"ratio": "1/20", "modes": [1, 2]}]))
+    slopes = data.draw(st.lists(st.integers(-4, 4).filter(bool), min_size=3, max_size=3))
+    scene = wavesym.Scene(
+        name="drawn",
+        system={**table, "damping": damping},
+        load=[{"times": [0, "7/3", "5/2"], "a": [0, 0, 0], "b": slopes}],
+        output={
+            "until": 12,
+            "tolerance": data.draw(st.sampled_from(["1e-1", "1e-2"])),
+            "strain": ["0", "1/2"],
+            "drift": [1],
+            "velocity": [table["m"]],
+            "acceleration": [1],
+        },
+    )
+    model = wavesym.model(scene, ["stiffness", "rod_mass", "mass"])
+    factors = st.sampled_from([1.0, 1.0, 1.000001, 0.7, 1.9])
+    sets = {
+        name: own * data.draw(st.lists(factors, min_size=len(own), max_size=len(own)))
+        for name, own in model.parameters.items()
+    }
+    numbers = np.concatenate(list(sets.values()))
+    parameters = model._engine._parameters
+    proved = modes(parameters.exact(numbers).tolerating(fmpq(1, 10**3)), DOUBLE)
+    taus = np.linspace(0, 12, 49)
+    off = np.abs(model.values(taus, **sets)[0] - proved.scheme.evaluate(taus)).max(axis=1)
+    estimate = model.check(**sets).estimate[0]
+    for error, output in zip(off, proved.outputs, strict=True):
+        assert error <= (estimate + output.bound) * 1.1 * output.largest

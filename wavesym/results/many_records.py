@@ -161,7 +161,8 @@ def _by_modes(modes: _Modes, records: ManyRecords) -> RecordedExtremes:
     errors += (_ROUNDING * np.sqrt(records.samples.shape[1]) + chain.looseness(count)) * largest
     errors[:, np.array(chain.zero_outputs)] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        bounds = np.where(errors > 0, errors / np.maximum(largest - errors, 0.0), 0.0).max(axis=1, initial=0.0)
+        relative = np.where(errors == 0, 0.0, errors / np.maximum(largest - errors, 0.0))
+    bounds = np.nan_to_num(relative, nan=inf, posinf=inf).max(axis=1, initial=0.0)
     zero_within(values, taus, bounds[:, None, None], 0.0)  # all are at rest at first
     return RecordedExtremes(values, taus, bounds, count, np.empty((*values.shape[:2], 0)))
 

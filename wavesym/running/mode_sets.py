@@ -54,7 +54,8 @@ class ModalSets:
         found = no_sets(len(given), (len(self.model.probes), 4))
         found.values[:] = np.nan
         for row, each in self._fill(given, found, np.empty(0)):
-            found.values[row, :, ::2], found.values[row, :, 1::2] = each.values[0], each.taus[0]
+            if np.isfinite(each.bounds[0]):  # else nothing is known
+                found.values[row, :, ::2], found.values[row, :, 1::2] = each.values[0], each.taus[0]
         return found
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:

@@ -31,7 +31,7 @@ from wavesym.programs.mode_sets.network import (
     pattern,
     stacked,
 )
-from wavesym.programs.modes.loads import Numbers
+from wavesym.programs.modes.loads import Numbers, Roughness
 from wavesym.programs.modes.projection import (
     Driver,
     ModalOutput,
@@ -200,6 +200,11 @@ class ModesOfSet(UndampedModes):
 
     def project(self, count: int) -> Projection:
         return self.sets.projection(count).of(self.number)
+
+    def errors(self, known: Projection, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+        """As of proved modes; infinite where doubles have no shape."""
+        with np.errstate(invalid="ignore"):
+            return np.nan_to_num(super().errors(known, count, loads), nan=np.inf, posinf=np.inf)
 
     def looseness(self, count: int) -> Numbers:
         """A frequency that is a little wrong is so for as long as its mode remembers; a shape has some of its
