@@ -160,7 +160,7 @@ def missed(model, make, numbers, count=41):
     tau = np.linspace(0, model.tau_max, count)
     true = wavesym.evaluator(make(exact(numbers)))(tau)
     largest = np.max(np.abs(true), axis=1)
-    errors = np.max(np.abs(model.run(tau, **numbers)[0] - true), axis=1)
+    errors = np.max(np.abs(model.values(tau, **numbers)[0] - true), axis=1)
     assert np.all(errors[largest == 0] == 0)
     return float(np.max(errors[largest > 0] / largest[largest > 0], initial=0.0))
 
