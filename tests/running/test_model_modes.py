@@ -209,6 +209,11 @@ def test_what_modes_cannot_give_is_refused_in_one_line(sprung):
         wavesym.model(stepped, ["mass"])
 
 
+def test_c_of_a_damped_structure_is_refused_with_what_takes_its_numbers():
+    with pytest.raises(UnservedError, match=r"system.damping: .* wavesym.model\(scene, "):
+        wavesym.generate(FRAME, runtime=["mass"])
+
+
 def test_a_number_that_changes_a_delay_is_refused_for_marches_with_what_takes_it():
     undamped = FRAME.with_({"system.damping": 0})
     with pytest.raises(UnservedError, match=r"--runtime: stiffness changes how long a wave takes .* wavesym.model"):

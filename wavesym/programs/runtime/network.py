@@ -83,7 +83,11 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
             f"--runtime: {name} {OF_MODES[name]}, which no march supports (modes do, in Python: "
             f'wavesym.model(scene, ["{name}"]), and in sweeps)'
         )
-    model.refuse_damping()
+    if model.damping is not None:
+        raise UnservedError(
+            "system.damping: supported by modes only, which --runtime does not make (take them in Python, "
+            'wavesym.model(scene, ["stiffness", "mass", "damping", "load"]), or sweeps)'
+        )
     for point in network.points:
         if point.motion is not None and point.velocity != 0:
             raise UnservedError(
