@@ -137,3 +137,31 @@ def test_commands_of_the_documents_name_these_scenes() -> None:
     text = (FOLDER / "README.md").read_text(encoding="utf-8")
     used = set(re.findall(r"(\w+)\.toml", "".join(re.findall(r"```(?:sh|python)\n(.*?)```", text, re.DOTALL))))
     assert used == set(SCENES)
+
+
+CORNERS = FOLDER.parent / "corners"
+
+
+def test_the_block_slides_as_far_as_newmark_says() -> None:
+    """V^2 / (2 g N) (1 - N / A), of a rectangular pulse of A = 0.5 g for 0.4 s and friction of N = 0.2 g."""
+    (block,) = wavesym.summary(Scene.from_toml(CORNERS / "sliding_block.toml")).links or ()
+    g, a, n = 9.80665, 0.5, 0.2
+    v = a * g * 0.4
+    assert block.set.value == pytest.approx(1000 * v**2 / (2 * g * n) * (1 - n / a), rel=1e-15)
+    assert block.set.unit == "mm"
+
+
+def test_teeth_part_and_strike_at_one_flank_or_the_other() -> None:
+    """There the pinion is where it was against the gear, or has crossed the play of 10 mrad."""
+    scene = Scene.from_toml(CORNERS / "gears_with_backlash.toml")
+    events = wavesym.run(scene).events
+    motor, gear = wavesym.evaluator(scene)([event.double for event in events])[:2]
+    assert [event.kind for event in events] == ["lets go", "engages"] * 6
+    assert {round(abs(play), 9) for play in (motor - gear).tolist()} == {0, 10}
+
+
+def test_a_driven_pile_gives_its_energy_to_the_soil() -> None:
+    """Of 16 kJ that the ram brings, what it and the pile keep and dashpots take is left: the soil's share is less."""
+    soil = wavesym.summary(Scene.from_toml(CORNERS / "smith_pile.toml")).links or ()
+    assert [link.law for link in soil] == ["spring", "spring"]
+    assert 0 < sum(link.dissipated.value for link in soil) < 16_000

@@ -142,7 +142,7 @@ def _lengths(axes: Axes, label: str, length: float) -> None:
     low, high = axes.get_xlim()
     end = high * length * (1 + 1e-9)  # rounding must not take the tick at the end
     places = [x for x in MaxNLocator(len(axes.get_xticks())).tick_values(0, high * length) if x <= end]
-    axes.set_xticks([min(place / length, high) for place in places], [f"{place:.4g}" for place in places])
+    axes.set_xticks([min(place / length, high) for place in places], [f"{place:.6g}" for place in places])
     axes.set_xlim(low, high)
     axes.set_xlabel(label)
 

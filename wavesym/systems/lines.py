@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from wavesym.fields.table import refusal, show
-from wavesym.systems.parts import BETWEEN, ChainPart, ContactPart, LinkPart, MotionPart, RodPart
+from wavesym.systems.parts import BETWEEN, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart
 
 Keys = tuple[str | int, ...]
 PlacedNode = tuple[int, ChainPart | str]
@@ -39,7 +39,7 @@ def alternating(
         if 0 < k < len(parts) - 1 and (part in ("free", "fixed", "absorbing") or isinstance(part, MotionPart)):
             raise refusal("an end between other parts; write a mass or a joint", *at, k)
         nodes[-1] = k, part
-    _refuse_empty(between, at, branch, nodes[0] is not None)
+    _refuse_empty(nodes[0], between, at, branch)
     _refuse_ends(nodes, between, at, branch)
     return nodes, between
 
@@ -50,9 +50,11 @@ def _refuse_loose(one: BETWEEN, other: BETWEEN, at: Keys) -> None:
         raise refusal("a contact beside a contact; write a rod or a mass between them", *at)
 
 
-def _refuse_empty(between: Sequence[PlacedBetween], at: Keys, branch: bool, wheel: bool) -> None:
-    """A chain has something between its nodes; a branch may be a `wheel` alone."""
-    if not between and not (branch and wheel):
+def _refuse_empty(node: PlacedNode | None, between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:
+    """A chain has something between its nodes, unless the ground holds its only one; a branch may be a wheel alone."""
+    part = node[1] if node else None
+    held = isinstance(part, PointPart) and (part.friction or part.spring or part.dashpot)
+    if not between and not held and not (branch and node):
         raise refusal("no rod, spring or dashpot; write at least one", *at)
     if between and not branch and not any(isinstance(part, RodPart | LinkPart) for _, part in between):
         raise refusal("contacts alone; write a rod, a spring or a dashpot, too", *at)

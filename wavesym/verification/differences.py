@@ -28,6 +28,8 @@ from wavesym.verification.problem import BranchChange, Change, CornerProblem, Kn
 
 Instants = NDArray[np.int_]
 
+_STEPS_WITHOUT_RODS = 64
+
 COARSEST = 16
 """Cells per rod of the coarsest grid, at least."""
 
@@ -75,8 +77,8 @@ class SpaceTimeGrid:
 
     @property
     def cells(self) -> int:
-        """How many the shortest bar has."""
-        return int(min(self.problem.delays) / self.step)
+        """How many the shortest bar has; all of the time where there is none."""
+        return int(min(self.problem.delays, default=Fraction(self.problem.until)) / self.step)
 
     @property
     def is_aligned(self) -> bool:
@@ -102,7 +104,7 @@ class SpaceTimeGrid:
         Fronts set out from points at multiples of the delays' common measure after 0, after every load, and after
         what happened at contacts: `struck` has when, and how well that is known.
         """
-        measure, step = self.problem.measure, float(self.step)
+        measure, step = self.problem.measure or 2 * Fraction(until), float(self.step)
         cuts = {event.time % measure for event in self.problem.events} | {Fraction(0)}
         reaches = [1 if _is_whole(self._place(reading)) else _STENCIL for reading in self.problem.readings]
         instants = np.arange(1, int(until / step) - max(reaches) + 1)
@@ -246,6 +248,8 @@ class SpaceTimeGrid:
 
 def coarsest_grid(problem: CornerProblem, until: Fraction, kind: type[SpaceTimeGrid] = SpaceTimeGrid) -> SpaceTimeGrid:
     """The coarsest grid of a kind: loads and readings are on it where their denominators are small."""
+    if not problem.delays:
+        return kind(problem, until / _STEPS_WITHOUT_RODS)
     measure, common = problem.measure, 1
     offsets = [fraction(each.place) * problem.delays[each.rod - 1] for each in problem.readings if each.point is None]
     for time in (*(event.time for event in problem.events), *offsets):

@@ -170,6 +170,8 @@ def _cached_solutions(known: ReferenceOutputs) -> _Solutions | str:
 
 def differences(known: ReferenceOutputs) -> list[Outcome]:
     """Central differences with N, 2N and 4N cells a rod, at instants away from fronts."""
+    if not known.integration_model.network.bars:
+        return refused_outcomes(known, "to", "there is no rod for a grid")
     return _compare_steps(known, SpaceTimeGrid)
 
 
@@ -185,8 +187,6 @@ def _compare_steps(known: ReferenceOutputs, kind: type[SpaceTimeGrid]) -> list[O
     that the same happens at them with 2N and 4N, and that is one more front.
     """
     model = known.integration_model
-    if not model.network.bars:
-        return refused_outcomes(known, "to", "there is no rod for a grid")
     first, struck = _grid(model, kind), list[tuple[Change, float]]()
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     while first.tau(1) > _STOPPED * first.problem.soonest:
@@ -282,11 +282,10 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
     if all(model.network.links[link].contact for link in model.network.corners):
         seen["fronts"] = None if isinstance(solved, str) else CornerHistory(solved.struck, 0.0)
     notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
-    for name, kind in (("grid", SpaceTimeGrid), ("midpoint", MidpointGrid)):
+    kinds: dict[str, type[SpaceTimeGrid]] = {"grid": SpaceTimeGrid} if judged.network.bars else {}
+    for name, kind in (kinds | {"midpoint": MidpointGrid}).items():
         sharp = _SHARP if isinstance(solved, str) else inf  # nothing else is
-        stepped = (
-            _grid(judged, kind).resolve_changes(known.until, MOST_MOVED / 8, sharp) if judged.network.bars else None
-        )
+        stepped = _grid(judged, kind).resolve_changes(known.until, MOST_MOVED, sharp)
         seen[name] = CornerHistory(stepped[1], LATE * float(stepped[0].step)) if stepped else None
         notes += [] if stepped else [f"{model.name}: {_NO_GRID} ({name})"]
     outcomes = [Outcome("corners", {}, True, note) for note in notes]

@@ -58,7 +58,7 @@ class _Motion:
         h = self._h = float(grid.step)
         times: Array = h * np.arange(steps + 1, dtype=np.float64)
         self._ends, self._middles = times, times[:-1] + h / 2
-        self._lags = np.repeat([int(delay / grid.step) for delay in problem.delays], 2)
+        self._lags = np.repeat(np.array([int(delay / grid.step) for delay in problem.delays], dtype=int), 2)
         self._beyond = np.arange(2 * len(problem.delays)) ^ 1
         self._sent = np.zeros((steps, 2 * len(problem.delays)))
         self._v, self._u = np.zeros((steps, problem.points)), np.zeros((steps + 1, problem.points))

@@ -139,13 +139,15 @@ class CornerProblem(Problem):
     @cached_property
     def worth(self) -> tuple[float, float]:
         """A displacement and a force that the start and the loads are worth: what is far smaller is noise."""
-        longest = float(max(self.delays))
+        longest = float(max(self.delays, default=self.until))
+        # what resists: rods, or without any what has mass over all of the time
+        resisting = self.impedance if len(self.impedance) else self.mass[self.mass > 0] / longest
         found = [*self.velocity, *self.start_velocity, *(self.speed * self.start_strain)]
         for event in self.events:
             size = sum(abs(c) * longest**k for k, c in enumerate(event.coefficients))
-            found.append(size / float(np.min(self.impedance)) if self.is_free[event.point] else size)
+            found.append(size / float(np.min(resisting)) if self.is_free[event.point] else size)
         pace = float(np.max(np.abs(found))) or 1.0
-        return pace * longest, pace * float(np.max(self.impedance))
+        return pace * longest, pace * float(np.max(resisting))
 
     @cached_property
     def swings(self) -> float:

@@ -103,7 +103,7 @@ def _chain(frame: Points, quantity: LineHistories) -> tuple[list[Svg], float]:
     ]
     frame_ = element("rect", x=_LEFT, y=16.0, width=WIDTH - 2 * _LEFT, height=_ROD, fill="none", stroke="#59636e")
     words = f"{quantity.quantity}: blue below 0, red above"
-    numbers = text(_LEFT, 78, f"{low:.4g}"), text(WIDTH - _LEFT, 78, f"{high:.4g}")
+    numbers = text(_LEFT, 78, f"{low:.6g}"), text(WIDTH - _LEFT, 78, f"{high:.6g}")
     return [*pieces, frame_, *numbers, text(WIDTH / 2, 78, f"{axis_text('', quantity.length)}; {words}")], 92.0
 
 
