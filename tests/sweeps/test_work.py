@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
 from tests.sweeps.test_shared import DRIVE, planned, records, shaken
 from wavesym.sweeps import batches as module
+from wavesym.sweeps import work
 from wavesym.sweeps.batches import batches
 from wavesym.sweeps.kinds import kind
 from wavesym.sweeps.plan import SweepPlan
@@ -61,6 +63,22 @@ SETS = {
     "scene": {**DRIVE, "output": {**DRIVE["output"], "until": 5}},
     "vary": {"system.kappa[1]": {"from": "1/10", "to": 9, "count": 150}},
 }
+
+
+def test_cases_that_cannot_be_computed_together_are_computed_alone_and_that_is_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def mistaken(*_: object) -> None:
+        raise TypeError("a mistake")
+
+    made = planned(SETS | {"vary": {"system.kappa[1]": ["1/2", 1]}})
+    monkeypatch.setattr(work, "parameters", mistaken)
+    monkeypatch.setattr(work, "structure_cases", mistaken)
+    of = replace(batches(made, *kind(made)), kind="parameters")
+    with pytest.warns(RuntimeWarning, match="one by one, as together they fail: TypeError: a mistake"):
+        values = compute(made, of, 0)
+    assert not values.failed
+    assert np.all(np.isfinite(values.arrays["max"]))
 
 
 @pytest.mark.slow

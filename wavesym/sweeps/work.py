@@ -6,6 +6,7 @@ one of them computes what its group shares, so that it is the same to the last b
 
 from __future__ import annotations
 
+import warnings
 from threading import Lock
 
 from wavesym.errors import WavesymError
@@ -47,7 +48,11 @@ def _shared_cases(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict
         if batches.kind == "structures":
             return dict(structure_cases(plan, group))
         return {}
-    except Exception:  # each by itself says what is wrong
+    except (WavesymError, MemoryError):  # each by itself says what is wrong
+        return {}
+    except Exception as error:  # a mistake of wavesym's own, which costs time alone
+        told = f"cases of this sweep are computed one by one, as together they fail: {type(error).__name__}: {error}"
+        warnings.warn(told, RuntimeWarning, stacklevel=2)
         return {}
 
 
