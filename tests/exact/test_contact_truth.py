@@ -7,20 +7,15 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from flint import arb, ctx
 from hypothesis import given, reject, settings
 
+from tests.support.judging import wrong_events, wrong_values
 from tests.support.piecewise import PiecewiseChain
 from tests.support.series import Unclear
 from tests.support.striking import seeded, striking
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.events import events
-from wavesym.exact.reference import Reference
 from wavesym.scene import Scene, lower
-
-BITS = 300
-CLOSE = arb("1e-18")
-"""How near events are to the truth; what happens this near to the horizon may count or not."""
 
 # walls, masses, a branch; what parts at once, parts and strikes again; what is nearly as long; what stays at rest where
 # balls do not tell
@@ -32,27 +27,7 @@ def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None) ->
     model = lower(Scene(**(claimed or table)))
     until = Fraction(model.horizon())
     made = PiecewiseChain(table, until)
-    found, reference = events(model), Reference(model)
-    with ctx.workprec(BITS):
-        faults = []
-        for number in model.contacts(model.until):
-            place = model.network.links[number].place
-            ours = [(event.kind, event.tau) for event in found if event.x == place]
-            true = [(event.kind, arb(event.tau)) for event in made.events if event.place == place]
-            true = true[: len(ours)] + [
-                (kind, tau) for kind, tau in true[len(ours) :] if tau < arb(model.until) - CLOSE
-            ]
-            kinds = [kind for kind, _ in ours] == [kind for kind, _ in true]
-            if not kinds or any(abs(one - other) > CLOSE for (_, one), (_, other) in zip(ours, true, strict=True)):
-                faults.append(f"at {place}: {ours}, not {true}")
-    taus = instants(made, until)
-    for probe, values in zip(model.probes, reference.values(taus), strict=True):
-        for tau, value in zip(taus, values, strict=True):
-            with ctx.workprec(BITS):
-                exact = made.value(*probe.name.split("@"), Fraction(tau))
-                if not abs(exact - arb(value)) <= abs(arb(value)) * arb(2) ** -53 + arb("1e-24"):
-                    faults.append(f"{probe.name} at {tau}: {value}, not {exact}")
-    return faults
+    return [*wrong_events(model, made), *wrong_values(model, made, instants(made, until))]
 
 
 def instants(made: PiecewiseChain, until: Fraction) -> list[float]:

@@ -1,0 +1,41 @@
+"""What the package says of a chain, held against `PiecewiseChain`: events to 18 digits, values to a bit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+
+from flint import arb, ctx
+
+from tests.support.piecewise import PiecewiseChain
+from wavesym.exact.contacts.events import events
+from wavesym.exact.reference import Reference
+from wavesym.mechanics.model import Model
+
+BITS = 300
+CLOSE = arb("1e-18")
+"""How near events are to the truth; what happens this near to the horizon may count or not."""
+
+
+def wrong_events(model: Model, made: PiecewiseChain, name: Callable[[str], str] = str) -> Iterator[str]:
+    """Where links with corners do something else than they should; those at places of one `name` are taken together."""
+    found = events(model)
+    with ctx.workprec(BITS):
+        last = arb(model.until) - CLOSE
+        ours = [(name(event.x), event.kind, event.tau) for event in found if event.tau < last]
+        true = [(name(event.place), event.kind, arb(event.tau)) for event in made.events if arb(event.tau) < last]
+        for place in {name(model.network.links[number].place) for number in model.contacts(model.until)}:
+            here, there = ([each[1:] for each in told if each[0] == place] for told in (ours, true))
+            kinds = [kind for kind, _ in here] == [kind for kind, _ in there]
+            if not kinds or any(abs(one - other) > CLOSE for (_, one), (_, other) in zip(here, there, strict=True)):
+                yield f"at {place}: {here}, not {there}"
+
+
+def wrong_values(model: Model, made: PiecewiseChain, taus: Sequence[float]) -> Iterator[str]:
+    """Where outputs are not the true ones, rounded once."""
+    for probe, values in zip(model.probes, Reference(model).values(taus), strict=True):
+        for tau, value in zip(taus, values, strict=True):
+            with ctx.workprec(BITS):
+                exact = made.value(*probe.name.split("@"), Fraction(tau))
+                if not abs(exact - arb(value)) <= abs(arb(value)) * arb(2) ** -53 + arb("1e-24"):
+                    yield f"{probe.name} at {tau}: {value}, not {exact}"
