@@ -224,6 +224,16 @@ def test_refused_friction(tmp_path, held, message):
 
 def test_others_refuse_friction(tmp_path):
     rubbed = scene(tmp_path, RODS.format(held='{ mass = 1, name = "held", friction = "1/3" }'))
-    for refuse in (wavesym.verify, wavesym.modes, wavesym.frf):
+    for refuse in (wavesym.modes, wavesym.frf):
         with pytest.raises(WavesymError, match=r"(rubs|friction) at 1"):
             refuse(rubbed)
+
+
+def test_what_sticks_from_the_start_is_no_event() -> None:
+    """A joint that is held at once while its rods come on."""
+    rod = {"rod": 1, "velocity": 1}
+    parts = [rod, {"joint": True, "friction": 100, "name": "held"}, rod]
+    output = {"until": 3, "velocity": ["held"]}
+    result = wavesym.run(wavesym.Scene(name="held", system={"type": "chain", "parts": parts}, output=output))
+    assert result.events == ()
+    assert not np.any(result["velocity@held"])

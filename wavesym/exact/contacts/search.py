@@ -206,7 +206,7 @@ class Search:
         for contact in course.contacts:
             before = contact.branch
             contact.take(moved)
-            if contact.branch != before:
+            if contact.branch != before and (start > 0 or not contact.branch.closed):  # else it does so from the start
                 doubt = course.doubt
                 low = doubt.low if doubt is not None and doubt.high == start else start - course.late
                 self.changes.append(Change(contact.link, before, contact.branch, low, start))
