@@ -140,6 +140,7 @@ class Reader:
             case "python" if COMPILED in block.text and not self.patience:
                 return UNREAD
             case "python":
+                self.unused -= {file for file in self.unused if f'"{file}"' in block.text}
                 return self.process([sys.executable, "-c", block.text])
             case "sh":
                 self.unread = False
