@@ -137,10 +137,10 @@ class Reader:
                 self.unused.add(block.file)
             case "csv":
                 self.unused.add(block.file)
-            case "python" if COMPILED in block.text and not self.patience:
-                return UNREAD
             case "python":
                 self.unused -= {file for file in self.unused if f'"{file}"' in block.text}
+                if COMPILED in block.text and not self.patience:
+                    return UNREAD
                 return self.process([sys.executable, "-c", block.text])
             case "sh":
                 self.unread = False
