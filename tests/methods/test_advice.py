@@ -92,7 +92,7 @@ OPEN = {"type": "collision", "m": 4, "kappa": ["1/10", "1/5"], "velocity": [1, "
 def test_contacts_that_open_need_waves():
     given = found(Scene(name="scene", system=OPEN, output={"until": 5, "velocity": ["1/2"]}))
     assert given.enough == "waves"
-    assert all("contact that opens and closes" in candidate.refusal for candidate in given.candidates)
+    assert all("at 2 opens and closes" in candidate.refusal for candidate in given.candidates)
     assert json.loads(given.json())["models"]["massless"] == {"refused": given.candidates[0].refusal}
     assert "contact" in given.text()
 
