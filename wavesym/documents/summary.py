@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from wavesym.results.statistics import STATISTICS, Statistic, cells, headings, number_text
+from wavesym.results.presentation import number_text
+from wavesym.results.statistics import STATISTICS, Statistic, cells, headings
 from wavesym.results.summary import OutputSummary, Summary
 
 FORMATS = ("text", "json")

@@ -9,7 +9,7 @@ from flint import fmpq
 from wavesym.errors import CostError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
-from wavesym.results.statistics import number_text
+from wavesym.results.presentation import number_text
 
 _PLAIN = (fmpq(1), "")
 

@@ -1,4 +1,4 @@
-"""How results show themselves in Python: outputs found by name, tables as notebooks show them."""
+"""How results show themselves: outputs found by name, numbers as people read them, tables as notebooks show them."""
 
 from __future__ import annotations
 
@@ -21,3 +21,8 @@ def html_table(caption: str, heads: Iterable[str], rows: Iterable[Iterable[str]]
     head = "".join(f"<th>{escape(name)}</th>" for name in heads)
     body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
     return f"<p>{escape(caption)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def number_text(value: float) -> str:
+    """A number as it is shown to people."""
+    return f"{value:.7g}"

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from math import nan
 from typing import TYPE_CHECKING
 
+from wavesym.results.presentation import number_text
+
 if TYPE_CHECKING:
     from wavesym.results.summary import OutputSummary, OutputTime
 
@@ -98,8 +100,3 @@ def cells(output: OutputSummary, jumps: str) -> tuple[str, ...]:
             at = each.when(output)
             found.append("never" if at is None else number_text(at.in_scene_time) + jumps * (not each.reached(output)))
     return tuple(found)
-
-
-def number_text(value: float) -> str:
-    """A number as it is shown to people."""
-    return f"{value:.7g}"

@@ -10,7 +10,8 @@ from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.methods.advice import advise
 from wavesym.pictures.timescale import Timescale
-from wavesym.results.statistics import cells, headings, number_text
+from wavesym.results.presentation import number_text
+from wavesym.results.statistics import cells, headings
 from wavesym.results.summary import OutputSummary, Summary
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
