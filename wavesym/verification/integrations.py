@@ -292,7 +292,11 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
     claimed, reaching = events(model), model.contacts(rational(model.horizon()))
     for number, link in enumerate(model.network.corners):
         if link in reaching:
-            here = {name: each and each.select(number) for name, each in seen.items()}
+            # what rubs sticks on the two grids of central differences one after the other, and may slip between
+            judges = {
+                name: each for name, each in seen.items() if name != "grid" or not model.network.links[link].friction
+            }
+            here = {name: each and each.select(number) for name, each in judges.items()}
             happened = [event for event in claimed if event.link == link]
             outcomes += compare_events(model.network.links[link].place, happened, here, known.until)
     return outcomes
