@@ -28,8 +28,8 @@ from wavesym.verification.reference import ReferenceOutputs, known_outputs
 
 CHECKS = (integrations.differences, integrations.midpoints, integrations.corner_changes, checks.invariants)
 
-# yields and engages beside friction; a mirrored chain; a mass that turns under friction; springs of both sides; friction
-# that sticks on one of the two grids of central differences before it does on the other
+# yields and engages beside friction; a mirrored chain; a mass that turns under friction; springs of both sides; what
+# sticks on one of the two grids of central differences before it does on the other
 SEEDS = (1, 8, 10, 38, 170)
 
 
