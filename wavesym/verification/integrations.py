@@ -282,7 +282,8 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
     if all(model.network.links[link].contact for link in model.network.corners):
         seen["fronts"] = None if isinstance(solved, str) else CornerHistory(solved.struck, 0.0)
     notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
-    kinds: dict[str, type[SpaceTimeGrid]] = {"grid": SpaceTimeGrid} if judged.network.bars else {}
+    gridded = judged.network.bars and any(model.network.links[link].contact for link in model.network.corners)
+    kinds: dict[str, type[SpaceTimeGrid]] = {"grid": SpaceTimeGrid} if gridded else {}
     for name, kind in (kinds | {"midpoint": MidpointGrid}).items():
         sharp = _SHARP if isinstance(solved, str) else inf  # nothing else is
         stepped = _grid(judged, kind).resolve_changes(known.until, MOST_MOVED, sharp)
@@ -292,10 +293,9 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
     claimed, reaching = events(model), model.contacts(rational(model.horizon()))
     for number, link in enumerate(model.network.corners):
         if link in reaching:
-            # what rubs sticks on the two grids of central differences one after the other, and may slip between
-            judges = {
-                name: each for name, each in seen.items() if name != "grid" or not model.network.links[link].friction
-            }
+            # on the two grids of central differences what rubs sticks one after the other, and springs act late
+            contact = model.network.links[link].contact
+            judges = {name: each for name, each in seen.items() if name != "grid" or contact}
             here = {name: each and each.select(number) for name, each in judges.items()}
             happened = [event for event in claimed if event.link == link]
             outcomes += compare_events(model.network.links[link].place, happened, here, known.until)
@@ -323,8 +323,14 @@ class CornerHistory:
             if min(lasting) >= self.shortest:
                 break
             at = lasting.index(min(lasting))
+            if claimed[kept[at]].kind == "sticks" and self._matches(claimed, turned := [*kept[:at], *kept[at + 1 :]]):
+                return turned  # it goes back after a moment, which is one event
             del kept[at : at + 2]
         return kept
+
+    def _matches(self, claimed: Sequence[ContactEvent], kept: Sequence[int]) -> bool:
+        """Whether it has seen the same kinds of events, as far as it has seen any."""
+        return all(claimed[k].kind == change.kind for k, (change, _) in zip(kept, self.changes, strict=False))
 
 
 def compare_events(
