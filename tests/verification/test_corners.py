@@ -30,7 +30,8 @@ CHECKS = (integrations.differences, integrations.midpoints, integrations.corner_
 
 # yields and engages beside friction; a mirrored chain; a mass that turns under friction; springs of both sides; what
 # sticks on one of the two grids of central differences before it does on the other
-SEEDS = (1, 8, 10, 38, 170, 288)
+SEEDS = (1, 38)
+LONGER = (8, 10, 170, 288)
 
 
 def known(table: dict[str, Any], claimed: dict[str, Any] | None = None) -> ReferenceOutputs:
@@ -43,7 +44,7 @@ def judged(outcomes: list[Outcome]) -> list[Outcome]:
     return [outcome for outcome in outcomes if outcome.cells and REFUSED not in outcome.cells.values()]
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", [*SEEDS, *(pytest.param(seed, marks=pytest.mark.slow) for seed in LONGER)])
 def test_drawn_chains_pass_every_check(seed: int) -> None:
     seen = known(damped_chain(seed))
     for check in CHECKS:
@@ -92,7 +93,7 @@ def more(value: Any) -> str:
     return str(fmpq(51, 50) * exact(value))
 
 
-FALSE = [(damped_chain(10), "friction"), (damped_chain(8), "yield"), (damped_chain(11), "spring"), (STRUCK, "gap")]
+FALSE = [(damped_chain(10), "friction"), (damped_chain(8), "yield"), (damped_chain(22), "spring"), (STRUCK, "gap")]
 
 
 @pytest.mark.parametrize(("table", "key"), FALSE)
