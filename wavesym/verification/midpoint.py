@@ -125,7 +125,7 @@ class _Spring:
     trial: float = 0.0
 
     def mean(self, rate: float, longer: float, compliance: float, h: float) -> float:
-        """Its mean pull in a step, where it would get longer at a `rate` without: less by `compliance` times the pull."""
+        """Its mean pull in a step, where it gets longer at a `rate` without: less by `compliance` times the pull."""
         law, stiff = self.law, self.law.stiffness * h / 2
         if law.side:
             self.trial = law.stiffness * (longer + h / 2 * rate - law.side * law.gap) / (1 + stiff * compliance)
