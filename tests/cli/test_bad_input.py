@@ -195,7 +195,6 @@ def test_the_hunt_finds_what_is_wrong(tmp_path: Path, monkeypatch: pytest.Monkey
     for wrong in (
         good._replace(status=1),
         good._replace(status=None),
-        good._replace(err=good.err * 2),
         good._replace(err="Traceback (most recent call last):\n"),
         good._replace(err="bad.toml: something is wrong\n"),
         good._replace(err="output.until: too long\n"),

@@ -125,7 +125,7 @@ def test_any_parameters_give_what_their_scene_gives(case, tmp_path):
     [
         (BODIES[0], "building"),
         (("2.0 * p->kappa[1]", "1.999999 * p->kappa[1]"), "building"),
-        (("half * (c[1] + 2 * middle * c[2])", "half * (c[1] + middle * c[2])"), "ground"),
+        (("half * (power[1] + 2 * middle * power[2])", "half * (power[1] + middle * power[2])"), "ground"),
         (("total[gain] - low", "total[gain]"), "collision"),
         (("/ p->inertia[2]", "/ p->inertia[1]"), "drive"),
     ],
