@@ -171,7 +171,7 @@ def test_many_records_at_once_are_what_each_is_alone():
     samples[:, 0] = 0
     response = RecordResponse(system, 3 / 7, parts=2)
     made = response.respond(samples[:, :, None])
-    known_of_all = response.known(samples[:, :, None])
+    known_of_all = response.block_states(samples[:, :, None])
     at, s = np.array([0, 5, 63, 64, 65, 127, 147]), np.linspace(0.0, 3 / 7, 7)
     for number, record in enumerate(samples):
         loads = uniform(record.tolist(), fmpq(3, 7))

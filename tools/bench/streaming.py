@@ -93,7 +93,7 @@ def _many(made: ModesEvaluator) -> float:
     start = perf_counter()
     response = RecordResponse(made.system, nearest(made.spacing))
     for _ in range(RECORDS // AT_ONCE):
-        np.abs(response.in_blocks(response.known(samples), samples)).max(axis=(1, 3, 4))
+        np.abs(response.in_blocks(response.block_states(samples), samples)).max(axis=(1, 3, 4))
     return perf_counter() - start
 
 

@@ -179,7 +179,7 @@ def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) ->
     later = np.maximum(since - step * records.spacing, 0.0)
     for first in range(0, count, _RECORDS):
         samples = records.samples[first : first + _RECORDS]
-        known, rows = response.known(samples), np.arange(len(samples))
+        known, rows = response.block_states(samples), np.arange(len(samples))
         for begin in range(0, len(later_instants), _RECORDS):
             at = later_instants[begin : begin + _RECORDS]
             record, steps = (each.ravel() for each in np.meshgrid(rows, step[at]))
@@ -192,7 +192,7 @@ def _extremes(response: RecordResponse, model: Model, begin: float, samples: Num
     """Values and tau, (records, outputs, 2), under samples (records, n, loads)."""
     records, n, _ = samples.shape
     end = (model.horizon() - begin) / response.spacing  # in steps
-    known, outputs = response.known(samples), len(model.probes)
+    known, outputs = response.block_states(samples), len(model.probes)
     each = max(1, _AT_ONCE // (n * _PARTS * outputs))
     parts = []
     for first in range(0, records, each):

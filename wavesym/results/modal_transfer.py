@@ -153,17 +153,17 @@ class ModalTransfer:
             driver = Driver(point, fmpq(1), "", "")
             shares = [share(cut.network, driver, mode) for mode in found]
             if self.model.network.points[point].motion is None:
-                imposed, static, power = None, statics.under({point: fmpq(1)}), 1
+                imposed, static, power = None, statics.loaded_shape({point: fmpq(1)}), 1
                 total = static.points[point]
             else:
-                imposed = statics.imposed(point)
-                static, power, total = statics.accelerated(imposed), 0, statics.mass(imposed.points)
+                imposed = statics.imposed_shape(point)
+                static, power, total = statics.lagging_shape(imposed), 0, statics.mass(imposed.points)
             spare = self._spare(total, shares, power)
             left_out, powers = [], []
             for output, row in zip(outputs, values, strict=True):
                 # as a displacement, whatever of it is the output
                 wide = output.power if output.order < 2 else 1
-                whole = output.total(statics) if output.order < 2 else statics.under(output.points)
+                whole = output.total(statics) if output.order < 2 else statics.loaded_shape(output.points)
                 whole = whole if isinstance(whole, arb) else arb(output.value(whole))
                 left_out.append((self._spare(whole, row, wide) * spare).sqrt().upper())
                 powers.append(wide + power)

@@ -45,7 +45,7 @@ def participations(network: Network, mode: Mode, largest: arb) -> dict[str, Part
         elif not mode.frequency.contains(0):
             taken = -share(mode.stiffness.network, Driver(number, fmpq(1), "", ""), mode)
             statics = Statics(mode.stiffness)
-            whole = statics.mass(statics.imposed(number).points)
+            whole = statics.mass(statics.imposed_shape(number).points)
             found[name] = Participation(midpoint(taken * largest), midpoint(taken * taken / whole))
     return found
 

@@ -11,7 +11,7 @@ from flint import ctx, fmpq
 
 from wavesym.errors import WavesymError
 from wavesym.exact.contacts.search import Change, Search, UndecidedError, lasting
-from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replayed
+from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replay
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
@@ -72,7 +72,7 @@ def waves(network: Network, loads: tuple[AppliedLoad, ...], known: Schedule, bit
     with ctx.workprec(bits):
         if bits <= known.bits:
             return known.waves.round_to_precision(known.ends)
-        return replayed(network, known.stages, known.ends, loads)
+        return replay(network, known.stages, known.ends, loads)
 
 
 def _attempt(

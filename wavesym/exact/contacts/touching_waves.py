@@ -93,7 +93,7 @@ def _goes_on(old: fmpq_poly, by: fmpq, new: fmpq_poly) -> bool:
     return bool((old(fmpq_poly([by, 1])) if old.length() > 1 else old) == new)
 
 
-def replayed(
+def replay(
     network: Network, stages: Mapping[int, Sequence[Stage]], ends: Mapping[int, fmpq], loads: Sequence[AppliedLoad]
 ) -> TouchingWaves:
     """The waves at the working precision, where the stages of all joints are known."""

@@ -160,7 +160,7 @@ def _pull(stiffness: Stiffness, w: Complex) -> Complex:
         pulled = [c - a * s * s for c, s, a in zip(cot, csc, angles, strict=True)]
         shared = [a * s * c - s for c, s, a in zip(cot, csc, angles, strict=True)]
         bent = replace(law, held=[0.0] * len(law.held), across=[0.0] * len(law.across))
-        slopes = bent.assembled(2 * w, pulled, shared, 1j)
+        slopes = bent.assemble(2 * w, pulled, shared, 1j)
         total = sum(n * (t * c - 1 / w) for n, t, c in zip(law.counts, law.delays, cot, strict=True))
         for row, parent in enumerate(stiffness.parents):
             pivot, slope = diagonal[row], slopes[0][row]

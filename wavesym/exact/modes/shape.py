@@ -112,11 +112,11 @@ def trial(stiffness: Stiffness, law: HarmonicLaw, w: Quantity, root: int, rate: 
     rows = [a * b for a, b in zip(scale, inner, strict=True)]
     mass = moved_mass(law, w, rows, stiffness.parents, cot, csc)
     if rate is not None:
-        mass += _resisted(law, rows, stiffness.parents) / (2 * rate)
+        mass += _resistance(law, rows, stiffness.parents) / (2 * rate)
     return Trial(rows, root, whole[root], mass)
 
 
-def _resisted(law: HarmonicLaw, found: Sequence[Quantity], parents: Sequence[int | None]) -> Quantity:
+def _resistance(law: HarmonicLaw, found: Sequence[Quantity], parents: Sequence[int | None]) -> Quantity:
     """What dashpots resist at velocities q, seen by q."""
     total = sum((c * q * q for c, q in zip(law.slowed, found, strict=True)), arb(0))
     for c, q, parent in zip(law.slowing, found, parents, strict=True):

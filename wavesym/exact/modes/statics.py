@@ -84,7 +84,7 @@ class Statics:
         """Pivots and couplings of K where nothing moves: a bar is a spring of its impedance over its delay."""
         law = self.stiffness.law(self.number)
         over = [1 / delay for delay in law.delays]
-        diagonal, up = law.assembled(0, over, [-each for each in over])
+        diagonal, up = law.assemble(0, over, [-each for each in over])
         return self.stiffness.pivots(diagonal, up), up
 
     def solve(self, forces: Sequence[Quantity]) -> list[Quantity]:
@@ -94,7 +94,7 @@ class Statics:
         """
         pivots, up = self._springs
         acting = [forces[point] for point in self.stiffness.points]
-        return self.stiffness.point_motions(self.stiffness.substituted(pivots, up, acting, free=self.free is not None))
+        return self.stiffness.point_motions(self.stiffness.substitute(pivots, up, acting, free=self.free is not None))
 
     def inertia(self, points: Sequence[Quantity]) -> list[Quantity]:
         """The forces on points that accelerate everything as points move, and what is between them linearly."""
@@ -116,7 +116,7 @@ class Statics:
             total += self.number(bar.impedance * bar.delay / 3) * (a * a + a * b + b * b)
         return total
 
-    def imposed(self, point: int) -> Shape:
+    def imposed_shape(self, point: int) -> Shape:
         """The shape that the unit motion of a point imposes that moves as it is told."""
 
         def over(bar: Bar) -> Quantity:
@@ -127,7 +127,7 @@ class Statics:
         moved[point] = self.number(1)
         return Shape(self, moved)
 
-    def under(self, forces: Forces) -> Shape:
+    def loaded_shape(self, forces: Forces) -> Shape:
         """The shape under forces on points."""
         acting = [self.number(0)] * len(self.stiffness.network.points)
         for point, force in forces.items():
@@ -140,11 +140,11 @@ class Statics:
         moved = self.solve([force - inertia for force, inertia in zip(acting, pull, strict=True)])
         return Shape(self, self._without(moved, bent), bent)
 
-    def accelerated(self, imposed: Shape) -> Shape:
+    def lagging_shape(self, imposed: Shape) -> Shape:
         """The shape that lags behind an imposed one when that has the acceleration 1."""
         return Shape(self, self.solve([-force for force in self.inertia(imposed.points)]), imposed.points)
 
-    def broken(self, end: End) -> Quantity:
+    def break_mass(self, end: End) -> Quantity:
         """The mass of the shape with a unit break at the end of a bar: the sum of (slope there)^2 / w^4."""
         bar = self.stiffness.network.bars[end.bar]
         acting = [self.number(0)] * len(self.stiffness.network.points)

@@ -59,9 +59,9 @@ class HarmonicLaw:
 
         Where there are dashpots `rate` is i w.
         """
-        return self.assembled(w * w, [w * value for value in cot], [-w * value for value in csc], rate)
+        return self.assemble(w * w, [w * value for value in cot], [-w * value for value in csc], rate)
 
-    def assembled(
+    def assemble(
         self, square: Quantity, pulled: Sequence[Quantity], shared: Sequence[Quantity], rate: Quantity = None
     ) -> tuple[list[Any], list[Any]]:
         """The same from w^2, and for each delay from what a bar of impedance 1 adds at its ends, and across."""
@@ -207,13 +207,13 @@ class Stiffness:
 
     def orders(self, root: int) -> list[tuple[int, int, int]]:
         """The rows from one row outwards, each with the row that it hangs by and the row that names their coupling."""
-        return self._orders.get(root) or self._orders.setdefault(root, self._ordered(root))
+        return self._orders.get(root) or self._orders.setdefault(root, self._order(root))
 
     @cached_property
     def _orders(self) -> dict[int, list[tuple[int, int, int]]]:
         return {}
 
-    def _ordered(self, root: int) -> list[tuple[int, int, int]]:
+    def _order(self, root: int) -> list[tuple[int, int, int]]:
         beside: list[list[tuple[int, int]]] = [[] for _ in self.parents]
         for row, parent in enumerate(self.parents):
             if parent is not None:
@@ -233,9 +233,9 @@ class Stiffness:
 
     def solve(self, diagonal: list[Quantity], up: Sequence[Quantity], forces: Sequence[Quantity]) -> list[Quantity]:
         """How far rows move under forces on them, `diagonal` eliminated in place."""
-        return self.substituted(self.pivots(diagonal, up), up, forces)
+        return self.substitute(self.pivots(diagonal, up), up, forces)
 
-    def substituted(
+    def substitute(
         self, pivots: Sequence[Quantity], up: Sequence[Quantity], forces: Sequence[Quantity], *, free: bool = False
     ) -> list[Quantity]:
         """The same once K is eliminated. Where nothing holds the chain (`free`) forces balance, and the root rests."""
@@ -289,7 +289,7 @@ class Stiffness:
         sines = [np.sin(angle) for angle in angles]
         turns = [_turns(angle, sine) for angle, sine in zip(angles, sines, strict=True)]
         with np.errstate(all="ignore"):
-            pivots, _ = self._eliminated(w, angles, sines)
+            pivots, _ = self._eliminate(w, angles, sines)
             negative = [pivot < 0 for pivot in pivots]
         clamped = [count * turn for count, turn in zip(self.doubles.counts, turns, strict=True)]
         return np.asarray(sum(clamped, np.zeros(w.shape, np.int64)) + sum(negative, np.zeros(w.shape, np.int64)))
@@ -301,7 +301,7 @@ class Stiffness:
         """
         angles = [w * delay for delay in self.doubles.delays]
         with np.errstate(all="ignore"):
-            pivots, up = self._eliminated(w, angles, [np.sin(angle) for angle in angles], rate)
+            pivots, up = self._eliminate(w, angles, [np.sin(angle) for angle in angles], rate)
             # what is left of a row once all others are eliminated
             left = list(pivots)
             for row in reversed(range(len(left))):
@@ -310,7 +310,7 @@ class Stiffness:
                     left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
         return np.asarray(np.argmin(np.nan_to_num(np.abs(left), nan=np.inf), axis=0))
 
-    def _eliminated(
+    def _eliminate(
         self, w: Quantity, angles: Sequence[Quantity], sines: Sequence[Quantity], rate: Quantity = None
     ) -> tuple[list[Vector], list[Any]]:
         csc = [1 / sine for sine in sines]

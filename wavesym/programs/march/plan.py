@@ -274,8 +274,8 @@ def _panels(times: list[fmpq], step: fmpq, helps: str) -> tuple[Panel, ...]:
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
             f"load: times at a spacing of {readable(common(times))} leave {len(cuts) - 1} different remainders of "
-            f"the step {readable(step)}, the limit in a march is {MOST_PANELS} ({suiting(times, step)}, {helps}, "
-            "helps)"
+            f"the step {readable(step)}, the limit in a march is {MOST_PANELS} "
+            f"({suitable_spacing(times, step)}, {helps}, helps)"
         )
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
 
@@ -285,7 +285,7 @@ def common(times: Iterable[fmpq]) -> fmpq:
     return reduce(fmpq.gcd, times, _ZERO)
 
 
-def suiting(times: Iterable[fmpq], step: fmpq = _ONE) -> str:
+def suitable_spacing(times: Iterable[fmpq], step: fmpq = _ONE) -> str:
     """The spacing nearest to that of some times whose multiples have few enough remainders of a step."""
     parts = fraction(common(times) / step).limit_denominator(MOST_PANELS)
     return f"a spacing of {readable(step * rational(parts or Fraction(1, MOST_PANELS)))}"

@@ -74,14 +74,14 @@ class ModeSets:
     def projection(self, count: int) -> ProjectionSets:
         """The first modes of all sets, found once."""
         if count not in self._known:
-            self._known[count] = self._projected(count)
+            self._known[count] = self._project(count)
         return self._known[count]
 
     @cached_property
     def _known(self) -> dict[int, ProjectionSets]:
         return {}
 
-    def _projected(self, count: int) -> ProjectionSets:
+    def _project(self, count: int) -> ProjectionSets:
         stiffness, network, statics = self.stiffness, self.network, self.statics
         count = min(count, stiffness.modes or count)
         w = searched(stiffness, count)
@@ -93,7 +93,7 @@ class ModeSets:
         modes = ModeColumns(stiffness, w, stiffness.point_motions(rows))
         shapes = [static_shapes(statics, driver) for driver in self.drivers]
         pairs = list(zip(self.drivers, shapes, strict=True))
-        imposed = [[_imposed(o, s) * d.gain for d, (s, _) in pairs] for o in self.outputs]
+        imposed = [[_imposed_value(o, s) * d.gain for d, (s, _) in pairs] for o in self.outputs]
         static = [[o.value(s) * d.gain for d, (_, s) in pairs] for o in self.outputs]
         sizes = [(t.points[d.point] if s is None else statics.mass(s.points)) * d.gain**2 for d, (s, t) in pairs]
         one = len(w), 1
@@ -118,7 +118,7 @@ def _side_by_side(columns: Sequence[Columns | float], shape: tuple[int, ...]) ->
     return np.stack([np.broadcast_to(each, shape) for each in columns], axis=1)
 
 
-def _imposed(output: ModalOutput, shape: Shape | None) -> Any:
+def _imposed_value(output: ModalOutput, shape: Shape | None) -> Any:
     """What an output is of the shape that a load imposes: 0 where it is that but for rounding, as of a drift."""
     if shape is None:
         return 0.0

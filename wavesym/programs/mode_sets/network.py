@@ -183,10 +183,10 @@ class StiffnessSets(Stiffness):
             # an angle is as wrong as its last digit: near a resonance of a bar that counts
             near = [(angle, abs(c), abs(s)) for angle, c, s in zip(angles, cot, csc, strict=True)]
             pulled, shared = [w * (c + a * s * s) for a, c, s in near], [w * s * (1 + a * c) for a, c, s in near]
-            wrong = self._energy(moved, *law.assembled(-w * w, pulled, shared))
+            wrong = self._energy(moved, *law.assemble(-w * w, pulled, shared))
             # so do terms of the mass of bars, which nearly cancel where points are nearly at rest
             squares = [delay * s * s * (1 + a * s) for delay, (a, _, s) in zip(law.delays, near, strict=True)]
-            blurred = self._energy(moved, *law.assembled(0.0, squares, squares))
+            blurred = self._energy(moved, *law.assemble(0.0, squares, squares))
         return Shapes(moved, _ROUNDINGS * _EPS * wrong, _ROUNDINGS * _EPS * blurred)
 
     def _energy(self, moved: list[Columns], sizes: list[Columns], across: list[Columns]) -> Columns:

@@ -89,7 +89,7 @@ class LowFrequency:
         pulled = [self._bars[delay][0] for delay in self._delays]
         shared = [-self._bars[delay][1] for delay in self._delays]
         assert len(pulled) == len(delays)
-        diagonal, up = self._law.assembled(square, pulled, shared, self._s)
+        diagonal, up = self._law.assemble(square, pulled, shared, self._s)
         return [one * k for k in diagonal], [one * k for k in up]
 
     @cached_property

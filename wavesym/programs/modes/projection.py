@@ -51,13 +51,13 @@ class ModalOutput:
         """The sum over all modes with strain of its square over w^(2 power)."""
         if self.slope:
             weight, end = self.slope
-            return statics.broken(end) * weight * weight
+            return statics.break_mass(end) * weight * weight
         if self.order == 2 and self.massive:
             network, free = statics.stiffness.network, statics.free
             total = sum(statics.number(b * b / network.points[point].mass) for point, b in self.points.items())
             part = sum(free[point] * b for point, b in self.points.items()) if free else 0
             return total - part * part
-        return statics.number(self.value(statics.under(self.points)))
+        return statics.number(self.value(statics.loaded_shape(self.points)))
 
 
 @dataclass(frozen=True)
@@ -234,9 +234,9 @@ def _column(output: ModalOutput, found: Sequence[Mode]) -> list[float]:
 def static_shapes(statics: Statics, driver: Driver) -> tuple[Shape | None, Shape]:
     """What a load imposes, and the shape under it when it does not change, both but for its gain."""
     if statics.stiffness.network.points[driver.point].motion is None:
-        return None, statics.under({driver.point: fmpq(1)})
-    imposed = statics.imposed(driver.point)
-    return imposed, statics.accelerated(imposed)
+        return None, statics.loaded_shape({driver.point: fmpq(1)})
+    imposed = statics.imposed_shape(driver.point)
+    return imposed, statics.lagging_shape(imposed)
 
 
 def share(network: Network, driver: Driver, mode: Mode) -> Quantity:

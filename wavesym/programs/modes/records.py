@@ -175,7 +175,7 @@ class RecordResponse:
         """The instants of a step, after its start."""
         return self.spacing * np.arange(1, self.parts + 1) / self.parts
 
-    def known(self, samples: Numbers) -> Numbers:
+    def block_states(self, samples: Numbers) -> Numbers:
         """Displacements and velocities of the modes where blocks begin, and the samples in them: (records, blocks,
         2 modes + (steps + 1) loads)."""
         records, n, loads = samples.shape
@@ -204,19 +204,19 @@ class RecordResponse:
         matrix = self._matrices[0]
         out = None if room is None else room.reshape(records * blocks, -1)
         made = np.matmul(known.reshape(-1, numbers), matrix, out=out).reshape(shape)
-        if self._summing:
+        if self._has_sums:
             self._add_sums(made, samples)
         return made
 
     def respond(self, samples: Numbers) -> Numbers:
         """All outputs in the order of time: (records, instants, outputs)."""
         records, n, _ = samples.shape
-        made = self.in_blocks(self.known(samples), samples)
+        made = self.in_blocks(self.block_states(samples), samples)
         instants = made.transpose(0, 1, 4, 3, 2).reshape(records, -1, len(self.system.direct))
         return instants[:, : (n - 1) * self.parts]
 
     @property
-    def _summing(self) -> bool:
+    def _has_sums(self) -> bool:
         """Whether integrals of loads count in outputs."""
         return bool(self.system.direct[:, :, 1:].any())
 
@@ -256,7 +256,7 @@ class RecordResponse:
         # the sample with which the block begins ends no step of it
         moved -= np.einsum("cj,ckj->ck", first, self._lead[since])
         now, then = samples[record, step], samples[record, step + 1]
-        sums = self._integrals(samples)[:, record, step] if self._summing else np.zeros((2, *now.shape))
+        sums = self._integrals(samples)[:, record, step] if self._has_sums else np.zeros((2, *now.shape))
         return np.hstack([moved, (then - now) / self.spacing, now, *sums])
 
     def reads(self, s: Numbers) -> Numbers:
