@@ -10,11 +10,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO, TextIOWrapper
+from itertools import pairwise
 from pathlib import Path
 from urllib.parse import unquote
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import wavesym
 from tests.pictures.browser import axe, reported
@@ -256,6 +258,28 @@ def test_the_headline_is_what_an_engineer_computes_from_histories() -> None:
     assert "<h1>Town hall &lt;1&gt;</h1>" in text
     assert "A. B., 2026-01-02" in text
     assert faults(text) == []
+
+
+def test_the_spectrum_of_the_load_is_what_an_oscillator_does() -> None:
+    """At a few periods of its CSV, against the exponential of the oscillator's matrix, step by step along the load."""
+    text = page(Scene(**FRAME))
+    links = dict(re.findall(r'download="([^"]*)\.csv" href="data:text/csv;charset=utf-8,([^"]*)"', text))
+    (csv,) = (link for name, link in links.items() if name.startswith("pseudo-acceleration"))
+    rows = np.array([[float(cell) for cell in row.split(",")] for row in unquote(html.unescape(csv)).splitlines()[1:]])
+    load, step = FRAME["load"][0], 0.001
+    spacing, samples = float(load["spacing"].split()[0]), np.array(load["samples"], float) * 9.80665
+    until = float(FRAME["output"]["until"].split()[0])
+    a = np.interp(np.arange(0, until + step / 2, step), spacing * np.arange(len(samples)), samples)
+    for period, value in rows[:: len(rows) // 5]:
+        w = 2 * np.pi / period
+        matrix = np.array([[0, 1, 0, 0], [-w * w, -2 * 0.05 * w, -1, 0], [0, 0, 0, 1], [0, 0, 0, 0]])
+        power, state, largest = expm(matrix * step), np.zeros(2), 0.0
+        for before, after in pairwise(a):
+            state = (power @ [*state, before, (after - before) / step])[:2]
+            largest = max(largest, abs(state[0]))
+        assert value == pytest.approx(w * w * largest, rel=5e-3)  # tops between steps: 16 steps a period, and parabolas
+    periods = [mode.period for mode in wavesym.modes(Scene(**FRAME), 3)]
+    assert [f"T{k} = {period:.3g} s" in text for k, period in enumerate(periods, 1)] == [True] * len(periods)
 
 
 @pytest.mark.parametrize(

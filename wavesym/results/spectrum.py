@@ -110,6 +110,24 @@ def spectra(model: Model, damping: float) -> Spectra:
     )
 
 
+def line_spectrum(lines: Sequence[Numbers], periods: Numbers, damping: float) -> Numbers:
+    """The spectrum of an acceleration that is known as polylines, a load for example.
+
+    Args:
+        lines: arrays of shape (n, 2), time and value; from one to the next it jumps.
+        periods: shape (p,), in the same time.
+        damping: the ratio of the oscillators.
+
+    Returns:
+        Their pseudo-accelerations, shape (p,), in the unit of the values.
+    """
+    step = min(periods) / _PER_PERIOD
+    stretches = [np.linspace(line[0, 0], line[-1, 0], 2 * ceil(np.ptp(line[:, 0]) / (2 * step)) + 1) for line in lines]
+    values = [np.interp(taus, *line.T)[None] for taus, line in zip(stretches, lines, strict=True)]
+    lengths = [(taus[-1] - taus[0]) / (len(taus) - 1) for taus in stretches]
+    return np.asarray(_peaks(values, lengths, periods, damping)[0])
+
+
 def _periods(model: Model, per_tau: float) -> Numbers:
     """Periods in the time of results: between the shortest that a rod's own modes have and half the horizon."""
     shortest = _SHORTEST * nearest(model.network.shortest) * per_tau

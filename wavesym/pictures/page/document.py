@@ -17,7 +17,8 @@ from wavesym.pictures.line_histories import LineHistories, chain_outputs, line_h
 from wavesym.pictures.loads import load_histories
 from wavesym.pictures.naming import with_titles
 from wavesym.pictures.page.crossings import crossings
-from wavesym.pictures.page.headline import Figure, headline, neglected_effects, storeys
+from wavesym.pictures.page.headline import Figure, headline, longest_periods, neglected_effects, storeys
+from wavesym.pictures.page.load_spectrum import load_spectrum
 from wavesym.pictures.page.motion import Motion, motion
 from wavesym.pictures.page.page_tables import PageTable, advice_table, extremes_table
 from wavesym.pictures.page.places import along_pictures, maps
@@ -49,6 +50,7 @@ class Report:
     neglected_effects: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     structure: PagePicture
+    spectrum: PagePicture | None
     motion: Motion | None
     histories: tuple[PagePicture, ...]
     notes: tuple[str, ...]
@@ -93,7 +95,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     loads = load_histories(model, scene.scale)[:_LOADS]
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
-    lines = scene.system.lines
+    lines, periods = scene.system.lines, longest_periods(model)
     found, refused = _line_pictures(scene, model, None if searched else drawn_by)
     structured = structure(model, lines)
     block = scene.title_block
@@ -102,7 +104,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         name=model.name,
         project=(block and block.project) or model.name,
         credit=block.credit if block else "",
-        headline=tuple(headline(scene, model, summary, found, loads)),
+        headline=tuple(headline(scene, model, summary, found, loads, periods)),
         storeys=storeys(scene, found, scale),
         neglected_effects=tuple(filter(None, neglected_effects(model))),
         facts=tuple(_facts(model, made, found, loads, scale)),
@@ -110,6 +112,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
             title,
             picture("structure", title, structured.description, structured.height, structured.markup, class_="plot"),
         ),
+        spectrum=load_spectrum(model, loads, periods, scale),
         motion=motion(model, found, scale),
         histories=(),
         notes=(*_missing_outputs(model, drawn), *notes(made)),

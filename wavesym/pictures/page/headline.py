@@ -52,6 +52,7 @@ def headline(
     summary: Summary | WavesymError,
     found: Sequence[LineHistories],
     loads: Sequence[History],
+    periods: Sequence[float],
 ) -> Iterator[Figure]:
     """The figures of a scene, those that it has.
 
@@ -61,6 +62,7 @@ def headline(
         summary: the extremes of its outputs, or why there are none.
         found: what happens along the chain.
         loads: what acts on it.
+        periods: its longest, in the time of results.
     """
     outputs = _outputs(scene, model, summary)
     shear = outputs.get("force@0")
@@ -73,13 +75,19 @@ def headline(
     if scene.system.type == "building" and loads:
         peak = float(np.max(np.abs(loads[0].points[:, 1])))
         yield Figure("Peak ground acceleration", _value(peak, loads[0].output.unit), _in_g(scene, peak))
-    with suppress(WavesymError):  # contacts have none
+    if periods:
+        unit = " s" if model.clock else ""
+        values = ", ".join(f"{period:.3g}" for period in periods)
+        yield Figure("Period" + "s" * (len(periods) > 1), f"{values}{unit}", "" if unit else "in tau")
+
+
+def longest_periods(model: Model) -> list[float]:
+    """Up to three in the time of results; none where waves leave a chain, or contacts open and close."""
+    with suppress(WavesymError):
         known = modes(model, _PERIODS)
-        rows = [row for row in known if row.period]
-        if rows and known.complete:  # waves that leave a chain have none that anyone looks for
-            unit = " s" if model.clock else ""
-            values = ", ".join(f"{row.period:.3g}" for row in rows)
-            yield Figure("Period" + "s" * (len(rows) > 1), f"{values}{unit}", "" if unit else "in tau")
+        if known.complete:
+            return [row.period for row in known if row.period]
+    return []
 
 
 def storeys(scene: Scene, found: Sequence[LineHistories], scale: Timescale) -> PageTable:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from urllib.parse import quote
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.pictures.groups import PlotPanel
 from wavesym.pictures.histories import History
@@ -100,9 +101,14 @@ def _csv_link(history: History, columns: int, until: float, scale: Timescale) ->
     """An address that is the curve itself as CSV: of every few columns the first, the least and the greatest value."""
     time = f"t in {scale.unit}" if scale.unit else "tau"
     name = f"{history.name} in {history.output.unit}" if history.output.unit else history.name
-    lines = [f'{time},"{name.replace(chr(34), chr(39))}"']
-    for tau, value in reduce_vertices(history.points, until, columns // _PER_ROW).tolist():
-        lines.append(f"{tau * scale.per_tau:.6g},{value:.6g}")
+    taus, values = reduce_vertices(history.points, until, columns // _PER_ROW).T
+    return csv_address((time, name), taus * scale.per_tau, values)
+
+
+def csv_address(names: tuple[str, str], x: NDArray[np.float64], y: NDArray[np.float64]) -> str:
+    """An address that is two columns as CSV: their names, and six digits of each of their numbers."""
+    lines = [f'{names[0]},"{names[1].replace(chr(34), chr(39))}"']
+    lines += [f"{first:.6g},{second:.6g}" for first, second in zip(x.tolist(), y.tolist(), strict=True)]
     return "data:text/csv;charset=utf-8," + quote("\n".join(lines) + "\n", safe=",.+-")
 
 
