@@ -13,8 +13,9 @@ from wavesym import api
 from wavesym.cli import main
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
+from wavesym.running import co_simulation
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
+from wavesym.targets.files import files, fmu_files
 from wavesym.verification import programs, report
 
 SAMPLES = {"spacing": "1/2", "samples": [0, 1, -2, 1, 0]}
@@ -141,6 +142,49 @@ def test_a_stream_that_hides_what_it_has_lost_is_seen(
     assert failing(text)
 
 
+JUMPS = {"body": 1, "times": [0, "3/4"], "steps": [1, -2]}
+RAMPS = {"body": 1, "times": [0, "3/4"], "steps": [1, 0], "ramps": [1, -2]}
+FAULTS_OF_FMUS = {
+    "loads that are held": ([JUMPS], (), "if (!s->now.linear)", "if (s->now.linear)"),
+    "a jump at the start": (
+        [RAMPS],
+        (),
+        "stream_step(&s->now.stream, 0,",
+        "stream_step(&s->trial, 0,",
+    ),
+    "equal steps": ([{"body": 1, **SAMPLES}], ("kappa",), "STEP_LENGTH, load", "STEP_LENGTH, from"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS_OF_FMUS)
+def test_fmus_are_verified_and_a_fault_in_one_is_seen(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The C beside them is right: what simulators call it by is not."""
+    load, runtime, right, wrong = FAULTS_OF_FMUS[fault]
+    scene = DRIVE.with_({"load": load})
+    requests = [Request(stream=True, runtime=runtime), *([Request("modes")] if runtime else [])]
+    text, passed = report.verify([(scene, lower(scene))], requests)
+    assert passed, text
+    assert text.count("FMI 2  ") == text.count("FMI 3  ") == len(requests)
+
+    def faulty(program: Program, version: str) -> dict[str, str]:
+        made = fmu_files(program, version)
+        assert right in made["sources/simulation.h"]
+        return made | {"sources/simulation.h": made["sources/simulation.h"].replace(right, wrong)}
+
+    monkeypatch.setattr(co_simulation, "fmu_files", faulty)
+    text, passed = report.verify([(scene, lower(scene))], requests)
+    assert not passed
+    assert failing(text)
+    assert all(name.endswith(("FMI 2", "FMI 3")) for name in failing(text))
+
+
+def test_loads_that_no_fmu_takes_are_said_to_be() -> None:
+    scene = DRIVE.with_({"load": [RAMPS | {"steps": [1, 1]}]})
+    text, passed = report.verify([(scene, lower(scene))], [Request(stream=True)])
+    assert passed, text
+    assert "not stream, FMI 2; not stream, FMI 3: loads jump after tau = 0 and go in straight lines" in text
+
+
 def toml(scene: Scene) -> str:
     """A scene as a file; JSON's values are TOML's here."""
     fields = scene.model_dump(mode="json")
@@ -164,7 +208,15 @@ def test_all_programs_of_a_scene_are_there_and_right() -> None:
         assert passed, text
         block = next(block for block in text.split("\n\n") if block.startswith("scene  program"))
         kinds = ["run", "closed, NumPy", "closed, C", "pieces, NumPy", "pieces, C", "march, NumPy", "march, C"]
-        kinds += ["modes, NumPy", "modes, C", "pieces, single, C", "march, single, C", "stream, C", ", C, others"]
+        kinds += [
+            "modes, NumPy",
+            "modes, C",
+            "pieces, single, C",
+            "march, single, C",
+            "stream, C",
+            "stream, FMI 3",
+            ", C, others",
+        ]
         kinds += [", C, sample", ", C, peaks", ", C, others, peaks", ", C, gradients", ", C, batch", ", C, misfit"]
         for kind in kinds:
             assert f"{kind}  " in block, kind

@@ -38,7 +38,7 @@ from wavesym.verification.models import ParameterSet, functions_of_parameters, m
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
 from wavesym.verification.outcome import Integrals, IntegratedOutput, Outcome, ProgramValues, format_error
 from wavesym.verification.reference import ReferenceOutputs, even_taus, sample_evenly
-from wavesym.verification.streams import step_modes, step_stream
+from wavesym.verification.streams import run_streams
 
 FLAGS = ("-std=c99", "-O1")
 """Tests compile programs strictly, and with more effort; here are many of them."""
@@ -166,15 +166,14 @@ def _run_c(
         note = fails if program.reference and built.selftest() != 0 else ""
         if program.evaluator == "runtime":
             yield from _with_parameters(scene, known, integrals, program, built, name)
-        elif program.evaluator == "stream":
-            taus, values, stream = step_stream(scene, known, program, built, taus)
-            if stream.status and not note:
-                note = f"{model.name}: {name}: a step returns {stream.status}, lost is {stream.lost:.1e}"
-            stated = [stream.lost for bound in bounds]
-            yield ProgramValues(f"{name}, C", taus, values, sizes, stated, 0.0, note)
-        elif program.evaluator == "modes":
-            taus, values = step_modes(scene, known, program, built)
-            yield ProgramValues(f"{name}, C", taus, values, sizes, bounds, 0.0, note, close=_CLOSE)
+        elif program.evaluator in ("stream", "modes"):
+            for stream in run_streams(scene, known, program, built, taus):
+                said = f"{model.name}: {name}, {stream.language}: a step returns {stream.status}"
+                wrong = f"{said}, lost is {stream.lost:.1e}" if stream.status else note
+                stated = bounds if program.has_equal_steps else [stream.lost] * len(bounds)
+                close = _CLOSE if program.has_equal_steps else 0.0
+                values = stream.taus, stream.values, sizes, stated, 0.0, wrong
+                yield ProgramValues(f"{name}, {stream.language}", *values, close=close, refusal=stream.refusal)
         else:
             some = np.arange(len(taus))
             if program.evaluator == "march":

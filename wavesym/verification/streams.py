@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 from flint import fmpq
@@ -12,6 +13,8 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.programs.program import Program
+from wavesym.programs.request import SIMULATORS
+from wavesym.running.co_simulation import CoSimulation, compile_fmu
 from wavesym.running.compilation import CompiledLibrary, CompiledStream
 from wavesym.scene import Scene
 from wavesym.verification.independent import changes
@@ -19,43 +22,83 @@ from wavesym.verification.reference import ReferenceOutputs, sample_evenly
 
 _CLEAR = 1e-6  # outputs are looked at so far from fronts and from changes of loads, and no closer together
 _MOST_LOOKED = 300
+_MIXED = "loads jump after tau = 0 and go in straight lines, and an FMU either holds them over a step or does not"
+
+
+class SteppedStream(NamedTuple):
+    """What a stream gives: in which language, instants, outputs there, the largest status, what is said to be lost.
+
+    Or why it was not stepped.
+    """
+
+    language: str
+    taus: Array
+    values: Array
+    status: int
+    lost: float
+    refusal: str = ""
+
 
 FedLoads = tuple[Fraction, list[float], bool]
 """When, the loads, and whether they jump to these."""
 
 
-def step_stream(
+def run_streams(
     scene: Scene, known: ReferenceOutputs, program: Program, built: CompiledLibrary, taus: Array
-) -> tuple[Array, Array, CompiledStream]:
-    """A stream of waves: some of the taus, the outputs there, and it as it is after them.
+) -> Iterator[SteppedStream]:
+    """The stream in C, and as the FMUs that simulators take, where its numbers are doubles.
+
+    Streams of waves step to some of the taus, those of modes to multiples of their spacing.
+    """
+    feed = LoadFeed(scene, known.whole, program.sources)
+    own = [nearest(value) for field in program.laws.fields for value in field.values] if program.laws else None
+
+    def step(language: str, stream: CompiledStream | CoSimulation) -> SteppedStream:
+        if program.has_equal_steps:
+            found = _step_modes(known, program, feed, stream)
+            return SteppedStream(language, *found, stream.status, 0.0)
+        found = _step_waves(known, feed, stream, taus)
+        return SteppedStream(language, *found, stream.status, stream.lost)
+
+    yield step("C", built.stream(own))
+    for version in SIMULATORS if program.real.bytes == 8 else ():
+        language = f"FMI {version[-1]}"
+        if feed.jumps and feed.slopes:
+            yield SteppedStream(language, np.empty(0), np.empty(0), 0, 0.0, _MIXED)
+            continue
+        with compile_fmu(program, version, linear=feed.slopes) as simulation:
+            yield step(language, simulation)
+
+
+def _step_waves(
+    known: ReferenceOutputs, feed: LoadFeed, stream: CompiledStream | CoSimulation, taus: Array
+) -> tuple[Array, Array]:
+    """A stream of waves: some of the taus, and the outputs there.
 
     It steps to every change of a load; one that jumps does so in a step of its own.
     """
-    feed = LoadFeed(scene, known.whole, program.sources)
     fronts = np.array([*known.starts, *map(float, feed.times)])
     apart = np.array([tau for tau in taus if np.min(np.abs(fronts - tau), initial=np.inf) > _CLEAR])
     chosen = sample_evenly(apart[np.diff(apart, prepend=0.0) > _CLEAR], _MOST_LOOKED)
     stops = [Fraction(tau) for tau in chosen.tolist()]
     looked, columns, before = set(stops), [], 0.0
-    own = [nearest(value) for field in program.laws.fields for value in field.values] if program.laws else None
-    stream = built.stream(own)
     for tau, loads, jumps in feed.loads_at_stops(stops, everywhere=True):
         column = stream.step(0.0 if jumps else float(tau) - before, loads)
         before = float(tau)
         if tau in looked:
             columns.append(column)
-    return chosen, np.array(columns).T, stream
+    return chosen, np.array(columns).T
 
 
-def step_modes(scene: Scene, known: ReferenceOutputs, program: Program, built: CompiledLibrary) -> tuple[Array, Array]:
+def _step_modes(
+    known: ReferenceOutputs, program: Program, feed: LoadFeed, stream: CompiledStream | CoSimulation
+) -> tuple[Array, Array]:
     """A stream of modes: some multiples of its spacing after the first change of a load, and the outputs there."""
-    feed = LoadFeed(scene, known.whole, program.sources)
     step = Fraction(program.constants["spacing"])
     if (spacing := known.whole.spacing) and abs(fraction(spacing) / step - 1) < _CLEAR:
         step = fraction(spacing)  # as it is, and not as a double has it
     first = feed.times[0] % step if feed.times else Fraction(0)
     stops = [first + k * step for k in range(1, int((fraction(known.model.until) - first) / step) + 1)]
-    stream = built.stream()
     columns = [stream.step(program.constants["spacing"], loads) for _, loads, _ in feed.loads_at_stops(stops)]
     some = sample_evenly(np.arange(len(stops)), _MOST_LOOKED)
     return np.array([float(stop) for stop in stops])[some], np.array(columns).T[:, some]
@@ -64,7 +107,8 @@ def step_modes(scene: Scene, known: ReferenceOutputs, program: Program, built: C
 class LoadFeed:
     """The loads of a scene as a stream takes them, in the units that stand with their names.
 
-    `times` are those at which one changes.
+    `times` are those at which one changes, `jumps` is whether one jumps after tau = 0, and
+    `slopes` whether one goes in a line that is not level.
     """
 
     def __init__(self, scene: Scene, model: Model, names: Sequence[str]) -> None:
@@ -79,6 +123,8 @@ class LoadFeed:
                 if jump or slope:
                     self._changes.setdefault(time, []).append((row, fraction(size) * jump, fraction(size) * slope))
         self.times = sorted(self._changes)
+        self.jumps = any(jump for time, here in self._changes.items() if time for _, jump, _ in here)
+        self.slopes = any(slope for here in self._changes.values() for _, _, slope in here)
 
     def loads_at_stops(
         self, stops: Sequence[Fraction], *, everywhere: bool = False
