@@ -233,9 +233,9 @@ def _jumps(plan: MarchPlan, rate: float) -> Iterator[float]:
                 strengths[force] = max(strength(joint, point, rate), strengths.get(force, 0.0))
         begin += start_jump(plan, joint, rate)
     loads = [0.0] * 3
-    for force, powers in plan.changes():
-        for order, c in enumerate(powers):
-            loads[order] += strengths[force] * abs(nearest(c)) * (2 if order == 2 else 1)
+    for event in plan.events:
+        for order, c in enumerate(event.change):
+            loads[order] += strengths[event.force] * abs(nearest(c)) * (2 if order == 2 else 1)
     loads[0] += begin
     yield from loads
 

@@ -8,7 +8,7 @@ cut into the same panels everywhere, at what load times leave over of h, so that
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, reduce
@@ -42,21 +42,21 @@ _ZERO, _ONE = fmpq(0), fmpq(1)
 
 @dataclass(frozen=True)
 class LoadEvent:
-    """From panel `panel` of window `window` on, load `force` is a polynomial in the time since then."""
+    """From panel `panel` of window `window` on, load `force` has these `powers` of the time since then.
+
+    `change` is what of them is new.
+    """
 
     window: int
     panel: int
     force: int
     powers: tuple[fmpq, fmpq, fmpq]
+    change: tuple[fmpq, fmpq, fmpq]
 
     def times(self, factor: fmpq) -> LoadEvent:
         """The same of a load that is `factor` times as large."""
-        return LoadEvent(self.window, self.panel, self.force, _three(factor * self.load))
-
-    @property
-    def load(self) -> fmpq_poly:
-        """The polynomial."""
-        return fmpq_poly(list(self.powers))
+        powers, change = (_three(factor * fmpq_poly(list(each))) for each in (self.powers, self.change))
+        return replace(self, powers=powers, change=change)
 
 
 @dataclass(frozen=True)
@@ -173,11 +173,6 @@ class MarchPlan:
             joints=tuple(map(louder, self.joints)),
             events=tuple(event.times(factor) for event in self.events),
         )
-
-    def changes(self) -> Iterator[tuple[int, tuple[fmpq, fmpq, fmpq]]]:
-        """Force and powers of what is new with each event."""
-        for event, powers in load_changes(self.events, [panel.start for panel in self.panels], self.step):
-            yield event.force, powers
 
     def stretches(self, delay: fmpq) -> tuple[Stretch, ...]:
         """Those of a wave that arrives `delay` after it was sent, in order; `start` counts from that of a window."""
@@ -383,27 +378,11 @@ def load_events(gains: Mapping[tuple[fmpq, int], fmpq_poly], starts: Iterable[fm
     places = {start: number for number, start in enumerate(starts)}
     known: dict[int, tuple[fmpq, fmpq_poly]] = {}
     for (time, force), change in sorted(gains.items(), key=lambda item: item[0]):
-        total = _later(known, force, time) + change
-        known[force] = time, total
-        window = int((time / step).floor())
-        yield LoadEvent(window, places[time - window * step], force, _three(total))
-
-
-def load_changes(
-    events: Iterable[LoadEvent], starts: Sequence[fmpq], step: fmpq
-) -> Iterator[tuple[LoadEvent, tuple[fmpq, fmpq, fmpq]]]:
-    """Each event with the powers of what is new with it."""
-    known: dict[int, tuple[fmpq, fmpq_poly]] = {}
-    for event in events:
-        time = event.window * step + starts[event.panel]
-        yield event, _three(event.load - _later(known, event.force, time))
-        known[event.force] = time, event.load
-
-
-def _later(known: Mapping[int, tuple[fmpq, fmpq_poly]], force: int, time: fmpq) -> fmpq_poly:
-    """What a force goes on as, in the time since `time`."""
-    since, load = known.get(force, (time, fmpq_poly()))
-    return load(fmpq_poly([time - since, 1]))
+        if change:
+            since, load = known.get(force, (time, fmpq_poly()))
+            known[force] = time, load(fmpq_poly([time - since, 1])) + change
+            window = int((time / step).floor())
+            yield LoadEvent(window, places[time - window * step], force, _three(known[force][1]), _three(change))
 
 
 def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:

@@ -10,7 +10,8 @@ sent at the same instant, on panels of the same length, are added up once, to a 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby
 from typing import Any, NamedTuple
@@ -26,7 +27,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.march.plan import MarchPlan, OutputTerm, Stretch, march_plan, moved_by
+from wavesym.programs.march.plan import MarchPlan, OutputTerm, Stretch, load_events, march_plan, moved_by
 from wavesym.programs.march.space import joint_rows
 from wavesym.programs.runtime.laws import Function
 from wavesym.programs.runtime.network import FreeNetwork, drawn_number
@@ -36,7 +37,7 @@ HELPS = "in tau, to which samples may be interpolated in a scene without units"
 
 
 @dataclass(frozen=True)
-class LoadEvent:
+class AmplitudeEvent:
     """A change of a load: from panel `panel` of window `window` on, `strength` and `weight` times amplitude `load`
     times the `power` of the time since acts as load `force` (in the units of a law that is divided by g): added to what
     acts there, or, where it `replaces` that, in its place.
@@ -95,7 +96,7 @@ class RuntimePlan:
     plan: MarchPlan
     own: MarchPlan
     free: FreeNetwork
-    events: tuple[LoadEvent, ...]
+    events: tuple[AmplitudeEvent, ...]
     output_terms: tuple[tuple[int, Any], ...]
     strands: tuple[Strand, ...]
     is_zero: tuple[bool, ...]
@@ -156,16 +157,22 @@ def free_march(model: Model, free: FreeNetwork, loads: tuple[AppliedLoad, ...], 
 
 def _events(
     plan: MarchPlan, free: FreeNetwork, acting: Sequence[Sequence[AppliedLoad]], sizes: Sequence[fmpq]
-) -> Iterator[LoadEvent]:
-    places = {panel.start: number for number, panel in enumerate(plan.panels)}
+) -> Iterator[AmplitudeEvent]:
+    """At each change of a load all that acts is said again, so that nothing adds up."""
     for force, number in enumerate(plan.pushed):
         powers, size = _unit_loads(plan.model.network.points[number], free.network.points[number])
+        gains: dict[tuple[fmpq, int], fmpq_poly] = defaultdict(fmpq_poly)
         for load, changes in enumerate(acting):
-            for time, power, weight, replaces in load_changes(changes, powers):
-                window = int((time / plan.step).floor())
-                panel = places[time - window * plan.step]
-                strength = size * free.factors.load / sizes[load]
-                yield LoadEvent(window, panel, force, power, strength, load, weight, replaces)
+            for change in changes:
+                gains[change.time, load] += change.weight * powers.get(change.source, fmpq_poly())
+        begun: set[int] = set()
+        for event in load_events(gains, (panel.start for panel in plan.panels), plan.step):
+            strength = size * free.factors.load / sizes[event.force]
+            terms = [(power, weight) for power, weight in enumerate(event.powers) if weight] or [(0, fmpq(0))]
+            for place, (power, weight) in enumerate(terms):
+                replaces = event.force in begun and place == 0
+                yield AmplitudeEvent(event.window, event.panel, force, power, strength, event.force, weight, replaces)
+            begun.add(event.force)
 
 
 def _unit_loads(own: Point, free: Point) -> tuple[dict[str, fmpq_poly], Function]:
@@ -198,24 +205,7 @@ def as_one_load(model: Model) -> list[AppliedLoad]:
     return [AppliedRecord(loads[0].source, loads[0].time, fmpq(1), loads)] if loads else []
 
 
-def load_changes(
-    changes: Sequence[AppliedLoad], powers: Mapping[str, fmpq_poly]
-) -> Iterator[tuple[fmpq, int, fmpq, bool]]:
-    """When a load changes, which power, how much of it, and whether it replaces what acts: at each change all that acts
-    is said again, so that nothing adds up.
-    """
-    since, acts, started = fmpq(0), fmpq_poly(), False
-    for time, same in groupby(changes, key=lambda change: change.time):
-        new = sum((change.weight * powers[change.source] for change in same if change.source in powers), fmpq_poly())
-        if new:
-            since, acts = time, acts(fmpq_poly([time - since, 1])) + new
-            terms = [(power, acts[power]) for power in range(3) if acts[power]] or [(0, fmpq(0))]
-            for place, (power, weight) in enumerate(terms):
-                yield time, power, weight, started and place == 0
-            started = True
-
-
-def ordered_events(events: Iterable[LoadEvent]) -> tuple[LoadEvent, ...]:
+def ordered_events(events: Iterable[AmplitudeEvent]) -> tuple[AmplitudeEvent, ...]:
     """In the order of time. UnservedError where samples, which replace each other, have an amplitude beside another."""
     found = tuple(sorted(events, key=lambda event: (event.window, event.panel)))
     for force in {event.force for event in found if event.replaces}:
