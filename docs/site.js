@@ -1,2 +1,3 @@
-// code that is wider than the page is scrolled by the keyboard, too
-for (const code of document.querySelectorAll("pre > code")) code.tabIndex = 0;
+// code and tables that are wider than the page are scrolled by the keyboard, too
+for (const wide of document.querySelectorAll("pre > code, .md-typeset table")) wide.tabIndex = 0;
+document.querySelector(".md-search")?.setAttribute("aria-label", "Search");

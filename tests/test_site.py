@@ -6,7 +6,10 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -66,6 +69,13 @@ def test_the_site_builds_and_a_broken_link_is_seen(tmp_path: Path) -> None:
     assert "docs/nothing.svg" in done.stderr
 
 
+class Quiet(SimpleHTTPRequestHandler):
+    """Serves files and says nothing of it."""
+
+    def log_message(self, format: str, *values: object) -> None:
+        """Nothing."""
+
+
 @pytest.mark.slow
 def test_axe_finds_nothing_on_pages_of_the_site(tmp_path: Path) -> None:
     pytest.importorskip("mkdocs")
@@ -75,9 +85,16 @@ def test_axe_finds_nothing_on_pages_of_the_site(tmp_path: Path) -> None:
         page = tmp_path / PAGES.relative_to(ROOT) / "docs" / "notebooks" / source.stem
         page.with_suffix(".md").write_text(f"# {source.stem}\n")
     assert build(tmp_path).returncode == 0
-    for name in ("index.html", "gallery.html", "docs/tutorials/structures.html"):
-        page = tmp_path / "build" / "site" / name
-        assert reported(page.read_text(encoding="utf-8"), axe() + LOOK, page.parent) == [], name
+    site = tmp_path / "build" / "site"
+    handler = partial(Quiet, directory=site)
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:  # large pages are slow from a disk
+        Thread(target=server.serve_forever, daemon=True).start()
+        for name in ("index.html", "gallery.html", "docs/tutorials/structures.html", "generated/errata.html"):
+            page = site / name
+            address = f"http://127.0.0.1:{server.server_address[1]}/{Path(name).parent.as_posix()}"
+            text = page.read_text(encoding="utf-8")
+            assert reported(text, axe() + LOOK, page.parent, address) == [], name
+        server.shutdown()
 
 
 def test_examples_in_docstrings_are_code() -> None:
