@@ -8,7 +8,7 @@ import pytest
 from wavesym.errors import WavesymError
 from wavesym.papers.pages.mathml import LONGEST, mathml, pieces
 from wavesym.papers.reader import read_formula, read_range
-from wavesym.papers.tree import Highlight, Number, latex
+from wavesym.papers.tree import Number, latex
 
 LONG = (
     r"F'_{i,n+1}(z) = F'_{i,n}(z) + \sum_{k=0}^{m_1} H(z-2n-\tau_k) [F^{k, i, n+1} + F_0^{k, i, n+1}(z-2n-\tau_k) + "
@@ -43,7 +43,7 @@ def test_ranges() -> None:
 
 
 def test_a_mark_is_a_row_of_its_own() -> None:
-    assert '<mrow class="marked"><mn>2</mn></mrow>' in mathml(Highlight(Number("2")))
+    assert '<mrow class="marked"><mn>2</mn></mrow>' in mathml(Number("2"), frozenset({0}))
 
 
 def test_a_long_formula_is_cut_where_lines_may_break_and_loses_nothing() -> None:

@@ -159,14 +159,6 @@ class Interval:
     high: Tree
 
 
-@dataclass(frozen=True)
-class Highlight:
-    """A part that a page shows as different; of `sign_only`, a term, just its sign. Pages alone use it."""
-
-    part: Tree
-    sign_only: bool = False
-
-
 Tree = (
     Number
     | Symbol
@@ -186,7 +178,6 @@ Tree = (
     | FormulaList
     | Progression
     | Interval
-    | Highlight
 )
 
 _CLOSING = {"(": ")", "[": "]", "{": r"\}", r"\langle": r"\rangle"}
@@ -239,12 +230,6 @@ def latex(tree: Tree) -> str:
             return f"{latex(variable)} = {', '.join(ends)}"
         case Interval(variable, (low, high), start, end):
             return rf"{latex(variable)} \in {low} {latex(start)}, {latex(end)} {high}"
-        case Highlight(Minus(of), True):
-            return rf"\marked{{-}}{latex(of)}"
-        case Highlight(of, True):
-            return latex(of)
-        case Highlight(of):
-            return rf"\marked{{{latex(of)}}}"
     raise TypeError(tree)
 
 
@@ -300,10 +285,6 @@ def _term(term: Tree, place: int) -> str:
     text = latex(term)
     if place == 0:
         return text
-    if isinstance(term, Highlight) and term.sign_only:
-        return f" {text}" if isinstance(term.part, Minus) else rf" \marked{{+}} {text}"
-    if isinstance(term, Highlight):
-        return rf" \marked{{{_term(term.part, place)}}}"
     return f" - {text[1:]}" if isinstance(term, Minus) else f" + {text}"
 
 

@@ -24,6 +24,7 @@ from wavesym.papers.pages.document import (
     statistics,
 )
 from wavesym.papers.pages.lines import Code, Different, Formula, Inline, Line
+from wavesym.papers.pages.marks import mark
 from wavesym.papers.pages.mathml import mathml
 from wavesym.papers.record import VERDICTS, Record
 from wavesym.papers.tree import latex
@@ -62,13 +63,13 @@ MARKDOWN = Style(code=lambda text: f"`{TEXT.code(text)}`", formula=lambda formul
 HTML = Style(
     words=escape,
     code=lambda text: f"<code>{escape(text)}</code>",
-    formula=lambda formula: f'<span class="formula">{mathml(formula.tree)}</span>',
+    formula=lambda formula: f'<span class="formula">{mathml(formula.tree, formula.differing)}</span>',
     mark=lambda part: f"<mark>{part}</mark>",
 )
 LATEX = Style(
     words=lambda text: tex(text),
     code=lambda text: rf"\texttt{{{tex(TEXT.code(text))}}}",
-    formula=lambda formula: f"$\\displaystyle {latex(formula.tree)}$",
+    formula=lambda formula: f"$\\displaystyle {mark([latex(formula.tree)], formula.differing)[0]}$",
     mark=lambda part: rf"\markedtext{{{part}}}",
 )
 

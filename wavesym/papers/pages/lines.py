@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from difflib import SequenceMatcher
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-from wavesym.papers.difference import mark_differences, mark_range_differences
+from wavesym.papers.pages.marks import differences, differing_tokens
 from wavesym.papers.reader import UnreadableError, read_formula, read_range
 from wavesym.papers.record import Record
-from wavesym.papers.tree import Tree
+from wavesym.papers.tree import Tree, latex
 
 
 @dataclass(frozen=True)
@@ -23,10 +22,11 @@ class Code:
 
 @dataclass(frozen=True)
 class Formula:
-    """A string that is read as a formula or a range."""
+    """A string that is read as a formula or a range; `differing` are the places of tokens that differ."""
 
     text: str
     tree: Tree
+    differing: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -102,40 +102,47 @@ def _versions(record: Record) -> tuple[tuple[Line, ...], tuple[Line, ...]]:
     if slip is None:
         own = prose(entry.english) if entry.english else (formula(entry.printed),)
         return (own, *((range_of_values(range_),) for range_ in entry.ranges)), ()
-    if entry.english:
-        sentences = _compared_words(entry.english, slip.correction)
-    else:
-        one, other = formula(entry.printed), formula(slip.correction)
-        if isinstance(one, Formula) and isinstance(other, Formula):
-            trees = mark_differences(one.tree, other.tree)
-            one, other = (Formula(f.text, tree) for f, tree in zip((one, other), trees, strict=True))
-        sentences = (one,), (other,)
     right = entry.ranges if slip.ranges is None else slip.ranges
+    if entry.english:
+        sentences = _compare_words(entry.english, slip.correction)
+    else:
+        one, other = _compare_formulas([formula(entry.printed)], [formula(slip.correction)])
+        sentences = tuple(one), tuple(other)
     ranges = [list(map(range_of_values, texts)) for texts in (entry.ranges, right)]
-    if slip.ranges is not None and all(isinstance(range_, Formula) for side in ranges for range_ in side):
-        before, after = ([range_.tree for range_ in side if isinstance(range_, Formula)] for side in ranges)
-        differences = mark_range_differences(before, after)
-        ranges = [list(map(Formula, *side)) for side in zip((entry.ranges, slip.ranges), differences, strict=True)]
+    if slip.ranges is not None:
+        ranges = [*_compare_formulas(*ranges)]
     first, second = ((sentence, *((r,) for r in side)) for sentence, side in zip(sentences, ranges, strict=True))
     return first, second
 
 
-def _compared_words(before: str, after: str) -> tuple[Line, Line]:
-    """Two sentences, word by word; blanks are never marked, as a line may be broken there."""
-    one, other = _TOKENS.split(before), _TOKENS.split(after)
-    blocks = SequenceMatcher(a=one, b=other, autojunk=False).get_opcodes()
+Readable = list[Formula | Code]
 
-    def side(tokens: Iterable[tuple[str, bool]]) -> Line:
-        return tuple(
-            Different(_token(token)) if differs and not token.isspace() else _token(token)
-            for token, differs in tokens
+
+def _compare_formulas(before: Readable, after: Readable) -> tuple[Readable, Readable]:
+    """Two lists of formulas with what differs, unless one of them cannot be read."""
+    one, other = ([each for each in side if isinstance(each, Formula)] for side in (before, after))
+    if len(one) < len(before) or len(other) < len(after):
+        return before, after
+    places = differing_tokens(*([latex(each.tree) for each in side] for side in (one, other)))
+    first, second = (
+        [replace(each, differing=own) for each, own in zip(side, found, strict=True)]
+        for side, found in zip((one, other), places, strict=True)
+    )
+    return [*first], [*second]
+
+
+def _compare_words(before: str, after: str) -> tuple[Line, Line]:
+    """Two sentences, word by word; blanks are never marked, as a line may be broken there."""
+    texts = _TOKENS.split(before), _TOKENS.split(after)
+    one, other = (
+        tuple(
+            Different(_token(token)) if place in differing and not token.isspace() else _token(token)
+            for place, token in enumerate(side)
             if token
         )
-
-    return (
-        side((token, tag != "equal") for tag, start, end, _, _ in blocks for token in one[start:end]),
-        side((token, tag != "equal") for tag, _, _, start, end in blocks for token in other[start:end]),
+        for side, differing in zip(texts, differences(*texts), strict=True)
     )
+    return one, other
 
 
 def join_lines(lines: Sequence[Line], separator: str = ", ") -> Line:

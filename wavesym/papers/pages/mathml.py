@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from wavesym.errors import WavesymError
-from wavesym.papers.tree import Addition, FormulaList, Group, Highlight, Minus, Product, Relation, Series, Tree, latex
+from wavesym.papers.pages.marks import mark
+from wavesym.papers.tree import Addition, FormulaList, Group, Minus, Product, Relation, Series, Tree, latex
 
 LONGEST = 90
 """Characters of LaTeX that are not broken: about what a line of a phone holds."""
@@ -16,8 +17,9 @@ _REPLACED = (
 )
 
 
-def mathml(tree: Tree) -> str:
-    """The formula as <math> elements: one, or, where it is long, pieces of it between which a line may be broken.
+def mathml(tree: Tree, differing: frozenset[int] = frozenset()) -> str:
+    """The formula, marked at some tokens, as <math> elements: one, or, where it is long, pieces that a line may be
+    broken between.
 
     WavesymError where the library is not installed.
     """
@@ -26,7 +28,7 @@ def mathml(tree: Tree) -> str:
     except ImportError:
         raise WavesymError("latex2mathml is not installed; `pip install 'wavesym[papers]'` brings it") from None
     found = []
-    for piece in pieces(tree):
+    for piece in mark(pieces(tree), differing):
         made = convert(piece.replace(r"\marked{", r"\style{marked}{"), display="block")
         for before, after in _REPLACED:
             made = made.replace(before, after)
@@ -45,7 +47,7 @@ def pieces(tree: Tree) -> list[str]:
         case FormulaList(items):
             found = [pieces(item) for item in items]
             return [part for item in found[:-1] for part in (*item[:-1], f"{item[-1]},")] + found[-1]
-        case Addition(terms) if not any(isinstance(term, Highlight) for term in terms):
+        case Addition(terms):
             bodies = [term.term if place and isinstance(term, Minus) else term for place, term in enumerate(terms)]
             return _parts(bodies, ["- " if isinstance(term, Minus) else "+ " for term in terms[1:]])
         case Product((*before, last)):
