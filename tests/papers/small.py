@@ -50,7 +50,7 @@ def entry(id: str, printed: str, where: str, slip: Slip | None = None, **more: o
 
 
 def _slip(corrected: str, note: str = "One more.", **more: object) -> dict[str, object]:
-    return {"slip": {"verdict": "misprint", "correction": corrected, "note": note, **more}}
+    return {"slip": {"correction": corrected, "note": note, **more}}
 
 
 EQUIVALENT = (("sign of 0n in 0n + n", "-0 & 0 are one"), ("2 n for n in n", "0 times n is 0"))
@@ -101,7 +101,7 @@ PASSAGES = (
         where="section 1, after (1.2)",
         kind="sum",
         text="n + n = [2",
-        record={"text.1": {"printed": "n + n = [2", **_slip("n + n = 2n", verdict="unreadable", note="#1_%")}},
+        record={"text.1": {"printed": "n + n = [2", **_slip("n + n = 2n", note="#1_%")}},
     ),
     Passage(lines=(10, 10), where="section 1", why="a title"),
 )

@@ -165,35 +165,6 @@ def test_known_verdicts(by_id, id, verdict):
     assert by_id[id].verdict == verdict
 
 
-@pytest.mark.parametrize(
-    ("id", "called"),
-    [
-        pytest.param("(2.3)", "unreadable", marks=pytest.mark.slow),
-        pytest.param("(2.4).5", "incomplete", marks=pytest.mark.slow),
-        ("def.f", "unreadable"),
-        ("T1.II.S", "incomplete"),
-        ("(4.4).1", "misprint"),
-        pytest.param("(4.5).1", "convention", marks=pytest.mark.slow),
-        pytest.param("(4.5).2", "misprint", marks=pytest.mark.slow),
-        ("(4.6).m", "misprint"),
-        ("(4.8).5", "convention"),
-        ("T3.odd.g.alpha1.s_1", "misprint"),
-        ("T4.m3.g_m.K_1", "misprint"),
-        ("text.5", "misprint"),
-        ("text.7", "misprint"),
-        ("text.8", "unreadable"),
-        pytest.param("text.9", "misprint", marks=pytest.mark.slow),
-        ("text.28", "misprint"),
-        ("summary.en.4", "unreadable"),
-    ],
-)
-def test_a_false_kind_of_slip_is_seen(id, called):
-    (entry,) = (entry for entry in paper().entries.values() if entry.id == id)
-    record = _judged(entry, slip=entry.slip.model_copy(update={"verdict": called}))
-    assert record.verdict == "untested"
-    assert any(problem.startswith(f"called {called}, yet it is ") for problem in record.problems)
-
-
 def _judged(entry, **changes):
     changed = entry.model_copy(update=changes)
     return judge(changed, ADAPTERS[changed.kind](changed))

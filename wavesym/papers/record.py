@@ -209,6 +209,7 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
     printed = _Trial.run(test, entry.statement, (*entry.ranges, *entry.inferred_ranges), stop_at)
     settled, text, ranges = printed, entry.statement, (*entry.ranges, *entry.inferred_ranges)
     evidence: list[str] = []
+    verdict: Verdict = "holds"
     if slip:
         text = slip.correction
         ranges = (*(entry.ranges if slip.ranges is None else slip.ranges), *entry.inferred_ranges)
@@ -220,9 +221,7 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
         if settled.wrong:
             found.append(f"the correction fails: {settled.wrong}")
         evidence.append(f"As corrected it holds in {_all(settled.telling_count)}.")
-        shown_kind, why = _kind(entry, test, printed)
-        if slip.verdict != shown_kind:
-            found.append(f"called {slip.verdict}, yet it is {shown_kind}: {why}")
+        verdict, why = _kind(entry, test, printed)
         evidence.append(why)
     elif printed.wrong:
         found.append(f"fails, and no correction is known: {printed.wrong}")
@@ -237,11 +236,10 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
         difference = _difference(test, entry.statement, text)
     if test.observation:
         evidence.append(test.observation())
-    verdict: Verdict = "untested" if found else slip.verdict if slip else "holds"
     return Record(
         entry,
         test.reference,
-        verdict,
+        "untested" if found else verdict,
         tuple(evidence),
         settled.telling_count,
         turned,

@@ -313,7 +313,7 @@ def fields(record: Record, findings: Findings) -> Iterable[Field]:
     yield Field("evidence", ((readable(" ".join(record.evidence)),),))
     if record.note:
         yield Field("note", ((readable(record.note),),))
-    if slip and slip.verdict in ("misprint", "unreadable"):
+    if slip and record.verdict in ("misprint", "unreadable"):
         yield Field("origin", ((ORIGINS[slip.origin],),))
     yield Field("tested", ((f"Compared with {record.reference}; {_faults(record)}.",),))
     for change, because in record.mutations.survivors if not findings.whole else ():
