@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, field_validator
 
 
 class TableHead(NamedTuple):
@@ -21,9 +21,13 @@ class TableHead(NamedTuple):
     record: str = ""
 
 
+_WITHOUT_MARKUP = str.maketrans("", "", "${}")
+
+
 class PrintedTable(BaseModel):
     """A block of cells, whose ids are made of {row} and {column} by `cell`; `name` and `caption` are for readers.
 
+    A head that is a label alone is named by it, without dollar signs and braces.
     `head` is the line of the columns' labels, `line` that of the first row; labels stand at `left_column` or later.
     `heads` are the ids of the records whose ranges hold in every cell; `row_head` and `column_head` make those of a row
     or column. `unjudged_columns`, by name, are no records, for a reason.
@@ -43,6 +47,11 @@ class PrintedTable(BaseModel):
     columns: tuple[TableHead, ...]
     rows: tuple[TableHead, ...]
     unjudged_columns: Mapping[str, str] = {}
+
+    @field_validator("columns", "rows", mode="before")
+    @classmethod
+    def _name_by_labels(cls, heads: Sequence[Any]) -> list[Any]:
+        return [(head, head.translate(_WITHOUT_MARKUP)) if isinstance(head, str) else head for head in heads]
 
     def cell_id(self, row: TableHead, column: TableHead) -> str:
         """The id of a cell."""
