@@ -2,6 +2,11 @@
 #include "fmi2.h"
 #include "simulation.h"
 
+/* What functions are given stands in the standard; not all of it matters here. */
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+
 typedef struct {
     simulation run;
     fmi2CallbackFunctions calls;
@@ -25,6 +30,19 @@ static fmi2Status none(instance *it, const char *what)
     return answer(it, WRONG);
 }
 
+/* Functions and values that this model has none of. */
+#define VARIABLES fmi2Component c, const fmi2ValueReference reference[], size_t count
+#define NONE(function, what, arguments) \
+    fmi2Status FMI2(function) arguments \
+    { \
+        return none((instance *)c, what); \
+    }
+#define NO_VALUE(function, what, arguments) \
+    fmi2Status FMI2(function) arguments \
+    { \
+        return count ? none((instance *)c, what) : fmi2OK; \
+    }
+
 const char *FMI2(fmi2GetTypesPlatform)(void)
 {
     return "default";
@@ -37,10 +55,6 @@ const char *FMI2(fmi2GetVersion)(void)
 
 fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[])
 {
-    (void)c;
-    (void)on;
-    (void)count;
-    (void)categories;
     return fmi2OK;
 }
 
@@ -49,9 +63,6 @@ fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String g
 {
     const char *wrong = "not enough memory";
     instance *it = NULL;
-    (void)resources;
-    (void)visible;
-    (void)logging;
     if (type != fmi2CoSimulation) {
         wrong = "fmuType: co-simulation expected";
     } else if (guid == NULL || strcmp(guid, TOKEN) != 0) {
@@ -81,8 +92,6 @@ void FMI2(fmi2FreeInstance)(fmi2Component c)
 fmi2Status FMI2(fmi2SetupExperiment)(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                      fmi2Boolean has_stop, fmi2Real stop)
 {
-    (void)has_tolerance;
-    (void)tolerance;
     return answer((instance *)c, set_times(&((instance *)c)->run, start, has_stop, stop));
 }
 
@@ -145,36 +154,10 @@ fmi2Status FMI2(fmi2SetBoolean)(fmi2Component c, const fmi2ValueReference refere
     return answer(it, found);
 }
 
-fmi2Status FMI2(fmi2GetInteger)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
-                                fmi2Integer value[])
-{
-    (void)reference;
-    (void)value;
-    return count ? none((instance *)c, "an integer") : fmi2OK;
-}
-
-fmi2Status FMI2(fmi2SetInteger)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
-                                const fmi2Integer value[])
-{
-    (void)reference;
-    (void)value;
-    return count ? none((instance *)c, "an integer") : fmi2OK;
-}
-
-fmi2Status FMI2(fmi2GetString)(fmi2Component c, const fmi2ValueReference reference[], size_t count, fmi2String value[])
-{
-    (void)reference;
-    (void)value;
-    return count ? none((instance *)c, "a string") : fmi2OK;
-}
-
-fmi2Status FMI2(fmi2SetString)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
-                               const fmi2String value[])
-{
-    (void)reference;
-    (void)value;
-    return count ? none((instance *)c, "a string") : fmi2OK;
-}
+NO_VALUE(fmi2GetInteger, "an integer", (VARIABLES, fmi2Integer value[]))
+NO_VALUE(fmi2SetInteger, "an integer", (VARIABLES, const fmi2Integer value[]))
+NO_VALUE(fmi2GetString, "a string", (VARIABLES, fmi2String value[]))
+NO_VALUE(fmi2SetString, "a string", (VARIABLES, const fmi2String value[]))
 
 /* A state: into memory that is there already, or new memory. */
 static fmi2Status keep(instance *it, const situation *now, fmi2FMUstate *state)
@@ -205,7 +188,6 @@ fmi2Status FMI2(fmi2SetFMUstate)(fmi2Component c, fmi2FMUstate state)
 
 fmi2Status FMI2(fmi2FreeFMUstate)(fmi2Component c, fmi2FMUstate *state)
 {
-    (void)c;
     if (state) {
         free(*state);
         *state = NULL;
@@ -215,8 +197,6 @@ fmi2Status FMI2(fmi2FreeFMUstate)(fmi2Component c, fmi2FMUstate *state)
 
 fmi2Status FMI2(fmi2SerializedFMUstateSize)(fmi2Component c, fmi2FMUstate state, size_t *size)
 {
-    (void)c;
-    (void)state;
     *size = KEPT_SIZE;
     return fmi2OK;
 }
@@ -241,47 +221,20 @@ fmi2Status FMI2(fmi2DeSerializeFMUstate)(fmi2Component c, const fmi2Byte bytes[]
     return status;
 }
 
-fmi2Status FMI2(fmi2GetDirectionalDerivative)(fmi2Component c, const fmi2ValueReference unknowns[], size_t rows,
-                                              const fmi2ValueReference knowns[], size_t columns, const fmi2Real seed[],
-                                              fmi2Real product[])
-{
-    (void)unknowns;
-    (void)rows;
-    (void)knowns;
-    (void)columns;
-    (void)seed;
-    (void)product;
-    return none((instance *)c, "a directional derivative");
-}
-
-fmi2Status FMI2(fmi2SetRealInputDerivatives)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
-                                             const fmi2Integer order[], const fmi2Real value[])
-{
-    (void)reference;
-    (void)order;
-    (void)value;
-    return count ? none((instance *)c, "an input's derivative (canInterpolateInputs is false)") : fmi2OK;
-}
-
-fmi2Status FMI2(fmi2GetRealOutputDerivatives)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
-                                              const fmi2Integer order[], fmi2Real value[])
-{
-    (void)reference;
-    (void)order;
-    (void)value;
-    return count ? none((instance *)c, "an output's derivative (maxOutputDerivativeOrder is 0)") : fmi2OK;
-}
+NONE(fmi2GetDirectionalDerivative, "a directional derivative",
+     (fmi2Component c, const fmi2ValueReference unknowns[], size_t rows, const fmi2ValueReference knowns[],
+      size_t columns, const fmi2Real seed[], fmi2Real product[]))
+NO_VALUE(fmi2SetRealInputDerivatives, "an input's derivative (canInterpolateInputs is false)",
+         (VARIABLES, const fmi2Integer order[], const fmi2Real value[]))
+NO_VALUE(fmi2GetRealOutputDerivatives, "an output's derivative (maxOutputDerivativeOrder is 0)",
+         (VARIABLES, const fmi2Integer order[], fmi2Real value[]))
 
 fmi2Status FMI2(fmi2DoStep)(fmi2Component c, fmi2Real at, fmi2Real step, fmi2Boolean never_back)
 {
-    (void)never_back;
     return answer((instance *)c, advance(&((instance *)c)->run, at, step));
 }
 
-fmi2Status FMI2(fmi2CancelStep)(fmi2Component c)
-{
-    return none((instance *)c, "a step that runs while others do");
-}
+NONE(fmi2CancelStep, "a step that runs while others do", (fmi2Component c))
 
 fmi2Status FMI2(fmi2GetRealStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value)
 {
@@ -292,19 +245,9 @@ fmi2Status FMI2(fmi2GetRealStatus)(fmi2Component c, const fmi2StatusKind kind, f
     return fmi2OK;
 }
 
-fmi2Status FMI2(fmi2GetStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
-{
-    (void)kind;
-    (void)value;
-    return none((instance *)c, "a step that runs while others do");
-}
-
-fmi2Status FMI2(fmi2GetIntegerStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
-{
-    (void)kind;
-    (void)value;
-    return none((instance *)c, "a status that is an integer");
-}
+NONE(fmi2GetStatus, "a step that runs while others do", (fmi2Component c, const fmi2StatusKind kind, fmi2Status *value))
+NONE(fmi2GetIntegerStatus, "a status that is an integer",
+     (fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value))
 
 fmi2Status FMI2(fmi2GetBooleanStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
 {
@@ -315,9 +258,4 @@ fmi2Status FMI2(fmi2GetBooleanStatus)(fmi2Component c, const fmi2StatusKind kind
     return fmi2OK;
 }
 
-fmi2Status FMI2(fmi2GetStringStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
-{
-    (void)kind;
-    (void)value;
-    return none((instance *)c, "a status that is text");
-}
+NONE(fmi2GetStringStatus, "a status that is text", (fmi2Component c, const fmi2StatusKind kind, fmi2String *value))

@@ -2,6 +2,11 @@
 #include "fmi3.h"
 #include "simulation.h"
 
+/* What functions are given stands in the standard; not all of it matters here. */
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+
 typedef struct {
     simulation run;
     fmi3LogMessageCallback log;
@@ -25,6 +30,19 @@ static fmi3Status none(fmi3Instance of, const char *what)
     return answer(it, WRONG);
 }
 
+/* Functions and values that this model has none of. */
+#define VARIABLES fmi3Instance it, const fmi3ValueReference reference[], size_t references
+#define NONE(function, what, arguments) \
+    fmi3Status FMI3(function) arguments \
+    { \
+        return none(it, what); \
+    }
+#define NO_VALUE(function, what, arguments) \
+    fmi3Status FMI3(function) arguments \
+    { \
+        return references ? none(it, what) : fmi3OK; \
+    }
+
 /* All variables are single numbers: as many values as references. */
 static verdict single(simulation *s, size_t references, size_t count)
 {
@@ -38,10 +56,6 @@ const char *FMI3(fmi3GetVersion)(void)
 
 fmi3Status FMI3(fmi3SetDebugLogging)(fmi3Instance it, fmi3Boolean on, size_t count, const fmi3String categories[])
 {
-    (void)it;
-    (void)on;
-    (void)count;
-    (void)categories;
     return fmi3OK;
 }
 
@@ -53,13 +67,6 @@ fmi3Instance FMI3(fmi3InstantiateCoSimulation)(fmi3String name, fmi3String token
 {
     const char *wrong = "not enough memory";
     instance *it = NULL;
-    (void)name;
-    (void)resources;
-    (void)visible;
-    (void)logging;
-    (void)early;
-    (void)intermediate;
-    (void)update;
     if (token == NULL || strcmp(token, TOKEN) != 0) {
         wrong = "instantiationToken: not that of this model";
     } else if (events || intermediates > 0) {
@@ -83,11 +90,6 @@ fmi3Instance FMI3(fmi3InstantiateModelExchange)(fmi3String name, fmi3String toke
                                                 fmi3Boolean visible, fmi3Boolean logging,
                                                 fmi3InstanceEnvironment environment, fmi3LogMessageCallback log)
 {
-    (void)name;
-    (void)token;
-    (void)resources;
-    (void)visible;
-    (void)logging;
     if (log) {
         log(environment, fmi3Error, "logStatusError", "model exchange: asked for, co-simulation expected");
     }
@@ -100,9 +102,6 @@ fmi3Instance FMI3(fmi3InstantiateScheduledExecution)(fmi3String name, fmi3String
                                                      fmi3ClockUpdateCallback update, fmi3LockPreemptionCallback lock,
                                                      fmi3UnlockPreemptionCallback unlock)
 {
-    (void)update;
-    (void)lock;
-    (void)unlock;
     return FMI3(fmi3InstantiateModelExchange)(name, token, resources, visible, logging, environment, log);
 }
 
@@ -116,8 +115,6 @@ fmi3Status FMI3(fmi3EnterInitializationMode)(fmi3Instance of, fmi3Boolean has_to
 {
     instance *const it = (instance *)of;
     const verdict found = set_times(&it->run, start, has_stop, stop);
-    (void)has_tolerance;
-    (void)tolerance;
     return answer(it, found == FINE ? begin(&it->run) : found);
 }
 
@@ -178,91 +175,43 @@ FMI3_SET(Boolean)
 }
 
 /* There are no values of other types. */
-#define NONE(macro, type) \
+#define NO_TYPE(macro, type) \
     macro(type) \
     { \
-        (void)reference; \
-        (void)value; \
-        (void)count; \
         return references ? none(it, "a variable of type " #type) : fmi3OK; \
     }
 
-NONE(FMI3_GET, Float32)
-NONE(FMI3_GET, Int8)
-NONE(FMI3_GET, UInt8)
-NONE(FMI3_GET, Int16)
-NONE(FMI3_GET, UInt16)
-NONE(FMI3_GET, Int32)
-NONE(FMI3_GET, UInt32)
-NONE(FMI3_GET, Int64)
-NONE(FMI3_GET, UInt64)
-NONE(FMI3_GET, String)
-NONE(FMI3_SET, Float32)
-NONE(FMI3_SET, Int8)
-NONE(FMI3_SET, UInt8)
-NONE(FMI3_SET, Int16)
-NONE(FMI3_SET, UInt16)
-NONE(FMI3_SET, Int32)
-NONE(FMI3_SET, UInt32)
-NONE(FMI3_SET, Int64)
-NONE(FMI3_SET, UInt64)
-NONE(FMI3_SET, String)
+NO_TYPE(FMI3_GET, Float32)
+NO_TYPE(FMI3_GET, Int8)
+NO_TYPE(FMI3_GET, UInt8)
+NO_TYPE(FMI3_GET, Int16)
+NO_TYPE(FMI3_GET, UInt16)
+NO_TYPE(FMI3_GET, Int32)
+NO_TYPE(FMI3_GET, UInt32)
+NO_TYPE(FMI3_GET, Int64)
+NO_TYPE(FMI3_GET, UInt64)
+NO_TYPE(FMI3_GET, String)
+NO_TYPE(FMI3_SET, Float32)
+NO_TYPE(FMI3_SET, Int8)
+NO_TYPE(FMI3_SET, UInt8)
+NO_TYPE(FMI3_SET, Int16)
+NO_TYPE(FMI3_SET, UInt16)
+NO_TYPE(FMI3_SET, Int32)
+NO_TYPE(FMI3_SET, UInt32)
+NO_TYPE(FMI3_SET, Int64)
+NO_TYPE(FMI3_SET, UInt64)
+NO_TYPE(FMI3_SET, String)
 
-fmi3Status FMI3(fmi3GetBinary)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                               size_t size[], fmi3Binary value[], size_t count)
-{
-    (void)reference;
-    (void)size;
-    (void)value;
-    (void)count;
-    return references ? none(it, "a variable of type Binary") : fmi3OK;
-}
-
-fmi3Status FMI3(fmi3SetBinary)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                               const size_t size[], const fmi3Binary value[], size_t count)
-{
-    (void)reference;
-    (void)size;
-    (void)value;
-    (void)count;
-    return references ? none(it, "a variable of type Binary") : fmi3OK;
-}
-
-fmi3Status FMI3(fmi3GetClock)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                              fmi3Clock value[])
-{
-    (void)reference;
-    (void)value;
-    return references ? none(it, "a clock") : fmi3OK;
-}
-
-fmi3Status FMI3(fmi3SetClock)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                              const fmi3Clock value[])
-{
-    (void)reference;
-    (void)value;
-    return references ? none(it, "a clock") : fmi3OK;
-}
-
-fmi3Status FMI3(fmi3GetNumberOfVariableDependencies)(fmi3Instance it, fmi3ValueReference reference, size_t *count)
-{
-    (void)reference;
-    (void)count;
-    return none(it, "a list of dependencies while it runs");
-}
-
-fmi3Status FMI3(fmi3GetVariableDependencies)(fmi3Instance it, fmi3ValueReference dependent, size_t elements[],
-                                             fmi3ValueReference on[], size_t places[], fmi3DependencyKind kind[],
-                                             size_t count)
-{
-    (void)dependent;
-    (void)elements;
-    (void)on;
-    (void)places;
-    (void)kind;
-    (void)count;
-    return none(it, "a list of dependencies while it runs");
-}
+NO_VALUE(fmi3GetBinary, "a variable of type Binary", (VARIABLES, size_t size[], fmi3Binary value[], size_t count))
+NO_VALUE(fmi3SetBinary, "a variable of type Binary",
+         (VARIABLES, const size_t size[], const fmi3Binary value[], size_t count))
+NO_VALUE(fmi3GetClock, "a clock", (VARIABLES, fmi3Clock value[]))
+NO_VALUE(fmi3SetClock, "a clock", (VARIABLES, const fmi3Clock value[]))
+NONE(fmi3GetNumberOfVariableDependencies, "a list of dependencies while it runs",
+     (fmi3Instance it, fmi3ValueReference reference, size_t *count))
+NONE(fmi3GetVariableDependencies, "a list of dependencies while it runs",
+     (fmi3Instance it, fmi3ValueReference dependent, size_t elements[], fmi3ValueReference on[], size_t places[],
+      fmi3DependencyKind kind[], size_t count))
 
 /* A state: into memory that is there already, or new memory. */
 static fmi3Status keep(instance *it, const situation *now, fmi3FMUState *state)
@@ -293,7 +242,6 @@ fmi3Status FMI3(fmi3SetFMUState)(fmi3Instance it, fmi3FMUState state)
 
 fmi3Status FMI3(fmi3FreeFMUState)(fmi3Instance it, fmi3FMUState *state)
 {
-    (void)it;
     if (state) {
         free(*state);
         *state = NULL;
@@ -303,8 +251,6 @@ fmi3Status FMI3(fmi3FreeFMUState)(fmi3Instance it, fmi3FMUState *state)
 
 fmi3Status FMI3(fmi3SerializedFMUStateSize)(fmi3Instance it, fmi3FMUState state, size_t *size)
 {
-    (void)it;
-    (void)state;
     *size = KEPT_SIZE;
     return fmi3OK;
 }
@@ -334,7 +280,6 @@ fmi3Status FMI3(fmi3DoStep)(fmi3Instance of, fmi3Float64 at, fmi3Float64 step, f
 {
     instance *const it = (instance *)of;
     const fmi3Status status = answer(it, advance(&it->run, at, step));
-    (void)never_back;
     *event = false;
     *end = false;
     *early = false;
@@ -342,206 +287,42 @@ fmi3Status FMI3(fmi3DoStep)(fmi3Instance of, fmi3Float64 at, fmi3Float64 step, f
     return status;
 }
 
-fmi3Status FMI3(fmi3GetDirectionalDerivative)(fmi3Instance it, const fmi3ValueReference unknown[], size_t unknowns,
-                                              const fmi3ValueReference known[], size_t knowns,
-                                              const fmi3Float64 seed[], size_t seeds, fmi3Float64 product[],
-                                              size_t products)
-{
-    (void)unknown;
-    (void)unknowns;
-    (void)known;
-    (void)knowns;
-    (void)seed;
-    (void)seeds;
-    (void)product;
-    (void)products;
-    return none(it, "a directional derivative");
-}
-
-fmi3Status FMI3(fmi3GetAdjointDerivative)(fmi3Instance it, const fmi3ValueReference unknown[], size_t unknowns,
-                                          const fmi3ValueReference known[], size_t knowns, const fmi3Float64 seed[],
-                                          size_t seeds, fmi3Float64 product[], size_t products)
-{
-    (void)unknown;
-    (void)unknowns;
-    (void)known;
-    (void)knowns;
-    (void)seed;
-    (void)seeds;
-    (void)product;
-    (void)products;
-    return none(it, "an adjoint derivative");
-}
-
-fmi3Status FMI3(fmi3EnterConfigurationMode)(fmi3Instance it)
-{
-    return none(it, "a structural parameter");
-}
-
-fmi3Status FMI3(fmi3ExitConfigurationMode)(fmi3Instance it)
-{
-    return none(it, "a structural parameter");
-}
-
-fmi3Status FMI3(fmi3EnterEventMode)(fmi3Instance it)
-{
-    return none(it, "an event");
-}
-
-fmi3Status FMI3(fmi3EnterStepMode)(fmi3Instance it)
-{
-    return none(it, "an event");
-}
-
-fmi3Status FMI3(fmi3EvaluateDiscreteStates)(fmi3Instance it)
-{
-    return none(it, "a discrete state");
-}
-
-fmi3Status FMI3(fmi3UpdateDiscreteStates)(fmi3Instance it, fmi3Boolean *again, fmi3Boolean *end,
-                                          fmi3Boolean *nominals, fmi3Boolean *values, fmi3Boolean *defined,
-                                          fmi3Float64 *next)
-{
-    (void)again;
-    (void)end;
-    (void)nominals;
-    (void)values;
-    (void)defined;
-    (void)next;
-    return none(it, "a discrete state");
-}
-
-fmi3Status FMI3(fmi3GetIntervalDecimal)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                        fmi3Float64 interval[], fmi3IntervalQualifier qualifier[])
-{
-    (void)reference;
-    (void)references;
-    (void)interval;
-    (void)qualifier;
-    return none(it, "a clock");
-}
-
-fmi3Status FMI3(fmi3GetIntervalFraction)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                         fmi3UInt64 counter[], fmi3UInt64 resolution[],
-                                         fmi3IntervalQualifier qualifier[])
-{
-    (void)reference;
-    (void)references;
-    (void)counter;
-    (void)resolution;
-    (void)qualifier;
-    return none(it, "a clock");
-}
-
-#define NO_DECIMAL(function, type) \
-    fmi3Status FMI3(function)(fmi3Instance it, const fmi3ValueReference reference[], size_t references, type times[]) \
-    { \
-        (void)reference; \
-        (void)references; \
-        (void)times; \
-        return none(it, "a clock"); \
-    }
-
-#define NO_FRACTION(function, type) \
-    fmi3Status FMI3(function)(fmi3Instance it, const fmi3ValueReference reference[], size_t references, type counter[], \
-                              type resolution[]) \
-    { \
-        (void)reference; \
-        (void)references; \
-        (void)counter; \
-        (void)resolution; \
-        return none(it, "a clock"); \
-    }
-
-NO_DECIMAL(fmi3GetShiftDecimal, fmi3Float64)
-NO_DECIMAL(fmi3SetShiftDecimal, const fmi3Float64)
-NO_DECIMAL(fmi3SetIntervalDecimal, const fmi3Float64)
-NO_FRACTION(fmi3GetShiftFraction, fmi3UInt64)
-NO_FRACTION(fmi3SetShiftFraction, const fmi3UInt64)
-NO_FRACTION(fmi3SetIntervalFraction, const fmi3UInt64)
-
-fmi3Status FMI3(fmi3GetOutputDerivatives)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                          const fmi3Int32 order[], fmi3Float64 value[], size_t count)
-{
-    (void)reference;
-    (void)references;
-    (void)order;
-    (void)value;
-    (void)count;
-    return none(it, "a derivative of an output");
-}
+NONE(fmi3GetDirectionalDerivative, "a directional derivative",
+     (fmi3Instance it, const fmi3ValueReference unknown[], size_t unknowns, const fmi3ValueReference known[],
+      size_t knowns, const fmi3Float64 seed[], size_t seeds, fmi3Float64 product[], size_t products))
+NONE(fmi3GetAdjointDerivative, "an adjoint derivative",
+     (fmi3Instance it, const fmi3ValueReference unknown[], size_t unknowns, const fmi3ValueReference known[],
+      size_t knowns, const fmi3Float64 seed[], size_t seeds, fmi3Float64 product[], size_t products))
+NONE(fmi3EnterConfigurationMode, "a structural parameter", (fmi3Instance it))
+NONE(fmi3ExitConfigurationMode, "a structural parameter", (fmi3Instance it))
+NONE(fmi3EnterEventMode, "an event", (fmi3Instance it))
+NONE(fmi3EnterStepMode, "an event", (fmi3Instance it))
+NONE(fmi3EvaluateDiscreteStates, "a discrete state", (fmi3Instance it))
+NONE(fmi3UpdateDiscreteStates, "a discrete state",
+     (fmi3Instance it, fmi3Boolean *again, fmi3Boolean *end, fmi3Boolean *nominals, fmi3Boolean *values,
+      fmi3Boolean *defined, fmi3Float64 *next))
+NONE(fmi3GetIntervalDecimal, "a clock", (VARIABLES, fmi3Float64 interval[], fmi3IntervalQualifier qualifier[]))
+NONE(fmi3GetIntervalFraction, "a clock",
+     (VARIABLES, fmi3UInt64 counter[], fmi3UInt64 resolution[], fmi3IntervalQualifier qualifier[]))
+NONE(fmi3GetShiftDecimal, "a clock", (VARIABLES, fmi3Float64 times[]))
+NONE(fmi3SetShiftDecimal, "a clock", (VARIABLES, const fmi3Float64 times[]))
+NONE(fmi3SetIntervalDecimal, "a clock", (VARIABLES, const fmi3Float64 times[]))
+NONE(fmi3GetShiftFraction, "a clock", (VARIABLES, fmi3UInt64 counter[], fmi3UInt64 resolution[]))
+NONE(fmi3SetShiftFraction, "a clock", (VARIABLES, const fmi3UInt64 counter[], const fmi3UInt64 resolution[]))
+NONE(fmi3SetIntervalFraction, "a clock", (VARIABLES, const fmi3UInt64 counter[], const fmi3UInt64 resolution[]))
+NONE(fmi3GetOutputDerivatives, "a derivative of an output",
+     (VARIABLES, const fmi3Int32 order[], fmi3Float64 value[], size_t count))
 
 /* What is of model exchange and of scheduled execution. */
-fmi3Status FMI3(fmi3EnterContinuousTimeMode)(fmi3Instance it)
-{
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3CompletedIntegratorStep)(fmi3Instance it, fmi3Boolean never_back, fmi3Boolean *event,
-                                             fmi3Boolean *end)
-{
-    (void)never_back;
-    (void)event;
-    (void)end;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3SetTime)(fmi3Instance it, fmi3Float64 time)
-{
-    (void)time;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3SetContinuousStates)(fmi3Instance it, const fmi3Float64 state[], size_t count)
-{
-    (void)state;
-    (void)count;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3GetContinuousStateDerivatives)(fmi3Instance it, fmi3Float64 rate[], size_t count)
-{
-    (void)rate;
-    (void)count;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3GetEventIndicators)(fmi3Instance it, fmi3Float64 indicator[], size_t count)
-{
-    (void)indicator;
-    (void)count;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3GetContinuousStates)(fmi3Instance it, fmi3Float64 state[], size_t count)
-{
-    (void)state;
-    (void)count;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3GetNominalsOfContinuousStates)(fmi3Instance it, fmi3Float64 nominal[], size_t count)
-{
-    (void)nominal;
-    (void)count;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3GetNumberOfEventIndicators)(fmi3Instance it, size_t *count)
-{
-    (void)count;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3GetNumberOfContinuousStates)(fmi3Instance it, size_t *count)
-{
-    (void)count;
-    return none(it, "model exchange");
-}
-
-fmi3Status FMI3(fmi3ActivateModelPartition)(fmi3Instance it, fmi3ValueReference clock, fmi3Float64 time)
-{
-    (void)clock;
-    (void)time;
-    return none(it, "scheduled execution");
-}
+NONE(fmi3EnterContinuousTimeMode, "model exchange", (fmi3Instance it))
+NONE(fmi3CompletedIntegratorStep, "model exchange",
+     (fmi3Instance it, fmi3Boolean never_back, fmi3Boolean *event, fmi3Boolean *end))
+NONE(fmi3SetTime, "model exchange", (fmi3Instance it, fmi3Float64 time))
+NONE(fmi3SetContinuousStates, "model exchange", (fmi3Instance it, const fmi3Float64 state[], size_t count))
+NONE(fmi3GetContinuousStateDerivatives, "model exchange", (fmi3Instance it, fmi3Float64 rate[], size_t count))
+NONE(fmi3GetEventIndicators, "model exchange", (fmi3Instance it, fmi3Float64 indicator[], size_t count))
+NONE(fmi3GetContinuousStates, "model exchange", (fmi3Instance it, fmi3Float64 state[], size_t count))
+NONE(fmi3GetNominalsOfContinuousStates, "model exchange", (fmi3Instance it, fmi3Float64 nominal[], size_t count))
+NONE(fmi3GetNumberOfEventIndicators, "model exchange", (fmi3Instance it, size_t *count))
+NONE(fmi3GetNumberOfContinuousStates, "model exchange", (fmi3Instance it, size_t *count))
+NONE(fmi3ActivateModelPartition, "scheduled execution", (fmi3Instance it, fmi3ValueReference clock, fmi3Float64 time))
