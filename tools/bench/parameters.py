@@ -24,7 +24,7 @@ from wavesym.programs.request import PARTS
 from wavesym.programs.runtime.making import sets_program
 from wavesym.results.response import Response
 from wavesym.running.model import compiled_model
-from wavesym.running.native import FAST, address, library
+from wavesym.running.native import FAST, address, library, struct_size
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import runtime_sets
 
@@ -123,9 +123,7 @@ class TimedSets:
 
     def batch(self) -> ctypes.c_void_p:
         """Memory for one, which stays."""
-        sizes = (ctypes.c_size_t * 2)()
-        getattr(self.library, f"{self.program.provenance.model.name}_sets_sizes")(sizes)
-        self._memory = np.empty(sizes[0] + 64, np.uint8)
+        self._memory = np.empty(struct_size(self.library, "batch") + 64, np.uint8)
         return ctypes.c_void_p(address(self._memory) + -address(self._memory) % 64)
 
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from wavesym.running.native import struct_size, struct_sizes
 from wavesym.running.toolchain import compiler
 
 _WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wmissing-prototypes", "-Werror")
@@ -124,7 +125,7 @@ class CompiledLibrary:
 
     def _memory(self, kind: str) -> NDArray[np.uint8]:
         """Memory of C as it may be before anything is in it: no bytes of it are a number."""
-        size = _MANY.in_dll(self._loaded, f"size_of_{kind}").value
+        size = struct_size(self._loaded, kind)
         memory = np.full(size + _ALIGNED, 255, np.uint8)
         start = -memory.ctypes.data % _ALIGNED
         return memory[start : start + size]
@@ -206,13 +207,10 @@ def compile_files(
     (name,) = (file.removesuffix(".h") for file in files if file.endswith(".h"))
     declared = re.search(r"_output_name\[\w+\]\[(\d+)\]", files[f"{name}.h"])
     assert declared  # by every header
-    kept = re.findall(
-        rf"^(?:struct|\}}) {name}_(model|state|tangent|batch|data)(?:;| \{{)", files[f"{name}.h"], re.MULTILINE
-    )
-    sizes = "".join(f"const size_t size_of_{kind} = sizeof({name}_{kind});\n" for kind in kept)
+    sizes = f'#include "{name}.h"\n{struct_sizes(name, files[f"{name}.h"])}'
     with TemporaryDirectory() as directory:
         folder = Path(directory)
-        for file, text in {**files, "sizes.c": f'#include "{name}.h"\n{sizes}'}.items():
+        for file, text in {**files, "sizes.c": sizes}.items():
             (folder / file).write_text(text, encoding="utf-8")
         chosen.run([*flags, "-fPIC", "-c", f"{name}.c", "-o", "made.o"], folder)
         chosen.run(["-fPIC", "-shared", "made.o", "sizes.c", "-o", "library.so", "-lm"], folder)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import re
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,15 +18,29 @@ FAST = ("-O3", "-march=native", "-ffp-contract=fast")
 
 @cache
 def library(source: str, flags: tuple[str, ...] = FAST, header: tuple[str, str] | None = None) -> ctypes.CDLL:
-    """A shared library of one C file, and at most one header (name, text) that it includes. CompilerError."""
+    """A shared library of one C file, and at most one header NAME.h (name, text) that it includes, the structs of which
+    have a `struct_size` in it then. CompilerError.
+    """
     with TemporaryDirectory() as directory:
         folder = Path(directory)
-        (folder / "source.c").write_text(source, encoding="utf-8")
         if header:
             (folder / header[0]).write_text(header[1], encoding="utf-8")
+            source += "\n" + struct_sizes(header[0].removesuffix(".h"), header[1])
+        (folder / "source.c").write_text(source, encoding="utf-8")
         compiler().run(["-std=c99", *flags, "-fPIC", "-shared", "source.c", "-o", "library.so", "-lm"], folder)
         # once loaded it stays, though the file goes
         return ctypes.CDLL(str(folder / "library.so"))
+
+
+def struct_sizes(name: str, header: str) -> str:
+    """C that has the size of each struct NAME_KIND of NAME.h, of which `header` is the text."""
+    kinds = re.findall(rf"^(?:struct|\}}) {name}_(\w+)(?:;| \{{)", header, re.MULTILINE)
+    return "".join(f"const size_t size_of_{kind} = sizeof({name}_{kind});\n" for kind in kinds)
+
+
+def struct_size(loaded: ctypes.CDLL, kind: str) -> int:
+    """How many bytes a struct NAME_`kind` has."""
+    return ctypes.c_size_t.in_dll(loaded, f"size_of_{kind}").value
 
 
 def address(values: NDArray[np.generic]) -> int:

@@ -6,14 +6,13 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.programs.program import Program
-from wavesym.running.native import FAST, address, library
+from wavesym.running.native import FAST, address, library, struct_size
 from wavesym.running.toolchain import compiler
 from wavesym.targets.files import runtime_sets
 
@@ -61,19 +60,24 @@ class CompiledSets:
         self._outputs = len(program.outputs)
         self._libraries: dict[tuple[str, ...], ctypes.CDLL] = {}
 
-    def _function(
-        self, parts: tuple[str, ...], name: str, arguments: list[Any], result: Any = None
-    ) -> ctypes._NamedFuncPointer:
+    def _library(self, parts: tuple[str, ...]) -> ctypes.CDLL:
         if parts not in self._libraries:
             files = runtime_sets(self._program, parts)
             header = (f"{self._name}.h", files[f"{self._name}.h"])
             self._libraries[parts] = library(files[f"{self._name}.c"], FAST, header)
-        found: ctypes._NamedFuncPointer = getattr(self._libraries[parts], f"{self._name}_{name}")
+        return self._libraries[parts]
+
+    def _function(
+        self, parts: tuple[str, ...], name: str, arguments: list[Any], result: Any = None
+    ) -> ctypes._NamedFuncPointer:
+        found: ctypes._NamedFuncPointer = getattr(self._library(parts), f"{self._name}_{name}")
         found.argtypes, found.restype = arguments, result
         return found
 
     def _room(self, parts: tuple[str, ...], struct: str) -> Memory:
-        return np.empty(self._function(parts, f"{struct}_size", [], _MANY)(), np.uint8)
+        """Memory for a struct, from a multiple of 64 bytes on."""
+        memory = np.empty(struct_size(self._library(parts), struct) + 64, np.uint8)
+        return memory[-memory.ctypes.data % 64 :]
 
     def values(self, given: Array, tau: Array) -> FoundSets:
         """Of shape (sets, 1, outputs, times)."""
@@ -100,7 +104,7 @@ class CompiledSets:
     def bounds(self, given: Array) -> FoundSets:
         """The proved bound of each output, of shape (sets, outputs)."""
         bounds = self._function(_BOUNDS, "sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
-        return self._call_for_each(bounds, [self._room(_BOUNDS, "bounded")], given, (self._outputs,))
+        return self._call_for_each(bounds, [self._room(_BOUNDS, "model")], given, (self._outputs,))
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
         """What makes of `given` the sums of the squares of all misfits, of shape (sets,). `data` of shape
@@ -110,28 +114,22 @@ class CompiledSets:
         size = self._function(_VALUES, "data_size", [_WHERE, _MANY], _MANY)
         init = self._function(_VALUES, "data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)
         values = np.ascontiguousarray(data)
-        kept, numbers = np.empty(self._sizes[1], np.uint8), np.empty(size(address(tau), len(tau)))
+        kept, numbers = self._room(_VALUES, "data"), np.empty(size(address(tau), len(tau)))
         init(address(kept), address(numbers), address(tau), address(values), len(tau))
 
         def misfits(given: Array) -> FoundSets:
             _ = numbers  # C reads them, so that they must live as long as this
             found = no_sets(len(given), ())
-            batch = _aligned_memory(self._sizes[0])
+            batch = self._room(_VALUES, "batch")
             misfit(address(given), len(given), address(batch), address(kept), *_places(found))
             return found
 
         return misfits
 
-    @cached_property
-    def _sizes(self) -> tuple[int, int]:
-        """Of a batch and of data."""
-        sizes = (_MANY * 2)()
-        self._function(_VALUES, "sets_sizes", [_MANY * 2])(sizes)
-        return sizes[0], sizes[1]
-
     def _batch(self) -> Memory | None:
         """Room for sets side by side, of each call its own, so that several may run at once; none for huge models."""
-        return _aligned_memory(self._sizes[0]) if self._sizes[0] <= _LARGEST_BATCH else None
+        size = struct_size(self._library(_VALUES), "batch")
+        return self._room(_VALUES, "batch") if size <= _LARGEST_BATCH else None
 
     def _call_for_each(
         self,
@@ -160,13 +158,6 @@ class CompiledSets:
 
 def _place(room: Memory | None) -> int | None:
     return None if room is None else address(room)
-
-
-def _aligned_memory(size: int) -> Memory:
-    """Memory from a multiple of 64 bytes on."""
-    memory = np.empty(size + 64, np.uint8)
-    begin = -memory.ctypes.data % 64
-    return memory[begin : begin + size]
 
 
 def _places(found: FoundSets) -> tuple[int, int, int]:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
-from wavesym.running.native import FAST, address, library
+from wavesym.running.native import FAST, address, library, struct_size
 from wavesym.targets.files import sources
 
 Array = NDArray[np.float64]
@@ -27,27 +27,20 @@ class StreamModel:
     def __init__(self, program: Program, flags: Sequence[str] = FAST) -> None:
         name = program.provenance.model.name
         files = sources(program, "c")
-        size = f"\nsize_t {name}_state_size(void);\nsize_t {name}_state_size(void) {{ return sizeof({name}_state); }}\n"
-        loaded = library(files[f"{name}.c"] + size, tuple(flags), (f"{name}.h", files[f"{name}.h"]))
+        loaded = library(files[f"{name}.c"], tuple(flags), (f"{name}.h", files[f"{name}.h"]))
         real, where = ctypes.c_double if program.real.bytes == 8 else ctypes.c_float, ctypes.c_void_p
         begin = "build" if program.laws else "init"
-        self._begin, self._step, self._lost, self._size = (
-            getattr(loaded, f"{name}_{word}") for word in (begin, "step", "lost", "state_size")
-        )
+        self._begin, self._step, self._lost = (getattr(loaded, f"{name}_{word}") for word in (begin, "step", "lost"))
         self._begin.argtypes, self._begin.restype = ([where, where], ctypes.c_int) if program.laws else ([where], None)
         self._step.argtypes = [where, real, where, where]
         self._lost.argtypes, self._lost.restype = [where], real
-        self._size.restype = ctypes.c_size_t
+        self.state_bytes = struct_size(loaded, "state")
+        """What a stream takes."""
         self.dtype = np.dtype(f"f{program.real.bytes}")
         self.outputs = tuple(output.name for output in program.outputs)
         self.loads = program.sources
         self.fields = program.laws.fields if program.laws else ()
         self.panel = program.constants["panel"]
-
-    @property
-    def state_bytes(self) -> int:
-        """What a stream takes."""
-        return int(self._size())
 
     def start(self, **given: ArrayLike) -> Stream:
         """A stream at tau = 0, its loads 0, with the parameters `given` by field and those of the scene for the others.

@@ -1,17 +1,13 @@
 /* sets.c: many sets of parameters in one call, for callers to whom a call costs more than a model.
  * Plain C that is put below all of NAME.c; what stands below the first empty line. */
-#include "tables.h"
+#include "misfit.c"
 
-size_t name_model_size(void);
 void name_sets(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,
                const name_real *tau, int even, size_t count, int *status, name_real *estimate, name_real *out);
 void name_sets_peaks(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,
                      int *status, name_real *estimate, name_real *out);
-
-size_t name_model_size(void)
-{
-    return sizeof(name_model);
-}
+void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
+                       int *status, name_real *estimate, name_real *out);
 
 /* The model of a set: side by side with its neighbours where there are some, alone where it is refused beside them. */
 static int one_of(const name_parameters *parameters, size_t sets, size_t set, name_batch *batch, name_model *model)
@@ -56,5 +52,30 @@ void name_sets_peaks(const name_parameters *parameters, size_t sets, name_batch 
         status[set] = one_of(parameters, sets, set, batch, model);
         estimate[set] = name_error_estimate(model);
         (void)name_model_peaks(model, out + set * NAME_OUTPUTS * 4);
+    }
+}
+
+/* Of each set the status, the estimate, and the sum of the squares of its misfits. What is refused beside others is
+ * built again by itself. */
+void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
+                       int *status, name_real *estimate, name_real *out)
+{
+    for (size_t set = 0; set < sets; set += NAME_WIDTH) {
+        name_real misfit[NAME_WIDTH];
+        (void)name_build_batch(batch, parameters + set, sets - set);
+        name_batch_misfit(batch, data, misfit);
+        for (size_t k = 0; k < NAME_WIDTH && set + k < sets; ++k) {
+            status[set + k] = batch->status[k];
+            estimate[set + k] = batch->estimate[k];
+            out[set + k] = misfit[k];
+        }
+        for (size_t k = 0; k < NAME_WIDTH && set + k < sets; ++k) {
+            if (status[set + k]) {
+                status[set + k] = name_build_batch(batch, parameters + set + k, 1);
+                name_batch_misfit(batch, data, misfit);
+                estimate[set + k] = batch->estimate[0];
+                out[set + k] = misfit[0];
+            }
+        }
     }
 }

@@ -2,15 +2,8 @@
  * Plain C that is put below all of NAME.c; what stands below the first empty line. */
 #include "tables.h"
 
-size_t name_bounded_size(void);
 void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,
                       name_real *estimate, name_real *out);
-
-/* Of a model, in bytes. */
-size_t name_bounded_size(void)
-{
-    return sizeof(name_model);
-}
 
 /* Of each set the status, the estimate, and the bounds: out[set*OUTPUTS + output]. */
 void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,

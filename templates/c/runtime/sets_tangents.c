@@ -2,14 +2,8 @@
  * Plain C that is put below all of NAME.c; what stands below the first empty line. */
 #include "tables.h"
 
-size_t name_tangent_size(void);
 void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,
                         int even, size_t count, int *status, name_real *estimate, name_real *out);
-
-size_t name_tangent_size(void)
-{
-    return sizeof(name_tangent);
-}
 
 /* As name_sets, with derivatives: out[((set*(LANES + 1) + lane)*OUTPUTS + output)*count + k], estimate[set*(LANES + 1) +
  * lane]. */

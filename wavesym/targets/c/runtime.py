@@ -42,7 +42,7 @@ _SIZES = (
     "lanes",
     "groups",
 )
-_SETS = {"peaks": "sets.c", "gradients": "sets_tangents.c", "misfit": "sets_batch.c", "bound": "sets_bounds.c"}
+_SETS = {"misfit": "sets.c", "gradients": "sets_tangents.c", "bound": "sets_bounds.c"}
 _MOST_ON_STACK = 1 << 16
 """Bytes of work that `build` puts there: more is kept in the model."""
 LIMITS = {"double": "DBL", "single": "FLT"}
@@ -259,7 +259,7 @@ def _stack_sizes(
 
 
 def sets(scene: Description, program: Program) -> dict[str, str]:
-    """The files, with what of each part runs many sets of parameters in NAME.c; peaks are those of batches, too."""
+    """The files, with what of each part runs many sets of parameters in NAME.c; values and peaks go with misfits."""
     made = files(scene, program)
     name = f"{scene.name}.c"
     more = kernels(scene, *(f"runtime/{file}" for part, file in _SETS.items() if part in program.parts))
