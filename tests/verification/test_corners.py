@@ -26,10 +26,9 @@ from wavesym.verification.outcome import REFUSED, Outcome
 from wavesym.verification.problem import problem_of
 from wavesym.verification.reference import ReferenceOutputs, known_outputs
 
-CHECKS = (integrations.differences, integrations.midpoints, integrations.corner_changes, checks.invariants)
+CHECKS = (integrations.midpoints, integrations.corner_changes, checks.invariants)
 
-# yields and engages beside friction; a mirrored chain; a mass that turns under friction; springs of both sides; what
-# sticks on one of the two grids of central differences before it does on the other
+# yields and engages beside friction; a mirrored chain; a mass that turns under friction; springs of both sides
 SEEDS = (1, 38)
 LONGER = (8, 10, 170, 288)
 
@@ -97,10 +96,8 @@ FALSE = [(damped_chain(10), "friction"), (damped_chain(8), "yield"), (damped_cha
 
 
 @pytest.mark.parametrize(("table", "key"), FALSE)
-def test_another_law_is_seen_by_both_ways_of_stepping(table: dict[str, Any], key: str) -> None:
-    seen = known(*changed(table, key))
-    for check in (integrations.differences, integrations.midpoints):
-        assert not all(outcome.passed for outcome in check(seen))
+def test_another_law_is_seen_by_the_midpoint_rule(table: dict[str, Any], key: str) -> None:
+    assert not all(outcome.passed for outcome in integrations.midpoints(known(*changed(table, key))))
 
 
 def test_an_event_that_is_told_late_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,7 +16,6 @@ from wavesym.exact.reference import Reference
 from wavesym.scene import Scene, lower
 from wavesym.verification import integrations
 from wavesym.verification.differences import SpaceTimeGrid
-from wavesym.verification.integrations import _grid as grid
 from wavesym.verification.problem import problem_of
 from wavesym.verification.reference import known_outputs
 
@@ -48,6 +47,10 @@ def weakened(loads):
 
 
 FOUR = pytest.mark.parametrize("scene", [BUILDING, FORCE, COLLISION, DRIVE], ids=["ground", "force", "impact", "drive"])
+
+
+def grid(model):
+    return integrations._grid(model, SpaceTimeGrid)
 
 
 def with_cells(model, cells):

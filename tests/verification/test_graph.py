@@ -13,6 +13,7 @@ from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Joint, Network
 from wavesym.scene import Scene, lower
+from wavesym.verification.differences import SpaceTimeGrid
 from wavesym.verification.integrations import _grid, collocation, differences
 from wavesym.verification.invariants import Balance, Balancing
 from wavesym.verification.problem import problem_of
@@ -78,7 +79,7 @@ def test_collocation_agrees_to_rounding() -> None:
 
 
 def test_a_grid_has_every_front_load_and_output_on_it() -> None:
-    coarsest = _grid(model())
+    coarsest = _grid(model(), SpaceTimeGrid)
     assert coarsest.problem.measure == Fraction(1, 2)
     assert coarsest.is_aligned
     assert [delay / coarsest.step for delay in coarsest.problem.delays] == list(coarsest.field.cells)

@@ -23,8 +23,9 @@ from wavesym.verification.integrations import (
     collocation,
     compare_events,
     corner_changes,
-    differences,
+    midpoints,
 )
+from wavesym.verification.midpoint import MidpointGrid
 from wavesym.verification.problem import Change, match_changes, problem_of
 from wavesym.verification.reference import known_outputs
 
@@ -61,8 +62,8 @@ def test_collocation_finds_when_a_bar_bounces() -> None:
     assert (found.evaluate(probe, [0.5, 2.0, 3.0]) + fallen).tolist() == pytest.approx([3.75, 5 / 3, 40 / 9], abs=1e-12)
 
 
-def test_central_differences_find_when_a_bar_bounces() -> None:
-    made = _grid(bouncing()).resolve_changes(5.0, MANY)
+def test_the_midpoint_rule_finds_when_a_bar_bounces() -> None:
+    made = _grid(bouncing(), MidpointGrid).resolve_changes(5.0, MANY)
     assert made is not None
     stepped, found = made
     assert [change.kind for change, _ in found] == ["closes", "opens"] * 2
@@ -76,7 +77,7 @@ def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None
     small = model([body, "contact", {"rod": length, "impedance": impedance}, "fixed"], 4 * length, velocity=["0-"])
     (change,) = integrate(problem_of(small), 4.0 * length, 12, 200).changes
     assert change.tau / length == pytest.approx(3.06766764161830635, rel=1e-12)
-    stepped = _grid(small).resolve_changes(4.0 * length, MANY)
+    stepped = _grid(small, MidpointGrid).resolve_changes(4.0 * length, MANY)
     assert stepped is not None
     ((late, slack),) = stepped[1]
     assert abs(late.tau - change.tau) <= slack
@@ -92,7 +93,7 @@ def test_collocation_is_exact_where_all_is_polynomial(points: int) -> None:
 
 def test_all_checks_hold_where_contacts_open_and_close() -> None:
     seen = known_outputs(on_a_bar("3.3"))
-    outcomes = [*collocation(seen), *corner_changes(seen), *differences(seen), *invariants(seen)]
+    outcomes = [*collocation(seen), *corner_changes(seen), *midpoints(seen), *invariants(seen)]
     assert [outcome for outcome in outcomes if not outcome.passed] == []
     assert {"0 opens", "momentum", "energy", "contacts"} <= {outcome.subject for outcome in outcomes}
 
@@ -101,7 +102,8 @@ def test_what_happens_is_found_by_both_integrations() -> None:
     outcomes = corner_changes(known_outputs(on_a_bar()))
     assert [outcome.subject for outcome in outcomes] == ["0 opens", "0 closes", "0 opens"]
     assert all(outcome.passed and float(outcome.cells["fronts"]) < 1e-9 for outcome in outcomes)
-    assert all(float(outcome.cells["grid"]) < float(outcome.cells["grid allowed"]) < 0.2 for outcome in outcomes)
+    stepped = [[float(outcome.cells[key]) for key in ("midpoint", "midpoint allowed")] for outcome in outcomes]
+    assert all(error < allowed < 0.2 for error, allowed in stepped)
 
 
 def train() -> Model:
@@ -112,21 +114,12 @@ def train() -> Model:
     return model(parts, 12, velocity=["0", "3-", "5+"])
 
 
-def test_a_contact_without_force_may_part_by_nothing_on_a_grid() -> None:
-    """But no method may part it that is exact there, nor the grid where it is alone."""
+def test_a_contact_without_force_is_not_parted_by_nothing() -> None:
+    """And what a method has besides fails."""
     outcomes = corner_changes(known_outputs(train()))
-    assert all(outcome.passed for outcome in outcomes)
-    parted = [outcome for outcome in outcomes if outcome.cells["tau"] == "-"]
-    assert parted
-    struck = [(Change(0, "opens", 8.0), 0.1)]
-    methods = {"fronts": CornerHistory([], 0.0), "grid": CornerHistory(struck, 0.0)}
-    verdicts = {
-        "both see it": {"fronts": CornerHistory(struck, 0.0), "grid": CornerHistory(struck, 0.0)},
-        "only the grid": methods,
-        "the grid alone": methods | {"fronts": None},
-    }
-    found = {name: [each.passed for each in compare_events("2", [], seen, 12.0)] for name, seen in verdicts.items()}
-    assert found == {"both see it": [False, True], "only the grid": [True], "the grid alone": [False]}
+    assert all(outcome.passed and outcome.cells["tau"] != "-" for outcome in outcomes)
+    struck = {"midpoint": CornerHistory([(Change(0, "opens", 8.0), 0.1)], 0.0)}
+    assert [each.passed for each in compare_events("2", [], struck, 12.0)] == [False]
 
 
 def test_too_many_fronts_are_refused_in_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -219,11 +212,11 @@ def test_faults_of_a_network_with_contacts_are_found(
     monkeypatch.setattr("wavesym.verification.integrations.Reference", lambda _: Reference(wrong))
     found = [
         check
-        for check in (collocation, corner_changes, differences)
+        for check in (collocation, corner_changes, midpoints)
         if not all(outcome.passed for outcome in check(seen))
     ]
     assert {collocation, corner_changes} <= {*found}
-    assert differences in found or fault is wider  # that comes too late for the outputs
+    assert midpoints in found or fault is wider  # that comes too late for the outputs
 
 
 class OneSideLate(Reference):
@@ -247,7 +240,7 @@ def test_an_event_that_is_late_on_one_side_is_found(monkeypatch: pytest.MonkeyPa
     seen = known_outputs(right)
     assert all(outcome.passed for outcome in corner_changes(seen))
     assert [outcome.passed for outcome in collocation(seen)] == [True, False]
-    for check in (differences, invariants):
+    for check in (midpoints, invariants):
         assert not all(outcome.passed for outcome in check(seen)), check.__name__
 
 

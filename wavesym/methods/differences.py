@@ -75,15 +75,12 @@ class Grid:
 @dataclass(frozen=True)
 class PointSteps:
     """The next displacements of points: `neighbours` times what is beside ends and at points, less `previous` times
-    those a step earlier, and `loads[step]`; `first` are those after the first step. `yields` and `first_yields` are
-    what forces at the points, (points, points), add to them."""
+    those a step earlier, and `loads[step]`; `first` are those after the first step."""
 
     neighbours: Array
     previous: Array
     loads: Array
     first: Array
-    yields: Array
-    first_yields: Array
 
 
 def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
@@ -118,8 +115,6 @@ def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
         previous=solve(ahead, inertia - damping + stiffness, still),
         loads=solve(ahead, (loads[:-1] + strained).T, moved.T).T,
         first=solve(begin, h * force, moved[0]),
-        yields=solve(ahead, unit, still),
-        first_yields=solve(begin, h * unit, still),
     )
 
 
@@ -140,20 +135,16 @@ class GridMotion:
         """One step."""
         points = self._points
         if self.step == 0:
-            after, yields = points.first.copy(), points.first_yields
+            after = points.first
             self.now = self._grid.h * self._grid.start_velocity
         else:
-            after, yields = points.neighbours @ self.now[self._beside] - points.previous @ self._before, points.yields
+            after = points.neighbours @ self.now[self._beside] - points.previous @ self._before
             after += points.loads[self.step]
             self._padded[1:-1] = self.now
             self._past, self.now = self.now, self._padded[:-2] + self._padded[2:] - self._past
         self.step += 1
-        self._before, self._u = self._u, self.settle(after, yields)
+        self._before, self._u = self._u, after
         self.now[self._placed] = self._grid.spread @ self._u
-
-    def settle(self, after: Array, influence: Array) -> Array:
-        """Where points are after a step, from where they would be, `after`, and how far forces on them move them."""
-        return after
 
 
 def _solve(problem: Problem, resolution: float) -> Evaluate:

@@ -23,8 +23,8 @@ from wavesym.methods.network_problem import problem_of as damped_problem
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, UndecidedError, integrate
-from wavesym.verification.differences import LATE, SpaceTimeGrid, coarsest_grid
-from wavesym.verification.midpoint import MidpointGrid
+from wavesym.verification.differences import SomeGrid, SpaceTimeGrid, coarsest_grid
+from wavesym.verification.midpoint import LATE, MidpointGrid
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
 from wavesym.verification.problem import Change, KnownChanges, match_changes, problem_of
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly, spread_taus
@@ -169,35 +169,47 @@ def _cached_solutions(known: ReferenceOutputs) -> _Solutions | str:
 
 
 def differences(known: ReferenceOutputs) -> list[Outcome]:
-    """Central differences with N, 2N and 4N cells a rod, at instants away from fronts."""
-    if not known.integration_model.network.bars:
+    """Central differences with N, 2N and 4N cells a rod, at instants away from fronts, where no link has a corner."""
+    network = known.integration_model.network
+    if network.corners:
+        return []
+    if not network.bars:
         return refused_outcomes(known, "to", "there is no rod for a grid")
-    return _compare_steps(known, SpaceTimeGrid)
+    first = _grid(known.integration_model, SpaceTimeGrid)
+    return _compare_steps(known, first, _reach(known, first))
 
 
 def midpoints(known: ReferenceOutputs) -> list[Outcome]:
-    """The midpoint rule with N, 2N and 4N steps a rod, away from fronts, where links have corners."""
-    return _compare_steps(known, MidpointGrid) if known.integration_model.network.corners else []
+    """The midpoint rule with N, 2N and 4N steps a rod, away from fronts, where links have corners.
 
-
-def _compare_steps(known: ReferenceOutputs, kind: type[SpaceTimeGrid]) -> list[Outcome]:
-    """Steps of a kind, as far as they can be had.
-
-    Where they stay coarse that is said, but no failure: what they allow is in the table. With corners N is so large
-    that the same happens at them with 2N and 4N, and that is one more front.
+    N is so large that the same happens at them with 2N and 4N; that is one more front.
     """
-    model = known.integration_model
-    first, struck = _grid(model, kind), list[tuple[Change, float]]()
-    until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
+    if not known.integration_model.network.corners:
+        return []
+    first = _grid(known.integration_model, MidpointGrid)
+    until = _reach(known, first)
     while first.tau(1) > _STOPPED * first.problem.soonest:
         if first.finer(8).cost(until) > MOST_MOVED:
             why = f"friction stops what moves within {first.problem.soonest:.1g}, sooner than steps that can be taken"
             return refused_outcomes(known, "to", why)
         first = first.finer(2)
-    if model.network.corners:
-        if (found := first.resolve_changes(until, MOST_MOVED)) is None:
-            return refused_outcomes(known, "to", _NO_GRID)
-        first, struck = found
+    if (found := first.resolve_changes(until, MOST_MOVED)) is None:
+        return refused_outcomes(known, "to", _NO_GRID)
+    return _compare_steps(known, found[0], until, found[1])
+
+
+def _reach(known: ReferenceOutputs, first: SpaceTimeGrid) -> float:
+    """As far as steps are compared."""
+    return min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
+
+
+def _compare_steps(
+    known: ReferenceOutputs, first: SpaceTimeGrid, until: float, struck: Sequence[tuple[Change, float]] = ()
+) -> list[Outcome]:
+    """Steps with N, 2N and 4N a rod, as far as they can be had, away from fronts and from what is `struck`.
+
+    Where they stay coarse that is said, but no failure: what they allow is in the table.
+    """
     while len(first.instants(until, struck)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
         first = first.finer(2)
     finest = first
@@ -227,10 +239,10 @@ def _compare_steps(known: ReferenceOutputs, kind: type[SpaceTimeGrid]) -> list[O
 
     rule: Rule = "extrapolated" if first.is_aligned and not struck else "wandering"
     method = Method("space-time grid", first.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
-    return method.outcomes(model.name, known.names, truths, {"to": f"{until:.4g}"})
+    return method.outcomes(known.model.name, known.names, truths, {"to": f"{until:.4g}"})
 
 
-def _grid(model: Model, kind: type[SpaceTimeGrid] = SpaceTimeGrid) -> SpaceTimeGrid:
+def _grid(model: Model, kind: type[SomeGrid]) -> SomeGrid:
     return coarsest_grid(problem_of(model), fraction(model.until), kind)
 
 
@@ -273,7 +285,7 @@ def elements(known: ReferenceOutputs) -> list[Outcome]:
 
 
 def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
-    """When laws change at corners, against collocation between fronts and two ways of stepping."""
+    """When laws change at corners, against collocation between fronts and the midpoint rule."""
     model, judged = known.model, known.integration_model
     if not judged.network.corners:
         return []
@@ -282,21 +294,15 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
     if all(model.network.links[link].contact for link in model.network.corners):
         seen["fronts"] = None if isinstance(solved, str) else CornerHistory(solved.struck, 0.0)
     notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
-    gridded = judged.network.bars and any(model.network.links[link].contact for link in model.network.corners)
-    kinds: dict[str, type[SpaceTimeGrid]] = {"grid": SpaceTimeGrid} if gridded else {}
-    for name, kind in (kinds | {"midpoint": MidpointGrid}).items():
-        sharp = _SHARP if isinstance(solved, str) else inf  # nothing else is
-        stepped = _grid(judged, kind).resolve_changes(known.until, MOST_MOVED, sharp)
-        seen[name] = CornerHistory(stepped[1], LATE * float(stepped[0].step)) if stepped else None
-        notes += [] if stepped else [f"{model.name}: {_NO_GRID} ({name})"]
+    sharp = _SHARP if isinstance(solved, str) else inf  # nothing else is
+    stepped = _grid(judged, MidpointGrid).resolve_changes(known.until, MOST_MOVED, sharp)
+    seen["midpoint"] = CornerHistory(stepped[1], LATE * float(stepped[0].step)) if stepped else None
+    notes += [] if stepped else [f"{model.name}: {_NO_GRID}"]
     outcomes = [Outcome("corners", {}, True, note) for note in notes]
     claimed, reaching = events(model), model.contacts(rational(model.horizon()))
     for number, link in enumerate(model.network.corners):
         if link in reaching:
-            # on the two grids of central differences what rubs sticks one after the other, and springs act late
-            contact = model.network.links[link].contact
-            judges = {name: each for name, each in seen.items() if name != "grid" or contact}
-            here = {name: each and each.select(number) for name, each in judges.items()}
+            here = {name: each and each.select(number) for name, each in seen.items()}
             happened = [event for event in claimed if event.link == link]
             outcomes += compare_events(model.network.links[link].place, happened, here, known.until)
     return outcomes
@@ -336,10 +342,7 @@ class CornerHistory:
 def compare_events(
     place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, CornerHistory | None], until: float
 ) -> Iterator[Outcome]:
-    """A row for each event of a contact, and for each that a method has besides.
-
-    A contact that carries no force may part by nothing on a grid: collocation decides, where there is one.
-    """
+    """A row for each event of a contact, and for each that a method has besides."""
     rows: list[dict[str, str]] = [{"tau": f"{event.double:.12g}"} for event in claimed]
     passed = [True for _ in claimed]
     more = []
@@ -362,8 +365,7 @@ def compare_events(
         for change, slack in method.changes[len(visible) :]:
             if change.tau + slack < until:
                 cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": format_error(slack)}
-                parts_by_nothing = name == "grid" and methods.get("fronts") is not None
-                more.append(Outcome(f"{place} {change.kind}", cells, parts_by_nothing))
+                more.append(Outcome(f"{place} {change.kind}", cells, passed=False))
     for event, row, right in zip(claimed, rows, passed, strict=True):
         yield Outcome(f"{place} {event.kind}", row, right)
     yield from more

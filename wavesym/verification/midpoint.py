@@ -16,6 +16,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
+from typing import Self
 
 import numpy as np
 
@@ -23,7 +25,10 @@ from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.verification.differences import GridReadings, Instants, SpaceTimeGrid
-from wavesym.verification.problem import BranchChange, CornerProblem, LinkLaw
+from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, LinkLaw, match_changes
+
+LATE = 4
+"""What happens at a corner is late by so many steps at most, and what does not last as long did not happen."""
 
 # pulls of links are found as exactly as this, relative to the largest, in so many rounds
 _EXACT, _ROUNDS = 1e-15, 1000
@@ -38,16 +43,55 @@ _ROUNDINGS = 8
 class MidpointGrid(SpaceTimeGrid):
     """The steps of tau, which divide all delays."""
 
+    def resolve_changes(self, until: float, most: float, sharp: float = inf) -> tuple[Self, KnownChanges] | None:
+        """The coarsest grid which, halved twice, has the same happen at corners, and that; None if it costs more.
+
+        It is known when within `sharp` parts of all of the time, if that does not cost more.
+        """
+        grid, best, found = self, None, list[tuple[Change, ...]]()
+        while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
+            kept = found[1:]
+            found = kept + [grid.finer(k).changes(until) for k in (1, 2, 4)[len(kept) :]]
+            first, then = match_changes(found[2], found[1]), match_changes(found[1], found[0])
+            if first is not None and then is not None:
+                known = [after + before for (_, after), (_, before) in zip(first, then, strict=True)]
+                late = LATE * float(grid.step) / 4
+                best = grid, [(change, each + late) for (change, _), each in zip(first, known, strict=True)]
+                if all(slack <= sharp * until for _, slack in best[1]):
+                    return best
+            grid = grid.finer(2)
+        return best
+
+    def changes(self, until: float) -> tuple[Change, ...]:
+        """What happens at corners by tau = `until` and stays so for some steps: the rest is what fronts do."""
+        kept: dict[int, list[BranchChange]] = {}
+        for change in self._motion(int(until / float(self.step)) + 2).changes:
+            here = kept.setdefault(change.corner, [])
+            if here and change.step - here[-1].step < LATE:
+                last = here.pop()
+                change = change._replace(before=last.before, step=last.step)
+            if change.before != change.after:
+                here.append(change)
+        return tuple(
+            Change(corner, self.problem.happens(change), float(change.step * self.step))
+            for corner in sorted(kept)
+            for change in kept[corner]
+        )
+
     def integrate(self, instants: Instants) -> GridReadings:
         """The readings at positive instants in ascending order, off fronts."""
         steps = int(instants[-1]) + 2
-        motion = _Motion(self, steps)
-        for step in range(steps):
-            motion.advance(step)
+        motion = self._motion(steps)
         taus: Array = float(self.step) * instants.astype(np.float64)
         values = np.array([motion.evaluate(reading, taus) for reading in self.problem.readings])
         rounded = _ROUNDINGS * float(UNIT_ROUNDOFF) * steps * np.max(np.abs(values), axis=1, initial=0.0)
-        return GridReadings(values.reshape(-1, len(instants)), rounded, tuple(self.lasting(motion.changes)))
+        return GridReadings(values.reshape(-1, len(instants)), rounded)
+
+    def _motion(self, steps: int) -> _Motion:
+        motion = _Motion(self, steps)
+        for step in range(steps):
+            motion.advance(step)
+        return motion
 
 
 class _Motion:
