@@ -19,12 +19,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from heapq import heappop, heappush
 from math import factorial
 
 from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
 
 from wavesym.derivation.exact_rule import joint_rule
+from wavesym.exact.joints.fronts import departures
 from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.model import Model
@@ -95,8 +95,6 @@ class _Fronts:
         self._network = model.network
         self._reached = model.joints_in_reach(until)
         self._joints = {number: _Answer(model, number, t) for number in self._reached}
-        self._coming: dict[tuple[fmpq, int], dict[End, int]] = {}
-        self._order: list[tuple[fmpq, int]] = []
 
     def sums(self) -> list[dict[fmpq, int]]:
         """What arrives at each output, by instant."""
@@ -104,6 +102,10 @@ class _Fronts:
         sums: list[dict[fmpq, int]] = [defaultdict(int) for _ in self._model.probes]
         ends: dict[End, list[tuple[int, fmpq, int]]] = defaultdict(list)
         points: dict[int, list[tuple[int, int]]] = defaultdict(list)
+
+        def gain(k: int, time: fmpq, value: int) -> None:
+            sums[k][time] = (sums[k][time] + value) % _MODULUS
+
         for k, probe in enumerate(self._model.probes):
             highest = _highest(self._model.sums[probe])
             for weight, reading in self._model.sums[probe]:
@@ -112,28 +114,27 @@ class _Fronts:
                         bar = network.bars[end.bar]
                         ends[end].append((k, way * bar.delay, weighted))
                         # what a bar holds is there until something is sent into it
-                        sums[k][fmpq(0)] = (
-                            sums[k][fmpq(0)] + weighted * _modular(bar.initial_wave(end.side))
-                        ) % _MODULUS
+                        gain(k, fmpq(0), weighted * _modular(bar.initial_wave(end.side)))
                 elif reading.quantity == "load":
                     for time, value in self._joints[network.joint_of[point]].acts(point):
                         if time <= self._until:
-                            sums[k][time] = (sums[k][time] + _modular(weight) * value) % _MODULUS
+                            gain(k, time, _modular(weight) * value)
                 else:
                     points[point].append((k, self._velocity_weight(weight, reading, highest)))
-        self._begin()
-        while self._order:
-            time, number = heappop(self._order)
-            sent, moved = self._joints[number].respond(self._coming.pop((time, number)), time)
+
+        def answer(number: int, time: fmpq, came: Mapping[End, int]) -> Iterator[tuple[End, int]]:
+            sent, moved = self._joints[number].respond(came, time)
             for point, value in moved.items():
                 for k, counted in points[point]:
-                    sums[k][time] = (sums[k][time] + counted * value) % _MODULUS
-            for end, value in sent.items():
-                for k, delay, counted in ends[end]:
-                    if time + delay <= self._until:
-                        sums[k][time + delay] = (sums[k][time + delay] + counted * value) % _MODULUS
-                if value:
-                    self._arrive(time + network.bars[end.bar].delay, network.opposite_end(end), value)
+                    gain(k, time, counted * value)
+            return ((end, value) for end, value in sent.items() if value)
+
+        begins = ((time, n) for n, joint in self._joints.items() for time in (fmpq(0), *joint.begins))
+        starts = [(time, number) for time, number in begins if time <= self._reached[number]]
+        for time, end, value in departures(network, starts, answer, self._reached):
+            for k, delay, counted in ends[end]:
+                if time + delay <= self._until:
+                    gain(k, time + delay, counted * value)
         return sums
 
     def _velocity_weight(self, weight: fmpq, reading: Gauge, highest: int) -> int:
@@ -146,30 +147,6 @@ class _Fronts:
         right, left = reading.weights
         yield End(reading.rod - 1, 0), reading.place, self._velocity_weight(weight * over * right, reading, highest)
         yield End(reading.rod - 1, 1), 1 - reading.place, self._velocity_weight(weight * over * left, reading, highest)
-
-    def _begin(self) -> None:
-        """What is on its way before anything is sent: the state at tau = 0, and the loads."""
-        for number in self._reached:
-            self._meet(fmpq(0), number)
-            for end, _ in self._network.joints[number].ends:
-                self._arrive(fmpq(0), end, _modular(self._network.bars[end.bar].initial_wave(1 - end.side)))
-            for time in self._joints[number].begins:
-                self._meet(time, number)
-
-    def _arrive(self, time: fmpq, end: End, value: int) -> None:
-        number = self._network.joint_of[self._network.point_at(end)]
-        if self._meet(time, number):
-            here = self._coming[time, number]
-            here[end] = (here.get(end, 0) + value) % _MODULUS
-
-    def _meet(self, time: fmpq, number: int) -> bool:
-        """That something happens at a joint; whether that can still be felt."""
-        if number not in self._reached or time > self._reached[number]:
-            return False
-        if (time, number) not in self._coming:
-            self._coming[time, number] = {}
-            heappush(self._order, (time, number))
-        return True
 
 
 class _Answer:
@@ -218,11 +195,17 @@ class _Answer:
         return sum(_modular(c) * factorial(n) * pow(self._t, n, _MODULUS) for n, c in enumerate(coefficients))
 
     def respond(self, came: Mapping[End, int], time: fmpq) -> tuple[dict[End, int], dict[int, int]]:
-        """What it sends into its ends when this arrives, and the velocities of its points; as changes of both."""
+        """What it sends into its ends when this arrives, and the velocities of its points; as changes of both.
+
+        At tau = 0 what bars hold arrives.
+        """
         network, law, t = self._network, self._law, self._t
         rule = joint_rule()
         loads = self._loads.get(time, {})
-        begins = time == 0
+        if begins := time == 0:
+            came = {
+                each.end: _modular(network.bars[each.end.bar].initial_wave(1 - each.end.side)) for each in self._ends
+            }
         push = {k: _modular(rule.load) * loads.get(k, 0) for k in range(len(law.mass))}
         for each in self._ends:
             if value := came.get(each.end, 0):

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial, reduce
-from heapq import heapify, heappop, heappush
 from itertools import chain, pairwise, zip_longest
 from typing import TYPE_CHECKING
 
@@ -25,7 +24,6 @@ from wavesym.exact.contacts.events import scheduled
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.joints.joint_law import SWING, JointLaw
 from wavesym.mechanics.gauge import Gauge, Sum
-from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 
 if TYPE_CHECKING:
@@ -92,9 +90,7 @@ class Breakpoints:
             return {
                 number: [*(stage.start for stage in each), known.ends[number]] for number, each in known.stages.items()
             }
-        if not self.cut:
-            return self._natural
-        return {number: sorted({fmpq(0), *times, self._end(number, times)}) for number, times in self._cuts().items()}
+        return self._natural if not self.cut else self._with_cuts()
 
     @cached_property
     def cut(self) -> bool:
@@ -127,8 +123,7 @@ class Breakpoints:
 
     def _is_at_rest(self, number: int) -> bool:
         """Whether nothing moves on the first stretch of a joint."""
-        joint = self._network.joints[number]
-        return self._network.at_rest(joint) and all(load.time > 0 for at, load in self._joint_loads() if at == number)
+        return (fmpq(0), number) not in self._sources
 
     def of_output(self, terms: Sum) -> Sequence[fmpq]:
         """Where a sum of readings may jump or bend, and 0; in order."""
@@ -187,7 +182,7 @@ class Breakpoints:
     def _natural_parts(self) -> Sequence[fmpq]:
         """Where in a window stretches start for the sake of loads."""
         (delay,) = self._delays
-        times = {load.time for _, load in self._joint_loads()}
+        times = {time for time, _ in self._sources}
         return sorted({fmpq(0), *(time - (time / delay).floor() * delay for time in times)})
 
     @cached_property
@@ -232,11 +227,31 @@ class Breakpoints:
 
     @cached_property
     def _natural(self) -> Mapping[int, Sequence[fmpq]]:
-        later = self._network.shortest
+        later, found = self._network.shortest, self._meetings({})
+        return {number: [*times, self._last[number] + later] for number, times in found.items()}
+
+    def _with_cuts(self) -> Mapping[int, Sequence[fmpq]]:
+        """When fronts meet joints, those of cuts and where these are made, too; and no later than is known then."""
+        found = self._meetings({number: self._reach(number) for number in self._bearable})
+        for number, times in found.items():
+            end = self._last[number] + self._cut_distance
+            if number in self._bearable:
+                end = times[-1] + self._reach(number)
+            times.append(min(self._last[number] + 1, end))
+        return found
+
+    @cached_property
+    def _sources(self) -> Sequence[tuple[fmpq, int]]:
+        return front_sources(self._network, self._acting, self._last)
+
+    def _meetings(self, cuts: Mapping[int, fmpq]) -> dict[int, list[fmpq]]:
+        """0, and when fronts meet joints."""
         found: dict[int, list[fmpq]] = {number: [fmpq(0)] for number in self._last}
-        sources = front_sources(self._network, self._acting, self._last)
-        for count, (time, number) in enumerate(front_times(self._network, sources, self._last), 1):
+        sources = [*self._sources, *((fmpq(0), number) for number in cuts)]
+        for count, (time, number) in enumerate(front_times(self._network, sources, self._last, cuts), 1):
             if count > MOST_BREAKPOINTS:
+                if cuts:
+                    raise self._too_stiff(f"more than {MOST_BREAKPOINTS}")
                 raise CostError(
                     f"output.until: fronts meet joints more than {MOST_BREAKPOINTS} times by tau = "
                     f"{float(time):g}, the limit is {MOST_BREAKPOINTS} (a shorter horizon or lengths with a "
@@ -244,52 +259,6 @@ class Breakpoints:
                 )
             if time > 0:
                 found[number].append(time)
-        return {number: [*times, self._last[number] + later] for number, times in found.items()}
-
-    def _end(self, number: int, times: set[fmpq]) -> fmpq:
-        """Later than anything that is asked of a joint, but no later than the stretches before it let it be known."""
-        end = max(times) + self._reach(number) if number in self._bearable else self._last[number] + self._cut_distance
-        return min(self._last[number] + 1, end)
-
-    def _joint_loads(self) -> Iterator[tuple[int, AppliedLoad]]:
-        for number in self._last:
-            for point in self._network.joints[number].points:
-                for unit in self._network.points[point].loads:
-                    for load in self._acting:
-                        if load.source == unit.source:
-                            yield number, load
-
-    def _cuts(self) -> dict[int, set[fmpq]]:
-        """When fronts meet joints, those of cuts and where these are made, too."""
-        network = self._network
-        found: dict[int, set[fmpq]] = {number: set() for number in self._last}
-        latest: dict[int, fmpq] = {}
-        coming = [(load.time, number, False) for number, load in self._joint_loads()]
-        coming += [
-            (fmpq(0), number, False)
-            for number in self._last
-            if number in self._bearable or not network.at_rest(network.joints[number])
-        ]
-        heapify(coming)
-        count = 0
-        while coming:
-            time, number, cut = heappop(coming)
-            if number not in found or time > self._last[number] or time in found[number]:
-                continue
-            if cut and time - latest[number] < self._reach(number):
-                continue  # something has come since
-            found[number].add(time)
-            latest[number] = time
-            count += 1
-            if count > MOST_BREAKPOINTS:
-                raise self._too_stiff(f"more than {MOST_BREAKPOINTS}")
-            if number in self._bearable:
-                heappush(coming, (time + self._reach(number), number, True))
-            for end, _ in network.joints[number].ends:
-                bar = network.bars[end.bar]
-                heappush(
-                    coming, (time + bar.delay, network.joint_of[network.point_at(network.opposite_end(end))], False)
-                )
         return found
 
     def _reach(self, number: int) -> fmpq:

@@ -16,7 +16,7 @@ from flint import fmpq
 
 from wavesym.derivation.table_size import MOST_WORK, Size, mean_bits, response_size
 from wavesym.errors import CostError
-from wavesym.exact.tables.fronts import departures, reachable
+from wavesym.exact.joints.fronts import departures, reachable
 from wavesym.exact.tables.network_joints import START, NetworkJoints, unit_at
 from wavesym.mechanics.network import End
 
@@ -83,7 +83,8 @@ class Forecast:
                 shape[pole.rate] = shape.get(pole.rate, 0) + len(pole.residues)
             return ((end, shape) for end in self._leaves(number, source if time == 0 else "", waves))
 
-        starts = [number for number in self._joints.acting_joints(source) if last is None or number in last]
+        acting = self._joints.acting_joints(source)
+        starts = [(fmpq(0), number) for number in acting if last is None or number in last]
         for count, front in enumerate(departures(network, starts, answer, last), 1):
             if count > MOST_FRONTS:
                 raise CostError(

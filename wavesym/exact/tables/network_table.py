@@ -18,8 +18,8 @@ from wavesym.derivation.exact_rule import joint_rule
 from wavesym.derivation.increments import Increment, add, combine, integrate, trim
 from wavesym.derivation.table import Function, Part, Row, table_rows
 from wavesym.derivation.table_size import refuse_size
+from wavesym.exact.joints.fronts import departures
 from wavesym.exact.tables.forecast import Forecast
-from wavesym.exact.tables.fronts import departures
 from wavesym.exact.tables.network_joints import START, NetworkJoints, unit_at
 from wavesym.mechanics.gauge import Gauge, readings
 from wavesym.mechanics.loads import AppliedLoad
@@ -111,7 +111,7 @@ class RuledNetwork:
                         found[watched].append((time, gained))
             return self._outgoing_waves(number, acts, waves, velocities)
 
-        starts = [number for number in self.joints.acting_joints(source) if number in last]
+        starts = [(fmpq(0), number) for number in self.joints.acting_joints(source) if number in last]
         for time, end, wave in departures(self.network, starts, answer, last):
             if time <= reach.get(function := function_of(end), -1):
                 found[function].append((time, wave))
