@@ -216,7 +216,7 @@ def test_a_wrong_law_of_joints_is_seen_by_all_that_is_not_derived(scene, monkeyp
     monkeypatch.setattr(RuledNetwork, "_velocities", wrong)
     truth = known_outputs(lower(scene))
     assert not all(verdicts(integrations.collocation, truth))
-    assert not all(verdicts(integrations.differences, truth))
+    assert not all(verdicts(integrations.midpoints, truth))
     assert not all(verdicts(checks.invariants, truth))
 
 

@@ -18,7 +18,6 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks, integrations
-from wavesym.verification.differences import coarsest_grid
 from wavesym.verification.independent import independent_model
 from wavesym.verification.invariants import Balancing
 from wavesym.verification.midpoint import MidpointGrid
@@ -132,7 +131,7 @@ def test_the_midpoint_rule_is_of_order_two_where_friction_turns() -> None:
     problem = problem_of(model)
     errors = []
     for finer in (8, 32, 128):
-        grid = coarsest_grid(problem, fraction(model.until), MidpointGrid).finer(finer)
+        grid = MidpointGrid.coarsest(problem, fraction(model.until)).finer(finer)
         instants = np.round(np.array([0.35, 0.5, 1.1, 1.6]) / float(grid.step)).astype(int)
         taus = instants * float(grid.step)
         truth = Reference(model).values(taus.tolist())

@@ -1,4 +1,4 @@
-"""Central differences and balances over any network, and faults put in on purpose, which they must find."""
+"""The midpoint rule and balances over any network, and faults put in on purpose, which they must find."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,8 +13,7 @@ from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Joint, Network
 from wavesym.scene import Scene, lower
-from wavesym.verification.differences import SpaceTimeGrid
-from wavesym.verification.integrations import _grid, collocation, differences
+from wavesym.verification.integrations import _grid, collocation, midpoints
 from wavesym.verification.invariants import Balance, Balancing
 from wavesym.verification.problem import problem_of
 from wavesym.verification.reference import known_outputs
@@ -42,8 +41,8 @@ def model(**changes: object) -> Model:
     return lower(Scene(**{"name": "geared", "system": GEARED, "load": LOADS, "output": OUTPUT, **changes}))
 
 
-def test_central_differences_are_of_order_2_and_agree() -> None:
-    outcomes = differences(known_outputs(model()))
+def test_the_midpoint_rule_is_of_order_2_and_agree() -> None:
+    outcomes = midpoints(known_outputs(model()))
     assert all(outcome.passed and not outcome.note for outcome in outcomes)
     assert {outcome.cells["order"] for outcome in outcomes} <= {"2.0", "-"}
 
@@ -56,7 +55,7 @@ def test_motion_that_is_prescribed() -> None:
     moved = model(system=system, load=loads, output=output)
     assert all(
         outcome.passed and not outcome.note
-        for outcome in (*differences(known_outputs(moved)), *collocation(known_outputs(moved)))
+        for outcome in (*midpoints(known_outputs(moved)), *collocation(known_outputs(moved)))
     )
     assert all(balance.error <= balance.allowed < 1e-12 for balance in balances(moved))
 
@@ -64,7 +63,7 @@ def test_motion_that_is_prescribed() -> None:
 def test_delays_without_a_reasonable_common_measure_are_refused_in_a_line_by_a_grid() -> None:
     system = {"type": "chain", "parts": [{"mass": 1, "name": "hammer"}, {"rod": 1}, {"rod": "1.414213562"}]}
     other = model(system=system, output={"until": 5, "velocity": ["hammer"]})
-    (outcome,) = differences(known_outputs(other))
+    (outcome,) = midpoints(known_outputs(other))
     assert outcome.passed
     assert "refused" in outcome.cells.values()
     assert "a step" in outcome.note
@@ -79,11 +78,12 @@ def test_collocation_agrees_to_rounding() -> None:
 
 
 def test_a_grid_has_every_front_load_and_output_on_it() -> None:
-    coarsest = _grid(model(), SpaceTimeGrid)
+    coarsest = _grid(model())
     assert coarsest.problem.measure == Fraction(1, 2)
     assert coarsest.is_aligned
-    assert [delay / coarsest.step for delay in coarsest.problem.delays] == list(coarsest.field.cells)
-    assert min(coarsest.field.cells) >= 16
+    cells = [delay / coarsest.step for delay in coarsest.problem.delays]
+    assert all(each.denominator == 1 for each in cells)
+    assert min(cells) == coarsest.cells >= 16
 
 
 def balances(right: Model, wrong: Model | None = None) -> tuple[Balance, Balance]:
@@ -126,7 +126,7 @@ def test_faults_of_a_network_are_found(fault: Callable[[Network], Network], monk
     wrong = replace(right, network=fault(right.network))
     assert any(balance.error > balance.allowed for balance in balances(right, wrong))
     monkeypatch.setattr("wavesym.verification.integrations.Reference", lambda _: Reference(wrong))
-    assert not all(outcome.passed for outcome in differences(known_outputs(right)))
+    assert not all(outcome.passed for outcome in midpoints(known_outputs(right)))
     assert not all(outcome.passed for outcome in collocation(replace(known_outputs(wrong), model=right)))
 
 
@@ -141,7 +141,7 @@ def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(JointLaw, "assemble", wrong)
     right = model()
     assert any(balance.error > balance.allowed for balance in balances(right))
-    assert not all(outcome.passed for outcome in differences(known_outputs(right)))
+    assert not all(outcome.passed for outcome in midpoints(known_outputs(right)))
     assert not all(outcome.passed for outcome in collocation(known_outputs(right)))
 
 

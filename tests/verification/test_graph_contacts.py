@@ -25,7 +25,6 @@ from wavesym.verification.integrations import (
     corner_changes,
     midpoints,
 )
-from wavesym.verification.midpoint import MidpointGrid
 from wavesym.verification.problem import Change, match_changes, problem_of
 from wavesym.verification.reference import known_outputs
 
@@ -63,7 +62,7 @@ def test_collocation_finds_when_a_bar_bounces() -> None:
 
 
 def test_the_midpoint_rule_finds_when_a_bar_bounces() -> None:
-    made = _grid(bouncing(), MidpointGrid).resolve_changes(5.0, MANY)
+    made = _grid(bouncing()).resolve_changes(5.0, MANY)
     assert made is not None
     stepped, found = made
     assert [change.kind for change, _ in found] == ["closes", "opens"] * 2
@@ -77,7 +76,7 @@ def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None
     small = model([body, "contact", {"rod": length, "impedance": impedance}, "fixed"], 4 * length, velocity=["0-"])
     (change,) = integrate(problem_of(small), 4.0 * length, 12, 200).changes
     assert change.tau / length == pytest.approx(3.06766764161830635, rel=1e-12)
-    stepped = _grid(small, MidpointGrid).resolve_changes(4.0 * length, MANY)
+    stepped = _grid(small).resolve_changes(4.0 * length, MANY)
     assert stepped is not None
     ((late, slack),) = stepped[1]
     assert abs(late.tau - change.tau) <= slack

@@ -47,8 +47,8 @@ STRUCK = {
 }
 JUDGES = [
     (DRIVE, integrations.collocation),
-    (DRIVE, integrations.differences),
-    (STRUCK, integrations.differences),
+    (DRIVE, integrations.midpoints),
+    (STRUCK, integrations.midpoints),
     (STRUCK, integrations.collocation),
 ]
 EACH = pytest.mark.parametrize(

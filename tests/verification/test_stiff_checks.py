@@ -1,4 +1,4 @@
-"""What `verify` makes of stiff springs: balances stay sharp, and central differences that cannot keep up say so."""
+"""What `verify` makes of stiff springs: balances stay sharp, and steps that cannot keep up say so."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from wavesym.scene import lower
 from wavesym.verification import integrations
 from wavesym.verification import invariants as balances
 from wavesym.verification.checks import invariants
-from wavesym.verification.integrations import collocation, differences
+from wavesym.verification.integrations import collocation, midpoints
 from wavesym.verification.reference import ReferenceOutputs, known_outputs
 
 
@@ -38,8 +38,8 @@ def test_collocation_follows_a_stiff_spring() -> None:
     assert all(outcome.passed and float(outcome.cells["at 4N"]) < 1e-9 for outcome in collocation(made(10**4)))
 
 
-def test_central_differences_refuse_springs_that_they_cannot_follow(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_steps_refuse_springs_that_they_cannot_follow(monkeypatch: pytest.MonkeyPatch) -> None:
     stiff = made(10**4)
     monkeypatch.setattr(integrations, "MOST_MOVED", integrations.MOST_MOVED // 1000)
-    assert all("radians" in outcome.note and outcome.cells == {"to": "refused"} for outcome in differences(stiff))
-    assert all("radians" not in outcome.note for outcome in differences(made(100)))
+    assert all("radians" in outcome.note and outcome.cells == {"to": "refused"} for outcome in midpoints(stiff))
+    assert all("radians" not in outcome.note for outcome in midpoints(made(100)))

@@ -1,4 +1,4 @@
-"""The checks that integrate: outputs by collocation between fronts, central differences and finite elements.
+"""The checks that integrate: outputs by collocation between fronts, the midpoint rule and finite elements.
 
 An integration is refined until it tells its own error. It judges the reference, and then programs.
 """
@@ -23,7 +23,6 @@ from wavesym.methods.network_problem import problem_of as damped_problem
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, UndecidedError, integrate
-from wavesym.verification.differences import SomeGrid, SpaceTimeGrid, coarsest_grid
 from wavesym.verification.midpoint import LATE, MidpointGrid
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
 from wavesym.verification.problem import Change, KnownChanges, match_changes, problem_of
@@ -45,16 +44,16 @@ _STOPPED = 1 / 8
 # when a law changes is looked for on ever finer grids, until it is known to this part of all of the time
 _SHARP = 1e-3
 
-# central differences move no more points than that
+# steps move no more points than that
 MOST_MOVED = 2e8
 
-# central differences lag ever further behind: beyond this tau the grids would have to be finer
+# steps lag ever further behind: beyond this tau they would have to be shorter
 _LONGEST = 60.0
 
 # of the instants away from fronts, so many are enough to begin with, and so many are looked at
 _FEWEST_INSTANTS, _MOST_INSTANTS = 20, 200
 
-# central differences tell nothing of springs that swing more radians than this in a step
+# steps tell nothing of springs that swing more radians than this in one
 _SWING = 0.25
 
 # finite elements of the shortest rod, unknowns, and instants besides those at which loads change
@@ -165,51 +164,27 @@ def _cached_solutions(known: ReferenceOutputs) -> _Solutions | str:
     return _solve(known.integration_model, known.until)
 
 
-# central differences
-
-
-def differences(known: ReferenceOutputs) -> list[Outcome]:
-    """Central differences with N, 2N and 4N cells a rod, at instants away from fronts, where no link has a corner."""
-    network = known.integration_model.network
-    if network.corners:
-        return []
-    if not network.bars:
-        return refused_outcomes(known, "to", "there is no rod for a grid")
-    first = _grid(known.integration_model, SpaceTimeGrid)
-    return _compare_steps(known, first, _reach(known, first))
+# the midpoint rule
 
 
 def midpoints(known: ReferenceOutputs) -> list[Outcome]:
-    """The midpoint rule with N, 2N and 4N steps a rod, away from fronts, where links have corners.
+    """The midpoint rule with N, 2N and 4N steps a rod, at instants away from fronts.
 
-    N is so large that the same happens at them with 2N and 4N; that is one more front.
+    Where steps stay coarse that is said, but no failure: what they allow is in the table. Where links have corners N is
+    so large that the same happens at them with 2N and 4N; that is one more front.
     """
-    if not known.integration_model.network.corners:
-        return []
-    first = _grid(known.integration_model, MidpointGrid)
-    until = _reach(known, first)
+    model = known.integration_model
+    first, struck = _grid(model), list[tuple[Change, float]]()
+    until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     while first.tau(1) > _STOPPED * first.problem.soonest:
         if first.finer(8).cost(until) > MOST_MOVED:
             why = f"friction stops what moves within {first.problem.soonest:.1g}, sooner than steps that can be taken"
             return refused_outcomes(known, "to", why)
         first = first.finer(2)
-    if (found := first.resolve_changes(until, MOST_MOVED)) is None:
-        return refused_outcomes(known, "to", _NO_GRID)
-    return _compare_steps(known, found[0], until, found[1])
-
-
-def _reach(known: ReferenceOutputs, first: SpaceTimeGrid) -> float:
-    """As far as steps are compared."""
-    return min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
-
-
-def _compare_steps(
-    known: ReferenceOutputs, first: SpaceTimeGrid, until: float, struck: Sequence[tuple[Change, float]] = ()
-) -> list[Outcome]:
-    """Steps with N, 2N and 4N a rod, as far as they can be had, away from fronts and from what is `struck`.
-
-    Where they stay coarse that is said, but no failure: what they allow is in the table.
-    """
+    if model.network.corners:
+        if (found := first.resolve_changes(until, MOST_MOVED)) is None:
+            return refused_outcomes(known, "to", _NO_GRID)
+        first, struck = found
     while len(first.instants(until, struck)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
         first = first.finer(2)
     finest = first
@@ -238,12 +213,12 @@ def _compare_steps(
         return first.finer(finer).cost(until) <= MOST_MOVED
 
     rule: Rule = "extrapolated" if first.is_aligned and not struck else "wandering"
-    method = Method("space-time grid", first.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
+    method = Method("midpoint rule", first.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
     return method.outcomes(known.model.name, known.names, truths, {"to": f"{until:.4g}"})
 
 
-def _grid(model: Model, kind: type[SomeGrid]) -> SomeGrid:
-    return coarsest_grid(problem_of(model), fraction(model.until), kind)
+def _grid(model: Model) -> MidpointGrid:
+    return MidpointGrid.coarsest(problem_of(model), fraction(model.until))
 
 
 # finite elements
@@ -295,7 +270,7 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
         seen["fronts"] = None if isinstance(solved, str) else CornerHistory(solved.struck, 0.0)
     notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
     sharp = _SHARP if isinstance(solved, str) else inf  # nothing else is
-    stepped = _grid(judged, MidpointGrid).resolve_changes(known.until, MOST_MOVED, sharp)
+    stepped = _grid(judged).resolve_changes(known.until, MOST_MOVED, sharp)
     seen["midpoint"] = CornerHistory(stepped[1], LATE * float(stepped[0].step)) if stepped else None
     notes += [] if stepped else [f"{model.name}: {_NO_GRID}"]
     outcomes = [Outcome("corners", {}, True, note) for note in notes]

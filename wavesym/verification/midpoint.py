@@ -6,44 +6,132 @@ at the start of a step, v the mean velocity in it and a the means of what arrive
     (2 mass/h + damping + sum of ratio^2 impedance + stiffness h/2) v
         = 2 mass/h q - stiffness u + sum of 2 ratio impedance a + loads + what links with corners pull,
 
-q goes on to 2 v - q and u to u + h v. What such links pull depends on v: a contact pushes as little as keeps its gap
-from being negative, friction takes what keeps its sides together, as much as it can, and springs have the mean of their
-pulls at both ends of the step. Each of these is monotone in v, so they are found one after another, again and again.
-Nothing is looked for inside a step. Errors fall as its square, and as the step where a law changes.
+q goes on to 2 v - q and u to u + h v. What links with corners pull depends on v (`link_pulls.py`). Nothing is looked
+for inside a step, and outputs are read where no front is within one. Errors fall as its square, and as the step where a
+law changes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
-from math import inf
-from typing import Self
+from math import ceil, inf, lcm
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.problem import Array
-from wavesym.numbers.doubles import UNIT_ROUNDOFF
-from wavesym.verification.differences import GridReadings, Instants, SpaceTimeGrid
-from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, LinkLaw, match_changes
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
+from wavesym.verification.link_pulls import LinkPulls
+from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, match_changes
+
+Instants = NDArray[np.int_]
+
+_STEPS_WITHOUT_RODS = 64
+
+COARSEST = 16
+"""Steps per rod of the coarsest grid, at least."""
 
 LATE = 4
 """What happens at a corner is late by so many steps at most, and what does not last as long did not happen."""
 
-# pulls of links are found as exactly as this, relative to the largest, in so many rounds
-_EXACT, _ROUNDS = 1e-15, 1000
+# load times and places with larger denominators than this do not become points of the grid
+_FINEST_ALIGNED = 128
 
-# parts of what pushes and gaps are worth that tell whether a contact is closed
-_SIGN = 1e-9
+# steps before and after an instant that what is read there rests on
+_REACH = 1
 
 # so many roundings of a step are kept for good
 _ROUNDINGS = 8
 
+# points and instants closer than this are the same, in doubles
+_SAME = 1e-6
 
-class MidpointGrid(SpaceTimeGrid):
-    """The steps of tau, which divide all delays."""
+# what a step costs besides its points, in points
+_STEP = 5000
 
-    def resolve_changes(self, until: float, most: float, sharp: float = inf) -> tuple[Self, KnownChanges] | None:
+
+@dataclass(frozen=True)
+class GridReadings:
+    """Readings at some instants, (readings, instants), and what rounding may have added to each, (readings,)."""
+
+    values: Array
+    roundoff: Array
+
+
+@dataclass(frozen=True)
+class MidpointGrid:
+    """Steps of tau, which divide all delays. An instant k is tau = k * step."""
+
+    problem: CornerProblem
+    step: Fraction
+
+    @classmethod
+    def coarsest(cls, problem: CornerProblem, until: Fraction) -> MidpointGrid:
+        """The coarsest one: loads and readings are on it where their denominators are small."""
+        if not problem.delays:
+            return cls(problem, until / _STEPS_WITHOUT_RODS)
+        measure, common = problem.measure, 1
+        offsets = [_offset(problem, reading) for reading in problem.readings]
+        for time in (*(event.time for event in problem.events), *offsets):
+            if lcm(common, (time / measure).denominator) <= _FINEST_ALIGNED:
+                common = lcm(common, (time / measure).denominator)
+        shortest = min(*problem.delays, until)
+        return cls(problem, measure / common / ceil(COARSEST * measure / common / shortest))
+
+    @property
+    def cells(self) -> int:
+        """How many steps a wave takes through the shortest bar; all of the time where there is none."""
+        return int(min(self.problem.delays, default=Fraction(self.problem.until)) / self.step)
+
+    @property
+    def is_aligned(self) -> bool:
+        """Whether all loads begin on the grid, and all is read there: errors are a series in h^2 then."""
+        times = [event.time for event in self.problem.events]
+        times += [_offset(self.problem, reading) for reading in self.problem.readings]
+        return all((time / self.step).denominator == 1 for time in times)
+
+    def finer(self, times: int) -> MidpointGrid:
+        """The grid with that many steps for one."""
+        return replace(self, step=self.step / times)
+
+    def tau(self, instant: int) -> float:
+        """When an instant is."""
+        return float(instant * self.step)
+
+    def cost(self, until: float) -> float:
+        """What it takes to come to tau = `until`: points moved, roughly."""
+        return until / float(self.step) * (len(self.problem.delays) + self.problem.points**2 + _STEP)
+
+    def instants(self, until: float, struck: Sequence[tuple[Change, float]] = ()) -> Instants:
+        """Those up to `until` at which what every output is read from has no front inside.
+
+        Fronts set out from points at multiples of the delays' common measure after 0, after every load, and after
+        what happened at corners: `struck` has when, and how well that is known.
+        """
+        measure, step = self.problem.measure or 2 * Fraction(until), float(self.step)
+        cuts = {event.time % measure for event in self.problem.events} | {Fraction(0)}
+        instants = np.arange(1, int(until / step))
+        free = np.ones(len(instants), dtype=bool)
+        window = float(measure / self.step)
+        for reading in self.problem.readings:
+            offset = _offset(self.problem, reading)
+            for way in (offset, -offset):
+                for cut in cuts:
+                    passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
+                    free &= np.abs(passed) > _REACH - _SAME
+                for change, slack in struck:
+                    passed = instants - (change.tau - slack + way) / step
+                    after = passed % window
+                    free &= (passed < -_REACH) | ((after > _REACH + 2 * slack / step) & (window - after > _REACH))
+        return instants[free]
+
+    def resolve_changes(
+        self, until: float, most: float, sharp: float = inf
+    ) -> tuple[MidpointGrid, KnownChanges] | None:
         """The coarsest grid which, halved twice, has the same happen at corners, and that; None if it costs more.
 
         It is known when within `sharp` parts of all of the time, if that does not cost more.
@@ -80,18 +168,22 @@ class MidpointGrid(SpaceTimeGrid):
 
     def integrate(self, instants: Instants) -> GridReadings:
         """The readings at positive instants in ascending order, off fronts."""
-        steps = int(instants[-1]) + 2
-        motion = self._motion(steps)
+        motion = self._motion(int(instants[-1]) + 2)
         taus: Array = float(self.step) * instants.astype(np.float64)
         values = np.array([motion.evaluate(reading, taus) for reading in self.problem.readings])
-        rounded = _ROUNDINGS * float(UNIT_ROUNDOFF) * steps * np.max(np.abs(values), axis=1, initial=0.0)
-        return GridReadings(values.reshape(-1, len(instants)), rounded)
+        roundoff = np.array([motion.roundoff(reading) for reading in self.problem.readings])
+        return GridReadings(values.reshape(-1, len(instants)), roundoff)
 
     def _motion(self, steps: int) -> _Motion:
         motion = _Motion(self, steps)
         for step in range(steps):
             motion.advance(step)
         return motion
+
+
+def _offset(problem: CornerProblem, reading: Gauge) -> Fraction:
+    """How long a wave takes from the left end of its bar to where a reading is."""
+    return Fraction(0) if reading.point is not None else fraction(reading.place) * problem.delays[reading.rod - 1]
 
 
 class _Motion:
@@ -114,7 +206,7 @@ class _Motion:
         prescribed = list(problem.prescribed)
         matrix[prescribed] = np.eye(problem.points)[prescribed]
         self._inverse: Array = np.linalg.inv(matrix).astype(np.float64)
-        self._links = _Links(problem, self._inverse, h)
+        self._links = LinkPulls(problem, self._inverse, h)
         self.changes = self._links.changes
 
     def advance(self, step: int) -> None:
@@ -134,152 +226,38 @@ class _Motion:
         self._sent[step] = problem.incidence.T @ v - came
 
     def evaluate(self, reading: Gauge, taus: Array) -> Array:
-        """A strain, a velocity or a displacement at instants."""
-        displaced = reading.quantity == "displacement"
+        """A strain, a velocity, a displacement or an acceleration at instants."""
         if reading.point is not None:
-            known = (self._ends, self._u) if displaced else (self._middles, self._v)
-            return np.interp(taus, known[0], known[1][:, reading.point])
+            known = {-1: self._u, 0: self._v, 1: np.diff(self._v, axis=0) / self._h}[reading.order]
+            return np.interp(taus, self._times(reading.order), known[:, reading.point])
         bar, place = reading.rod - 1, float(reading.place)
         right, left = (
-            self._wave(2 * bar + side, taus, float(part * self._problem.delay[bar]), displaced)
+            self._wave(2 * bar + side, taus, float(part * self._problem.delay[bar]), reading.order)
             for side, part in enumerate((place, 1 - place))
         )
         return (left - right) / self._problem.speed[bar] if reading.quantity == "strain" else left + right
 
-    def _wave(self, end: int, taus: Array, late: float, summed: bool) -> Array:
-        """What was sent from an end so long ago, or its integral from tau = 0."""
+    def roundoff(self, reading: Gauge) -> float:
+        """What rounding may have added to a reading: it adds up over steps, and no point amplifies it."""
+        largest = max(float(np.max(np.abs(each), initial=0.0)) for each in (self._sent, self._v))
+        scale = {-1: float(self._ends[-1]), 0: 1.0, 1: 2 / self._h}[reading.order]
+        slow = float(self._problem.speed[reading.rod - 1]) if reading.quantity == "strain" else 1.0
+        return _ROUNDINGS * float(UNIT_ROUNDOFF) * len(self._v) * largest * scale / slow
+
+    def _times(self, order: int) -> Array:
+        """When displacements, velocities and accelerations are known."""
+        return {-1: self._ends, 0: self._middles, 1: self._ends[1:-1]}[order]
+
+    def _wave(self, end: int, taus: Array, late: float, order: int) -> Array:
+        """What was sent from an end so long ago, its derivative (`order` 1), or its integral from tau = 0 (-1)."""
         since, start = taus - late, float(self._problem.start_waves.ravel()[end])
-        if summed:
-            return start * np.minimum(taus, late) + np.interp(since, self._ends, self._sums[:, end])
-        return np.where(since < 0, start, np.interp(since, self._middles, self._sent[:, end]))
+        known = {-1: self._sums, 0: self._sent, 1: np.diff(self._sent, axis=0) / self._h}[order]
+        found = np.interp(since, self._times(order), known[:, end])
+        if order < 0:
+            return start * np.minimum(taus, late) + found
+        return np.where(since < 0, start if order == 0 else 0.0, found)
 
     @cached_property
     def _sums(self) -> Array:
         """The integrals of what is sent, at the ends of steps."""
         return np.concatenate([np.zeros((1, self._sent.shape[1])), self._h * np.cumsum(self._sent, axis=0)])
-
-
-@dataclass
-class _Spring:
-    """A spring with a corner: its pull, what that would be without limits, and its branch."""
-
-    law: LinkLaw
-    branch: int
-    pull: float = 0.0
-    trial: float = 0.0
-
-    def mean(self, rate: float, longer: float, compliance: float, h: float) -> float:
-        """Its mean pull in a step, where it gets longer at a `rate` without: less by `compliance` times the pull."""
-        law, stiff = self.law, self.law.stiffness * h / 2
-        if law.side:
-            self.trial = law.stiffness * (longer + h / 2 * rate - law.side * law.gap) / (1 + stiff * compliance)
-            return law.limit(self.trial)
-        self.trial = 2 * (self.pull + stiff * rate) / (1 + stiff * compliance) - self.pull
-        return (self.pull + law.limit(self.trial)) / 2
-
-    def finish(self) -> None:
-        """Go on to the next step."""
-        self.pull = self.law.limit(self.trial)
-
-
-@dataclass
-class _Friction:
-    """What rubs on the ground: its `speed` at the start of a step, 0 where it has no mass, and its branch.
-
-    `inertia` is its mean velocity in a step if nothing but its mass acts, over that speed.
-    """
-
-    law: LinkLaw
-    branch: int
-    inertia: float
-    speed: float = 0.0
-    trial: float = 0.0
-
-    def mean(self, rate: float, _: float, compliance: float, __: float) -> float:
-        """Its mean pull in a step, where it would go at a mean `rate` without: less by `compliance` times the pull.
-
-        What comes to rest and goes back is pulled one way first, and the other way for the rest of the step.
-        """
-        most, before = self.law.friction, abs(self.speed)
-        way = 1.0 if self.speed > 0 else -1.0
-        held = (rate - self.inertia * self.speed) / compliance  # what keeps it at rest
-        if before == 0:
-            self.trial = held
-            return self.law.limit(held)
-        after = 2 * (way * rate - compliance * most) - before
-        self.trial = 2 * most * way
-        if after >= 0:
-            return most * way
-        if abs(held) <= most:
-            self.trial = held
-            return (rate - self.speed / 2) / compliance
-        self.trial = -self.trial
-        return most * way * (2 * before / (before - after) - 1)
-
-    def finish(self) -> None:
-        """Go on to the next step."""
-
-
-class _Links:
-    """All links with corners: contacts, then others."""
-
-    def __init__(self, problem: CornerProblem, inverse: Array, h: float) -> None:
-        self._problem, self._h = problem, h
-        self._rows = np.array([*problem.parting, *(law.row for law in problem.laws)]).reshape(-1, problem.points)
-        # what is prescribed gives no way
-        self._influence = inverse @ (self._rows * problem.is_free).T
-        self._compliance = self._rows @ self._influence
-        self._pulls = np.zeros(len(self._rows))
-        self._laws = [self._link(law, inverse) for law in problem.laws]
-        self._open = problem.gaps > 0
-        self.changes: list[BranchChange] = []
-
-    def _link(self, law: LinkLaw, inverse: Array) -> _Spring | _Friction:
-        if not law.friction:
-            return _Spring(law, law.first)
-        point = int(np.flatnonzero(law.row * self._problem.is_free)[0])
-        inertia = float(inverse[point, point]) * 2 * float(self._problem.mass[point]) / self._h
-        return _Friction(law, law.first, inertia)
-
-    def settle(self, free: Array, q: Array, u: Array, step: int) -> Array:
-        """The mean velocities of points in a step, from those without links, `free`, and their state before it."""
-        if not len(self._rows):
-            return free
-        for link in self._laws:
-            if isinstance(link, _Friction):
-                link.speed = float(link.law.row @ (q * (self._problem.mass > 0)))
-        rates, longer = self._rows @ free, self._rows @ u
-        for _ in range(_ROUNDS):
-            before = self._pulls.copy()
-            for k in range(len(self._rows)):
-                compliance = self._compliance[k, k]
-                rate = float(rates[k] - self._compliance[k] @ self._pulls + compliance * self._pulls[k])
-                self._pulls[k] = self._mean(k, rate, float(longer[k]), float(compliance))
-            if np.max(np.abs(self._pulls - before)) <= _EXACT * np.max(np.abs(self._pulls)):
-                break
-        v = free - self._influence @ self._pulls
-        self._record_branches(longer + self._h * (self._rows @ v), step)
-        return np.asarray(v)
-
-    def _mean(self, k: int, rate: float, longer: float, compliance: float) -> float:
-        contacts = len(self._problem.gaps)
-        if k >= contacts:
-            return self._laws[k - contacts].mean(rate, longer, compliance, self._h)
-        return min(((float(self._problem.gaps[k]) + longer) / self._h + rate) / compliance, 0.0)
-
-    def _record_branches(self, longer: Array, step: int) -> None:
-        """On which branches links are at the end of a step."""
-        problem = self._problem
-        length, force = problem.worth
-        for k, number in enumerate(problem.contacts):
-            apart = problem.gaps[k] + longer[k]
-            if -self._pulls[k] > _SIGN * force if self._open[k] else apart > _SIGN * length:
-                self._open[k] ^= True
-                closed = int(not self._open[k])
-                self.changes.append(BranchChange(number, 1 - closed, closed, step))
-        for moving in self._laws:
-            law, before = moving.law, moving.branch
-            moving.finish()
-            moving.branch = law.branch(moving.trial, _SIGN * force, before)
-            if moving.branch != before and step:  # what it is from the start is no event
-                self.changes.append(BranchChange(law.corner, before, moving.branch, step))

@@ -1,0 +1,147 @@
+"""Links with corners in a step of the midpoint rule: how much contacts, friction and springs with a law pull.
+
+What they pull depends on the mean velocity in the step: a contact pushes as little as keeps its gap from being
+negative, friction takes what keeps its sides together, as much as it can, and springs have the mean of their pulls at
+both ends of the step. Each of these is monotone, so they are found one after another, again and again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wavesym.methods.problem import Array
+from wavesym.verification.problem import BranchChange, CornerProblem, LinkLaw
+
+# pulls of links are found as exactly as this, relative to the largest, in so many rounds
+_EXACT, _ROUNDS = 1e-15, 1000
+
+# parts of what pushes and gaps are worth that tell whether a contact is closed
+_SIGN = 1e-9
+
+
+@dataclass
+class _Spring:
+    """A spring with a corner: its pull, what that would be without limits, and its branch."""
+
+    law: LinkLaw
+    branch: int
+    pull: float = 0.0
+    trial: float = 0.0
+
+    def mean(self, rate: float, longer: float, compliance: float, h: float) -> float:
+        """Its mean pull in a step, where it gets longer at a `rate` without: less by `compliance` times the pull."""
+        law, stiff = self.law, self.law.stiffness * h / 2
+        if law.side:
+            self.trial = law.stiffness * (longer + h / 2 * rate - law.side * law.gap) / (1 + stiff * compliance)
+            return law.limit(self.trial)
+        self.trial = 2 * (self.pull + stiff * rate) / (1 + stiff * compliance) - self.pull
+        return (self.pull + law.limit(self.trial)) / 2
+
+    def finish(self) -> None:
+        """Go on to the next step."""
+        self.pull = self.law.limit(self.trial)
+
+
+@dataclass
+class _Friction:
+    """What rubs on the ground: its `speed` at the start of a step, 0 where it has no mass, and its branch.
+
+    `inertia` is its mean velocity in a step if nothing but its mass acts, over that speed.
+    """
+
+    law: LinkLaw
+    branch: int
+    inertia: float
+    speed: float = 0.0
+    trial: float = 0.0
+
+    def mean(self, rate: float, _: float, compliance: float, __: float) -> float:
+        """Its mean pull in a step, where it would go at a mean `rate` without: less by `compliance` times the pull.
+
+        What comes to rest and goes back is pulled one way first, and the other way for the rest of the step.
+        """
+        most, before = self.law.friction, abs(self.speed)
+        way = 1.0 if self.speed > 0 else -1.0
+        held = (rate - self.inertia * self.speed) / compliance  # what keeps it at rest
+        if before == 0:
+            self.trial = held
+            return self.law.limit(held)
+        after = 2 * (way * rate - compliance * most) - before
+        self.trial = 2 * most * way
+        if after >= 0:
+            return most * way
+        if abs(held) <= most:
+            self.trial = held
+            return (rate - self.speed / 2) / compliance
+        self.trial = -self.trial
+        return most * way * (2 * before / (before - after) - 1)
+
+    def finish(self) -> None:
+        """Go on to the next step."""
+
+
+class LinkPulls:
+    """The pulls of all links with corners, contacts and then others, step by step, and when branches change."""
+
+    def __init__(self, problem: CornerProblem, inverse: Array, h: float) -> None:
+        self._problem, self._h = problem, h
+        self._rows = np.array([*problem.parting, *(law.row for law in problem.laws)]).reshape(-1, problem.points)
+        # what is prescribed gives no way
+        self._influence = inverse @ (self._rows * problem.is_free).T
+        self._compliance = self._rows @ self._influence
+        self._pulls = np.zeros(len(self._rows))
+        self._laws = [self._link(law, inverse) for law in problem.laws]
+        self._open = problem.gaps > 0
+        self.changes: list[BranchChange] = []
+
+    def _link(self, law: LinkLaw, inverse: Array) -> _Spring | _Friction:
+        if not law.friction:
+            return _Spring(law, law.first)
+        point = int(np.flatnonzero(law.row * self._problem.is_free)[0])
+        inertia = float(inverse[point, point]) * 2 * float(self._problem.mass[point]) / self._h
+        return _Friction(law, law.first, inertia)
+
+    def settle(self, free: Array, q: Array, u: Array, step: int) -> Array:
+        """The mean velocities of points in a step, from those without links, `free`, and their state before it."""
+        if not len(self._rows):
+            return free
+        for link in self._laws:
+            if isinstance(link, _Friction):
+                link.speed = float(link.law.row @ (q * (self._problem.mass > 0)))
+        rates, longer = self._rows @ free, self._rows @ u
+        for _ in range(_ROUNDS):
+            before = self._pulls.copy()
+            for k in range(len(self._rows)):
+                compliance = self._compliance[k, k]
+                rate = float(rates[k] - self._compliance[k] @ self._pulls + compliance * self._pulls[k])
+                self._pulls[k] = self._mean(k, rate, float(longer[k]), float(compliance))
+            if np.max(np.abs(self._pulls - before)) <= _EXACT * np.max(np.abs(self._pulls)):
+                break
+        v = free - self._influence @ self._pulls
+        self._record_branches(longer + self._h * (self._rows @ v), step)
+        return np.asarray(v)
+
+    def _mean(self, k: int, rate: float, longer: float, compliance: float) -> float:
+        contacts = len(self._problem.gaps)
+        if k >= contacts:
+            return self._laws[k - contacts].mean(rate, longer, compliance, self._h)
+        return min(((float(self._problem.gaps[k]) + longer) / self._h + rate) / compliance, 0.0)
+
+    def _record_branches(self, longer: Array, step: int) -> None:
+        """On which branches links are at the end of a step."""
+        problem = self._problem
+        length, force = problem.worth
+        for k, number in enumerate(problem.contacts):
+            apart = problem.gaps[k] + longer[k]
+            if -self._pulls[k] > _SIGN * force if self._open[k] else apart > _SIGN * length:
+                self._open[k] ^= True
+                closed = int(not self._open[k])
+                self.changes.append(BranchChange(number, 1 - closed, closed, step))
+        for moving in self._laws:
+            law, before = moving.law, moving.branch
+            moving.finish()
+            moving.branch = law.branch(moving.trial, _SIGN * force, before)
+            if moving.branch != before and step:  # what it is from the start is no event
+                self.changes.append(BranchChange(law.corner, before, moving.branch, step))
