@@ -20,6 +20,7 @@ def scenes(name: str | None, explicit: bool, out: Path | None) -> None:
     Example:
       wavesym scenes building_m2 --explicit
     """
+    from wavesym.results.presentation import align_columns
     from wavesym.scene import Scene, builtin_names, builtin_text
     from wavesym.scene.explicit_text import explicit_text
 
@@ -34,5 +35,4 @@ def scenes(name: str | None, explicit: bool, out: Path | None) -> None:
             deliver(explicit_text(scene), out)
         return
     described = builtin_names()
-    width = max(map(len, described))
-    deliver("".join(f"{each:{width}}  {description}\n" for each, description in described.items()), out)
+    deliver("".join(f"{line}\n" for line in align_columns(list(described.items()), left=(0, 1))), out)

@@ -14,6 +14,7 @@ from wavesym.fields.numbers import decimal_text
 from wavesym.fields.table import show
 from wavesym.records.read import read_record
 from wavesym.records.record_file import RecordFile
+from wavesym.results.presentation import align_columns
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
 AFTER = "0: in a straight line within one step, and for good"
@@ -84,8 +85,7 @@ def record_lines(path: Path, unit: str | None, column: str | None = None) -> tup
     if unit is not None and found.unit not in ("", unit):
         raise SceneError(f"--unit {unit} is not that of the file; write {found.unit}, or none", file=found.file)
     rows = list(_rows(RecordFacts(found, unit or found.unit)))
-    width = max(len(name) for name, _ in rows)
-    lines = [printable(f"{found.file}: {found.kind}"), *(f"  {name.ljust(width)}  {value}" for name, value in rows)]
+    lines = [printable(f"{found.file}: {found.kind}"), *(f"  {line}" for line in align_columns(rows, left=(0, 1)))]
     return found, unit or found.unit, lines
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
-from wavesym.results.presentation import number_text
+from wavesym.mechanics.probe import with_unit
+from wavesym.results.presentation import align_columns, number_text
 from wavesym.results.statistics import STATISTICS, Statistic, cells, headings
 from wavesym.results.summary import OutputSummary, Summary
 
@@ -51,14 +52,14 @@ def _statistic(statistic: Statistic, output: OutputSummary) -> float | dict[str,
 
 def _lines(summary: Summary) -> Iterable[str]:
     clock = "tau" if summary.time_unit is None else f"time [{summary.time_unit}]"
-    yield from _columns([("output", *headings(clock)), *(_row(output) for output in summary.outputs)])
+    yield from align_columns([("output", *headings(clock)), *(_row(output) for output in summary.outputs)])
     peaks = [peak for output in summary.outputs for peak in (output.min, output.max)]
     yield ""
     if not all(peak.reached for peak in peaks):
         yield "-  it comes up to this value, and jumps then"
     if (drift := summary.largest_drift) is not None:
-        peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
-        yield f"largest drift: {drift.label}, {number_text(peak.value)}{unit} at {number_text(peak.at.in_scene_time)}"
+        peak, when = drift.largest, number_text(drift.largest.at.in_scene_time)
+        yield f"largest drift: {drift.label}, {number_text(peak.value, drift.unit)} at {when}"
     yield from map(str, summary.links or ())
     if summary.links is None:
         yield "sets and what is dissipated would cost too much (a shorter horizon helps)"
@@ -66,12 +67,4 @@ def _lines(summary: Summary) -> Iterable[str]:
 
 
 def _row(output: OutputSummary) -> tuple[str, ...]:
-    name = f"{output.label} [{output.unit}]" if output.unit else output.label
-    return (name, *cells(output, "-"))
-
-
-def _columns(rows: Sequence[Sequence[str]]) -> Iterable[str]:
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for name, *numbers in rows:
-        cells = (f"{each:>{width}}" for each, width in zip(numbers, widths[1:], strict=True))
-        yield f"{name:{widths[0]}}  " + "  ".join(cells)
+    return (with_unit(output.label, output.unit), *cells(output, "-"))

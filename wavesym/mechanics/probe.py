@@ -9,6 +9,11 @@ from flint import fmpq
 _ONE = fmpq(1)
 
 
+def with_unit(name: str, unit: str) -> str:
+    """The name of a quantity, with its unit in brackets where it has one."""
+    return f"{name} [{unit}]" if unit else name
+
+
 @dataclass(frozen=True)
 class Probe:
     """An output: `quantity` on rod `rod`, `place` rod lengths from its left node (0 <= place <= 1).
@@ -34,4 +39,4 @@ class Probe:
     @property
     def heading(self) -> str:
         """Its name, with its unit in brackets where it has one."""
-        return f"{self.name} [{self.unit}]" if self.unit else self.name
+        return with_unit(self.name, self.unit)

@@ -11,6 +11,7 @@ from wavesym.pictures.histories import Points
 from wavesym.pictures.line_histories import Band, LineHistories
 from wavesym.pictures.timescale import Timescale
 from wavesym.pictures.units import unit_text
+from wavesym.results.presentation import number_text
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class BandExtreme:
 
     def describe(self, scale: Timescale) -> str:
         """In a line."""
-        value = f"{self.value:.4g} {unit_text(self.unit)}".rstrip()
+        value = number_text(self.value, unit_text(self.unit), 4)
         return f"{value} {self.place}, {scale.format(self.tau)}"
 
 

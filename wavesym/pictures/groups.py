@@ -13,6 +13,7 @@ from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.pictures.histories import Histories, History, Points
 from wavesym.pictures.timescale import Timescale, timescale
 from wavesym.pictures.units import unit_text
+from wavesym.results.presentation import number_text
 
 CURVES = 8  # that an eye can tell apart in a panel
 MOST_PANELS = 6  # of a quantity
@@ -145,5 +146,5 @@ def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
         for k in sorted({int(np.argmax(points[:, 1])), int(np.argmin(points[:, 1]))}):
             tau, value = points[k]
             if value:
-                text = f"{value:.4g} {unit_text(shown[0].output.unit)}".rstrip()
+                text = number_text(value, unit_text(shown[0].output.unit), 4)
                 yield Mark(f"{text} at {scale.time_text(tau)}", points[k : k + 1], "normal")

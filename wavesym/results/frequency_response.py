@@ -22,7 +22,7 @@ from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.optional import require_packages
-from wavesym.results.presentation import output_number
+from wavesym.results.presentation import csv_line, output_number
 from wavesym.results.resonance import Peaks, peaks
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
@@ -124,10 +124,10 @@ class FrequencyResponse:
 
     def csv(self) -> Iterator[str]:
         """Lines of CSV: the frequency, then the real and the imaginary part of each output."""
-        yield ",".join([self.frequency_label, *(f"{name}.{part}" for name in self for part in ("real", "imag"))]) + "\n"
+        yield csv_line([self.frequency_label, *(f"{name}.{part}" for name in self for part in ("real", "imag"))])
         parts = np.stack([self.values.real, self.values.imag], axis=1).reshape(2 * len(self), -1)
         for f, row in zip(self.frequency.tolist(), parts.T.tolist(), strict=True):
-            yield ",".join(map(repr, [f, *row])) + "\n"
+            yield csv_line([f, *row])
 
     def json(self) -> str:
         """As JSON: `frequency`, and of each output `real` and `imag`; null where there is no value."""

@@ -21,7 +21,7 @@ class MeasuredQuantity(NamedTuple):
     unit: str
 
     def __str__(self) -> str:
-        return f"{number_text(self.value)} {self.unit}".rstrip()
+        return number_text(self.value, self.unit)
 
 
 class LinkSummary(NamedTuple):

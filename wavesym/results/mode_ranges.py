@@ -19,6 +19,7 @@ from wavesym.errors import UnservedError, WavesymError
 from wavesym.exact.modes.frequencies import frequencies
 from wavesym.numbers.doubles import upper_double
 from wavesym.results.modes import is_damped
+from wavesym.results.presentation import csv_line
 from wavesym.scene import Scene, lower
 from wavesym.scene.outputs import NoOutput
 
@@ -76,11 +77,11 @@ class ModeRanges:
 
     def csv(self) -> str:
         """A line for each mode."""
-        lines = ["number,omega.low,omega.high,hz.low,hz.high"]
+        lines = ["number,omega.low,omega.high,hz.low,hz.high\n"]
         for each in self.modes:
             ends = each.low, each.high, each.low / (2 * pi), each.high / (2 * pi)
-            lines += [",".join([str(each.number), *map(repr, ends)])]
-        return "\n".join(lines) + "\n"
+            lines.append(csv_line([each.number, *ends]))
+        return "".join(lines)
 
     def text(self) -> str:
         """As a table for people."""

@@ -27,7 +27,7 @@ from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped import damping_ratios
 from wavesym.results.optional import require_packages
 from wavesym.results.participation import Participation, effective_mass, participations
-from wavesym.results.presentation import html_table
+from wavesym.results.presentation import align_columns, csv_line, html_table, number_text
 from wavesym.results.shapes import LineShapes, line_shapes
 from wavesym.systems.station import Lines
 
@@ -130,21 +130,17 @@ class Modes:
                 for node, moved in mode.shape.items():
                     row |= {f"shape@{node}": moved.real} | ({} if self._is_real else {f"shape@{node}.imag": moved.imag})
             lines.append(row)
-        head = ",".join(lines[0])
-        return (
-            "\n".join([head, *(",".join("" if v is None else repr(v) for v in row.values()) for row in lines)]) + "\n"
-        )
+        return "".join(map(csv_line, [lines[0], *(row.values() for row in lines)]))
 
     def _along_csv(self) -> str:
         real = self._is_real
         parts = [""] if real else [".real", ".imag"]
-        head = ",".join(["line", "x", *(f"mode {mode.number}{part}" for mode in self.modes for part in parts)])
-        lines = [head]
+        lines = [csv_line(["line", "x", *(f"mode {mode.number}{part}" for mode in self.modes for part in parts)])]
         for each in self.line_shapes:
             for x, moved in zip(each.x.tolist(), each.displacements.T.tolist(), strict=True):
                 numbers = [n for q in moved for n in ([q.real] if real else [q.real, q.imag])]
-                lines.append(",".join([each.line, *map(repr, [x, *numbers])]))
-        return "\n".join(lines) + "\n"
+                lines.append(csv_line([each.line, x, *numbers]))
+        return "".join(lines)
 
     def _plain(self, row: NDArray[np.complex128]) -> list[Any]:
         """A row of a shape as JSON has it."""
@@ -165,12 +161,12 @@ class Modes:
             shares = ["-" if each is None else f"{each.factor:.5g}" for each in known]
             numbers = [str(mode.number), f"{mode.omega:.9g}", f"{mode.hz:.9g}", period, damping]
             rows.append([*numbers, *[mass] * massive, *shares])
-        lines = _align_columns(rows)
+        lines = align_columns(rows, left=())
         if shapes:
             nodes = list(self.modes[0].shape)
             table = [["node", *(f"mode {mode.number}" for mode in self.modes)]]
             table += [[node, *(_shape_text(mode.shape[node]) for mode in self.modes)] for node in nodes]
-            lines += ["", *_align_columns(table)]
+            lines += ["", *align_columns(table, left=())]
         radius = max((mode.radius for mode in self.modes), default=0.0)
         return "\n".join([*lines, "", f"right to {radius:.1e} {per}, proved; {self.why}"]) + "\n"
 
@@ -307,11 +303,6 @@ def _shape(network: Network, mode: Mode) -> dict[str, complex]:
     return names
 
 
-def _align_columns(rows: Sequence[Sequence[str]]) -> list[str]:
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in rows]
-
-
 def _shape_text(displacement: complex) -> str:
     return (
         f"{displacement.real:.5f}"
@@ -321,4 +312,4 @@ def _shape_text(displacement: complex) -> str:
 
 
 def _cell(value: Any) -> str:
-    return "-" if value is None else f"{value:.7g}" if isinstance(value, float) else str(value)
+    return "-" if value is None else number_text(value) if isinstance(value, float) else str(value)

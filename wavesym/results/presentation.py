@@ -1,8 +1,8 @@
-"""How results show themselves: outputs found by name, numbers as people read them, tables as notebooks show them."""
+"""How results show themselves: outputs found by name, numbers as people read them, tables as text, CSV and HTML."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from html import escape
 
 from wavesym.errors import did_you_mean
@@ -23,6 +23,28 @@ def html_table(caption: str, heads: Iterable[str], rows: Iterable[Iterable[str]]
     return f"<p>{escape(caption)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def number_text(value: float) -> str:
-    """A number as it is shown to people."""
-    return f"{value:.7g}"
+def align_columns(rows: Sequence[Sequence[str]], left: Container[int] = (0,)) -> list[str]:
+    """Rows of a table as lines of text, whose columns are two spaces apart.
+
+    Args:
+        rows: of as many cells each, the heads of the columns first where there are any.
+        left: the numbers of the columns whose cells begin below each other; those of all others end so.
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(
+            cell.ljust(width) if number in left else cell.rjust(width)
+            for number, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+
+
+def csv_line(cells: Iterable[str | float | None]) -> str:
+    """A line of CSV: texts as they are, numbers in the shortest decimals that read back to them, nothing for None."""
+    return ",".join("" if cell is None else cell if isinstance(cell, str) else repr(cell) for cell in cells) + "\n"
+
+
+def number_text(value: float, unit: str = "", digits: int = 7) -> str:
+    """A number as it is shown to people, with its unit where it has one."""
+    return f"{value:.{digits}g} {unit}".rstrip()

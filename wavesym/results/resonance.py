@@ -21,6 +21,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, upper_double
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
+from wavesym.results.presentation import csv_line
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
 _BITS = 256
@@ -79,7 +80,7 @@ class Peaks:
         """A line for each output."""
         head = f"output,{self.frequency_label},amplitude,low,high\n"
         rows = ((p.name, p.frequency, p.amplitude, p.low, p.high) for p in self.peaks)
-        return head + "".join(",".join([name, *map(repr, numbers)]) + "\n" for name, *numbers in rows)
+        return head + "".join(map(csv_line, rows))
 
     def json(self) -> str:
         """As JSON; null in place of what is not bounded."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.mechanics.event import ContactEvent
+from wavesym.mechanics.probe import with_unit
 from wavesym.results.horizon import check_horizon
 from wavesym.results.optional import require_packages
 from wavesym.results.presentation import html_table, output_number
@@ -80,7 +81,7 @@ class Result:
     def columns(self) -> tuple[str, ...]:
         """The outputs with their units, as in the header of `wavesym run`."""
         pairs = zip(self.outputs, self.units, strict=True)
-        return tuple(f"{name} [{unit}]" if unit else name for name, unit in pairs)
+        return tuple(with_unit(name, unit) for name, unit in pairs)
 
     @property
     def time_label(self) -> str:

@@ -27,9 +27,11 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import with_unit
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
+from wavesym.results.presentation import csv_line
 from wavesym.results.stepping import jumps, just_before, sample_program
 
 Numbers = NDArray[np.float64]
@@ -64,10 +66,10 @@ class Spectra:
 
     def csv(self) -> list[str]:
         """Lines of CSV: one for each period, in the header each output with its unit."""
-        names = [f"{name} [{unit}]" if unit else name for name, unit in zip(self.names, self.units, strict=True)]
-        header = ",".join(["period" if self.time_unit is None else f"period [{self.time_unit}]", *names]) + "\n"
+        names = map(with_unit, self.names, self.units)
+        header = csv_line([with_unit("period", self.time_unit or ""), *names])
         rows = np.vstack([self.periods, self.values]).T.tolist()
-        return [header, *(",".join(map(repr, row)) + "\n" for row in rows)]
+        return [header, *map(csv_line, rows)]
 
 
 def spectra(model: Model, damping: float) -> Spectra:

@@ -57,8 +57,7 @@ def output_rows(plan: SweepPlan, model: Model) -> list[int]:
     place = {pair: k for k, pair in enumerate(zip(plan.outputs, plan.units, strict=True))}
     for probe in model.probes:
         if (probe.name, probe.unit) not in place:
-            label = f"{probe.name} [{probe.unit}]" if probe.unit else probe.name
-            raise SceneError(f"{label} is not an output of the other cases; write the same outputs", "output")
+            raise SceneError(f"{probe.heading} is not an output of the other cases; write the same outputs", "output")
     return [place[probe.name, probe.unit] for probe in model.probes]
 
 

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from wavesym.methods.problem import Array
+from wavesym.results.presentation import align_columns
 from wavesym.verification.reference import ReferenceOutputs
 
 FINE = 1e-6
@@ -240,11 +241,4 @@ def table(rows: Sequence[Row], names: Sequence[str]) -> list[str]:
     columns = [column for column in dict.fromkeys(column for row in rows for column in row) if column != "verdict"]
     columns.append("verdict")  # last, where a row has fewer columns too
     grid = [columns, *([row.get(column, "-") for column in columns] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*grid, strict=True)]
-    return [
-        "  ".join(
-            cell.ljust(width) if column in names else cell.rjust(width)
-            for cell, width, column in zip(line, widths, columns, strict=True)
-        ).rstrip()
-        for line in grid
-    ]
+    return align_columns(grid, [number for number, column in enumerate(columns) if column in names])

@@ -7,6 +7,7 @@ from itertools import islice
 from textwrap import wrap
 
 from wavesym.documents.inspection.section import Display, Facts, Listing, Plain, Section
+from wavesym.results.presentation import align_columns
 
 MOST_ROWS = 20
 MOST_ITEMS = 8  # of a list within a line
@@ -34,12 +35,14 @@ def _rows(section: Listing) -> Iterator[str]:
     rows = [_shown_row(row) for row in islice(section.rows, MOST_ROWS)]
     columns = [name for name in (rows[0] if rows else ()) if name not in (*section.sentences, *section.hidden)]
     indent = " " * (6 if columns else 2)
-    widths = {name: max(len(name), *(len(row[name]) for row in rows)) for name in columns}
+    heads = [{name: name for name in columns}]
+    cells = [[row[name] for name in columns] for row in (*heads, *rows)]
+    head, *lines = align_columns(cells, left=range(len(columns)))
     if len(columns) > 1:
-        yield _line({name: name for name in columns}, widths)
-    for row in rows:
+        yield f"  {head}"
+    for row, line in zip(rows, lines, strict=True):
         if columns:
-            yield _line(row, widths)
+            yield f"  {line}"
         for name in section.sentences:
             for part in row.get(name, "").splitlines():
                 yield from wrap(part, _WIDTH, initial_indent=indent, subsequent_indent=f"{indent}  ")
@@ -51,10 +54,6 @@ def _rows(section: Listing) -> Iterator[str]:
 
 def _shown_row(row: Mapping[str, Plain | Display]) -> dict[str, str]:
     return {name: value_text(value) for name, value in row.items()}
-
-
-def _line(row: Mapping[str, str], widths: Mapping[str, int]) -> str:
-    return "  " + "  ".join(f"{row[name]:{width}}" for name, width in widths.items()).rstrip()
 
 
 def value_text(value: Plain | Display) -> str:

@@ -29,6 +29,7 @@ from wavesym.papers.pages.mathml import mathml
 from wavesym.papers.record import VERDICTS, Record
 from wavesym.papers.tree import latex
 from wavesym.rendering import render
+from wavesym.results.presentation import align_columns
 
 WIDTH = 120
 
@@ -132,10 +133,7 @@ def _text_table(table: Table) -> str:
     if sum(widths) > WIDTH // 2:
         lines = (": ".join(filter(None, row)) for row in rows[1:])
         return "\n".join(fill(line, WIDTH, initial_indent="    ", subsequent_indent=" " * 8) for line in lines)
-    padded = (
-        "  ".join([*(f"{cell:{width}}" for cell, width in zip(row, widths, strict=False)), row[-1]]) for row in rows
-    )
-    return "\n".join(line.rstrip() for line in padded)
+    return "\n".join(align_columns(rows, left=range(len(rows[0]))))
 
 
 # JSON

@@ -18,6 +18,7 @@ from wavesym.pictures.page.page_tables import PageTable
 from wavesym.pictures.timescale import Timescale
 from wavesym.pictures.units import unit_text
 from wavesym.results.modes import modes
+from wavesym.results.presentation import number_text
 from wavesym.results.summary import OutputSummary, Summary, summarise
 from wavesym.scene import Scene
 from wavesym.scene.lowering import probes
@@ -180,4 +181,4 @@ def _value(value: float, unit: str) -> str:
     if unit == "N":
         power, prefix = next((each for each in ((6, "M"), (3, "k")) if abs(value) >= 10.0 ** each[0]), (0, ""))
         value, unit = value / 10.0**power, prefix + unit
-    return f"{abs(value):.4g} {unit_text(unit)}".rstrip()
+    return number_text(abs(value), unit_text(unit), 4)

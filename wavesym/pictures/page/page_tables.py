@@ -59,8 +59,8 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
 def _drift(found: OutputSummary | None, scale: Timescale) -> str:
     if found is None:
         return ""
-    value = f"{number_text(found.largest.value)} {found.unit}".rstrip()
-    when = f"{scale.symbol} = {number_text(found.largest.at.in_scene_time)} {scale.unit}".rstrip()
+    value = number_text(found.largest.value, found.unit)
+    when = f"{scale.symbol} = {number_text(found.largest.at.in_scene_time, scale.unit)}"
     return f"Largest drift of a rod: {found.label}, {value} at {when}"
 
 

@@ -13,6 +13,7 @@ from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePict
 from wavesym.pictures.page.png import colour_image
 from wavesym.pictures.page.svg import Svg, polyline, text, upright
 from wavesym.pictures.reduction import reduce_vertices
+from wavesym.results.presentation import number_text
 from wavesym.sweeps.results import StoredAxis, SweepResults
 
 _TALL, _MAP = 230.0, 360.0  # pixels high
@@ -88,7 +89,7 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
     worst = int(np.nanargmax(output.size.ravel()))
     value = float(greatest[worst] if greatest[worst] >= -least[worst] else least[worst])
     title = f"{output.name} over {axis.name}"
-    description = f"Largest: {_value_text(value, output.unit)} where {_case_label(axis, worst)}."
+    description = f"Largest: {number_text(value, output.unit, 5)} where {_case_label(axis, worst)}."
     parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).draw()]
     for values, class_, sign in ((least, "least", -1.0), (greatest, "greatest", 1.0)):
         points = np.column_stack([along[done] - x.low, values[done]])
@@ -118,7 +119,7 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     name = f"size of {output.title}" + f", the greatest over {' and '.join(beyond)}" * bool(beyond)
     bar = colour_bar(name, (f"{low:.4g}", f"{high:.4g}"), TOP + _MAP + BELOW, signed=False)
     title = f"{output.name} over {across.name} and {upward.name}"
-    ends = f"from {_value_text(low, output.unit)} to {_value_text(high, output.unit)}"
+    ends = f"from {number_text(low, output.unit, 5)} to {number_text(high, output.unit, 5)}"
     description = f"Colours show the size, {ends}, the largest where {where}."
     marks = _labelled_spot(
         x.pixel(float(worst[0] + 1)), y.pixel(float(worst[1] + 1)), where, above=y.pixel(worst[1] + 1.0) > TOP + 30
@@ -154,10 +155,6 @@ def _axis_title(axis: StoredAxis) -> str:
 
 def _case_label(axis: StoredAxis, k: int) -> str:
     return ", ".join(f"{column.path} = {column.format(k)}" for column in axis.columns)
-
-
-def _value_text(value: float, unit: str) -> str:
-    return f"{value:.5g} {unit}".rstrip()
 
 
 def _labelled_spot(x: float, y: float, words: str, *, above: bool) -> list[Svg]:
