@@ -28,7 +28,7 @@ from wavesym.exact.joints.fronts import departures
 from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import End
+from wavesym.mechanics.network import Bar, End
 
 _PRIME = 2**127 - 1
 _MODULUS = _PRIME**2
@@ -109,12 +109,14 @@ class _Fronts:
         for k, probe in enumerate(self._model.probes):
             highest = _highest(self._model.sums[probe])
             for weight, reading in self._model.sums[probe]:
-                if (point := reading.point) is None:
+                if reading.rod:
                     for end, way, weighted in self._end_contributions(weight, reading, highest):
                         bar = network.bars[end.bar]
                         ends[end].append((k, way * bar.delay, weighted))
                         # what a bar holds is there until something is sent into it
-                        gain(k, fmpq(0), weighted * _modular(bar.initial_wave(end.side)))
+                        gain(k, fmpq(0), weighted * _held_wave(bar, end.side, (1 - way) * bar.delay, self._t))
+                elif (point := reading.point) is None:
+                    gain(k, fmpq(0), _modular(weight))  # a constant
                 elif reading.quantity == "load":
                     for time, value in self._joints[network.joint_of[point]].acts(point):
                         if time <= self._until:
@@ -204,7 +206,7 @@ class _Answer:
         loads = self._loads.get(time, {})
         if begins := time == 0:
             came = {
-                each.end: _modular(network.bars[each.end.bar].initial_wave(1 - each.end.side)) for each in self._ends
+                each.end: _held_wave(network.bars[each.end.bar], 1 - each.end.side, fmpq(0), t) for each in self._ends
             }
         push = {k: _modular(rule.load) * loads.get(k, 0) for k in range(len(law.mass))}
         for each in self._ends:
@@ -228,7 +230,8 @@ class _Answer:
         sent = {}
         for end, k, ratio, _ in self._ends:
             value = _modular(ratio) * q[k] - came.get(end, 0)
-            sent[end] = (value - (_modular(network.bars[end.bar].initial_wave(end.side)) if begins else 0)) % _MODULUS
+            bar = network.bars[end.bar]
+            sent[end] = (value - (_held_wave(bar, end.side, bar.delay, t) if begins else 0)) % _MODULUS
         return sent, {point: q[k] for point, k in self._place.items()}
 
 
@@ -238,6 +241,11 @@ def _inverse(rows: list[list[int]]) -> fmpz_mod_mat:
     product = (fmpz_mod_mat(rows, _RING) * known).tolist()
     left = [[2 * (a == b) - int(c) for b, c in enumerate(row)] for a, row in enumerate(product)]
     return known * fmpz_mod_mat(left, _RING)
+
+
+def _held_wave(bar: Bar, side: int, since: fmpq, t: int) -> int:
+    """What a bar holds at tau = 0 and was sent from an end so long after the first of it, as if that went on."""
+    return (_modular(bar.initial_wave(side, since)) + t * _modular(bar.initial_slope)) % _MODULUS
 
 
 def _modular(value: fmpq) -> int:

@@ -134,6 +134,8 @@ class Breakpoints:
         if reading.quantity == "load":
             sources = {unit.source for unit in self._network.points[reading.point or 0].loads}
             return _in_order(fmpq(0), [load.time for load in self._acting if load.source in sources])
+        if reading.quantity == "constant":
+            return [fmpq(0)]
         if reading.point is not None:
             times = self.joints[self._network.joint_of[reading.point]]
             return _in_order(fmpq(0), [time for time in times if time <= self._until])

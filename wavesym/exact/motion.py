@@ -249,18 +249,22 @@ def _segments(
     """An output on each of these stretches, which come in order; where it `begins` it is 0."""
     terms = model.sums[probe]
     plain, summed = (
-        [each for each in terms if (each.reading.order < 0) == below and each.reading.quantity != "load"]
-        for below in (False, True)
+        [each for each in terms if (each.reading.order < 0) == below and each.reading.moves] for below in (False, True)
     )
     loads = [
         (weight, LoadPolynomial(model.network, reading.point, model.loads))
         for weight, reading in terms
         if reading.quantity == "load" and reading.point is not None
     ]
+    constant = [
+        (weight, Enclosure.from_polynomial(fmpq_poly([1])))
+        for weight, each in terms
+        if not each.rod and each.point is None
+    ]
     displacement = arb(0)
     for start, end in stretches:
         acts = [(weight, Enclosure.from_polynomial(load.polynomial_from(start))) for weight, load in loads]
-        polynomial = _ball_polynomial(_sum([*_values(waves, plain, start), *acts]))
+        polynomial = _ball_polynomial(_sum([*_values(waves, plain, start), *acts, *constant]))
         if summed:
             integral = _ball_polynomial(_sum(_values(waves, summed, start))).integral() + displacement
             displacement = integral(arb(end - start))

@@ -31,7 +31,7 @@ class Gauge:
 
     Or that of a `point`.
     The right-going wave has come so far from that end, the left-going one 1 - place from the other. A "load" is what
-    acts on a point. `rod` is 0 where a point is read.
+    acts on a point, a "constant" is 1. `rod` is 0 where a point is read, or nothing.
     """
 
     quantity: str
@@ -48,6 +48,11 @@ class Gauge:
     def weights(self) -> tuple[int, int]:
         """What the right-going and the left-going wave, each as a velocity, count in dU/dx or dU/dtau."""
         return (-1, 1) if self.quantity == "strain" else (1, 1)
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is read from what moves."""
+        return self.quantity not in ("load", "constant")
 
     @property
     def order(self) -> int:
@@ -76,6 +81,12 @@ def readings(network: Network, probe: Probe) -> Sum:
 
 def _parts(network: Network, probe: Probe) -> Iterator[ReadingTerm]:
     here = Gauge(probe.quantity, probe.rod, probe.place, probe.point)
+    if probe.quantity in ("strain", "force"):
+        bar = network.bars[probe.rod - 1]
+        stiffness = bar.impedance * bar.speed if probe.quantity == "force" else _ONE
+        yield ReadingTerm(stiffness, Gauge("strain", probe.rod, probe.place))
+        yield ReadingTerm(stiffness * bar.weight_strain(probe.place), Gauge("constant", 0, _ZERO))
+        return
     match probe.quantity:
         case "acceleration":
             point, ratio = probe.point, _ONE
@@ -86,9 +97,6 @@ def _parts(network: Network, probe: Probe) -> Iterator[ReadingTerm]:
                 yield from _times(ratio / network.points[point].mass, _forces_on(network, point))
             else:
                 yield ReadingTerm(_ONE, here)
-        case "force":
-            bar = network.bars[probe.rod - 1]
-            yield ReadingTerm(bar.impedance * bar.speed, Gauge("strain", probe.rod, probe.place))
         case "drift":
             yield ReadingTerm(_ONE, Gauge("displacement", probe.rod, _ONE))
             yield ReadingTerm(-_ONE, Gauge("displacement", probe.rod, _ZERO))

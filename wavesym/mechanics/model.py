@@ -96,7 +96,7 @@ class Model:
     @cached_property
     def gauges(self) -> tuple[Gauge, ...]:
         """All that outputs are sums of, but loads; of one that is 0 whatever moves, where it would be."""
-        found = {reading: None for terms in self.sums.values() for _, reading in terms if reading.quantity != "load"}
+        found = {reading: None for terms in self.sums.values() for _, reading in terms if reading.moves}
         for probe, terms in self.sums.items():
             if not terms:
                 found[Gauge("velocity", probe.rod, probe.place, probe.point)] = None

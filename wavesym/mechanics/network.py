@@ -20,6 +20,8 @@ from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Node, UnitLoad
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
+DEAD = ":dead"
+"""How the kinds of unit loads end that never change (dead_loads.py)."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,9 @@ class Point:
 class Bar:
     """An elastic rod from one point to another, with its state at tau = 0. Its delay is length / speed.
 
-    With a `loss` its modulus is 1 + i loss times as large under harmonic motions, and it has no others.
+    With a `loss` its modulus is 1 + i loss times as large under harmonic motions, and it has no others. Of one with
+    weight (`gravity` acts along it) the waves are what moves it besides that (dead_loads.py); its strain at tau = 0
+    is that in its middle, and grows by `gradient` along it.
     """
 
     left: int
@@ -66,15 +70,30 @@ class Bar:
     strain: fmpq = _ZERO
     name: str = ""
     loss: fmpq = _ZERO
+    gravity: fmpq = _ZERO
+    gradient: fmpq = _ZERO
 
     @cached_property
     def delay(self) -> fmpq:
         """How long a wave takes from end to end."""
         return self.length / self.speed
 
-    def initial_wave(self, side: int) -> fmpq:
-        """The wave that it holds at tau = 0 and that was sent from its left (0) or right (1) end."""
-        return (self.velocity + (-self.speed if side == 0 else self.speed) * self.strain) / 2
+    def initial_wave(self, side: int, since: fmpq | None = None) -> fmpq:
+        """The wave that it holds at tau = 0 and that was sent from its left (0) or right (1) end.
+
+        It is that in the middle, or `since` the first of it was sent, its delay before tau = 0.
+        """
+        middle = (self.velocity + (-self.speed if side == 0 else self.speed) * self.strain) / 2
+        return middle if since is None else middle + self.initial_slope * (since - self.delay / 2)
+
+    @property
+    def initial_slope(self) -> fmpq:
+        """How fast either of these waves grows, as they come to an end."""
+        return (self.speed**2 * self.gradient + self.gravity) / 2
+
+    def weight_strain(self, place: fmpq) -> fmpq:
+        """The strain that it has besides that of its waves, at a part of its length."""
+        return self.gravity * self.length * (1 - 2 * place) / (2 * self.speed**2)
 
 
 @dataclass(frozen=True)
@@ -85,7 +104,7 @@ class Link:
     Where it has `friction` R it has neither, too: its sides stick while it takes no more than R to hold them, else it
     takes R against their sliding (Coulomb). With a `side` its spring only pulls (1) or only pushes (-1), where it is
     longer, or shorter, than at tau = 0 by more than `gap`. With `limits` its spring yields: the largest pull and push.
-    `place` is what a scene calls it.
+    `preload` is what a spring pulls at tau = 0, where no gap says it. `place` is what a scene calls it.
     """
 
     left: int
@@ -99,6 +118,7 @@ class Link:
     friction: fmpq = _ZERO
     side: int = 0
     limits: tuple[fmpq, fmpq] | None = None
+    preload: fmpq = _ZERO
 
     @property
     def has_corner(self) -> bool:
@@ -190,6 +210,15 @@ class Network:
                 "(take pieces or `run`)"
             )
 
+    def refuse_dead_loads(self) -> None:
+        """UnservedError where something has weight, or a preload: for what knows the loads of a scene alone."""
+        if any(bar.gravity != 0 for bar in self.bars) or any(
+            unit.kind.endswith(DEAD) for point in self.points for unit in point.loads
+        ):
+            raise UnservedError(
+                "system: gravity and preloads are supported by pieces and `run` only (take one of them)"
+            )
+
     def refuse_loss(self) -> None:
         """UnservedError where a rod has a loss: for all but frequency responses."""
         if any(bar.loss != 0 for bar in self.bars):
@@ -277,8 +306,8 @@ class Network:
         pulls = {point: -self.points[point].damping * velocities[point] for point in joint.points}
         for end, point in joint.ends:
             bar = self.bars[end.bar]
-            ratio, arriving = bar.ratios[end.side], bar.initial_wave(1 - end.side)
-            if ratio * velocities[point] - arriving != bar.initial_wave(end.side):
+            ratio, arriving = bar.ratios[end.side], bar.initial_wave(1 - end.side, fmpq(0))
+            if bar.initial_slope != 0 or ratio * velocities[point] - arriving != bar.initial_wave(end.side, bar.delay):
                 return False
             pulls[point] += ratio * bar.impedance * (2 * arriving - ratio * velocities[point])
         for link in self.links:
@@ -286,7 +315,7 @@ class Network:
                 opening = velocities[link.right] - link.ratio * velocities[link.left]
                 if opening != 0 and (link.stiffness != 0 or link.friction != 0):
                     return False
-                if link.side != 0 and link.gap < 0:  # it is strained
+                if (link.side != 0 and link.gap < 0) or link.preload != 0:  # it is strained
                     return False
                 pull = link.damping * opening
                 pulls[link.left] += link.ratio * pull

@@ -57,6 +57,8 @@ def network_problem(model: Model, kind: type[Stated]) -> Stated:
         impedance=_numbers(bars, "impedance"),
         start_velocity=_numbers(bars, "velocity"),
         start_strain=_numbers(bars, "strain"),
+        start_slope=_numbers(bars, "initial_slope"),
+        gravity=_numbers(bars, "gravity"),
         gaps=np.array(gaps),
         parting=np.array(parting).reshape(-1, len(points)),
         events=events,
@@ -83,6 +85,7 @@ def problem_of(model: Model) -> Problem:
         raise UnservedError(
             f"system: {model.network.links[number].changes}, which other methods do not support; take pieces or `run`"
         )
+    model.network.refuse_dead_loads()
     return network_problem(model, Problem)
 
 

@@ -53,9 +53,10 @@ class Problem:
     `velocity` and `mass` have shape (points,), `damping` and `stiffness` (points, points). The velocity of a point
     whose motion is `prescribed` is its load, at tau = 0, too; displacements relative to the `ground` are those beyond
     that of this point. `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2);
-    `speed`, `impedance`, `start_velocity` and `start_strain` have shape (bars,). `modal` is how modes are damped
-    besides. The gaps of contacts are `gaps` + `parting` @ displacements, (contacts,); their pushes act on points by
-    `parting` transposed.
+    `speed`, `impedance`, `start_velocity`, `start_strain` (in the middle), `start_slope` (how fast the waves held at
+    first grow as they come to an end) and `gravity` (along each bar, whose waves do not have it) have shape (bars,).
+    `modal` is how modes are damped besides. The gaps of contacts are `gaps` + `parting` @ displacements, (contacts,);
+    their pushes act on points by `parting` transposed.
     """
 
     mass: Array
@@ -71,6 +72,8 @@ class Problem:
     impedance: Array
     start_velocity: Array
     start_strain: Array
+    start_slope: Array
+    gravity: Array
     gaps: Array
     parting: Array
     events: tuple[LoadEvent, ...]
@@ -96,9 +99,23 @@ class Problem:
 
     @cached_property
     def start_waves(self) -> Array:
-        """The waves in each bar at tau = 0 that were sent from its left and its right end: (bars, 2)."""
+        """The waves in the middle of each bar at tau = 0, from its left and its right end: (bars, 2)."""
         turned = self.speed * self.start_strain
         return np.stack([self.start_velocity - turned, self.start_velocity + turned], axis=1) / 2
+
+    def held_waves(self, bar: int, side: int, sent: Array) -> Array:
+        """What a bar holds at tau = 0 of the waves that were sent from an end at instants before."""
+        slope = self.start_slope[bar]
+        return np.asarray(self.start_waves[bar, side] + slope * (sent + self.delay[bar] / 2))
+
+    def strain_at(self, bar: int, place: float) -> float:
+        """What a bar, at a part of its length, has of the strain of its waves at tau = 0."""
+        growth = 2 * self.start_slope[bar] * self.delay[bar] / self.speed[bar]
+        return float(self.start_strain[bar] + growth * (place - 0.5))
+
+    def weight_strain(self, bar: int, place: float) -> float:
+        """The strain that a bar has besides that of its waves, at a part of its length."""
+        return float(self.gravity[bar] * self.delay[bar] / (2 * self.speed[bar]) * (1 - 2 * place))
 
     @cached_property
     def incidence(self) -> Array:
@@ -192,17 +209,21 @@ class Problem:
         return points, rods
 
     @cached_property
-    def _sums(self) -> tuple[dict[Gauge, Array], Array]:
-        """What outputs are the sums of: times readings, each with (outputs,) weights; and loads (outputs, points)."""
+    def _sums(self) -> tuple[dict[Gauge, Array], Array, Array]:
+        """What outputs are the sums of: times readings, each with (outputs,) weights; loads (outputs, points); and
+        what never changes, (outputs,)."""
         readings: dict[Gauge, Array] = {}
-        loads = np.zeros((len(self.probes), self.points))
+        loads, constants = np.zeros((len(self.probes), self.points)), np.zeros(len(self.probes))
         for output, probe in enumerate(self.probes):
             for weight, reading in output_terms(self, probe):
                 row = loads[:, reading.point] if reading.quantity == "load" else None
                 if row is None:
                     row = readings.setdefault(reading, np.zeros(len(self.probes)))
                 row[output] += nearest(probe.factor) * weight
-        return readings, loads
+                if probe.quantity in ("strain", "force"):
+                    more = self.weight_strain(probe.rod - 1, nearest(probe.place))
+                    constants[output] += nearest(probe.factor) * weight * more
+        return readings, loads, constants
 
     @property
     def readings(self) -> tuple[Gauge, ...]:
@@ -223,17 +244,19 @@ class Problem:
     @cached_property
     def reads_outputs(self) -> bool:
         """Whether outputs are the readings themselves."""
-        return not np.any(self.load_weights) and np.array_equal(self.weights, np.eye(len(self.probes)))
+        return not (np.any(self.load_weights) or np.any(self._sums[2])) and np.array_equal(
+            self.weights, np.eye(len(self.probes))
+        )
 
     def strain_at_start(self, reading: Gauge) -> float:
         """What a reading has of the strain at tau = 0."""
-        return float(self.start_strain[reading.rod - 1]) if reading.quantity == "strain" else 0.0
+        return self.strain_at(reading.rod - 1, nearest(reading.place)) if reading.quantity == "strain" else 0.0
 
     def outputs(self, values: Array, taus: Array) -> Array:
         """The outputs, (outputs, n), from the values (readings, n) of the readings at `taus` (n,)."""
         if self.reads_outputs:
             return values
-        total = self.weights @ values
+        total = self.weights @ values + self._sums[2][:, np.newaxis]
         if np.any(self.load_weights):
             total += self.load_weights @ self.loads(taus)
         return np.asarray(total)

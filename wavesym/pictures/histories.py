@@ -159,7 +159,7 @@ def _parts(model: Model, probe: Probe) -> set[fmpq]:
 
 def _places(model: Model, probe: Probe) -> set[fmpq]:
     """Where an output is read."""
-    return {reading.x for _, reading in model.sums[probe] if reading.quantity != "load"}
+    return {reading.x for _, reading in model.sums[probe] if reading.moves}
 
 
 def _formal(model: Model, probe: Probe, contacts: tuple[ContactEnd, ...]) -> float:

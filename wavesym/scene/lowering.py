@@ -16,6 +16,7 @@ from wavesym.fields.loads import Load, SampledLoad, TimedLoad
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
+from wavesym.mechanics.dead_loads import dead_loads
 from wavesym.mechanics.loads import AppliedLoad, AppliedRecord, merge_loads
 from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.network import Network
@@ -84,7 +85,7 @@ def _build_model(scene: Scene) -> Model:
     return Model(
         name=scene.name,
         network=network,
-        loads=_loads(scene),
+        loads=merge_loads((*dead_loads(network), *_loads(scene))),
         probes=probes(scene, scene.outputs),
         until=rational(output.until),
         tolerance=rational(output.tolerance),

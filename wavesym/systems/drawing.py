@@ -214,14 +214,15 @@ class _Pen:
     def _link(self, part: SpringLaw, left: int, right: int, ratio: Fraction) -> None:
         """A spring and a dashpot; with a gap on both sides two springs."""
         linear = Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio))
+        strained = replace(linear, preload=rational(part.preload))
         number = len(self.links)
         if part.yields is not None:
             pull, push = part.yields
-            self.links.append(replace(linear, limits=(rational(pull), rational(push))))
+            self.links.append(replace(strained, limits=(rational(pull), rational(push))))
         elif part.sides:
             self.links += [replace(linear, side=side, gap=rational(gap)) for side, gap in part.sides]
         else:
-            self.links.append(linear)
+            self.links.append(strained)
         if number in self.places:
             self.places |= dict.fromkeys(range(number, len(self.links)), self.places[number])
 

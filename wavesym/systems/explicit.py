@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar, Literal, cast
 
@@ -11,10 +12,13 @@ from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, model
 
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds
+from wavesym.fields.numbers import Exact
 from wavesym.fields.table import SceneTable, refusal, show
+from wavesym.mechanics.dead_loads import BalanceError, with_dead_loads
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import UnitLoad
+from wavesym.numbers.doubles import rational
 from wavesym.systems.chain_places import node, place
 from wavesym.systems.drawing import Drawing, draw_parts
 from wavesym.systems.node_loads import NODE_LOADS, OnNode
@@ -33,18 +37,31 @@ class ExplicitChain(SceneTable):
     parts: Parts = Field(description="a list of parts")
     branch: tuple[Branch, ...] = ()
     damping: ModalDamping = None
+    gravity: Exact = Field(Fraction(0), description="an acceleration along x")
+    initial: Literal["static"] | None = Field(None, description='"static": what is at rest is in balance at first')
 
     @model_validator(mode="after")
     def _check_network(self, info: ValidationInfo) -> ExplicitChain:
         # which is refused where it cannot be drawn; a scene with units says what its places are told in
-        network = self.drawing.network({}, info.context if isinstance(info.context, LengthUnit) else None)
+        self._check_branches()
+        try:
+            network = self.network((), info.context if isinstance(info.context, LengthUnit) else None)
+        except BalanceError as error:
+            raise refusal(str(error), "initial") from None
         if self.damping and (other := _damper(network)):
             raise refusal(f"stands beside {other}; write one of them", "damping")
         return self
 
+    def _check_branches(self) -> None:
+        """Weight acts along x, on what moves along it."""
+        key = "gravity" if self.gravity else "initial"
+        if (self.gravity or self.initial) and any(branch.ratio != 1 for branch in self.branch):
+            raise refusal("of a chain with a branch that does not move as fast as its node, not served", key)
+
     @model_serializer(mode="wrap")
     def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        return without_damping(handler(self))
+        found = without_damping(handler(self))
+        return {key: value for key, value in found.items() if key not in ("gravity", "initial") or getattr(self, key)}
 
     @cached_property
     def drawing(self) -> Drawing:
@@ -64,7 +81,9 @@ class ExplicitChain(SceneTable):
             for each in self.branch
         }
         damping = {"damping": self.damping.description} if self.damping else {}
-        return {"parts": describe_parts(self.parts), **branches, **damping}
+        dead = {"gravity": str(self.gravity)} if self.gravity else {}
+        static = {"initial": self.initial} if self.initial else {}
+        return {"parts": describe_parts(self.parts), **branches, **damping, **dead, **static}
 
     def locate(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
@@ -91,7 +110,12 @@ class ExplicitChain(SceneTable):
             for kind, coefficients in (("step", (fmpq(1),)), ("ramp", (fmpq(0), fmpq(1)))):
                 unit = UnitLoad(f"{_load_place(load)}:{kind}", None, coefficients)
                 units.setdefault(self._point(load), {})[unit.source] = unit
-        return self.drawing.network({point: tuple(each.values()) for point, each in units.items()}, length)
+        drawn = self.drawing.network({point: tuple(each.values()) for point, each in units.items()}, length)
+        return self.with_dead_loads(drawn)
+
+    def with_dead_loads(self, network: Network) -> Network:
+        """A network of its parts with their weight and the forces that springs have at tau = 0. BalanceError."""
+        return with_dead_loads(network, rational(self.gravity), static=self.initial is not None)
 
     def _point(self, load: Load) -> int:
         return node(self.drawing, _load_place(load))

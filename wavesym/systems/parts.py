@@ -113,22 +113,24 @@ class SpringLaw(SceneTable):
     yields: Annotated[Any, PlainValidator(_yield), PlainSerializer(_numbers)] = Field(
         None, alias="yield", description="the largest pull and push, or [pull, push]"
     )
+    preload: Exact = Field(Fraction(0), description="what the spring pulls at tau = 0; what it pushes is negative")
 
     @model_validator(mode="after")
     def _check_law(self) -> SpringLaw:
         keys = {"only": self.only, "gap": self.gap, "yield": self.yields}
-        written = [key for key, value in keys.items() if value is not None]
+        written = [key for key, value in keys.items() if value is not None] + ["preload"] * (self.preload != 0)
         if not written:
             return self
         if self.spring == 0:
             raise refusal("a law of a spring, and there is none; write spring = K too", written[0])
-        if self.dashpot != 0 and self.yields is None:
+        self._check_preload()
+        if self.dashpot != 0 and (self.only is not None or self.gap is not None):
             raise refusal(
                 f"with {written[0]} it would act only while the spring does, and its force would jump, which is not "
                 "served; leave it out, or write it at a node of its own",
                 "dashpot",
             )
-        if self.yields is not None and len(written) > 1:
+        if self.yields is not None and (self.only is not None or self.gap is not None):
             raise refusal(f"not together with {written[0]}; leave one of them out", "yield")
         if self.gap is not None and self.only is None and not isinstance(self.gap, tuple):
             raise refusal('of one side alone; write only = "push" or "pull" too, or gap = [A, B]', "gap")
@@ -136,17 +138,31 @@ class SpringLaw(SceneTable):
             raise refusal("two numbers are for both sides; write one, or leave out only", "gap")
         return self
 
+    def _check_preload(self) -> None:
+        """It must be a force that the spring can have, where no gap says it."""
+        if self.preload == 0:
+            return
+        if self.gap is not None:
+            raise refusal("the gap says whether it is strained at tau = 0; leave one of them out", "preload")
+        pull, push = self.yields or (abs(self.preload),) * 2
+        if self.only is not None:
+            pull, push = (pull, Fraction(0)) if self.only == "pull" else (Fraction(0), push)
+        if not -push <= self.preload <= pull:
+            raise refusal(f"{self.preload} is beyond what the spring can pull, or push; write less of it", "preload")
+
     @property
     def has_law(self) -> bool:
-        """Whether it is not linear."""
-        return self.yields is not None or bool(self.sides)
+        """Whether it is more than linear, and strained at tau = 0 as its points are displaced."""
+        return self.yields is not None or bool(self.sides) or self.preload != 0
 
     @property
     def sides(self) -> tuple[tuple[int, Fraction], ...]:
         """The sides on which it acts, 1 where it pulls and -1 where it pushes, each with its gap, unless linear."""
         if isinstance(self.gap, tuple):
             return (-1, -self.gap[0]), (1, self.gap[1])
-        return () if self.only is None else ((1 if self.only == "pull" else -1, self.gap or Fraction(0)),)
+        if self.only is None:
+            return ()
+        return ((1 if self.only == "pull" else -1, self.gap or -abs(self.preload / self.spring)),)
 
 
 class RodPart(ChainPart, SpringLaw):

@@ -159,19 +159,23 @@ class Motion:
         near = (np.abs(times - beside[panel]) < close) | (np.abs(beside[panel + 1] - times) < close)
         for k in np.flatnonzero(near).tolist():
             panel[k] = bisect_right(self.starts, Fraction(taus[k]) - late) - 1
-        before = self.problem.start_waves[number, side] if number < len(self.problem.delays) else 0.0
+        bars = len(self.problem.delays)
+        slope = self.problem.start_slope[number] if number < bars else 0.0
+        before: Array = self.problem.held_waves(number, side, times) if number < bars else np.zeros(len(times))
         x = np.clip(2 * (times - self._starts[panel]) / self._widths[panel] - 1, -1, 1)
         series = self._coefficients[panel, side, number]
         if order > 0:
             steeper = 2 * legendre.legder(series, axis=1) / self._widths[panel, np.newaxis]
-            return np.where(panel < 0, 0.0, np.sum(legendre.legvander(x, self.points - 2) * steeper, axis=1))
+            return np.where(panel < 0, slope, np.sum(legendre.legvander(x, self.points - 2) * steeper, axis=1))
         if order == 0:
             return np.where(panel < 0, before, np.sum(legendre.legvander(x, self.points - 1) * series, axis=1))
         since = legendre.legvander(x, self.points)
         orders = np.arange(1, self.points)
         terms = np.column_stack([x + 1, (since[:, 2:] - since[:, : self.points - 1]) / (2 * orders + 1)])
         moved = self._sums[panel, side, number] + self._widths[panel] / 2 * np.sum(terms * series, axis=1)
-        return np.asarray(np.where(panel < 0, before * times, moved) + before * float(late))
+        sent = np.minimum(times, 0.0) + float(late)  # of this length what was held has come
+        middle: Array = self.problem.held_waves(number, side, sent / 2 - float(late)) if number < bars else before
+        return np.asarray(np.where(panel < 0, 0.0, moved) + sent * middle)
 
 
 def integrate(problem: CornerProblem, until: float, points: int, most: int = 100_000) -> Motion:
@@ -273,7 +277,7 @@ class _Integration:
         sent = now - self._problem.delays[bar]
         if (sent, width) in self._panels:
             return np.asarray(found.waves[self._panels[sent, width]][1 - side, bar])
-        values = np.full(len(times), self._problem.start_waves[bar, 1 - side])
+        values = self._problem.held_waves(bar, 1 - side, times - float(self._problem.delays[bar]))
         if sent + width > 0:
             times = times - float(self._problem.delays[bar])
             first = max(bisect_right(found.starts, sent) - 1, 0)

@@ -24,6 +24,7 @@ from flint import fmpq
 from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load, TimedLoad
 from wavesym.fields.shapes import ShapedLoad
+from wavesym.mechanics.dead_loads import dead_loads
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
@@ -152,11 +153,15 @@ def independent_model(scene: Scene, model: Model) -> Model:
             for kind, value in zip(kinds, values, strict=True)
         ]
     points = (replace(point, loads=tuple(units.get(k, ()))) for k, point in enumerate(sketch.points))
+    network = Network(tuple(points), tuple(sketch.bars), tuple(sketch.links))
+    if isinstance(scene.system, ExplicitChain):
+        network = scene.system.with_dead_loads(network)
+        loads += dead_loads(network)
     places = (at for quantity in QUANTITIES for at in getattr(scene.output, quantity))
     return replace(
         model,
         preset=None,
-        network=Network(tuple(points), tuple(sketch.bars), tuple(sketch.links)),
+        network=network,
         loads=tuple(sorted(loads, key=lambda load: load.time)),
         probes=tuple(sketch.probe(probe, at) for probe, at in zip(model.probes, places, strict=True)),
     )
@@ -288,11 +293,12 @@ def _span(part: RodPart | LinkPart | ContactPart) -> Span:
 def _springs(part: SpringLaw, dashpot: Fraction) -> tuple[Link, ...]:
     """A spring and a dashpot beside it; two springs that act on one side each."""
     linear = Link(0, 0, rational(part.spring), rational(dashpot))
+    strained = replace(linear, preload=rational(part.preload))
     if part.yields is not None:
         pull, push = map(rational, part.yields)
-        return (replace(linear, limits=(pull, push)),)
+        return (replace(strained, limits=(pull, push)),)
     sides = tuple(replace(linear, side=side, gap=rational(gap)) for side, gap in part.sides)
-    return sides or (linear,)
+    return sides or (strained,)
 
 
 def _point(part: Any, beside: Sequence[Any]) -> Node:

@@ -196,7 +196,7 @@ def _pulls(
     if law.friction:
         return BoundedValues(law.friction * np.sign(rates.value), np.zeros(1))
     longer = np.concatenate([row @ each.value for each in known])
-    pulls, pull, before = np.zeros(len(longer)), 0.0, 0.0
+    pulls, pull, before = np.zeros(len(longer)), law.preload, 0.0
     for k in order.tolist():
         if law.side:
             pull = law.limit(law.stiffness * (longer[k] - law.side * law.gap))
@@ -222,8 +222,11 @@ class _Books:
         size, ends = problem.points, len(problem.end_points)
         scales = np.concatenate([balancing.scales, balancing.scales, np.repeat(problem.speed, 2)])[:, np.newaxis]
 
+        weight = [problem.weight_strain(*divmod(end, 2)) for end in range(ends)]
+        offsets = np.concatenate([np.zeros(2 * size), weight])[:, np.newaxis]
+
         def state(times: Array) -> BoundedValues:
-            values = evaluate(times)
+            values = evaluate(times) - offsets
             rounded = float(UNIT_ROUNDOFF) * np.max(np.abs(values), axis=1)
             wrong = np.abs(scales) * (rounded if errors is None else np.array(errors))[:, np.newaxis]
             return BoundedValues(
@@ -258,7 +261,11 @@ class _Books:
             rows = self._coming[2 * bar : 2 * bar + 2]
             came = self._all.form(rows.T @ rows) if power == 2 else self._all.sums(np.sum(rows, axis=0))
             left = np.maximum(delay - self._struck, 0.0)  # of this length there is still what was there at the start
-            held = np.sum(problem.start_waves[bar] ** power)
+            # Simpson's rule, which is exact for squares of what is linear
+            waves = [
+                problem.held_waves(bar, side, -part * left) ** power for side in (0, 1) for part in (0.0, 0.5, 1.0)
+            ]
+            held = np.tile([1.0, 4.0, 1.0], 2) / 6 @ np.array(waves)
             part = came.integrals(inside) + left * held
             total += BoundedValues(weights[bar] * part.value, abs(weights[bar]) * part.error)
         return total
@@ -282,7 +289,7 @@ class _Books:
     def initial_energy(self) -> float:
         """The energy at tau = 0."""
         problem = self._problem
-        waves = np.sum(problem.start_waves**2, axis=1)
+        waves = np.sum(problem.start_waves**2, axis=1) + (problem.start_slope * self._delays) ** 2 / 6
         return float(problem.mass @ problem.velocity**2 / 2 + (problem.impedance * self._delays) @ waves)
 
     @property

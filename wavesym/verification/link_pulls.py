@@ -98,7 +98,7 @@ class LinkPulls:
 
     def _link(self, law: LinkLaw, inverse: Array) -> _Spring | _Friction:
         if not law.friction:
-            return _Spring(law, law.first)
+            return _Spring(law, law.first, law.preload)
         point = int(np.flatnonzero(law.row * self._problem.is_free)[0])
         inertia = float(inverse[point, point]) * 2 * float(self._problem.mass[point]) / self._h
         return _Friction(law, law.first, inertia)

@@ -195,6 +195,7 @@ class _Motion:
         times: Array = h * np.arange(steps + 1, dtype=np.float64)
         self._ends, self._middles = times, times[:-1] + h / 2
         self._lags = np.repeat(np.array([int(delay / grid.step) for delay in problem.delays], dtype=int), 2)
+        self._late, self._slopes = np.repeat(problem.delay, 2), np.repeat(problem.start_slope, 2)
         self._beyond = np.arange(2 * len(problem.delays)) ^ 1
         self._sent = np.zeros((steps, 2 * len(problem.delays)))
         self._v, self._u = np.zeros((steps, problem.points)), np.zeros((steps + 1, problem.points))
@@ -214,7 +215,7 @@ class _Motion:
         problem, h, u = self._problem, self._h, self._u[step]
         came = np.where(
             step < self._lags,
-            problem.start_waves.ravel()[self._beyond],
+            problem.start_waves.ravel()[self._beyond] + self._slopes * ((step + 0.5) * h - self._late / 2),
             self._sent[np.maximum(step - self._lags, 0), self._beyond],
         )
         acting = 2 * problem.mass / h * self._q - problem.stiffness @ u + self._loads[step]
@@ -250,12 +251,14 @@ class _Motion:
 
     def _wave(self, end: int, taus: Array, late: float, order: int) -> Array:
         """What was sent from an end so long ago, its derivative (`order` 1), or its integral from tau = 0 (-1)."""
-        since, start = taus - late, float(self._problem.start_waves.ravel()[end])
+        since, last = taus - late, np.minimum(taus, late)  # of the length `last` what was held has come
+        bar, side = divmod(end, 2)
         known = {-1: self._sums, 0: self._sent, 1: np.diff(self._sent, axis=0) / self._h}[order]
         found = np.interp(since, self._times(order), known[:, end])
         if order < 0:
-            return start * np.minimum(taus, late) + found
-        return np.where(since < 0, start if order == 0 else 0.0, found)
+            return np.asarray(last * self._problem.held_waves(bar, side, last / 2 - late) + found)
+        held = self._problem.held_waves(bar, side, since) if order == 0 else self._problem.start_slope[bar]
+        return np.where(since < 0, held, found)
 
     @cached_property
     def _sums(self) -> Array:

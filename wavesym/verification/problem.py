@@ -51,7 +51,8 @@ class LinkLaw:
 
     That is `row` @ displacements; it pulls on the points by `row` transposed. `corner` is its number among the links
     with corners. Friction takes `friction` either way. A spring has a `stiffness`; with a `side` it acts where it is
-    longer (1) or shorter (-1) by more than `gap`, else it yields at the largest `pull` and `push`.
+    longer (1) or shorter (-1) by more than `gap`, else it yields at the largest `pull` and `push`, and pulls with its
+    `preload` at first.
     """
 
     corner: int
@@ -62,14 +63,15 @@ class LinkLaw:
     gap: float
     pull: float
     push: float
+    preload: float
 
     @classmethod
     def from_network(cls, network: Network, corner: int) -> LinkLaw:
         """That of a link that is no contact."""
         link = network.links[network.corners[corner]]
         pull, push = map(nearest, link.limits or (fmpq(0), fmpq(0)))
-        friction, stiffness, gap = map(nearest, (link.friction, link.stiffness, link.gap))
-        return cls(corner, opening(network, link), friction, stiffness, link.side, gap, pull, push)
+        friction, stiffness, gap, preload = map(nearest, (link.friction, link.stiffness, link.gap, link.preload))
+        return cls(corner, opening(network, link), friction, stiffness, link.side, gap, pull, push, preload)
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -142,7 +144,12 @@ class CornerProblem(Problem):
         longest = float(max(self.delays, default=self.until))
         # what resists: rods, or without any what has mass over all of the time
         resisting = self.impedance if len(self.impedance) else self.mass[self.mass > 0] / longest
-        found = [*self.velocity, *self.start_velocity, *(self.speed * self.start_strain)]
+        found = [
+            *self.velocity,
+            *self.start_velocity,
+            *(self.speed * self.start_strain),
+            *(self.start_slope * self.delay),
+        ]
         for event in self.events:
             size = sum(abs(c) * longest**k for k, c in enumerate(event.coefficients))
             found.append(size / float(np.min(resisting)) if self.is_free[event.point] else size)

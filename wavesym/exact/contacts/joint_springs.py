@@ -28,7 +28,7 @@ class JointSprings:
             for n, link in enumerate(network.links)
             if link.is_spring_with_corner and link.left in place
         }
-        self._state = {n: SpringState.from_exact(fmpq(0)) for n in self.of_link}
+        self._state = {n: SpringState.from_exact(spring.start) for n, spring in self.of_link.items()}
 
     def __bool__(self) -> bool:
         return bool(self.of_link)

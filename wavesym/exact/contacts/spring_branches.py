@@ -100,8 +100,8 @@ class Yielding(_SpringCorner):
 
     @classmethod
     def begin(cls, link: int, spring: CornerSpring) -> Yielding:
-        """At the start it is unstrained."""
-        return cls(link, spring, arb(0), True)
+        """At the start it holds."""
+        return cls(link, spring, arb(spring.start), True)
 
     @property
     def may_close(self) -> bool:

@@ -40,7 +40,8 @@ class Strained(Protocol):
 class CornerSpring:
     """A spring with a corner between two points of a joint, told by their places in it; right moves `ratio` times left.
 
-    `rest` is how much longer it is than at tau = 0 where it has no force.
+    `rest` is how much longer it is than at tau = 0 where it has no force. One that yields is longer than without force
+    by `start` at first.
     """
 
     left: int
@@ -50,12 +51,14 @@ class CornerSpring:
     side: int
     gap: fmpq
     limits: tuple[fmpq, fmpq]
+    start: fmpq
 
     @classmethod
     def of(cls, link: Link, place: Mapping[int, int]) -> CornerSpring:
         """That of a link, where points have these places."""
         limits = link.limits or (fmpq(0), fmpq(0))
-        return cls(place[link.left], place[link.right], link.ratio, link.stiffness, link.side, link.gap, limits)
+        start = link.preload / link.stiffness
+        return cls(place[link.left], place[link.right], link.ratio, link.stiffness, link.side, link.gap, limits, start)
 
     @property
     def rest(self) -> fmpq:

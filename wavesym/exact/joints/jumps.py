@@ -122,10 +122,10 @@ class _Answer:
 
     def start(self) -> tuple[dict[int, fmpq], dict[End, fmpq]]:
         """The jumps at tau = 0, when all goes on that is held."""
-        network, points = self._network, self._network.points
+        network, points, bars = self._network, self._network.points, self._network.bars
         if network.at_rest(self._joint):
             return {}, {}
-        held = {end: network.bars[end.bar].initial_wave(1 - end.side) for end, *_ in self._ends}
+        held = {end: bars[end.bar].initial_wave(1 - end.side, _ZERO) for end, *_ in self._ends}
         kept = {
             point: points[point].velocity
             for point in self._joint.points
@@ -134,7 +134,11 @@ class _Answer:
         moved, sent = self.respond(held, kept)
         return (
             {point: q - points[point].velocity for point, q in moved.items()},
-            {end: wave - network.bars[end.bar].initial_wave(end.side) for end, wave in sent.items()},
+            {
+                end: wave - bar.initial_wave(end.side, bar.delay)
+                for end, wave in sent.items()
+                for bar in [bars[end.bar]]
+            },
         )
 
     def respond(self, waves: Mapping[End, fmpq], acts: Mapping[int, fmpq]) -> tuple[dict[int, fmpq], dict[End, fmpq]]:

@@ -72,9 +72,9 @@ class Waves:
         self.rates: dict[End, SentWave] = {}
         for number, bar in enumerate(network.bars):
             for side in (0, 1):
-                held = bar.initial_wave(side)
-                constant = Enclosure.from_polynomial(fmpq_poly([held])) if held != 0 else STILL
-                self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
+                held = fmpq_poly([bar.initial_wave(side, fmpq(0)), bar.initial_slope])
+                known = Enclosure.from_polynomial(held) if held.length() else STILL
+                self.sent[End(number, side)] = SentWave([-bar.delay], [known])
         shown = {network.point_at(end) for end in self.sent if network.bars[end.bar].ratios[end.side] == 1}
         self.velocities = {
             number: SentWave()

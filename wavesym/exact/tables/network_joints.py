@@ -32,6 +32,7 @@ class NetworkJoints:
 
     def __init__(self, network: Network) -> None:
         network.refuse_corners()
+        network.refuse_dead_loads()
         self.network = network
         self._responses: dict[int, JointResponse] = {}
 

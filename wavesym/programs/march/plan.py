@@ -195,6 +195,7 @@ def march_plan(
     """
     network = model.network
     network.refuse_corners()
+    network.refuse_dead_loads()
     model.refuse_damping()
     network.refuse_rodless("a march", "take pieces or modes")
     for probe, terms in model.sums.items():

@@ -131,6 +131,7 @@ class ModalModel(ABC, Generic[K]):
     def refuse(self) -> None:
         """UnservedError for what no modes serve, CostError for too much."""
         network = self.model.network
+        network.refuse_dead_loads()
         moving = any(bar.velocity != 0 or bar.strain != 0 for bar in network.bars)
         if moving or any(point.velocity != 0 for point in network.points):
             raise UnservedError(

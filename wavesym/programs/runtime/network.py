@@ -78,6 +78,7 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     """
     network, parameters = model.network, model.parameters
     network.refuse_corners()
+    network.refuse_dead_loads()
     for name in OF_MODES.keys() & names:
         raise UnservedError(
             f"--runtime: {name} {OF_MODES[name]}, which no march supports (modes do, in Python: "

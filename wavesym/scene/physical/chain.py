@@ -67,6 +67,8 @@ class PhysicalChain(SceneTable):
     parts: Any = Field(description="a list of parts")
     branch: tuple[PhysicalBranch, ...] = ()
     damping: Any = None
+    gravity: Any = Field(None, description="an acceleration along x")
+    initial: Any = Field(None, description='"static": what is at rest is in balance at first')
 
     def without_units(self, kind: Kind) -> DimensionlessSystem:
         """As a chain without units. Raises the error of `table.refusal`."""
@@ -90,6 +92,13 @@ class PhysicalChain(SceneTable):
             ]
         if self.damping is not None:
             table["damping"] = self.damping
+        if self.initial is not None:
+            table["initial"] = self.initial
+        if self.gravity is not None:
+            with key_context("gravity"):
+                if kind != "longitudinal":
+                    raise refusal("acts along x, and such rods do not move along it; leave it out")
+                table["gravity"] = read_quantity(self.gravity, "acceleration") / pen.acceleration
         return DimensionlessSystem(
             kind=kind,
             rods=rods,
@@ -124,7 +133,13 @@ def _part(value: object, kind: Kind) -> object:
     return keys.model_validate(value)
 
 
-_MEASURES = {"contact": "displacement", "friction": "force", "gap": "displacement", "yield": "force"}
+_MEASURES = {
+    "contact": "displacement",
+    "friction": "force",
+    "gap": "displacement",
+    "yield": "force",
+    "preload": "force",
+}
 _WRITTEN = {"yields": "yield"}  # fields whose keys are words of Python
 
 
@@ -152,7 +167,9 @@ class _Pen:
             "friction": self.force,
             "gap": self.displacement,
             "yield": self.force,
+            "preload": self.force,
         }
+        self.acceleration = self.displacement / seconds**2
 
     def line(self, name: str, parts: list[_Read]) -> list[object]:
         """The parts of a line."""
@@ -198,7 +215,7 @@ class _Pen:
             if key not in self._units:
                 table[key] = value
                 continue
-            least = None if key == "velocity" else 1 if key == "mass" else 0
+            least = None if key in ("velocity", "preload") else 1 if key == "mass" else 0
             dimension, unit = self.names[_MEASURES.get(key, key)], self._units[key]
             with key_context(key):
                 if key in ("gap", "yield") and isinstance(value, list):

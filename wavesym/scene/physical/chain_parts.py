@@ -28,6 +28,7 @@ class SpringKeys(SceneTable):
     only: Any = Field(None, description='"push" or "pull"')
     gap: Any = Field(None, description="how far it gets shorter or longer before it acts, or two such numbers")
     yields: Any = Field(None, alias="yield", description="the largest pull and push, or two such numbers")
+    preload: Any = Field(None, description="what the spring pulls at first")
 
 
 class RodKeys(SpringKeys):
