@@ -179,7 +179,7 @@ _NAMED_OTHERWISE = {
     "wavesym/papers/reader.py: below": "a rule of the grammar",
     "wavesym/targets/c/closed.py: closed": "the closed form",
 }
-_OTHER_ROOMS = ("wavesym/programs", "wavesym/exact/contacts", "wavesym/exact/modes")
+_OTHER_ROOMS = ("wavesym/programs", "wavesym/exact/contacts")
 """Rooms that are not yet named by the field's words."""
 
 

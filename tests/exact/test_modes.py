@@ -15,7 +15,7 @@ from wavesym.derivation.node_law import node_law
 from wavesym.errors import UnservedError
 from wavesym.exact.modes import equal_frequencies
 from wavesym.exact.modes import frequencies as found
-from wavesym.exact.modes.frequencies import Spectrum, frequencies, searched
+from wavesym.exact.modes.frequencies import Spectrum, bisect_frequencies, frequencies
 from wavesym.exact.modes.statics import Statics
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Bar, End, Network, Point
@@ -178,12 +178,12 @@ def test_a_frequency_that_was_missed_is_seen(monkeypatch):
     """Where the search in doubles gives one frequency twice, counting in balls finds the other."""
 
     def wrong(stiffness, count):
-        made = searched(stiffness, count)
+        made = bisect_frequencies(stiffness, count)
         made[3] = made[4]
         return made
 
     expected = frequencies(NASTY["heavy"].network, 8)
-    monkeypatch.setattr(found, "searched", wrong)
+    monkeypatch.setattr(found, "bisect_frequencies", wrong)
     made = frequencies(NASTY["heavy"].network, 8)
     assert all(a.overlaps(b) for a, b in zip(made, expected, strict=True))
 
@@ -201,7 +201,7 @@ def gram(modes):
         moved = []
         for mode in modes:
             angle = float(mode.frequency) * float(bar.delay)
-            left, right = (float(mode.at(End(number, side))) for side in (0, 1))
+            left, right = (float(mode.displacement(End(number, side))) for side in (0, 1))
             shape = (
                 left + 0 * s
                 if angle == 0
@@ -229,8 +229,10 @@ def test_sums_over_all_modes_are_known(name):
         for point in statics.stiffness.points:
             shape = statics.loaded_shape({point: fmpq(1)})
             for end in (End(0, 0), End(len(network.bars) - 1, 1)):
-                total = sum((m.points[point] * m.at(end) / (m.frequency * m.frequency) for m in strained), arb(0))
-                assert abs(total - shape.at(end)) < 2e-3
+                total = sum(
+                    (m.points[point] * m.displacement(end) / (m.frequency * m.frequency) for m in strained), arb(0)
+                )
+                assert abs(total - shape.displacement(end)) < 2e-3
         for end in (End(0, 0), End(0, 1), End(len(network.bars) - 1, 1)):
             total = sum((m.slope(end) * m.slope(end) / (m.frequency * m.frequency) ** 2 for m in strained), arb(0))
             assert 0 <= statics.break_mass(end) - total < 2e-2

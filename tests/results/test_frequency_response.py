@@ -158,13 +158,13 @@ def test_any_tree_answers_as_its_matrix(scene: Scene, w: float) -> None:
 @pytest.mark.parametrize("lost", ["resistance", "coupling"])
 def test_the_comparison_finds_what_is_missing(lost: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A bar that resists, or takes its far end along, a millionth too much."""
-    through, coupling = Amplitudes._through, Amplitudes._coupling
+    through, coupling = Amplitudes._branch_fraction, Amplitudes._coupling
 
     def broken(self: Amplitudes, branch):  # type: ignore[no-untyped-def]
         n, d = through(self, branch)
         return (n * (1 + 2**-16), d) if lost == "resistance" else (n, d)
 
-    monkeypatch.setattr(Amplitudes, "_through", broken)
+    monkeypatch.setattr(Amplitudes, "_branch_fraction", broken)
     if lost == "coupling":
         monkeypatch.setattr(Amplitudes, "_coupling", lambda self, branch: coupling(self, branch) * (1 + 2**-16))
     scene = Scene(

@@ -13,8 +13,8 @@ from flint import acb, arb, ctx
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
-from wavesym.exact.modes.dying import undamped
-from wavesym.exact.modes.frequencies import searched
+from wavesym.exact.modes.damped_modes import remove_dashpots
+from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
@@ -205,7 +205,7 @@ def equally_spaced(model: Model, low: float | None, high: float | None, points: 
     WavesymError for a band that is none. CostError for too many points.
     """
     if high is None:
-        high = float(f"{_last_shown(undamped(model.network)) / midpoint(angular(model, 1.0)):.3g}")
+        high = float(f"{_last_shown(remove_dashpots(model.network)) / midpoint(angular(model, 1.0)):.3g}")
     _refuse_many(points)
     if low is None:
         low = high / max(points, _STEPS)
@@ -218,8 +218,8 @@ def _last_shown(network: Network) -> float:
     """The frequency of the fifth mode, or of the last one, in doubles; 0 where that has no strain."""
     stiffness = Stiffness(network)
     count = _MODES_SHOWN if stiffness.modes is None else min(_MODES_SHOWN, stiffness.modes)
-    last = float(searched(stiffness, count)[-1]) if count else 0.0
-    return last if last > _RIGID * float(stiffness.above(np.array([count]))[0]) else 0.0
+    last = float(bisect_frequencies(stiffness, count)[-1]) if count else 0.0
+    return last if last > _RIGID * float(stiffness.upper_bounds(np.array([count]))[0]) else 0.0
 
 
 def _refuse_many(points: int) -> None:

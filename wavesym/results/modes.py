@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.modes.cuts import Cut
-from wavesym.exact.modes.dying import DampedSpectrum
+from wavesym.exact.modes.damped_modes import DampedSpectrum
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.mechanics.model import Model

@@ -88,7 +88,7 @@ def _in_bar(mode: Mode, pieces: Cut, number: int, part: NDArray[np.float64]) -> 
     moved = np.zeros(len(part), complex)
     for k, (low, high) in enumerate(pairwise(edges)):
         bar = pieces.firsts[number] + k
-        a, b = (complex(mode.at(End(bar, side))) for side in (0, 1))
+        a, b = (complex(mode.displacement(End(bar, side))) for side in (0, 1))
         angle = complex(mode.frequency) * nearest(pieces.network.bars[bar].delay)
         here = (part >= low) & (part <= high)
         t = (part[here] - low) / (high - low)

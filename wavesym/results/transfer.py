@@ -138,7 +138,7 @@ class Transfer:
         if len(self.load.drives) != 1 or self._rayleigh is not None:
             return None
         ((point, coefficients),) = self.load.drives
-        amplitudes = self._harmonic.driven(point, w, undivided=True)
+        amplitudes = self._harmonic.driven_amplitudes(point, w, undivided=True)
         motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
         made = []
         for probe in self.model.probes:
@@ -170,7 +170,7 @@ class Transfer:
         return [u + (each - u) * share_of_w for each, u in zip(moved, imposed, strict=True)]
 
     def _undamped_outputs(self, point: int, w: Quantity) -> list[Quantity]:
-        amplitudes = self._harmonic.driven(point, w)
+        amplitudes = self._harmonic.driven_amplitudes(point, w)
         return [output_amplitude(self.model.network, probe, amplitudes) for probe in self.model.probes]
 
     @cached_property

@@ -26,20 +26,20 @@ _APART = (11, 22, 44, 88, 176, 352)  # bits that other frequencies may share wit
 _BETWEEN = 100  # bits that a force is nearer to the cluster than others are
 
 
-def clustered(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> list[Mode] | None:
+def prove_cluster(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> list[Mode] | None:
     """The modes from the n-th on whose frequencies are w but for 2^-560 of it; None where that is not so.
 
     In the precision that is set, of twice as many bits and more.
     """
     ball = arb(w, (w * arb(2) ** -WIDE).upper())
-    below, above = stiffness.proved(law, ball.lower()), stiffness.proved(law, ball.upper())
+    below, above = stiffness.proved_count(law, ball.lower()), stiffness.proved_count(law, ball.upper())
     if below != n - 1 or above is None or above < n:
         return None
     if not all(csc.is_finite() for csc in circular(law, ball)[1]):
         return None  # a bar may vibrate between points at rest: they do not tell how
     for apart in _APART:
         aside = arb(2) ** -apart
-        if stiffness.proved(law, w * (1 - aside)) == below and stiffness.proved(law, w * (1 + aside)) == above:
+        if [stiffness.proved_count(law, w * (1 + sign * aside)) for sign in (-1, 1)] == [below, above]:
             break
     else:
         return None
@@ -47,7 +47,7 @@ def clustered(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> list[Mo
     return [Mode(stiffness, ball, points) for points in shapes]
 
 
-def met(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> arb | None:
+def common_frequency(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> arb | None:
     """Where frequencies meet near w, by Newton's method; `root` is a row that moves much in one of their modes."""
     force = [arb(0)] * len(stiffness.points)
     force[root] = arb(1)
@@ -63,7 +63,7 @@ def met(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> arb | None
     return None
 
 
-def _yielded(stiffness: Stiffness, diagonal: list[arb], up: Sequence[arb]) -> list[arb]:
+def _compliances(stiffness: Stiffness, diagonal: list[arb], up: Sequence[arb]) -> list[arb]:
     """How far each row moves under a force on it alone."""
     pivots = stiffness.pivots(diagonal, up)
     made = list(pivots)
@@ -82,11 +82,11 @@ def _shapes(stiffness: Stiffness, law: HarmonicLaw, w: arb, aside: arb, count: i
     near = law.matrix(v, *circular(law, v))
     still = acb(0, w.mid())
     quiet = law.matrix(still, *circular(law, still))
-    calm = [g.real.upper().sqrt() for g in _yielded(stiffness, *quiet)]
+    calm = [g.real.upper().sqrt() for g in _compliances(stiffness, *quiet)]
     far = [((1 + side * aside) * w) ** 2 for side in (-1, 1)]
     others = max((abs(square) * (x + w * w) / abs(x - v * v)).upper() for x in far)
     others += (square.rad() / abs(square) * 2 * w * w).upper()  # what they differ
-    alone = _yielded(stiffness, list(near[0]), near[1])
+    alone = _compliances(stiffness, list(near[0]), near[1])
     left = [square * g + arb(0, (others * c * c).upper()) for g, c in zip(alone, calm, strict=True)]
     shapes: list[list[arb]] = []
     for _ in range(count):

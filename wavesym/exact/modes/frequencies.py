@@ -9,7 +9,7 @@ from flint import arb, ctx, fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
-from wavesym.exact.modes.equal_frequencies import WIDE, clustered, met
+from wavesym.exact.modes.equal_frequencies import WIDE, common_frequency, prove_cluster
 from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, Vector
 from wavesym.mechanics.network import Network
@@ -106,7 +106,7 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
         bits = times * (_BITS + _BITS_A_ROW * len(stiffness.points))
         with ctx.workprec(bits):
             laws.append((bits, stiffness.law(arb)))
-    guesses = searched(stiffness, count)
+    guesses = bisect_frequencies(stiffness, count)
     roots = stiffness.yielding(guesses * (1 - _OFF)).tolist()
     together = np.diff(guesses) < _TOGETHER * guesses[1:]
     n = known + 1
@@ -117,7 +117,7 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
         else:
             # one that may be several is not tried as one alone
             tried = laws[2:] if together[max(n - 2, 0) : n].any() else laws
-            found = (_proved(stiffness, law, n, float(guesses[n - 1]), roots[n - 1], bits) for bits, law in tried)
+            found = (_prove_modes(stiffness, law, n, float(guesses[n - 1]), roots[n - 1], bits) for bits, law in tried)
             made = next((modes for modes in found if modes), [])
         if not made:
             raise CoincidenceError(f"two frequencies meet near {guesses[n - 1]:.6g}")
@@ -125,10 +125,10 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
         n += len(made)
 
 
-def searched(stiffness: Stiffness, count: int) -> Vector:
+def bisect_frequencies(stiffness: Stiffness, count: int) -> Vector:
     """The first frequencies in doubles, by bisection of all at once."""
     n = np.arange(1, count + 1)
-    high = stiffness.above(n)
+    high = stiffness.upper_bounds(n)
     low = np.zeros_like(high)
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
@@ -137,14 +137,15 @@ def searched(stiffness: Stiffness, count: int) -> Vector:
     return np.asarray(high, np.float64)
 
 
-def _proved(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> list[Mode]:
+def _prove_modes(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> list[Mode]:
     """The n-th mode, in which row `root` moves much, and those that no bits tell from it; none where more bits may."""
     with ctx.workprec(bits):
         if bits > 2 * WIDE:
             for near in _nearer(stiffness, law, n, guess, root):
-                if (made := clustered(stiffness, law, n, near)) and all(map(_sharp, made)):
+                if (made := prove_cluster(stiffness, law, n, near)) and all(map(_sharp, made)):
                     return made
-        w = _polished(stiffness, law, n, guess, root, bits) or _bisected(stiffness, law, n, guess, bits // 3)
+        w = _refine_by_newton(stiffness, law, n, guess, root, bits)
+        w = w or _refine_by_counts(stiffness, law, n, guess, bits // 3)
         if w is None or not _is(stiffness, law, n, w):
             return []
         mode = Mode(stiffness, w, _normal(stiffness, trial(stiffness, law, w, root)))
@@ -153,9 +154,9 @@ def _proved(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: 
 
 def _nearer(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int) -> Iterator[arb]:
     """Where the n-th frequency and others may be that no bits tell from it."""
-    if (w := met(stiffness, law, arb(guess), root)) is not None:
+    if (w := common_frequency(stiffness, law, arb(guess), root)) is not None:
         yield w
-    if (found := _bisected(stiffness, law, n, guess, WIDE + 2)) is not None:
+    if (found := _refine_by_counts(stiffness, law, n, guess, WIDE + 2)) is not None:
         yield found.mid()
 
 
@@ -163,7 +164,7 @@ def _sharp(mode: Mode) -> bool:
     return all(q.rad() < _SHARP for q in mode.points)
 
 
-def _polished(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> arb | None:
+def _refine_by_newton(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> arb | None:
     """The n-th frequency by Newton's method, from one near it."""
     small = arb(2) ** (-bits // 3)
     near = small.sqrt()
@@ -181,25 +182,25 @@ def _polished(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root
 
 def _is(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> bool:
     """Whether the n-th frequency, and no other, is in a ball."""
-    return stiffness.proved(law, w.lower()) == n - 1 and stiffness.proved(law, w.upper()) == n
+    return stiffness.proved_count(law, w.lower()) == n - 1 and stiffness.proved_count(law, w.upper()) == n
 
 
-def _bisected(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, share: int) -> arb | None:
+def _refine_by_counts(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, share: int) -> arb | None:
     """The same to `share` bits by counting alone, where another frequency is too near for Newton's method."""
     low, high = arb(guess), arb(guess)
     reach = arb(2) ** -40
-    while (below := stiffness.proved(law, low)) is None or below >= n:
+    while (below := stiffness.proved_count(law, low)) is None or below >= n:
         low, reach = (low * (1 - reach)).mid(), 4 * reach
         if reach > 1:
             low = arb(0)
             break
     reach = arb(2) ** -40
-    while (below := stiffness.proved(law, high)) is None or below < n:
+    while (below := stiffness.proved_count(law, high)) is None or below < n:
         high, reach = (high * (1 + reach)).mid(), 4 * reach
     while high - low > arb(2) ** -share * high:
         # a little off the middle, which may be a frequency
         middle = ((low * 515 + high * 509) / 1024).mid()
-        count = stiffness.proved(law, middle)
+        count = stiffness.proved_count(law, middle)
         if count is None:
             return None
         low, high = (middle, high) if count < n else (low, middle)

@@ -76,7 +76,7 @@ class HarmonicNetwork:
         keys = ([int(n) for each in (bar.delay, bar.loss) for n in (each.p, each.q)] for bar in bars)
         return [first.setdefault(tuple(key), number) for number, key in enumerate(keys)]
 
-    def driven(self, root: int, w: Quantity, *, undivided: bool = False) -> Amplitudes:
+    def driven_amplitudes(self, root: int, w: Quantity, *, undivided: bool = False) -> Amplitudes:
         """The amplitudes under a unit force on a point, or, where its motion is prescribed, a unit displacement.
 
         Args:
@@ -166,8 +166,8 @@ class Amplitudes:
         self._beyond: dict[int, tuple[Quantity, Quantity]] = {}
         self._resistance: dict[int, tuple[Quantity, Quantity]] = {}
         for branch in reversed(self._branches):
-            self._beyond[branch.far] = self._summed(branch.far)
-            self._resistance[branch.far] = self._through(branch)
+            self._beyond[branch.far] = self._sum_subtree(branch.far)
+            self._resistance[branch.far] = self._branch_fraction(branch)
         self._moved: dict[int, Quantity] = {}
         self._scales: dict[int, tuple[Branch, Quantity]] = {}
         self.divisor: Quantity = arb(1)
@@ -183,7 +183,7 @@ class Amplitudes:
             return arb(0)
         branch, scale = self._scales[bar]
         a, b = self._at_far_end(branch)
-        near, far = self._turned_to(branch, place)
+        near, far = self._turns_to_ends(branch, place)
         moved = a * far.sine + b * self._medium(bar).impedance * far.cosine
         beside = self._parallel_resistance(branch)
         return scale * (moved if beside is None else moved + b * beside * (near.sine + far.sine))
@@ -194,7 +194,7 @@ class Amplitudes:
             return arb(0)
         branch, scale = self._scales[bar]
         a, b = self._at_far_end(branch)
-        near, far = self._turned_to(branch, place)
+        near, far = self._turns_to_ends(branch, place)
         medium = self._medium(bar)
         slope = a * far.cosine - b * medium.impedance * self._square * far.sine
         beside = self._parallel_resistance(branch)
@@ -212,7 +212,7 @@ class Amplitudes:
         elif moved:
             self._moved[root] = force
         else:
-            a, b = self._summed(root)
+            a, b = self._sum_subtree(root)
             if undivided:
                 self.divisor = a
             else:
@@ -233,7 +233,7 @@ class Amplitudes:
             if self._network.points[branch.far].motion is None:
                 self._moved[branch.far] = share[branch.far] * self._beyond[branch.far][1]
 
-    def _summed(self, number: int) -> tuple[Quantity, Quantity]:
+    def _sum_subtree(self, number: int) -> tuple[Quantity, Quantity]:
         """A and B of a point with all that hangs on it."""
         point = self._network.points[number]
         if point.motion is not None:
@@ -258,19 +258,19 @@ class Amplitudes:
             own = own - self._square * point.mass
         return own if point.damping == 0 else own + self._w * (_I * point.damping)
 
-    def _through(self, branch: Branch) -> tuple[Quantity, Quantity]:
+    def _branch_fraction(self, branch: Branch) -> tuple[Quantity, Quantity]:
         """N and D of a branch, seen from its near point."""
         (a, b), beside = self._at_far_end(branch), self._parallel_resistance(branch)
         if branch.bar is None:
-            return self._geared(branch, a * beside), a + b * beside
+            return self._scale_by_gear(branch, a * beside), a + b * beside
         z, (sine, cosine) = self._medium(branch.bar).impedance, self._whole_turn(branch.bar)
         across = z * cosine if beside is None else z * cosine + beside * sine
         held = sine * (-z * z) * self._square
         if beside is not None:
             held = held + 2 * z * beside * (cosine - 1)
-        return self._geared(branch, a * across + b * held), a * sine + b * across
+        return self._scale_by_gear(branch, a * across + b * held), a * sine + b * across
 
-    def _geared(self, branch: Branch, resistance: Quantity) -> Quantity:
+    def _scale_by_gear(self, branch: Branch, resistance: Quantity) -> Quantity:
         return resistance if branch.ratios[0] == 1 else resistance * branch.ratios[0] ** 2
 
     def _coupling(self, branch: Branch) -> Quantity:
@@ -292,7 +292,7 @@ class Amplitudes:
             return self._w * (_I * branch.damping) + branch.stiffness
         return arb(branch.stiffness) if branch.stiffness != 0 else None
 
-    def _turned_to(self, branch: Branch, place: fmpq) -> tuple[Turn, Turn]:
+    def _turns_to_ends(self, branch: Branch, place: fmpq) -> tuple[Turn, Turn]:
         """From a place of its bar to the near and to the far end."""
         assert branch.bar is not None  # which the place lies on
         delay = self._medium(branch.bar).delay

@@ -25,7 +25,7 @@ class Mode:
     frequency: Quantity
     points: Sequence[Quantity]
 
-    def at(self, end: End) -> Quantity:
+    def displacement(self, end: End) -> Quantity:
         """How far the end of a bar moves."""
         bar = self.stiffness.network.bars[end.bar]
         return self.points[bar.right if end.side else bar.left] * bar.ratios[end.side]
@@ -34,19 +34,19 @@ class Mode:
         """The strain there times the bar's speed."""
         if self.frequency == 0:
             return arb(0)
-        here, there = self.at(end), self.at(End(end.bar, 1 - end.side))
-        sine, cosine = self.turned(self.stiffness.network.bars[end.bar].delay)
+        here, there = self.displacement(end), self.displacement(End(end.bar, 1 - end.side))
+        sine, cosine = self.turn(self.stiffness.network.bars[end.bar].delay)
         slope = self.frequency * (there - here * cosine) / sine
         return -slope if end.side else slope
 
-    def turned(self, delay: fmpq) -> tuple[Quantity, Quantity]:
+    def turn(self, delay: fmpq) -> tuple[Quantity, Quantity]:
         """sin and cos of the frequency times a delay."""
-        if delay not in self._turned:
-            self._turned[delay] = (self.frequency * delay).sin_cos()
-        return self._turned[delay]
+        if delay not in self._turns:
+            self._turns[delay] = (self.frequency * delay).sin_cos()
+        return self._turns[delay]
 
     @cached_property
-    def _turned(self) -> dict[fmpq, tuple[Quantity, Quantity]]:
+    def _turns(self) -> dict[fmpq, tuple[Quantity, Quantity]]:
         return {}
 
 

@@ -38,17 +38,19 @@ class Shape:
     points: Sequence[Quantity]
     bent: Sequence[Quantity] | None = None
 
-    def at(self, end: End) -> Quantity:
+    def displacement(self, end: End) -> Quantity:
         """How far the end of a bar moves."""
-        return self.statics.at(self.points, end)
+        return self.statics.displacement(self.points, end)
 
     def slope(self, end: End) -> Quantity:
         """The strain there times the bar's speed."""
         delay = self.statics.stiffness.network.bars[end.bar].delay
         ends = End(end.bar, 0), End(end.bar, 1)
-        slope = (self.at(ends[1]) - self.at(ends[0])) / delay
+        slope = (self.displacement(ends[1]) - self.displacement(ends[0])) / delay
         if self.bent is not None:
-            here, there = (self.statics.at(self.bent, End(end.bar, side)) for side in (end.side, 1 - end.side))
+            here, there = (
+                self.statics.displacement(self.bent, End(end.bar, side)) for side in (end.side, 1 - end.side)
+            )
             pull = delay * (2 * here + there) / 6
             slope += pull if end.side else -pull
         return slope
@@ -64,7 +66,7 @@ class Statics:
     stiffness: Stiffness
     number: Callable[[Any], Quantity] = arb
 
-    def at(self, points: Sequence[Quantity], end: End) -> Quantity:
+    def displacement(self, points: Sequence[Quantity], end: End) -> Quantity:
         """How far the end of a bar moves where points move so far."""
         bar = self.stiffness.network.bars[end.bar]
         return points[bar.right if end.side else bar.left] * bar.ratios[end.side]
@@ -102,7 +104,7 @@ class Statics:
         forces = [q * point.mass for q, point in zip(points, network.points, strict=True)]
         for number, bar in enumerate(network.bars):
             share = self.number(bar.impedance * bar.delay / 6)
-            ends = self.at(points, End(number, 0)), self.at(points, End(number, 1))
+            ends = self.displacement(points, End(number, 0)), self.displacement(points, End(number, 1))
             forces[bar.left] += share * bar.ratios[0] * (2 * ends[0] + ends[1])
             forces[bar.right] += share * bar.ratios[1] * (ends[0] + 2 * ends[1])
         return forces
@@ -112,17 +114,19 @@ class Statics:
         network = self.stiffness.network
         total = sum((q * q * point.mass for q, point in zip(points, network.points, strict=True)), self.number(0))
         for number, bar in enumerate(network.bars):
-            a, b = (self.at(points, end) + (broken or {}).get(end, 0) for end in (End(number, 0), End(number, 1)))
+            a, b = (
+                self.displacement(points, end) + (broken or {}).get(end, 0) for end in (End(number, 0), End(number, 1))
+            )
             total += self.number(bar.impedance * bar.delay / 3) * (a * a + a * b + b * b)
         return total
 
     def imposed_shape(self, point: int) -> Shape:
         """The shape that the unit motion of a point imposes that moves as it is told."""
 
-        def over(bar: Bar) -> Quantity:
+        def per_delay(bar: Bar) -> Quantity:
             return 1 / self.number(bar.delay)
 
-        _, forces = self.stiffness.prescribed_column(point, self.number, over, over)
+        _, forces = self.stiffness.prescribed_column(point, self.number, per_delay, per_delay)
         moved = self.solve([forces.get(other, self.number(0)) for other in range(len(self.stiffness.network.points))])
         moved[point] = self.number(1)
         return Shape(self, moved)
@@ -134,11 +138,11 @@ class Statics:
             acting[point] = acting[point] + self.number(force)
         if self.free is None:
             return Shape(self, self.solve(acting))
-        along = self._along(acting)
+        along = self._rigid_component(acting)
         bent = [along * q for q in self.free]
         pull = self.inertia(bent)
         moved = self.solve([force - inertia for force, inertia in zip(acting, pull, strict=True)])
-        return Shape(self, self._without(moved, bent), bent)
+        return Shape(self, self._remove_rigid_part(moved, bent), bent)
 
     def lagging_shape(self, imposed: Shape) -> Shape:
         """The shape that lags behind an imposed one when that has the acceleration 1."""
@@ -155,20 +159,21 @@ class Statics:
         mass = self.mass(moved, gap)
         if self.free is None:
             return mass
-        here = self.at(self.free, end)  # the same all along the bar
-        part = self._along(self.inertia(moved)) + here * gap[end] * self.number(bar.impedance * bar.delay / 2)
+        here = self.displacement(self.free, end)  # the same all along the bar
+        part = self._rigid_component(self.inertia(moved)) + here * gap[end] * self.number(bar.impedance * bar.delay / 2)
         return mass - part * part
 
-    def _along(self, forces: Sequence[Quantity]) -> Quantity:
+    def _rigid_component(self, forces: Sequence[Quantity]) -> Quantity:
         """What forces do to the motion without strain."""
         assert self.free is not None
         return sum((force * q for force, q in zip(forces, self.free, strict=True)), self.number(0))
 
-    def _without(self, moved: Sequence[Quantity], bent: Sequence[Quantity]) -> list[Quantity]:
+    def _remove_rigid_part(self, moved: Sequence[Quantity], bent: Sequence[Quantity]) -> list[Quantity]:
         """A shape without its part in the motion without strain."""
         assert self.free is not None
-        part = self._along(self.inertia(moved))
+        part = self._rigid_component(self.inertia(moved))
         for number, bar in enumerate(self.stiffness.network.bars):
             end = End(number, 0)  # a bar that is bent by a constant a is a T^2 (x^2 - x)/2 off the line
-            part -= self.at(self.free, end) * self.at(bent, end) * self.number(bar.impedance * bar.delay**3 / 12)
+            bend = self.displacement(bent, end) * self.number(bar.impedance * bar.delay**3 / 12)
+            part -= self.displacement(self.free, end) * bend
         return [q - part * r for q, r in zip(moved, self.free, strict=True)]

@@ -275,7 +275,7 @@ class Stiffness:
             return None
         return sum(self.network.points[point].mass != 0 for point in self.points)
 
-    def above(self, n: NDArray[np.int64]) -> Vector:
+    def upper_bounds(self, n: NDArray[np.int64]) -> Vector:
         """Above each n-th frequency. Without bars the squares of all have the sum K_ii/m_i at most."""
         if self.modes is None:
             return np.asarray((n + len(self.network.bars)) * np.pi / nearest(self.delay))
@@ -318,7 +318,7 @@ class Stiffness:
         diagonal, up = self.doubles.matrix(w, cot, csc, rate)
         return self.pivots(diagonal, up), up
 
-    def proved(self, law: HarmonicLaw, w: arb) -> int | None:
+    def proved_count(self, law: HarmonicLaw, w: arb) -> int | None:
         """How many frequencies lie below w, proved; None where so many bits do not tell. `law` is in balls."""
         count = 0
         for delay, bars in zip(law.delays, law.counts, strict=True):

@@ -15,7 +15,7 @@ import numpy as np
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
-from wavesym.exact.modes.frequencies import searched
+from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.shape import rigid
 from wavesym.exact.modes.statics import Shape, Statics
 from wavesym.mechanics.model import Model
@@ -84,7 +84,7 @@ class ModeSets:
     def _project(self, count: int) -> ProjectionSets:
         stiffness, network, statics = self.stiffness, self.network, self.statics
         count = min(count, stiffness.modes or count)
-        w = searched(stiffness, count)
+        w = bisect_frequencies(stiffness, count)
         rows, wrong, blurred = stiffness.shapes(w)
         if statics.free is not None:
             w[:, 0] = wrong[:, 0] = blurred[:, 0] = 0.0

@@ -142,7 +142,7 @@ class StiffnessSets(Stiffness):
     def doubles(self) -> HarmonicLaw:
         return self.law(double)
 
-    def above(self, n: NDArray[np.int64]) -> Columns:
+    def upper_bounds(self, n: NDArray[np.int64]) -> Columns:
         if self.modes is None:
             delay: Columns = sum(bar.delay for bar in self.network.bars)
             return np.asarray((n + len(self.network.bars)) * np.pi / delay)
@@ -219,7 +219,7 @@ class ModeColumns(Mode):
 
     def slope(self, end: End) -> Columns:
         bar, w = self.stiffness.network.bars[end.bar], self.frequency
-        here, there = self.at(end), self.at(End(end.bar, 1 - end.side))
+        here, there = self.displacement(end), self.displacement(End(end.bar, 1 - end.side))
         with np.errstate(all="ignore"):
             slope = w * (there - here * np.cos(w * bar.delay)) / np.sin(w * bar.delay)
         return np.where(w == 0, 0.0, -slope if end.side else slope)

@@ -12,7 +12,7 @@ from flint import acb, arb, ctx, fmpq, fmpq_mat
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut
-from wavesym.exact.modes.dying import DampedSpectrum
+from wavesym.exact.modes.damped_modes import DampedSpectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
-from wavesym.exact.modes.frequencies import searched
+from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.shape import Mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.mechanics.network import Network
@@ -46,7 +46,7 @@ _CREEPERS = 24
 _I = acb(0, 1)
 
 
-def undamped(network: Network) -> Network:
+def remove_dashpots(network: Network) -> Network:
     """The same chain without its dashpots."""
     points = tuple(replace(point, damping=point.damping * 0) for point in network.points)
     return replace(
@@ -74,7 +74,7 @@ class DampedSpectrum:
         frequencies coincide, as of equal branches.
         """
         stiffness = Stiffness(self.cut.network)
-        guesses = sought(stiffness, count) if stiffness.points else np.zeros(1, complex)
+        guesses = estimate_frequencies(stiffness, count) if stiffness.points else np.zeros(1, complex)
         found = _all_proved(stiffness, guesses) if stiffness.points else [None]
         for k in (k for k, mode in enumerate(found) if mode is None):
             if self._cuts[1:]:  # all points may be at rest
@@ -92,15 +92,15 @@ def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
     with ctx.workprec(_BITS + _BITS_A_ROW * len(stiffness.points)):
         law, near = stiffness.law(arb), guesses * (1 + _OFF)
         roots = stiffness.yielding(near, 1j * near).tolist()
-        return [_proved(stiffness, law, *each) for each in zip(guesses.tolist(), roots, strict=True)]
+        return [_prove_mode(stiffness, law, *each) for each in zip(guesses.tolist(), roots, strict=True)]
 
 
-def sought(stiffness: Stiffness, count: int) -> Complex:
+def estimate_frequencies(stiffness: Stiffness, count: int) -> Complex:
     """The first frequencies in doubles, those with a real part of at least 0."""
     if not stiffness.network.bars:
         return _of_matrix(stiffness)[:count]
     many = int(_MORE * count) + len(stiffness.network.bars) + 4
-    start = searched(Stiffness(undamped(stiffness.network)), many)
+    start = bisect_frequencies(Stiffness(remove_dashpots(stiffness.network)), many)
     draw = np.random.default_rng(0)  # nothing is to stay symmetric by chance
     apart = np.pi / float(stiffness.delay)
     start = start + apart * (0.1j + 0.02 * (draw.normal(size=many) + 1j * draw.uniform(size=many)))
@@ -172,7 +172,7 @@ def _pull(stiffness: Stiffness, w: Complex) -> Complex:
     return np.asarray(total)
 
 
-def _proved(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -> Mode | None:
+def _prove_mode(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -> Mode | None:
     """The mode near a guess, in which row `root` moves much; None where that cannot be proved."""
     creeps = abs(guess.real) < _STRAIGHT * abs(guess)
     small = arb(2) ** -(_BALL + _BALL_A_ROW * len(stiffness.points))

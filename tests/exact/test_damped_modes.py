@@ -12,8 +12,8 @@ from scipy.linalg import eig
 
 from tests.exact.test_modes import COT, CSC, W, by_the_law
 from tests.support.modal import by_elements, chain
-from wavesym.exact.modes import dying as found
-from wavesym.exact.modes.dying import DampedSpectrum, sought, undamped
+from wavesym.exact.modes import damped_modes as found
+from wavesym.exact.modes.damped_modes import DampedSpectrum, estimate_frequencies, remove_dashpots
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Bar, Network, Point
 from wavesym.mechanics.node import Node, Rod
@@ -158,7 +158,7 @@ def test_complex_frequencies_are_those_of_finite_elements(name):
     network = model.network
     values = []
     for resolution in (10, 20):
-        free = replace(model, network=undamped(network))
+        free = replace(model, network=remove_dashpots(network))
         _, mass, stiffness = by_elements(free, resolution)
         moving = [number for number, point in enumerate(network.points) if point.motion is None]
         place = {point: row for row, point in enumerate(moving)}
@@ -186,17 +186,17 @@ def test_what_is_found_twice_is_one(monkeypatch):
     expected = complex_frequencies(model, 6)
 
     def twice(stiffness, count):
-        made = sought(stiffness, count)
+        made = estimate_frequencies(stiffness, count)
         made[3] = made[2] * (1 + 1e-13)
         return made
 
-    monkeypatch.setattr(found, "sought", twice)
+    monkeypatch.setattr(found, "estimate_frequencies", twice)
     made = complex_frequencies(model, 6)
     np.testing.assert_array_equal(made, np.delete(expected, 3))
     assert all(a != b for a, b in pairwise(made))
 
 
 def test_what_is_no_zero_is_not_proved(monkeypatch):
-    monkeypatch.setattr(found, "sought", lambda stiffness, count: np.array([2.1 + 7.0j, 0.8 + 0.2j]))
+    monkeypatch.setattr(found, "estimate_frequencies", lambda stiffness, count: np.array([2.1 + 7.0j, 0.8 + 0.2j]))
     monkeypatch.setattr(found, "_NEWTON", 1)
     assert not len(complex_frequencies(DAMPED["a mass"], 2))
