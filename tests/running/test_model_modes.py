@@ -13,6 +13,9 @@ from tests.support.drawn import systems
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.evaluator import modes
+from wavesym.programs.request import Request
+from wavesym.programs.runtime.making import runtime_program
+from wavesym.scene import lower
 
 STOREYS = 4
 SPACING = 0.05
@@ -209,15 +212,13 @@ def test_what_modes_cannot_give_is_refused_in_one_line(sprung):
         wavesym.model(stepped, ["mass"])
 
 
-def test_c_of_a_damped_structure_is_refused_with_what_takes_its_numbers():
-    with pytest.raises(UnservedError, match=r"system.damping: .* wavesym.model\(scene, "):
-        wavesym.generate(FRAME, runtime=["mass"])
-
-
-def test_a_number_that_changes_a_delay_is_refused_for_marches_with_what_takes_it():
-    undamped = FRAME.with_({"system.damping": 0})
-    with pytest.raises(UnservedError, match=r"--runtime: stiffness changes how long a wave takes .* wavesym.model"):
-        wavesym.generate(undamped, runtime=["stiffness"])
+def test_marches_do_not_take_numbers_of_modes():
+    """What is damped, and what changes a delay; the message says who does."""
+    with pytest.raises(UnservedError, match=r"system.damping: supported by modes only"):
+        runtime_program(lower(FRAME), Request(runtime=("mass",)), ())
+    undamped = lower(FRAME.with_({"system.damping": 0}))
+    with pytest.raises(UnservedError, match=r"--runtime: stiffness changes how long a wave takes"):
+        runtime_program(undamped, Request(runtime=("stiffness",)), ())
 
 
 def test_where_doubles_have_no_shape_nothing_is_claimed():

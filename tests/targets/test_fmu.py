@@ -148,7 +148,7 @@ REFUSED = {
     "runtime": ({"runtime": ["load"]}, "--runtime: load, but the inputs of a stream are its loads"),
     "modes": (
         {"runtime": ["kappa"], "evaluator": "modes"},
-        "runtime: kappa does not go with modes and --target; leave --runtime out",
+        "runtime: kappa is unknown; write stiffness",
     ),
     "package": ({"package": True}, "--package: True does not go with --target; leave it out"),
     "evaluator": ({"evaluator": "march"}, "--evaluator: march does not go with --stream; write auto"),

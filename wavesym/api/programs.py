@@ -34,6 +34,10 @@ def program(scene: Scene, request: Request, *, tested: bool = False) -> Program:
         CostError, UnservedError, WavesymError: for what is too expensive, not supported, or contradicts itself.
     """
     lowered = lower(scene)
+    if request.runtime and request.is_of_mode_sets(lowered):
+        from wavesym.programs.mode_sets.making import mode_sets_program
+
+        return mode_sets_program(lowered, request, _varied_loads(scene, request.runtime), tested=tested)
     if request.is_of_modes(lowered):
         return _stepped_modes(scene, lowered, request, tested)
     if request.stream:
@@ -62,10 +66,6 @@ def _stepped_modes(scene: Scene, lowered: Model, request: Request, tested: bool)
 
     if not request.target:
         return make(lowered, request, tested=tested)
-    if request.runtime:
-        raise WavesymError(
-            f"--runtime: {','.join(request.runtime)} does not go with modes and --target; leave --runtime out"
-        )
     if request.step is not None:
         raise WavesymError(f"--step: {request.step} does not go with modes, whose loads say the step; leave --step out")
     if not scene.load:

@@ -113,6 +113,10 @@ class Request:
             return self.evaluator == "modes" or (self.evaluator == "auto" and model.damping is not None)
         return self.stream and self.evaluator == "modes"
 
+    def is_of_mode_sets(self, model: Model) -> bool:
+        """Whether parameters at run time are numbers of modes: where modes are requested, are damped, or alone can."""
+        return self.evaluator == "modes" or model.damping is not None or not OF_MODES.keys().isdisjoint(self.runtime)
+
     def refuse_unknown(self) -> None:
         """WavesymError for a word that is none of those there are, and for what is of parameters at run time alone."""
         for option, word, known in (

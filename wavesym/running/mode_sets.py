@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
-from math import ceil
 
 import numpy as np
-from flint import fmpq
 
-from wavesym.errors import CostError, UnservedError, WavesymError
-from wavesym.mechanics.loads import AppliedLoad, AppliedRecord
+from wavesym.errors import UnservedError, WavesymError
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.mode_sets.loads import SampledAmplitudes, sampled_amplitudes
 from wavesym.programs.mode_sets.modes import ModesOfSet
 from wavesym.programs.mode_sets.parameters import ModeParameters
 from wavesym.programs.modes.evaluator import modes
-from wavesym.programs.modes.loads import Roughness, linear_loads, sampled_roughness
+from wavesym.programs.modes.loads import sampled_roughness
 from wavesym.results.many_records import ManyRecords, RecordedExtremes, SharedModes
+from wavesym.results.near_zero import zero_within
+from wavesym.running.compiled_modes import CompiledModeSets, ModeSetResponses
 from wavesym.running.sets import Array, FoundSets, no_sets
 
 _TOGETHER = 64  # sets whose modes are found at once: what a cache holds
-_MOST_SAMPLES = 1 << 20
+_WORTH_COMPILING = 256  # sets: so many take as long in NumPy as a compiler does
 _BAD = 1
 
 
@@ -100,8 +100,21 @@ class ModalSets:
             yield row, each
 
     def responses(self, given: Array, tau: Array) -> Iterator[tuple[int, RecordedExtremes]]:
-        """Extremes of the sets whose numbers are good, by their rows, and histories at `tau`."""
+        """Extremes of the sets whose numbers are good, by their rows, and histories at `tau`.
+
+        Many sets are computed in C where there is a compiler; those that need more modes than others are not.
+        """
         (rows,) = np.nonzero(~self._parameters.refused(given))
+        if len(rows) >= _WORTH_COMPILING and CompiledModeSets.is_possible():
+            tolerance, left = nearest(self.model.tolerance), []
+            for first in range(0, len(rows), _TOGETHER):
+                some = rows[first : first + _TOGETHER]
+                found = self._compiled.responses(given[some], tau)
+                enough = found.estimate <= tolerance
+                left.append(some[~enough])
+                for number in np.flatnonzero(enough).tolist():
+                    yield int(some[number]), _extremes(found, number, self._parameters.fewest)
+            rows = np.concatenate(left)
         for first in range(0, len(rows), _TOGETHER):
             some = rows[first : first + _TOGETHER]
             sets, damping = self._parameters.mode_sets(given[some]), self._parameters.damping(given[some])
@@ -113,37 +126,21 @@ class ModalSets:
                 yield row, shared.extremes(self._records(own), tau.tolist())
 
     @cached_property
-    def _loads(self) -> tuple[Array, tuple[int, ...], tuple[Roughness, ...]]:
-        """Of each amplitude its samples, (n, amplitudes), which load it is of, and its roughness."""
-        like = self._parameters.like
-        count = ceil(self.tau_max / self._spacing) + 2
-        if count > _MOST_SAMPLES:
-            raise CostError(
-                f"load: {count} samples, {self._spacing:g} apart in tau, the limit is {_MOST_SAMPLES} (times with a "
-                "larger common measure, or a shorter horizon, help)"
-            )
-        every: Sequence[AppliedLoad] = self._parameters.amplitudes or [
-            AppliedRecord(pair[1] or pair[0], fmpq(0), fmpq(1), tuple(x for x in self.model.loads if x.source in pair))
-            for pair in like.sources
-        ]
-        samples, loads = np.zeros((count, len(every))), []
-        for column, amplitude in zip(samples.T, every, strict=True):
-            acting = linear_loads(amplitude.changes, like.sources, like.model.until, like.model.describe_step)
-            loads.append(next(j for j, pair in enumerate(like.sources) if amplitude.source in pair))
-            column[:] = acting.sampled(self._step, count)[:, loads[-1]]
-        return samples, tuple(loads), tuple(map(sampled_roughness, samples.T))
-
-    @property
-    def _step(self) -> fmpq:
-        return self._parameters.like.loads.spacing(self.model.until, self.model.spacing)
+    def _compiled(self) -> CompiledModeSets:
+        return CompiledModeSets(self._parameters)
 
     @cached_property
+    def _amplitudes(self) -> SampledAmplitudes:
+        return sampled_amplitudes(self._parameters)
+
+    @property
     def _spacing(self) -> float:
-        return nearest(self._step)
+        return nearest(self._amplitudes.step)
 
     def _records(self, own: Array | None) -> ManyRecords:
         """The loads, each amplitude multiplied by its factor, as one record."""
-        samples, loads, rough = self._loads
+        known = self._amplitudes
+        samples, loads, rough = known.samples, known.loads, known.rough
         factors = np.ones(len(loads)) if own is None else own
         count = len(self._parameters.like.sources)
         made = np.zeros((len(samples), count))
@@ -154,3 +151,11 @@ class ModalSets:
             return ManyRecords(made[None], 0.0, self._spacing, [[rough[k] for k in order]], factors[None, order])
         summed = [sampled_roughness(column) for column in made.T]
         return ManyRecords(made[None], 0.0, self._spacing, [summed], np.ones((1, count)))
+
+
+def _extremes(found: ModeSetResponses, number: int, modes: int) -> RecordedExtremes:
+    """Those of one set."""
+    rows, bounds = found.peaks[number : number + 1], found.estimate[number : number + 1]
+    values, taus = rows[:, :, ::2].copy(), rows[:, :, 1::2].copy()
+    zero_within(values, taus, bounds[:, None, None], 0.0)  # all are at rest at first
+    return RecordedExtremes(values, taus, bounds, modes, found.values[number : number + 1])

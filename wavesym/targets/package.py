@@ -8,7 +8,7 @@ from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.description import Description
 
-_MATH = frozenset({"closed"})
+_MATH = frozenset({"closed", "mode_sets"})
 """Kernels that call functions of <math.h>."""
 
 

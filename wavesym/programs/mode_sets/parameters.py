@@ -77,10 +77,11 @@ class ModeParameters:
             for output, probe in zip(self.like.outputs, self.model.probes, strict=True)
         ]
         drivers = [replace(each, gain=double(each.gain)) for each in self.like.drivers]
-        return ModeSets(self.like, network, outputs, drivers, self._zeros, self.fewest)
+        return ModeSets(self.like, network, outputs, drivers, self.zero_outputs, self.fewest)
 
     @cached_property
-    def _zeros(self) -> tuple[bool, ...]:
+    def zero_outputs(self) -> tuple[bool, ...]:
+        """The outputs that are 0 whatever the numbers."""
         return generic_zeros(self.like)
 
     def damping(self, given: Numbers) -> list[Damping | None]:

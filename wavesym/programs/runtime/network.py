@@ -81,14 +81,10 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     network.refuse_dead_loads()
     for name in OF_MODES.keys() & names:
         raise UnservedError(
-            f"--runtime: {name} {OF_MODES[name]}, which no march supports (modes do, in Python: "
-            f'wavesym.model(scene, ["{name}"]), and in sweeps)'
+            f"--runtime: {name} {OF_MODES[name]}, which no march supports (modes do: write --evaluator modes)"
         )
     if model.damping is not None:
-        raise UnservedError(
-            "system.damping: supported by modes only, which --runtime does not make (take them in Python, "
-            'wavesym.model(scene, ["stiffness", "mass", "damping", "load"]), or sweeps)'
-        )
+        raise UnservedError("system.damping: supported by modes only (write --evaluator modes, or auto)")
     for point in network.points:
         if point.motion is not None and point.velocity != 0:
             raise UnservedError(

@@ -25,7 +25,7 @@ class CTarget:
         if program.numpy_only:
             raise UnservedError(program.numpy_only)
         kernel: Any = import_module(f"{__name__}.{program.kernel}")  # of those that there are only this one
-        if program.laws and not program.step:
+        if program.laws and (not program.step or program.has_equal_steps):
             files: dict[str, str] = kernel.files(description, program)
             return files
         name = description.name

@@ -15,6 +15,7 @@ from wavesym.rendering import render
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_literals
 
+_ORIGINS = {"mode_sets": "of modes that are proved to leave out next to nothing"}
 _LENIENT = 10  # times the error that is estimated, where no bound is proved: what is right comes nowhere near it
 
 
@@ -23,13 +24,14 @@ class CSelfTest:
     """templates/c/selftest.c.j2: `expected` by output, then by tau; doubles whatever the program's type is.
 
     What takes parameters is `built` with the scene's own; names of its functions begin with `function`, and their
-    arguments with `model`.
+    arguments with `model`. `origin` says where reference values are from.
     """
 
     scene: Description
     count: str
     tables: dict[str, Lines]
     built: bool
+    origin: str
     function: str
     model: str
 
@@ -64,6 +66,7 @@ def selftest(scene: Description, program: Program, reference: ReferenceValues) -
             "allowed": c_literals(allowed, DOUBLE),
         },
         built=built,
+        origin=_ORIGINS.get(program.kernel, "computed in ball arithmetic and rounded once"),
         function=f"{scene.name}_model_" if built else f"{scene.name}_",
         model="&model, " if built else "",
     )

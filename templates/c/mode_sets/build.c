@@ -1,0 +1,134 @@
+/* build.c: a model of parameters.
+ * Plain C that stands below the text of steps.c in generated files, which have what stands below the first empty line. */
+#include "steps.c"
+
+static void weights_of(model *m, const projection *p, const damping_rule *rule)
+{
+    const real above_all = 8 * p->w[FOUND - 1];
+    for (int n = 0; n < MODES; ++n) {
+        const real w = n < FOUND ? p->w[n] : above_all;
+        m->frequency[n] = w;
+        m->damping[n] = ratio_at(rule, w, n - FREE);
+        for (int load = 0; load < LOADS; ++load) {
+            m->push[load][n] = n < FOUND ? p->share[load][n] : n - FOUND == load ? above_all * above_all : 0;
+        }
+    }
+    for (int output = 0; output < FILLED; ++output) {
+        const int counts = output < OUTPUTS && !is_zero[output];
+        const int order = counts ? output_order[output] : 0;
+        for (int load = 0; load < LOADS; ++load) {
+            const real rest = counts && order < 2 ? rest_of(p, output, load) : 0;
+            for (int k = 0; k < 3; ++k) {
+                m->direct[load][k][output] = counts && k == 2 - order ? p->imposed[output][load] : 0;
+            }
+            for (int n = 0; order == 2 && n < FOUND; ++n) {
+                m->direct[load][0][output] += p->output[output][n] * p->share[load][n];
+            }
+            if (MODES == FOUND && counts && order == 0) {
+                m->direct[load][0][output] += rest;
+            }
+            if (MODES > FOUND) {
+                m->moved[FOUND + load][output] = order == 0 ? rest : 0;
+                m->moving[FOUND + load][output] = order == 1 ? rest : 0;
+            }
+        }
+        for (int n = 0; n < FOUND; ++n) {
+            const real w = p->w[n];
+            const real value = counts ? p->output[output][n] : 0;
+            m->moved[n][output] = order == 0 ? value : order == 2 ? -w * w * value : 0;
+            m->moving[n][output] = order == 1 ? value : order == 2 ? -2 * m->damping[n] * w * value : 0;
+        }
+    }
+}
+
+/* The largest values at the ends and in the middle of steps. */
+static void largest_values(const model *m, real *largest)
+{
+    motion s[TOGETHER + 1];
+    real out[TOGETHER][FILLED];
+    const motion *seen[TOGETHER];
+    real *values[TOGETHER];
+    real slope[LOADS];
+    rest(&s[TOGETHER]);
+    for (int output = 0; output < OUTPUTS; ++output) {
+        largest[output] = 0;
+    }
+    for (int half = 0; half < HALVES; half += TOGETHER) {
+        for (int k = 0; k < TOGETHER; ++k) {
+            slopes_after(m, (half + k) / 2, slope);
+            advance(m, &m->half, spacing / 2, slope, k > 0 ? &s[k - 1] : &s[TOGETHER], &s[k]);
+            seen[k] = &s[k];
+            values[k] = out[k];
+        }
+        s[TOGETHER] = s[TOGETHER - 1];
+        read_together(m, seen, values);
+        for (int k = 0; k < TOGETHER && half + k < HALVES; ++k) {
+            for (int output = 0; output < OUTPUTS; ++output) {
+                const real size = fabs(out[k][output]);
+                largest[output] = size > largest[output] || size != size ? size : largest[output];
+            }
+        }
+    }
+}
+
+/* The worst error relative to its output's largest value. */
+static real estimate_of(const model *m, const projection *p, const damping_rule *rule, const real *largest)
+{
+    declines fall[LOADS];
+    real worst = 0;
+    for (int load = 0; load < LOADS; ++load) {
+        fall[load] = declines_under(m, rule, p->w[FOUND - 1], load);
+    }
+    for (int output = 0; output < OUTPUTS; ++output) {
+        const real error = error_of(m, p, rule, fall, output, largest[output]);
+        const real relative = error == 0 ? 0 : error < largest[output] ? error / (largest[output] - error) : HUGE_VAL;
+        worst = most_of(worst, relative);
+    }
+    return worst;
+}
+
+/* Find modes and what they make of loads and outputs. False for a bad number. */
+static int find_model(model *m, const name_parameters *parameters, projection *p, damping_rule *rule)
+{
+    real value[VALUES];
+    chain c;
+    springs s;
+    m->status = 1;
+    m->estimate = not_a_number();
+    if (!values_of(parameters, value)) {
+        return 0;
+    }
+    for (int amplitude = 0; amplitude < AMPLITUDES; ++amplitude) {
+        m->factor[amplitude] = value[FACTOR + amplitude];
+    }
+    chain_of(value, &c);
+    springs_of(&c, &s);
+    project_modes(&c, &s, p);
+    project_loads(&c, &s, p);
+    project_outputs(&c, &s, p);
+    *rule = damping_of(value, p);
+    weights_of(m, p, rule);
+    turns_of(m->frequency, m->damping, spacing / 2, &m->half);
+    return 1;
+}
+
+/* Say how wrong a model is whose outputs have these largest values. */
+static int judge(model *m, const projection *p, const damping_rule *rule, const real *largest)
+{
+    m->estimate = estimate_of(m, p, rule, largest);
+    m->status = m->estimate <= tolerance ? 0 : 2;
+    return m->status;
+}
+
+/* 0; 1 for a bad number; 2 where modes are too few for the tolerance, or not known well enough. */
+static int build(model *m, const name_parameters *parameters)
+{
+    projection p;
+    damping_rule rule;
+    real largest[OUTPUTS];
+    if (!find_model(m, parameters, &p, &rule)) {
+        return 1;
+    }
+    largest_values(m, largest);
+    return judge(m, &p, &rule, largest);
+}

@@ -1,0 +1,185 @@
+/* statics.c: the shapes of loads that do not change, and by them sums over all modes (docs/modes.md).
+ * Plain C that stands below the text of shapes.c in generated files, which have what stands below the first empty line. */
+#include "shapes.c"
+
+/* K where nothing moves, eliminated, and the motion without strain, of mass 1. */
+typedef struct {
+    real pivot[PLACES + 1];
+    real up[PLACES + 1];
+    real still[PLACES + 1];
+} springs;
+
+/* How far the end of a bar moves. */
+static real end_of(const real *moved, int bar, int side)
+{
+    return side ? bar_right_ratio[bar] * moved[bar_right[bar]] : bar_left_ratio[bar] * moved[bar_left[bar]];
+}
+
+/* The mass of a shape that is linear along bars; the end of one of them moves by `gap` more. */
+static real linear_mass(const chain *c, const real *moved, int broken, int side, real gap)
+{
+    real total = 0;
+    for (int place = 0; place < PLACES; ++place) {
+        total += c->mass[place] * moved[place] * moved[place];
+    }
+    for (int bar = 0; bar < BARS; ++bar) {
+        const real left = end_of(moved, bar, 0) + (bar == broken && !side ? gap : 0);
+        const real right = end_of(moved, bar, 1) + (bar == broken && side ? gap : 0);
+        total += c->impedance[bar] * c->delay[bar] / 3 * (left * left + left * right + right * right);
+    }
+    return total;
+}
+
+static void springs_of(const chain *c, springs *s)
+{
+    real pulled[BARS + 1];
+    real shared[BARS + 1];
+    for (int bar = 0; bar < BARS; ++bar) {
+        pulled[bar] = 1 / c->delay[bar];
+        shared[bar] = -1 / c->delay[bar];
+    }
+    assemble(c, 0, pulled, shared, s->pivot, s->up);
+    eliminate(s->pivot, s->up);
+    for (int place = 0; place < PLACES; ++place) {
+        s->still[place] = FREE ? rigid[place] : 0;
+    }
+    if (FREE) {
+        const real scale = 1 / sqrt(linear_mass(c, s->still, -1, 0, 0));
+        for (int place = 0; place < PLACES; ++place) {
+            s->still[place] *= scale;
+        }
+    }
+}
+
+/* How far places move under forces. Where nothing holds the chain forces balance, and its root does not move. */
+static void solve(const springs *s, const real *force, real *moved)
+{
+    for (int place = 0; place < PLACES; ++place) {
+        moved[place] = place < ROWS ? force[place] : 0;
+    }
+    for (int row = 0; row < ROWS; ++row) {
+        if (parent[row] >= 0) {
+            moved[parent[row]] -= s->up[row] * moved[row] / s->pivot[row];
+        }
+    }
+    for (int row = ROWS - 1; row >= 0; --row) {
+        if (parent[row] >= 0) {
+            moved[row] = (moved[row] - s->up[row] * moved[parent[row]]) / s->pivot[row];
+        } else {
+            moved[row] = FREE ? 0 : moved[row] / s->pivot[row];
+        }
+    }
+}
+
+/* The forces that accelerate everything as places move. */
+static void inertia(const chain *c, const real *moved, real *force)
+{
+    for (int place = 0; place < PLACES; ++place) {
+        force[place] = c->mass[place] * moved[place];
+    }
+    for (int bar = 0; bar < BARS; ++bar) {
+        const real share = c->impedance[bar] * c->delay[bar] / 6;
+        const real left = end_of(moved, bar, 0);
+        const real right = end_of(moved, bar, 1);
+        force[bar_left[bar]] += share * bar_left_ratio[bar] * (2 * left + right);
+        force[bar_right[bar]] += share * bar_right_ratio[bar] * (left + 2 * right);
+    }
+}
+
+static real along(const springs *s, const real *force)
+{
+    real total = 0;
+    for (int place = 0; place < PLACES; ++place) {
+        total += force[place] * s->still[place];
+    }
+    return total;
+}
+
+/* The shape under forces; bars are `bent` by accelerations where nothing holds the chain. */
+static void loaded_shape(const chain *c, const springs *s, const real *force, real *moved, real *bent)
+{
+    real acting[PLACES];
+    real pull[PLACES];
+    const real part = FREE ? along(s, force) : 0;
+    for (int place = 0; place < PLACES; ++place) {
+        bent[place] = part * s->still[place];
+        acting[place] = force[place];
+    }
+    if (!FREE) {
+        solve(s, acting, moved);
+        return;
+    }
+    inertia(c, bent, pull);
+    for (int place = 0; place < PLACES; ++place) {
+        acting[place] -= pull[place];
+    }
+    solve(s, acting, moved);
+    inertia(c, moved, pull);
+    real left = along(s, pull);
+    for (int bar = 0; bar < BARS; ++bar) {
+        const real t = c->delay[bar];
+        left -= end_of(s->still, bar, 0) * end_of(bent, bar, 0) * c->impedance[bar] * t * t * t / 12;
+    }
+    for (int place = 0; place < PLACES; ++place) {
+        moved[place] -= left * s->still[place];
+    }
+}
+
+/* The shape that the unit motion of a place imposes. */
+static void imposed_shape(const chain *c, const springs *s, int place, real *moved)
+{
+    real force[PLACES];
+    for (int other = 0; other < PLACES; ++other) {
+        force[other] = 0;
+    }
+    for (int bar = 0; bar < BARS; ++bar) {
+        const real k = c->impedance[bar] / c->delay[bar] * bar_left_ratio[bar] * bar_right_ratio[bar];
+        if (bar_left[bar] == place) {
+            force[bar_right[bar]] += k;
+        }
+        if (bar_right[bar] == place) {
+            force[bar_left[bar]] += k;
+        }
+    }
+    for (int link = 0; link < LINKS; ++link) {
+        const real k = c->link[link] * link_ratio[link];
+        if (link_left[link] == place) {
+            force[link_right[link]] += k;
+        }
+        if (link_right[link] == place) {
+            force[link_left[link]] += k;
+        }
+    }
+    solve(s, force, moved);
+    moved[place] = 1;
+}
+
+/* The strain at the end of a bar, times its speed, in a shape under loads. */
+static real slope_of_shape(const chain *c, const real *moved, const real *bent, int bar, int side)
+{
+    const real t = c->delay[bar];
+    const real pull = t * (2 * end_of(bent, bar, side) + end_of(bent, bar, !side)) / 6;
+    return (end_of(moved, bar, 1) - end_of(moved, bar, 0)) / t + (side ? pull : -pull);
+}
+
+/* The sum of the squares of the slope at the end of a bar over w^4, of all modes. */
+static real break_mass(const chain *c, const springs *s, int bar, int side)
+{
+    real force[PLACES];
+    real moved[PLACES];
+    const real gap = (side ? -1 : 1) / c->impedance[bar];
+    for (int place = 0; place < PLACES; ++place) {
+        force[place] = 0;
+    }
+    force[bar_left[bar]] -= bar_left_ratio[bar] / c->delay[bar];
+    force[bar_right[bar]] += bar_right_ratio[bar] / c->delay[bar];
+    solve(s, force, moved);
+    const real mass = linear_mass(c, moved, bar, side, gap);
+    if (!FREE) {
+        return mass;
+    }
+    inertia(c, moved, force);
+    const real part =
+        along(s, force) + end_of(s->still, bar, side) * gap * c->impedance[bar] * c->delay[bar] / 2;
+    return mass - part * part;
+}
