@@ -11,10 +11,12 @@ which is of order 2, and where two equal bars meet the same as inside a rod.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import ceil
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,8 +74,7 @@ class Grid:
         return self.lasts[bar] - self.cells[bar] + places, weights * slope
 
 
-@dataclass(frozen=True)
-class PointSteps:
+class PointSteps(NamedTuple):
     """The next displacements of points: `neighbours` times what is beside ends and at points, less `previous` times
     those a step earlier, and `loads[step]`; `first` are those after the first step."""
 
@@ -83,7 +84,7 @@ class PointSteps:
     first: Array
 
 
-def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
+def _point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
     """How points move in `steps` steps of length h."""
     impedance, onto = np.repeat(problem.impedance, 2), problem.incidence
     radiated = np.diag(onto**2 @ impedance)
@@ -118,33 +119,21 @@ def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
     )
 
 
-class GridMotion:
-    """The displacements of a field, `now` and a step before, and of the points."""
-
-    def __init__(self, grid: Grid, points: PointSteps) -> None:
-        self._grid, self._points = grid, points
-        self._placed = np.append(grid.ends, grid.points)
-        self._beside = np.append(grid.ends + np.tile([1, -1], len(grid.cells)), grid.points)
-        self.step = 0
-        self.now = np.zeros_like(grid.start_velocity)
-        self._past = self.now
-        self._u = self._before = np.zeros(grid.problem.points)
-        self._padded = np.zeros(len(self.now) + 2)
-
-    def advance(self) -> None:
-        """One step."""
-        points = self._points
-        if self.step == 0:
-            after = points.first
-            self.now = self._grid.h * self._grid.start_velocity
-        else:
-            after = points.neighbours @ self.now[self._beside] - points.previous @ self._before
-            after += points.loads[self.step]
-            self._padded[1:-1] = self.now
-            self._past, self.now = self.now, self._padded[:-2] + self._padded[2:] - self._past
-        self.step += 1
-        self._before, self._u = self._u, after
-        self.now[self._placed] = self._grid.spread @ self._u
+def _fields(grid: Grid, points: PointSteps) -> Iterator[Array]:
+    """The displacements of the field after each step."""
+    placed = np.append(grid.ends, grid.points)
+    beside = np.append(grid.ends + np.tile([1, -1], len(grid.cells)), grid.points)
+    past, now = np.zeros_like(grid.start_velocity), grid.h * grid.start_velocity
+    before, u = np.zeros(grid.problem.points), points.first
+    padded = np.zeros(len(now) + 2)
+    for loads in points.loads[1:]:
+        now[placed] = grid.spread @ u
+        yield now
+        before, u = u, points.neighbours @ now[beside] - points.previous @ before + loads
+        padded[1:-1] = now
+        past, now = now, padded[:-2] + padded[2:] - past
+    now[placed] = grid.spread @ u
+    yield now
 
 
 def _solve(problem: Problem, resolution: float) -> Evaluate:
@@ -153,7 +142,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
     h = float(problem.measure) / parts
     grid = Grid(problem, np.array([int(delay / problem.measure) * parts for delay in problem.delays]), h)
     steps = int(np.ceil(problem.until / h)) + 1
-    points = point_steps(problem, h, steps)
+    points = _point_steps(problem, h, steps)
     stencils = [grid.stencil(reading) for reading in problem.readings]
     kept = np.unique(np.concatenate([places for places, _ in stencils]))
     stencils = [(np.searchsorted(kept, places), weights) for places, weights in stencils]
@@ -161,10 +150,8 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
 
     def evaluate(taus: Array) -> Array:
         history = np.zeros((steps + 2, len(kept)))
-        motion = GridMotion(grid, points)
-        for row in history[1:]:
-            motion.advance()
-            row[:] = motion.now[kept]
+        for row, field in zip(history[1:], _fields(grid, points), strict=True):
+            row[:] = field[kept]
         velocity = np.empty((steps + 1, len(kept)))
         velocity[0] = grid.start_velocity[kept]
         velocity[1:] = (history[2:] - history[:-2]) / (2 * h)
