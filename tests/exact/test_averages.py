@@ -15,8 +15,9 @@ from tests.support.chains import chains
 from tests.support.scenes import scenes
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact import averages as module
-from wavesym.exact.averages import AveragedPiece, Averages, averages
+from wavesym.exact.averages import Averages, averages
 from wavesym.exact.extremes import BOUND, extremes_and_averages
+from wavesym.exact.output_piece import Piece
 from wavesym.numbers.doubles import midpoint
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
@@ -125,7 +126,7 @@ def test_averages_of_drawn_chains_are_those_of_values(table: dict[str, object]) 
 
 def test_radii_count() -> None:
     """p = t on a piece of length 2, known to 1/8: the mean to 1/8, and the square."""
-    piece = AveragedPiece(fmpq(2), (arb(0), arb(1)), arb("0.125"), arb("1.125"))
+    piece = Piece(fmpq(0), fmpq(2), (arb(0), arb(1)), arb("0.125"), from_zero=False, last=True)
     found = averages([piece], fmpq(2))
     assert found.mean.contains(arb("0.124"))
     assert not found.mean.contains(arb("0.126"))

@@ -281,7 +281,7 @@ def test_a_top_that_no_sample_is_near_is_kept(points, sign, bend):
     lower = bend * d**2 / 8
     parabola = [1 - bend * middle**2 / 2, bend * middle, -fmpq(bend) / 2]
     pieces = [
-        module._Piece(fmpq(k), fmpq(k + 1), tuple(arb(sign * c) for c in powers), arb(0), False, k == 1)
+        module.Piece(fmpq(k), fmpq(k + 1), tuple(arb(sign * c) for c in powers), arb(0), False, k == 1)
         for k, powers in enumerate((parabola, [1 - lower / 2]))
     ]
     with ctx.workprec(128):

@@ -13,15 +13,7 @@ from dataclasses import dataclass
 
 from flint import arb, arb_poly, fmpq
 
-
-@dataclass(frozen=True)
-class AveragedPiece:
-    """A `length` of time on which an output is a polynomial in t on [-1, 1], within `radius`, and at most `largest`."""
-
-    length: fmpq
-    coefficients: tuple[arb, ...]
-    radius: arb
-    largest: arb
+from wavesym.exact.output_piece import Piece
 
 
 @dataclass(frozen=True)
@@ -41,16 +33,16 @@ class Averages:
 NO_AVERAGES = Averages(arb(0), arb(0), arb(0))
 
 
-def averages(pieces: Iterable[AveragedPiece], until: fmpq) -> Averages:
+def averages(pieces: Iterable[Piece], until: fmpq) -> Averages:
     """The averages of an output over [0, until].
 
     Args:
-        pieces: in order of time.
+        pieces: in order of time; between them may be what holds no double, 2^-52 of the horizon at most.
         until: the end of the last one, dimensionless.
     """
     integral, squares, last = arb(0), arb(0), arb(0)
     for piece in pieces:
-        polynomial, length = arb_poly(list(piece.coefficients)), arb(piece.length)
+        polynomial, length = piece.polynomial, arb(piece.length)
         error = piece.radius
         integral += length * (_integral(polynomial) / 2 + arb(0, error.upper()))
         squares += length * (

@@ -27,9 +27,10 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.arrivals import identically_zero
-from wavesym.exact.averages import NO_AVERAGES, AveragedPiece, Averages, averages
+from wavesym.exact.averages import NO_AVERAGES, Averages, averages
 from wavesym.exact.motion import Motion
-from wavesym.exact.tables.ball import Segment, is_zero
+from wavesym.exact.output_piece import Piece, split
+from wavesym.exact.tables.ball import is_zero
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.balls import precise
@@ -110,7 +111,7 @@ def _of_output(motion: Motion, probe: Probe) -> tuple[Range, Averages]:
         at_ends = (abs(segment.evaluate(u)).lower() for segment, end in stretches for u in (_ZERO, end - segment.start))
         negligible = max(at_ends) * _NEGLIGIBLE
         pieces = [
-            _Piece.from_segment(segment, end, segment is segments[-1], negligible)
+            Piece.from_segment(segment, end, segment is segments[-1], negligible)
             for segment, end in stretches
             if not segment.vague
         ]
@@ -120,77 +121,13 @@ def _of_output(motion: Motion, probe: Probe) -> tuple[Range, Averages]:
         if (found := _extremes_of(pieces, max(sizes))) is None:
             return None
         largest = max(abs(extreme.value) for extreme in found)
-        averaged = _averages_of(pieces, motion.until) if largest else NO_AVERAGES
+        averaged = averages(pieces, motion.until) if largest else NO_AVERAGES
         return (found, averaged) if averaged.radius <= arb(largest) * _AVERAGED else None
 
     try:
         return precise(attempt, motion.first_bits, _MORE_BITS * motion.first_bits)
     except ArithmeticError as error:
         raise CostError(f"output.until: for extremes of {probe.name}, {error} (a shorter horizon helps)") from None
-
-
-@dataclass(frozen=True)
-class _Piece:
-    """An output from tau = `start` to `end`: a polynomial in t on [-1, 1], its coefficients exact, within `radius`.
-
-    Whether it is exactly 0 at its start, and has a value at its end as the `last` one has.
-    """
-
-    start: fmpq
-    end: fmpq
-    coefficients: tuple[arb, ...]
-    radius: arb
-    from_zero: bool
-    last: bool
-
-    @classmethod
-    def from_segment(cls, segment: Segment, end: fmpq, last: bool, negligible: arb) -> _Piece:
-        (polynomial,) = segment.families.values()
-        half = arb((end - segment.start) / 2)
-        middles, radius = _split(_shorten(polynomial, 2 * half, negligible)(arb_poly([half, half])))
-        return cls(segment.start, end, middles, radius, segment.from_zero, last)
-
-    @property
-    def largest(self) -> arb:
-        """An upper bound of its absolute values."""
-        return (sum(map(abs, self.coefficients), arb(0)) + self.radius).upper()
-
-    @property
-    def begin(self) -> arb:
-        """The value at its start."""
-        return arb(0) if self.from_zero else arb_poly(list(self.coefficients))(arb(-1)) + arb(0, self.radius)
-
-    def candidate(self, t: fmpq, value: arb) -> _Candidate:
-        """A value at t, at a double in the piece; where none is, or it is the limit at its end, at the jump behind."""
-        tau = self.start + (self.end - self.start) * (1 + t) / 2
-        exact = self.begin if self.from_zero and t == -1 else value
-        first, after = not_below(self.start), not_below(self.end)
-        if self.last:
-            return _Candidate(exact, tau, max(nearest(tau), first), True)
-        if t < 1 and first < after:
-            return _Candidate(exact, tau, min(max(nearest(tau), first), nextafter(after, 0.0)), True)
-        return _Candidate(exact, tau, after, False)
-
-
-def _averages_of(pieces: Sequence[_Piece], until: fmpq) -> Averages:
-    """The averages of an output, but for what lies between pieces and holds no double: 2^-52 of the horizon at most."""
-    every = (AveragedPiece(each.end - each.start, each.coefficients, each.radius, each.largest) for each in pieces)
-    return averages(every, until)
-
-
-def _shorten(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
-    """Without the highest powers, as far as they are negligible on [0, length]; they are in the ball of the first."""
-    powers, rest = polynomial.coeffs(), arb(0)
-    while powers and (more := (rest + abs(powers[-1]) * length ** (len(powers) - 1)).upper()) <= negligible:
-        rest = more
-        powers.pop()
-    return arb_poly([powers[0] + arb(0, rest), *powers[1:]]) if powers else arb_poly()
-
-
-def _split(polynomial: arb_poly) -> tuple[tuple[arb, ...], arb]:
-    """The middles of the coefficients, and the sum of the radii."""
-    coefficients = polynomial.coeffs() or [arb(0)]
-    return tuple(c.mid() for c in coefficients), sum((c.rad() for c in coefficients), arb(0)).upper()
 
 
 @dataclass(frozen=True)
@@ -202,12 +139,24 @@ class _Candidate:
     double: float
     reached: bool
 
+    @classmethod
+    def from_piece(cls, piece: Piece, t: fmpq, value: arb) -> _Candidate:
+        """A value at t, at a double in the piece; where none is, or it is the limit at its end, at the jump behind."""
+        tau = piece.start + piece.length * (1 + t) / 2
+        exact = piece.begin if piece.from_zero and t == -1 else value
+        first, after = not_below(piece.start), not_below(piece.end)
+        if piece.last:
+            return cls(exact, tau, max(nearest(tau), first), True)
+        if t < 1 and first < after:
+            return cls(exact, tau, min(max(nearest(tau), first), nextafter(after, 0.0)), True)
+        return cls(exact, tau, after, False)
+
     @property
     def order(self) -> tuple[float, bool, fmpq]:
         return self.double, not self.reached, self.tau
 
 
-def _extremes_of(pieces: Sequence[_Piece], size: arb) -> Range | None:
+def _extremes_of(pieces: Sequence[Piece], size: arb) -> Range | None:
     """The least and the greatest value; None where the balls are too large to tell. No value is beyond `size`."""
     screen = _Screen(pieces, size)
     scale = screen.scale
@@ -229,7 +178,7 @@ def _extreme(found: _Candidate, sign: int, scale: arb, rests: bool) -> TrueExtre
 class _Screen:
     """All pieces in doubles, divided by a power of 2 that makes them moderate."""
 
-    def __init__(self, pieces: Sequence[_Piece], size: arb) -> None:
+    def __init__(self, pieces: Sequence[Piece], size: arb) -> None:
         self._pieces = pieces
         mantissa, exponent = (int(part) for part in size.man_exp())
         self._unit = arb(2) ** (mantissa.bit_length() + exponent)
@@ -265,7 +214,7 @@ class _Screen:
         """A lower bound of the largest absolute value."""
         return self.greatest.max(-self.least)
 
-    def candidates(self, sign: int) -> list[_Piece]:
+    def candidates(self, sign: int) -> list[Piece]:
         """The pieces, in order, that may hold the greatest (`sign` 1) or the least (-1) value."""
         chosen = np.arange(len(self._pieces))
         for points in _POINTS:
@@ -277,12 +226,12 @@ class _Screen:
         return [self._pieces[k] for k in chosen.tolist()]
 
 
-def _first(pieces: Sequence[_Piece], sign: int, low: arb, scale: arb) -> _Candidate:
+def _first(pieces: Sequence[Piece], sign: int, low: arb, scale: arb) -> _Candidate:
     """The greatest value of pieces (of their negatives: `sign` -1), at least `low`, where it first is taken."""
     found: list[_Candidate] = []
     for piece in pieces:
         for value, t in _tops([sign * c for c in piece.coefficients], piece.radius, low, scale * _FLAT):
-            found.append(piece.candidate(t, value))
+            found.append(_Candidate.from_piece(piece, t, value))
             low = low.max(found[-1].value.lower())
     equal = low - scale * _EQUAL
     return min((each for each in found if each.value.upper() >= equal), key=lambda each: each.order)
@@ -339,7 +288,7 @@ def _trim(polynomial: arb_poly, radius: arb, flat: arb) -> tuple[arb_poly, arb]:
         rest = more
         powers.pop()
     with ctx.workprec(_bits(powers, flat)):
-        middles, lost = _split(arb_poly([+c for c in powers]))
+        middles, lost = split(arb_poly([+c for c in powers]))
     return arb_poly(list(middles)), (radius + rest + lost).upper()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -67,3 +67,24 @@ def _pieces(bar: Bar, places: tuple[fmpq, ...], first: int) -> list[Bar]:
         )
         for k in range(len(edges) - 1)
     ]
+
+
+class CutNetwork:
+    """A network that is cut at places (bar, part of it), and once more where all points of a mode may be at rest."""
+
+    def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
+        self._cuts = [cut(network, places)]
+        if not network.parallel_bars:  # where cuts would make rings
+            self._cuts.append(cut(network, places, aside=True))
+
+    @property
+    def cut(self) -> Cut:
+        """The network as it is cut."""
+        return self._cuts[0]
+
+    def cut_again(self) -> bool:
+        """Go on with the network that is cut once more, if it has not been."""
+        if not self._cuts[1:]:
+            return False
+        del self._cuts[0]
+        return True

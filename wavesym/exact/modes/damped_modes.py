@@ -16,11 +16,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, ctx
 from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
-from wavesym.exact.modes.cuts import Cut, cut
+from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.shape import Mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
@@ -54,18 +54,8 @@ def remove_dashpots(network: Network) -> Network:
     )
 
 
-class DampedSpectrum:
+class DampedSpectrum(CutNetwork):
     """The modes of a network with dashpots that is cut at places (bar, part of it)."""
-
-    def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
-        self._cuts = [cut(network, places)]
-        if not network.parallel_bars:  # where cuts would make rings
-            self._cuts.append(cut(network, places, aside=True))
-
-    @property
-    def cut(self) -> Cut:
-        """The network as it is cut."""
-        return self._cuts[0]
 
     def first(self, count: int) -> list[Mode]:
         """About the first `count` modes, by the absolute values of their frequencies, with real parts of at least 0.
@@ -77,8 +67,7 @@ class DampedSpectrum:
         guesses = estimate_frequencies(stiffness, count) if stiffness.points else np.zeros(1, complex)
         found = _all_proved(stiffness, guesses) if stiffness.points else [None]
         for k in (k for k, mode in enumerate(found) if mode is None):
-            if self._cuts[1:]:  # all points may be at rest
-                del self._cuts[0]
+            if self.cut_again():  # all points may be at rest
                 return self.first(count)
             if np.count_nonzero(np.abs(guesses - guesses[k]) < _MEETING * abs(guesses[k])) > 1:
                 raise UnservedError(

@@ -8,7 +8,7 @@ import numpy as np
 from flint import arb, ctx, fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.exact.modes.cuts import Cut, cut
+from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.equal_frequencies import WIDE, common_frequency, prove_cluster
 from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, Vector
@@ -60,7 +60,7 @@ def frequencies(network: Network, count: int) -> tuple[arb, ...]:
     return tuple(mode.frequency for mode in Spectrum(network).first(count))
 
 
-class Spectrum:
+class Spectrum(CutNetwork):
     """The modes of an undamped network that is cut at places (bar, part of it), as many as are asked for.
 
     UnservedError as for `frequencies`.
@@ -68,15 +68,8 @@ class Spectrum:
 
     def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
         refuse_damped(network)
-        self._cuts = [cut(network, places)]
-        if not network.parallel_bars:  # where cuts would make rings
-            self._cuts.append(cut(network, places, aside=True))
+        super().__init__(network, places)
         self._found: list[Mode] = []
-
-    @property
-    def cut(self) -> Cut:
-        """The network as it is cut."""
-        return self._cuts[0]
 
     def first(self, count: int) -> list[Mode]:
         """The first `count` modes, by their frequencies; all where there are fewer."""
@@ -86,11 +79,10 @@ class Spectrum:
         try:
             self._found += _modes(stiffness, count, len(self._found))
         except CoincidenceError as error:
-            if not self._cuts[1:]:
+            if not self.cut_again():
                 beside = " (a mass, however small, at an end of the rod with a spring beside it helps)"
                 helps = beside if self.cut.network.parallel_bars else " (take pieces or march)"
                 raise UnservedError(f"system: {error}, which modes cannot tell apart{helps}") from None
-            del self._cuts[0]
             self._found = []
             return self.first(count)
         return self._found[:count]
