@@ -1,4 +1,4 @@
-"""Other methods on any chain: some take all of them, the others say in one line why they do not."""
+"""Other methods on any network: orders away from fronts, faults that are seen, and refusals in one line."""
 
 import math
 from dataclasses import replace
@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from flint import fmpq
 
 from wavesym.api import evaluator
 from wavesym.errors import UnservedError
@@ -13,6 +14,7 @@ from wavesym.exact.reference import Reference
 from wavesym.lab.chart.subjects import unsupported_methods
 from wavesym.methods import characteristics, differences, discrete, elements, laplace
 from wavesym.methods.catalogue import METHODS
+from wavesym.methods.network_problem import problem_of
 from wavesym.scene import Scene, lower
 
 CHARACTERISTICS = (characteristics.SECOND, characteristics.FOURTH)
@@ -196,3 +198,65 @@ def test_none_takes_contacts_that_open(method, system):
     given = Scene(name="scene", system=system, output={"until": 5, "velocity": ["1/2"]})
     with pytest.raises(UnservedError, match=r"the contact at [12] opens and closes"):
         method.state(lower(given))
+
+
+BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "ground"}
+
+
+def named(system, load, **output):
+    return Scene(name="scene", system=system, load=load, output={"until": 5, **output})
+
+
+def test_characteristics_cut_the_grid_where_a_load_jumps(monkeypatch):
+    """Times that no uniform grid has do not cost the order."""
+    load = [{"times": ["1/7", "13/3"], "a": [1, "1/2"], "b": [0, "-1/3"]}]
+    monkeypatch.setitem(SCENES, "odd", named(BUILDING, load, strain=["1/3"], displacement=[2]))
+    first, last = (np.max(errors(characteristics.FOURTH, "odd", n)) for n in (40, 160))
+    assert math.log(first / last, 4) > 3.4
+
+
+@pytest.mark.parametrize("method", CHARACTERISTICS, ids=lambda method: method.name)
+@pytest.mark.parametrize("count", [501, 1001, 1501, 457], ids=["on the grid", "half steps", "thirds", "neither"])
+def test_characteristics_read_off_the_same_from_any_samples(method, count):
+    """Even samples take short cuts; uneven ones, the same and one more, do not."""
+    load = [{"times": [0, "5/2"], "a": [1, "1/2"], "b": [0, "-1/3"]}]
+    building = named(BUILDING, load, strain=["1/3", "1/2"], velocity=["3/2"], displacement=[1])
+    evaluate = method.prepare(method.state(lower(building)), 100)
+    taus = np.linspace(0, 5, count)
+    np.testing.assert_allclose(evaluate(taus), evaluate(np.append(taus, 5.0))[:, :-1], rtol=0, atol=1e-11)
+
+
+DRIVE = named(
+    {"type": "drive", "m": 2, "kappa": [1, "1/2"], "inertia": [1, 2, "1/2"]},
+    [{"body": 2, "times": [0, "1/2"], "steps": [1, "-1/2"]}],
+    velocity=[1],
+    acceleration=[1, 2],
+    force=["1/2"],
+    drift=[2],
+)
+
+
+@pytest.mark.parametrize(
+    ("method", "resolution", "allowed"),
+    [(characteristics.FOURTH, 100, 1e-6), (differences.METHOD, 300, 1e-3), (elements.NEWMARK, 160, 5e-2)],
+    ids=["characteristics", "differences", "elements"],
+)
+def test_outputs_are_sums_of_what_methods_solve_for(method, resolution, allowed):
+    """Away from fronts, where all of them are as good as they are; times factors, as in physical scenes."""
+    model = lower(DRIVE)
+    model = model.watching(replace(probe, factor=fmpq(10**k)) for k, probe in enumerate(model.probes))
+    reference = Reference(model)
+    taus = np.linspace(0.1, 4.9, 97)
+    taus = taus[np.min(np.abs(taus[:, np.newaxis] - np.array(reference.breakpoints())), axis=1) > 0.1]
+    exact = np.array(reference.values(taus.tolist()))
+    problem = method.state(model)
+    assert not problem.reads_outputs
+    found = method.prepare(problem, resolution)(taus)
+    assert np.all(np.abs(found - exact) <= allowed * np.max(np.abs(exact), axis=1, keepdims=True))
+
+
+def test_what_is_read_as_it_is_costs_nothing_more():
+    model = lower(DRIVE)
+    problem = problem_of(model.watching(model.probes[:1]))
+    values = np.ones((1, 3))
+    assert problem.outputs(values, np.arange(3.0)) is values

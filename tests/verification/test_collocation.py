@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from flint import fmpq
 from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.special import eval_laguerre
 
+from tests.support.drawn import scenes
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
@@ -132,41 +132,11 @@ def test_what_cannot_be_asked():
             motion.evaluate(at("strain", 0), [tau])
 
 
-numbers = st.sampled_from(["1/3", "1/2", "1/2", "1", "1", "3/4", "2"])
-times = st.lists(st.sampled_from(["0", "1/3", "1/2", "1", "7/4", "5/2"]), min_size=1, max_size=3, unique=True)
-weights = st.sampled_from([1, -1, "1/2", "-2/3"])
-
-
-@st.composite
-def scenes(draw):
-    kind = draw(st.sampled_from(["collision", "drive", "building"]))
-    load = {"times": sorted(draw(times), key=Fraction)}
-    listed = [draw(weights) for _ in load["times"]]
-    if kind == "collision":
-        m, loads = 4, []
-        system = {"velocity": ["1", draw(st.sampled_from(["1", "0", "-1/2"]))], "kappa": [draw(numbers), draw(numbers)]}
-    elif kind == "drive":
-        m = draw(st.integers(1, 3))
-        system = {"kappa": [draw(numbers) for _ in range(m)], "inertia": [draw(numbers) for _ in range(m + 1)]}
-        loads = [load | {"body": draw(st.integers(1, m + 1)), "steps": listed}]
-    else:
-        m = draw(st.integers(2, 3))
-        system = {"kappa": [draw(numbers) for _ in range(m + 1)], "base": draw(st.sampled_from(["force", "ground"]))}
-        loads = [load | {"a": listed, "b": [draw(weights) for _ in listed]}]
-    return scene(
-        {"type": kind, "m": m, **system},
-        loads,
-        until=draw(st.sampled_from(["4", "11/2"])),
-        strain=["1/3", f"{m - 1}-" if m > 1 else 0, m],
-        velocity=["2/7", m],
-        displacement=[0, "5/8"],
-    )
-
-
 @settings(max_examples=12)
 @given(scenes())
 def test_agreement_with_the_reference(scene):
-    for outcome in integrations.collocation(known_outputs(lower(scene))):
+    truth = known_outputs(lower(scene))
+    for outcome in (*integrations.collocation(truth), *integrations.midpoints(truth)):
         assert outcome.passed, outcome
 
 

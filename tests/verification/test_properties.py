@@ -113,37 +113,6 @@ def test_loads_superpose(drawn, data):
     assert_same(tables(made(system, one + other)), windows(made(system, one)), windows(made(system, other)))
 
 
-@settings(max_examples=7)
-@given(loaded(), st.sampled_from([Fraction(2), Fraction(-1, 4), Fraction(8)]))
-def test_loads_scale(drawn, factor):
-    system, load = drawn
-    scaled = tables(made(system, weighed(load, factor)))
-    np.testing.assert_array_equal(scaled, float(factor) * windows(made(system, load)))
-
-
-@settings(max_examples=7)
-@given(loaded(), st.sampled_from([Fraction(1, 4), Fraction(9, 16), Fraction(1), Fraction(5, 2)]))
-def test_later_loads_do_the_same_later(drawn, shift):
-    system, load = drawn
-    later = [{**table, "times": [time + shift for time in table["times"]]} for table in load]
-    waiting = int(16 * shift)
-    found = tables(made(system, later))
-    assert not found[:, :waiting].any()
-    np.testing.assert_array_equal(found[:, waiting:], windows(made(system, load))[:, : len(TAUS) - waiting])
-
-
-@settings(max_examples=7)
-@given(systems(kinds=("building", "drive"), largest=3))
-def test_a_ramp_does_what_a_step_has_done(system):
-    """A ramp is the integral of a step: velocities under the one are displacements under the other."""
-    of = {"body": 1} if system["type"] == "drive" else {}
-    names = ("steps", "ramps") if of else ("a", "b")
-    step, ramp = ({**of, "times": [0], name: [1]} for name in names)
-    displacement = made(system, [step], quantities=("displacement",))
-    velocity = made(system, [ramp], quantities=("velocity",))
-    np.testing.assert_array_equal(tables(velocity), windows(displacement))
-
-
 @settings(max_examples=5)
 @given(systems(kinds=("building",), largest=3))
 def test_the_ground_is_followed_at_once(system):
@@ -198,53 +167,6 @@ def test_reciprocity(system, data):
         return made(system, load, (seen,), ("velocity", "displacement"))
 
     np.testing.assert_array_equal(tables(turning(a, b)), windows(turning(b, a)))
-
-
-@settings(max_examples=7)
-@given(systems(kinds=("drive",)), st.sampled_from([Fraction(2), Fraction(1, 3)]))
-def test_only_ratios_of_inertia_matter(system, factor):
-    load = [{"body": 1, "times": [0], "steps": [1]}]
-    scaled = {**system, "inertia": [factor * each for each in system["inertia"]]}
-    np.testing.assert_array_equal(tables(made(scaled, load)), windows(made(system, load)))
-
-
-@settings(max_examples=7)
-@given(systems(kinds=("collision",)), st.sampled_from([Fraction(3, 2), Fraction(-1)]))
-def test_a_moving_observer_sees_the_same_collision(system, speed):
-    moving = {**system, "velocity": [v + speed for v in system["velocity"]]}
-    places = (Fraction(1, 3), Fraction(2), Fraction(11, 4))
-    seen = np.concatenate([np.zeros((3, len(TAUS))), np.full((3, len(TAUS)), float(speed))])
-    seen = np.concatenate([seen, np.tile(float(speed) * np.array(TAUS), (3, 1))])
-    assert_same(tables(made(moving, [], places)), windows(made(system, [], places)), seen)
-
-
-@settings(max_examples=5)
-@given(st.data())
-def test_bodies_that_move_as_one_do_not_collide(data):
-    system = {"type": "collision", "m": 6, "kappa": data.draw(ratios(3)), "velocity": [Fraction(1, 2)] * 3}
-    strain, velocity, displacement = tables(made(system, [], (Fraction(7, 4),)))
-    assert not strain.any()
-    assert (velocity == 0.5).all()
-    np.testing.assert_array_equal(displacement, 0.5 * np.array(TAUS))
-
-
-@settings(max_examples=7)
-@given(systems(kinds=("drive",), largest=3), st.sampled_from([Fraction(1, 2), Fraction(7)]))
-def test_nothing_is_felt_before_it_arrives(system, factor):
-    """What is done at the first disc is felt at x from tau = x on, and what the disc at m is like from 2 m - x on."""
-    m = system["m"]
-    load = [{"body": 1, "times": [0], "steps": [1]}]
-    heavier = {**system, "inertia": [*system["inertia"][:-1], factor * system["inertia"][-1]]}
-    for x in (Fraction(1, 4), m):
-        found = tables(made(system, load, (x,), ("velocity", "displacement")))
-        other = windows(made(heavier, load, (x,), ("velocity", "displacement")))
-        taus = np.array(TAUS)
-        assert not found[:, taus < x].any()
-        assert found[:, taus > x].all()
-        same = taus <= 2 * m - x
-        np.testing.assert_array_equal(found[:, same], other[:, same])
-        late = (taus > 2 * m - x) & (taus < 2 * m - x + 1)
-        assert (found[:, late] != other[:, late]).all()
 
 
 @settings(max_examples=7)
