@@ -177,7 +177,6 @@ _NAMED_OTHERWISE = {
     "wavesym/scene/scene.py: with_": "what users write",
     "wavesym/papers/reader.py: above_alone": "a rule of the grammar",
     "wavesym/papers/reader.py: below": "a rule of the grammar",
-    "wavesym/targets/c/closed.py: closed": "the closed form",
 }
 _OTHER_ROOMS = ("wavesym/programs", "wavesym/exact/contacts")
 """Rooms that are not yet named by the field's words."""

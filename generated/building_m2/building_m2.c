@@ -1,8 +1,4 @@
-/* building_m2: made by wavesym; see building_m2.h.
- *
- * Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p]. Outputs that may jump
- * or bend at the same times share a grid of pieces.
- */
+/* building_m2: made by wavesym; see building_m2.h. */
 #include "building_m2.h"
 
 #if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
@@ -70,8 +66,6 @@ enum { LANES = sizeof(slice) / sizeof(real) };
 #define UNROLLED
 #endif
 
-enum { GRIDS = 1 };
-
 const char building_m2_output_name[BUILDING_M2_OUTPUTS][17] = {
     "strain@0.5",
     "strain@1.5",
@@ -80,6 +74,8 @@ const char building_m2_output_name[BUILDING_M2_OUTPUTS][17] = {
     "displacement@0.5",
     "displacement@1.5",
 };
+
+enum { GRIDS = 1, STEPS = 2 };
 
 /* Of grid g: its outputs member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces
  * start at first_piece[g] + g, as there is one more, the end of the last piece. */
@@ -108,7 +104,7 @@ static const real centre[] = {
     11.583333333333334, 11.75, 11.916666666666668
 };
 
-/* Where to look for tau: from the piece at part (int)(tau * scale) of the grid, 2 pieces onward at most. */
+/* Where to look for tau: from the piece at part (int)(tau * scale) of the grid, STEPS pieces onward at most. */
 static const int first_part[] = {
     0, 51
 };
@@ -458,6 +454,9 @@ static const real coefficient[] = {
 
 /* Up to here numbers of samples are exact. */
 static const real exact = 9007199254740992.0;
+
+/* Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p]. Outputs that may jump
+ * or bend at the same times share a grid of pieces. */
 
 /* What is computed in vectors is apart, so that these stay in registers. */
 #if VECTOR

@@ -1,8 +1,4 @@
-/* collision_m4: made by wavesym; see collision_m4.h.
- *
- * Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p]. Outputs that may jump
- * or bend at the same times share a grid of pieces.
- */
+/* collision_m4: made by wavesym; see collision_m4.h. */
 #include "collision_m4.h"
 
 #if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
@@ -70,8 +66,6 @@ enum { LANES = sizeof(slice) / sizeof(real) };
 #define UNROLLED
 #endif
 
-enum { GRIDS = 2 };
-
 const char collision_m4_output_name[COLLISION_M4_OUTPUTS][17] = {
     "strain@1-",
     "strain@2",
@@ -84,6 +78,8 @@ const char collision_m4_output_name[COLLISION_M4_OUTPUTS][17] = {
     "displacement@3",
     "displacement@4",
 };
+
+enum { GRIDS = 2, STEPS = 2 };
 
 /* Of grid g: its outputs member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces
  * start at first_piece[g] + g, as there is one more, the end of the last piece. */
@@ -116,7 +112,7 @@ static const real centre[] = {
     9.583333333333334, 9.75, 9.916666666666668
 };
 
-/* Where to look for tau: from the piece at part (int)(tau * scale) of the grid, 2 pieces onward at most. */
+/* Where to look for tau: from the piece at part (int)(tau * scale) of the grid, STEPS pieces onward at most. */
 static const int first_part[] = {
     0, 43, 86
 };
@@ -551,6 +547,9 @@ static const real coefficient[] = {
 
 /* Up to here numbers of samples are exact. */
 static const real exact = 9007199254740992.0;
+
+/* Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p]. Outputs that may jump
+ * or bend at the same times share a grid of pieces. */
 
 /* What is computed in vectors is apart, so that these stay in registers. */
 #if VECTOR

@@ -1,8 +1,4 @@
-/* drive_m1: made by wavesym; see drive_m1.h.
- *
- * Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p]. Outputs that may jump
- * or bend at the same times share a grid of pieces.
- */
+/* drive_m1: made by wavesym; see drive_m1.h. */
 #include "drive_m1.h"
 
 #if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
@@ -70,8 +66,6 @@ enum { LANES = sizeof(slice) / sizeof(real) };
 #define UNROLLED
 #endif
 
-enum { GRIDS = 2 };
-
 const char drive_m1_output_name[DRIVE_M1_OUTPUTS][15] = {
     "strain@0",
     "strain@0.5",
@@ -79,6 +73,8 @@ const char drive_m1_output_name[DRIVE_M1_OUTPUTS][15] = {
     "displacement@0",
     "displacement@1",
 };
+
+enum { GRIDS = 2, STEPS = 2 };
 
 /* Of grid g: its outputs member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces
  * start at first_piece[g] + g, as there is one more, the end of the last piece. */
@@ -111,7 +107,7 @@ static const real centre[] = {
     9.583333333333334, 9.75, 9.916666666666668
 };
 
-/* Where to look for tau: from the piece at part (int)(tau * scale) of the grid, 2 pieces onward at most. */
+/* Where to look for tau: from the piece at part (int)(tau * scale) of the grid, STEPS pieces onward at most. */
 static const int first_part[] = {
     0, 43, 86
 };
@@ -342,6 +338,9 @@ static const real coefficient[] = {
 
 /* Up to here numbers of samples are exact. */
 static const real exact = 9007199254740992.0;
+
+/* Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p]. Outputs that may jump
+ * or bend at the same times share a grid of pieces. */
 
 /* What is computed in vectors is apart, so that these stay in registers. */
 #if VECTOR

@@ -120,8 +120,6 @@ def test_tables_are_written_as_they_are_declared():
     assert first.endswith("and delays. */\nstatic const int track[] = {\n    7\n};\n")
     assert first.count("/*") == 2
     assert second.endswith("where they begin in it. */\nstatic const real span = 2.0;")
-    *_, lanes = tables_text("modes/tables.h", {"moved_row": ("0",)}, words={"LANES": "4"})
-    assert lanes.startswith("/* The outputs that y counts in; 4 of them at a time,")
 
 
 @pytest.mark.parametrize("of", SOURCES, ids="-".join)

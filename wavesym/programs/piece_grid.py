@@ -122,7 +122,11 @@ class Pieces(Bounded):
                 c for piece in pieces for power in reversed([*zip(*piece, strict=True)]) for c in power
             ),
         }
-        constants: dict[str, float] = {"steps": max(grid.steps for grid in grids)}
+        constants: dict[str, float] = {
+            "grids": len(grids),
+            "steps": max(grid.steps for grid in grids),
+            "exact": self.real.nearest(1 / self.real.roundoff),
+        }
         return Program("pieces", self.real, self.tau_max, self.outputs, tables, constants, self.bytes, provenance)
 
 

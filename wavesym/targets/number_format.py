@@ -13,13 +13,12 @@ from wavesym.numbers.reals import DOUBLE, SINGLE, Real
 class NumberFormat:
     """A format as languages know it.
 
-    `c_type`, `c_suffix` (of literals) and `c_exponential` are for C, `numpy_type` is the name of NumPy's type,
+    `c_type` and `c_suffix` (of literals) are for C, `numpy_type` is the name of NumPy's type,
     `largest` the largest finite number. `shortest` writes a number as the shortest decimal that reads back to it.
     """
 
     c_type: str
     c_suffix: str
-    c_exponential: str
     numpy_type: str
     largest: float
     shortest: Callable[[float], str]
@@ -36,8 +35,8 @@ def _shortest_single(value: float) -> str:
 
 
 _FORMATS = {
-    DOUBLE.name: NumberFormat("double", "", "exp", "float64", _largest(DOUBLE), repr),
-    SINGLE.name: NumberFormat("float", "f", "expf", "float32", _largest(SINGLE), _shortest_single),
+    DOUBLE.name: NumberFormat("double", "", "float64", _largest(DOUBLE), repr),
+    SINGLE.name: NumberFormat("float", "f", "float32", _largest(SINGLE), _shortest_single),
 }
 
 

@@ -3,6 +3,18 @@
  * the first empty line. */
 #include "tables.h"
 
+/* The closed form: at tau = start + (little less than one ulp, `excess`) an output gains a pulse,
+ *
+ *     sum over its families of exp(-rate*w) * (coefficient[0] + coefficient[1]*w + ...),  w = tau - arrival,
+ *
+ * the increments of (4.9), (4.10), (4.12) with the waves of its rod, the loads and the output's own factors merged. */
+#include <math.h>
+
+static real exponential(real x)
+{
+    return sizeof(real) < sizeof(double) ? (real)expf((float)x) : (real)exp((double)x);
+}
+
 static real value(int output, real tau)
 {
     real sum = 0;

@@ -1,11 +1,7 @@
-/* tables.h: stands for what closed.c.j2 writes above the text of closed.c, where that is read by itself. */
+/* tables.h: stands for what plain.c.j2 writes above the text of closed.c, where that is read by itself. */
 #include "../name.h"
 
-#include <math.h>
-
 #include "../real.h"
-
-real exponential(real x);
 
 /* The pulses of output o are first_pulse[o] ... first_pulse[o + 1] - 1, in order of start; so on for families, powers. */
 extern const int first_pulse[];

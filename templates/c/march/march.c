@@ -5,6 +5,20 @@
 #include "../series.h"
 #include "../joint.c"
 
+/* All delays are multiples of one step, so what arrives at a joint on a window (one step long) was sent on
+ * a window before, and each joint needs to know no more. A window is cut into panels at the instants of loads; on a panel
+ * waves are Chebyshev series in u, -1 <= u <= 1. A track is what is sent into an end of a bar.
+ *
+ * A joint without state scatters: a matrix makes what it sends of what arrives. The others have velocities q of their
+ * points and send ratio q - a; where a arrives, push a acts. A body, one mass without springs, solves
+ *
+ *     q'/rate + q = p,    p = drive load + the sum of push a:
+ *
+ * integrated once, with q_0 and p_0 counted twice, this is q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) - p_(k+1));
+ * slack, ratios, loss, first and last are its elimination. A block, any other joint with a state x (velocities of masses,
+ * lengthening of springs), has a matrix for each panel:
+ * (coefficients of what acts on its points, x at the start) -> (those of the velocities q, x at the end less x). */
+
 /* A march: `waves` has a ring for each track, its last windows; x are the states of the joints. */
 typedef struct march {
     int window;

@@ -1,4 +1,4 @@
-/* tables.h: stands for what march.c.j2 writes above the text of march.c, where that is read by itself. */
+/* tables.h: stands for what plain.c.j2 writes above the text of march.c, where that is read by itself. */
 #define TABLES
 #include "../name.h"
 

@@ -3,6 +3,16 @@
  * the first empty line. */
 #include "tables.h"
 
+/* A mode is an oscillator, y'' + 2 damping frequency y' + frequency^2 y = push * load. Over one step with a load that is
+ * linear from `before` to `now` it goes on exactly,
+ *
+ *     y = p11 y + p12 v + one0 before + one1 now,
+ *     v = p21 y + p22 v + speed0 before + speed1 now,
+ *
+ * and an output is a sum of the modes' y, of their v, and of the loads and their integrals. */
+
+typedef name_state stream;
+
 /* Inner loops are unrolled, so that their sums stay in registers; not where size counts more than speed. */
 #if defined(__OPTIMIZE_SIZE__)
 #define UNROLLED

@@ -1,4 +1,4 @@
-/* tables.h: stands for what modes.c.j2 writes above the text of modes.c, where that is read by itself. */
+/* tables.h: stands for what plain.c.j2 writes above the text of modes.c, where that is read by itself. */
 #include "../name.h"
 
 enum { NAME_MODES = 24, NAME_LOADS = 2 };
@@ -6,12 +6,11 @@ enum { NAME_MODES = 24, NAME_LOADS = 2 };
 #include "state.h"
 
 #include "../real.h"
-typedef name_state stream;
 
 enum { OUTPUTS = NAME_OUTPUTS, MODES = NAME_MODES, LOADS = NAME_LOADS, LANES = 8, MOVED = 2, MOVING = 1 };
 
-void name_init(stream *state);
-int name_step(stream *state, real dtau, const real *load, real *out);
+void name_init(name_state *state);
+int name_step(name_state *state, real dtau, const real *load, real *out);
 
 extern const real spacing;
 /* A step outside of these is not the spacing, rounded. */

@@ -3,6 +3,9 @@
  * the first empty line. */
 #include "tables.h"
 
+/* Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p]. Outputs that may jump
+ * or bend at the same times share a grid of pieces. */
+
 /* What is computed in vectors is apart, so that these stay in registers. */
 #if VECTOR
 #define APART static __attribute__((noinline))

@@ -1,10 +1,10 @@
-/* tables.h: stands for what pieces.c.j2 writes above the text of pieces.c, where that is read by itself. */
+/* tables.h: stands for what plain.c.j2 writes above the text of pieces.c, where that is read by itself. */
 #include "../name.h"
 
 #include "../real.h"
 #include "../vectors.h"
 
-enum { GRIDS = 2 };
+enum { GRIDS = 2, STEPS = 1 };
 
 /* Of grid g: its outputs member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces
  * start at first_piece[g] + g, as there is one more, the end of the last piece. */

@@ -15,6 +15,9 @@ from wavesym.targets.target import Target
 # what a stream's bound of errors is for
 _UNDER = {"spacing": "under the scene's loads", "panel": "under a step of each load at tau = 0"}
 
+_PLAIN = ("closed", "pieces", "march")
+"""Kinds of programs that declare no more in NAME.h than all do; each of the others is a file here."""
+
 
 class CTarget:
     """C as a target."""
@@ -24,7 +27,7 @@ class CTarget:
     def files(self, description: Description, program: Program) -> dict[str, str]:
         if program.numpy_only:
             raise UnservedError(program.numpy_only)
-        kernel: Any = import_module(f"{__name__}.{program.kernel}")  # of those that there are only this one
+        kernel: Any = import_module(f"{__name__}.{'plain' if program.kernel in _PLAIN else program.kernel}")
         if program.laws and (not program.step or program.has_equal_steps):
             files: dict[str, str] = kernel.files(description, program)
             return files

@@ -7,20 +7,10 @@ from dataclasses import dataclass
 from wavesym.programs.modes.modal_system import LANES
 from wavesym.programs.program import Program
 from wavesym.rendering import render
+from wavesym.targets.c import plain
 from wavesym.targets.c.kernel import kernel
-from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, constants
 from wavesym.targets.literals import c_constants
-
-
-@dataclass(frozen=True)
-class CModes:
-    """templates/c/modes/modes.c.j2."""
-
-    scene: Description
-    tables: str
-    numbers: str
-    kernel: str
 
 
 @dataclass(frozen=True)
@@ -35,22 +25,8 @@ class CModesStream:
 
 def source(scene: Description, program: Program) -> str:
     """NAME.c."""
-    context = CModes(
-        scene=scene,
-        tables=program_tables(
-            "modes/tables.h",
-            scene,
-            program,
-            {
-                "lanes": str(LANES),
-                "moved": str(len(program.tables["moved_row"])),
-                "moving": str(len(program.tables["moving_row"])),
-            },
-        ),
-        numbers=kernel("real.h", scene),
-        kernel=kernel("modes/modes.c", scene),
-    )
-    return render("c/modes/modes.c.j2", context)
+    rows = {name: str(len(program.tables[f"{name}_row"])) for name in ("moved", "moving")}
+    return plain.source(scene, program, {"lanes": str(LANES), **rows})
 
 
 def streaming(scene: Description, program: Program) -> str:

@@ -60,24 +60,17 @@ def program_tables(file: str, scene: Description, program: Program, constants: M
 def tables_text(
     file: str,
     tables: Mapping[str, Lines],
-    constants: Mapping[str, str] | None = None,
-    words: Mapping[str, str] | None = None,
+    constants: Mapping[str, str],
 ) -> list[str]:
-    """The same with values, each paragraph as text: what has none is left out, and comments of nothing else.
-
-    In comments `words` are replaced.
-    """
-    values = tables, constants or {}
-    return ["\n".join(_write(items, *values, words or {})) for items in declarations(file)]
+    """The same with values, each paragraph as text: what has none is left out, and comments of nothing else."""
+    return ["\n".join(_write(items, tables, constants)) for items in declarations(file)]
 
 
-def _write(
-    items: list[str | Declaration], tables: Mapping[str, Lines], constants: Mapping[str, str], words: Mapping[str, str]
-) -> Iterator[str]:
+def _write(items: list[str | Declaration], tables: Mapping[str, Lines], constants: Mapping[str, str]) -> Iterator[str]:
     comment = ""
     for item in items:
         if isinstance(item, str) and item.startswith("/*"):
-            comment = re.sub(r"\b[A-Z]+\b", lambda word: words.get(word[0], word[0]), item)
+            comment = item
             continue
         text = _NUMBER.sub(lambda of: _enumerate_constant(of, constants), item) if isinstance(item, str) else ""
         if isinstance(item, Declaration):
