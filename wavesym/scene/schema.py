@@ -10,16 +10,7 @@ from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 from wavesym.fields.table import SceneTable
 from wavesym.scene.outputs import Output
 from wavesym.scene.physical.chain import PhysicalChain
-from wavesym.scene.physical.chain_parts import (
-    ContactKeys,
-    JointKeys,
-    LinkKeys,
-    LongitudinalRod,
-    MassKeys,
-    MotionKeys,
-    ShearRod,
-    TorsionalRod,
-)
+from wavesym.scene.physical.chain_parts import OTHERS, RODS
 from wavesym.scene.physical.scale import UnitsTable
 from wavesym.scene.report import ReportTable
 from wavesym.systems import PHYSICAL, SYSTEMS
@@ -29,7 +20,8 @@ Tables = tuple[type[SceneTable], ...]
 _SYSTEMS: Tables = (*SYSTEMS.values(), *PHYSICAL.values(), PhysicalChain)
 _PARTS: Tables = (
     *(RodPart, MassPart, JointPart, MotionPart, LinkPart, ContactPart),
-    *(LongitudinalRod, ShearRod, TorsionalRod, MassKeys, JointKeys, MotionKeys, LinkKeys, ContactKeys),
+    *RODS.values(),
+    *OTHERS.values(),
 )
 
 

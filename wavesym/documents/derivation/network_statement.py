@@ -102,7 +102,7 @@ class _Author:
     def node(self) -> Iterator[str]:
         law = node_law()
         own = [(law.own.a, "q'"), (law.own.b, "q")]
-        yield self._balance(own, [(law.left, "a"), (law.right, "b"), (law.load, "S")])
+        yield self.n.balance(own, [(law.left, "a"), (law.right, "b"), (law.load, "S")])
 
     def end(self) -> Iterator[str]:
         """What a rod's end brings to a joint: the law of a node taken apart."""
@@ -110,13 +110,13 @@ class _Author:
         for radiates, arrives in dict.fromkeys(zip(rule.radiates, rule.arrives, strict=True)):
             ratio, impedance = Symbol("n"), Symbol("Z")
             brought = [(expression(radiates) * ratio**2 * impedance, "q")]
-            yield self._balance(brought, [(expression(arrives) * ratio * impedance, "a")])
+            yield self.n.balance(brought, [(expression(arrives) * ratio * impedance, "a")])
 
     def factor(self) -> Iterator[str]:
         """What D + q, a factor of a polynomial, does to exponentials times powers."""
         law = weights(Operator(Integer(1), _Q))
-        own = [(law.same, self._coefficient_name("y", "g,k")), (law.next_power, self._coefficient_name("y", "g,k+1"))]
-        yield self._balance(own, [(Integer(1), self._coefficient_name("s", "g,k"))])
+        own = [(law.same, self.n.coefficient_name("y", "g,k")), (law.next_power, self.n.coefficient_name("y", "g,k+1"))]
+        yield self.n.balance(own, [(Integer(1), self.n.coefficient_name("s", "g,k"))])
 
     def powers(self) -> Iterator[str]:
         """What the law of a joint does to powers alone: the ansatz at rate 0."""
@@ -124,8 +124,8 @@ class _Author:
         law = weights(Operator(mass, damping))
         going_up = (law.next_power / mass).cancel(), f"M {self.n.term('q', POWER + 1)}"
         own = [going_up, (law.same.subs(RATE, 0), self.n.term("q", POWER))]
-        yield self._balance([*own, (Symbol("K"), self.n.term("u", POWER))], [(Integer(1), self.n.term("s", POWER))])
-        yield self._balance([(POWER + 1, self.n.term("u", POWER + 1))], [(Integer(1), self.n.term("q", POWER))])
+        yield self.n.balance([*own, (Symbol("K"), self.n.term("u", POWER))], [(Integer(1), self.n.term("s", POWER))])
+        yield self.n.balance([(POWER + 1, self.n.term("u", POWER + 1))], [(Integer(1), self.n.term("q", POWER))])
 
     def kind(self, kind: Kind) -> JointKind:
         joints = (self._joint(number) for number in kind.numbers)
@@ -161,12 +161,12 @@ class _Author:
         for i in range(len(law.mass)):
             if law.motions[i] is not None:
                 prime = "'" if law.motions[i] == "acceleration" else ""
-                yield self._balance([(Integer(1), self.n.with_index("q", i + 1) + prime)], self._force(made, i))
+                yield self.n.balance([(Integer(1), self.n.with_index("q", i + 1) + prime)], self._force(made, i))
                 continue
             own = [(_expression(law.mass[i]), self.n.with_index("q", i + 1) + "'")]
             for letter, matrix in (("q", law.damping), ("u", law.stiffness)):
                 own += [(_expression(c), self.n.with_index(letter, j + 1)) for j, c in enumerate(matrix[i])]
-            yield self._balance(own, [*self._arriving(made, i), *self._force(made, i)])
+            yield self.n.balance(own, [*self._arriving(made, i), *self._force(made, i)])
 
     def _arriving(self, made: LoneJoint, i: int) -> Iterator[tuple[Expr, str]]:
         """2 n Z a of the rod ends at a point."""
@@ -234,7 +234,7 @@ class _Author:
         for i in sorted((*law.heavy, *law.light)):
             if moved := list(self._motion_terms(made, i)):
                 all_of_it = [*self._arriving(made, i), *self._force(made, i), *moved]
-                yield self._balance([(Integer(1), self.n.with_index("s", i + 1))], all_of_it)
+                yield self.n.balance([(Integer(1), self.n.with_index("s", i + 1))], all_of_it)
         for i in sorted((*law.heavy, *law.light)):
             terms = []
             for j in sorted((*law.heavy, *law.light)):
@@ -258,12 +258,6 @@ class _Author:
         names = (self.n.expression(Symbol(variable) ** k) if k else "" for k in powers)
         terms = zip(highest_first, names, strict=True)
         return self.n.sum_terms(term for term in terms if term[0] != 0)
-
-    def _balance(self, left: Iterable[tuple[Expr, str]], right: Iterable[tuple[Expr, str]]) -> str:
-        return " = ".join(self.n.sum_terms(term for term in side if term[0] != 0) for side in (left, right))
-
-    def _coefficient_name(self, name: str, place: str) -> str:
-        return self.n.coefficient_name(name, place)
 
     def _symbol(self, name: str) -> str:
         letter, _, index = name.partition("_")

@@ -75,6 +75,10 @@ class Text:
             written += (" - " if negative else " + ") + term
         return ("-" if written.startswith(" - ") else "") + written[3:] or "0"
 
+    def balance(self, left: Iterable[tuple[Expr, str]], right: Iterable[tuple[Expr, str]]) -> str:
+        """An equation of two sums of factor times name, without the terms whose factor is 0."""
+        return " = ".join(self.sum_terms(term for term in side if term[0] != 0) for side in (left, right))
+
     def clock(self, lag: Expr | int) -> str:
         """(z - lag)."""
         return "(z)" if lag == 0 else f"(z-{self.expression(lag)})"

@@ -47,10 +47,6 @@ class Writer:
             return ""
         return self.n.place(first, last, step)
 
-    def _balance(self, left: Iterable[tuple[Expr, str]], right: Iterable[tuple[Expr, str]]) -> str:
-        sides = (self.n.sum_terms(term for term in side if term[0] != 0) for side in (left, right))
-        return " = ".join(sides)
-
     def condition(self, node: Node, x: Expr, at: Place) -> Iterator[str]:
         """Continuity and balance at the node at x."""
         before, after = at(x), at(x + 1)
@@ -69,7 +65,7 @@ class Writer:
         for load in node.loads:
             symbol = self._source(load.kind, load.number, at)
             right += [(at(c), symbol + self.n.power("tau", k)) for k, c in enumerate(load.coefficients)]
-        yield self._balance(left, right)
+        yield self.n.balance(left, right)
 
     def rod(self, kind: RodKind, at: Place) -> Iterator[str]:
         """(4.2) with the constants of Table 1, and velocity and strain in the rod and at its ends."""
@@ -81,7 +77,7 @@ class Writer:
             (at(rod.velocity), self.n.expression(TAU)),
         ]
         yield self.n.constants(at(number), at(rod.tau0), at(rod.x0), at(rod.velocity))
-        yield self._balance([(Integer(1), self.n.with_index("U", at(number)))], terms)
+        yield self.n.balance([(Integer(1), self.n.with_index("U", at(number)))], terms)
         for x, outgoing in ((number - 1, "f"), (number, "g")):
             yield from self._end(side(rod, number, x, outgoing), self.n.where(at(x)), at)
 
@@ -103,7 +99,7 @@ class Writer:
         own = [(at(law.own.same), self.n.term("q", POWER)), (at(law.own.next_power), self.n.term("q", POWER + 1))]
         arriving = ((law.left, "a"), (law.right, "b"), (law.load if node.loads else Integer(0), "s"))
         right = [(at(factor), self.n.term(name, POWER)) for factor, name in arriving]
-        yield self._balance(own, right)
+        yield self.n.balance(own, right)
 
     def _in_time(self, line: Line, at: Place) -> str:
         """A line in waves of tau; what a load is before tau = 0 need not be said there."""
@@ -136,7 +132,7 @@ class Writer:
             term, clock = self.n.with_index(wave.function, at(wave.rod)), self.n.clock(wave.lag)
             right += [(at(operator.a), f"{term}''{clock}"), (at(operator.b), f"{term}'{clock}")]
         right += [(at(value), self._load(source, at)) for source, value in e.right.loads.items()]
-        return self._balance(left, right)
+        return self.n.balance(left, right)
 
     def _weight_terms(
         self, w: SymbolicWeights, function: str, rod: Expr, back: int, at: Place
@@ -150,7 +146,7 @@ class Writer:
         """A recurrence for every rate and power, its loads, and its jump."""
         own = self._weight_terms(law.own, law.function, at(law.rod), 0, at)
         right = [part for t in law.terms for part in self._weight_terms(t.weights, t.function, at(t.rod), t.back, at)]
-        yield self._balance(own, right)
+        yield self.n.balance(own, right)
         yield from self._gains(law.loads, at)
         q = own_rate(law)
         if q is not None:
@@ -161,7 +157,7 @@ class Writer:
                 for t in law.terms
             )
             yield f"q = {self.n.expression(at(q))}"
-            yield self._balance([(law.own.jump, start)], jumps)
+            yield self.n.balance([(law.own.jump, start)], jumps)
 
     def _gains(self, loads: Iterable[SymbolicLoad], at: Place) -> Iterator[str]:
         for load in loads:

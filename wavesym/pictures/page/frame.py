@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import ceil, floor, log10
 
 from wavesym.pictures.page.svg import Svg, concatenate, line, text
+from wavesym.pictures.units import RAISED
 
-_RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
 _NICE = (1, 2, 2.5, 5, 10)
 _LETTER = 6.5  # of the numbers, wide
 
@@ -82,7 +82,7 @@ class Frame:
             power = self.y.power
             upward = [(at, number) for at, number in self.y.ticks(max(3, int((bottom - top) / 32)), power)]
             if power:
-                parts.append(text(left - 6, top - 1, f"\u00d710{str(power).translate(_RAISED)}", "end"))
+                parts.append(text(left - 6, top - 1, f"\u00d710{str(power).translate(RAISED)}", "end"))
         for value, number in upward:
             at = self.y.pixel(value)
             parts.append(line(left, at, right, at, "grid"))

@@ -16,7 +16,7 @@ from pydantic import Field
 from wavesym.fields.numbers import LONGEST, exact
 from wavesym.fields.quantity_fields import read_quantity
 from wavesym.fields.table import Faults, SceneTable, as_list, key_context, refusal, show
-from wavesym.scene.physical.chain_parts import OTHERS, RODS, LinkKeys, MotionKeys, RodKeys
+from wavesym.scene.physical.chain_parts import OTHERS, RODS, RodKeys
 from wavesym.scene.physical.places import PlaceInMetres, place
 from wavesym.systems.dimensionless import DimensionlessSystem, Kind, LoadUnit
 from wavesym.systems.elastic import ElasticRod, Rods
@@ -126,11 +126,9 @@ def _read(faults: Faults, parts: object, kind: Kind, *at: str | int) -> list[_Re
 def _part(value: object, kind: Kind) -> object:
     if not isinstance(value, Mapping):
         return value  # a mark, or what is refused with the chain
-    known: tuple[type[SceneTable], ...] = (RODS[kind], *OTHERS)
-    keys = next((each for each in known if each.key in value), LinkKeys)  # type: ignore[attr-defined]
-    if keys is LinkKeys and not value.keys() & {"spring", "dashpot"}:
-        return value
-    return keys.model_validate(value)
+    known = {"rod": RODS[kind], **OTHERS, "dashpot": OTHERS["spring"]}
+    keys = next((known[key] for key in known if key in value), None)
+    return value if keys is None else keys.model_validate(value)
 
 
 _MEASURES = {
@@ -183,8 +181,9 @@ class _Pen:
                     x += length
                 elif isinstance(part, SceneTable):
                     table = self._convert(part)
-                    if isinstance(part, MotionKeys):
-                        self.moved |= {at: str(part.motion) for at in (part.name, (name, x)) if at is not None}
+                    if "motion" in table:
+                        ends = table.get("name"), (name, x)
+                        self.moved |= {at: str(table["motion"]) for at in ends if at is not None}
                     written.append(table)
                 else:
                     written.append(part)

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from wavesym.fields.numbers import exact
 from wavesym.fields.quantity_fields import missing, one_of, read_quantity
@@ -17,21 +17,10 @@ from wavesym.fields.rounding import polar_moment
 from wavesym.fields.table import SceneTable, key_context, refusal, show
 from wavesym.systems.dimensionless import Kind
 from wavesym.systems.elastic import ElasticRod
-from wavesym.systems.parts import PartName
+from wavesym.systems.parts import ChainPart, ContactPart, JointPart, LinkPart, MassPart, MotionPart, PartName
 
 
-class SpringKeys(SceneTable):
-    """A spring and a dashpot, and what the spring does beyond being linear."""
-
-    spring: Any = None
-    dashpot: Any = None
-    only: Any = Field(None, description='"push" or "pull"')
-    gap: Any = Field(None, description="how far it gets shorter or longer before it acts, or two such numbers")
-    yields: Any = Field(None, alias="yield", description="the largest pull and push, or two such numbers")
-    preload: Any = Field(None, description="what the spring pulls at first")
-
-
-class RodKeys(SpringKeys):
+class RodKeys(SceneTable):
     """Keys of a rod of any kind. It may say its impedance and wave speed instead of what they follow from."""
 
     key: ClassVar[str] = "rod"
@@ -42,6 +31,12 @@ class RodKeys(SpringKeys):
     speed: Any = None
     velocity: Any = None
     strain: Any = None
+    spring: Any = None
+    dashpot: Any = None
+    only: Any = Field(None, description='"push" or "pull"')
+    gap: Any = Field(None, description="how far it gets shorter or longer before it acts, or two such numbers")
+    yields: Any = Field(None, alias="yield", description="the largest pull and push, or two such numbers")
+    preload: Any = Field(None, description="what the spring pulls at first")
     loss: Any = None
     name: PartName | None = None
 
@@ -155,50 +150,15 @@ class TorsionalRod(RodKeys):
         return found["G"] * found["J"]
 
 
-class MassKeys(SpringKeys):
-    """A rigid mass, or a moment of inertia."""
-
-    key: ClassVar[str] = "mass"
-
-    mass: Any = Field(description="a mass")
-    velocity: Any = None
-    friction: Any = None
-    name: PartName | None = None
-
-
-class JointKeys(SpringKeys):
-    """A joint without mass."""
-
-    key: ClassVar[str] = "joint"
-
-    joint: Any = Field(description="true")
-    velocity: Any = None
-    friction: Any = None
-    name: PartName | None = None
-
-
-class MotionKeys(SceneTable):
-    """An end that moves as its load says."""
-
-    key: ClassVar[str] = "motion"
-
-    motion: Any = Field(description='"velocity" or "acceleration"')
-    velocity: Any = None
-    name: PartName | None = None
-
-
-class ContactKeys(SceneTable):
-    """A contact."""
-
-    key: ClassVar[str] = "contact"
-
-    contact: Any = Field(description="a gap")
-
-
-class LinkKeys(SpringKeys):
-    """A spring and a dashpot between the parts on their two sides."""
-
-    key: ClassVar[str] = "spring"
+def _keys(part: type[ChainPart]) -> type[SceneTable]:
+    """The keys that a part has without units, too: what stands there is read later."""
+    fields: dict[str, Any] = {
+        name: (Any, Field(... if known.is_required() else None, alias=known.alias, description=known.description))
+        for name, known in part.model_fields.items()
+    }
+    fields |= {"name": (PartName | None, None)} if "name" in fields else {}
+    name = f"{part.__name__.removesuffix('Part')}Keys"
+    return create_model(name, __base__=SceneTable, __doc__=part.__doc__, **fields)
 
 
 RODS: Mapping[Kind, type[RodKeys]] = {
@@ -206,4 +166,7 @@ RODS: Mapping[Kind, type[RodKeys]] = {
     "torsional": TorsionalRod,
     "shear": ShearRod,
 }
-OTHERS: tuple[type[SceneTable], ...] = (MassKeys, JointKeys, MotionKeys, ContactKeys)
+OTHERS: Mapping[str, type[SceneTable]] = {
+    part.key: _keys(part) for part in (MassPart, JointPart, MotionPart, ContactPart, LinkPart)
+}
+"""The other parts, by the keys that they are known by; a spring is the last, as others have one beside them."""
