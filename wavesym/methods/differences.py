@@ -11,7 +11,7 @@ which is of order 2, and where two equal bars meet the same as inside a rod.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -82,9 +82,11 @@ class PointSteps(NamedTuple):
     previous: Array
     loads: Array
     first: Array
+    yields: Array
+    first_yields: Array
 
 
-def _point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
+def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
     """How points move in `steps` steps of length h."""
     impedance, onto = np.repeat(problem.impedance, 2), problem.incidence
     radiated = np.diag(onto**2 @ impedance)
@@ -116,20 +118,29 @@ def _point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
         previous=solve(ahead, inertia - damping + stiffness, still),
         loads=solve(ahead, (loads[:-1] + strained).T, moved.T).T,
         first=solve(begin, h * force, moved[0]),
+        yields=solve(ahead, unit, still),
+        first_yields=solve(begin, h * unit, still),
     )
 
 
-def _fields(grid: Grid, points: PointSteps) -> Iterator[Array]:
+Settle = Callable[[Array, Array, Array, Array], Array]
+"""Where points are after a step, of where they would be without more forces, what these add to it, and where they are
+now and were a step before."""
+
+
+def fields(grid: Grid, points: PointSteps, settle: Settle = lambda after, *_: after) -> Iterator[Array]:
     """The displacements of the field after each step."""
     placed = np.append(grid.ends, grid.points)
     beside = np.append(grid.ends + np.tile([1, -1], len(grid.cells)), grid.points)
     past, now = np.zeros_like(grid.start_velocity), grid.h * grid.start_velocity
-    before, u = np.zeros(grid.problem.points), points.first
+    before = np.zeros(grid.problem.points)
+    u = settle(points.first.copy(), points.first_yields, before, before)
     padded = np.zeros(len(now) + 2)
     for loads in points.loads[1:]:
         now[placed] = grid.spread @ u
         yield now
-        before, u = u, points.neighbours @ now[beside] - points.previous @ before + loads
+        after = points.neighbours @ now[beside] - points.previous @ before + loads
+        before, u = u, settle(after, points.yields, u, before)
         padded[1:-1] = now
         past, now = now, padded[:-2] + padded[2:] - past
     now[placed] = grid.spread @ u
@@ -142,7 +153,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
     h = float(problem.measure) / parts
     grid = Grid(problem, np.array([int(delay / problem.measure) * parts for delay in problem.delays]), h)
     steps = int(np.ceil(problem.until / h)) + 1
-    points = _point_steps(problem, h, steps)
+    points = point_steps(problem, h, steps)
     stencils = [grid.stencil(reading) for reading in problem.readings]
     kept = np.unique(np.concatenate([places for places, _ in stencils]))
     stencils = [(np.searchsorted(kept, places), weights) for places, weights in stencils]
@@ -150,7 +161,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
 
     def evaluate(taus: Array) -> Array:
         history = np.zeros((steps + 2, len(kept)))
-        for row, field in zip(history[1:], _fields(grid, points), strict=True):
+        for row, field in zip(history[1:], fields(grid, points), strict=True):
             row[:] = field[kept]
         velocity = np.empty((steps + 1, len(kept)))
         velocity[0] = grid.start_velocity[kept]

@@ -19,6 +19,7 @@ from wavesym.verification.integrations import (
     collocation,
     collocation_beyond,
     corner_changes,
+    differences,
     elements,
     midpoints,
 )
@@ -123,6 +124,11 @@ CHECKS = (
         "and 4N steps a rod, where no front is within one. Allowed: the difference from what N and 2N extrapolate to\n"
         "(fronts or outputs off the grid, or corners: from N and 2N), and rounding:",
         midpoints,
+    ),
+    Check(
+        "Central differences that pull back what went too far, where links have a law, with N, 2N and 4N cells a rod,\n"
+        "where no front is within four. Allowed: the difference from N and 2N, and rounding:",
+        differences,
     ),
     Check(
         "When laws change at corners: how far integrations are from it, and what is allowed (between fronts: the\n"

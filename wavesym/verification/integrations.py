@@ -1,11 +1,11 @@
-"""The checks that integrate: outputs by collocation between fronts, the midpoint rule and finite elements.
+"""The checks that integrate: outputs by collocation between fronts, the midpoint rule, differences, finite elements.
 
 An integration is refined until it tells its own error. It judges the reference, and then programs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -23,10 +23,11 @@ from wavesym.methods.network_problem import problem_of as damped_problem
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, UndecidedError, integrate
-from wavesym.verification.midpoint import LATE, MidpointGrid
+from wavesym.verification.midpoint import LATE, Instants, MidpointGrid
 from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
 from wavesym.verification.problem import Change, KnownChanges, match_changes, problem_of
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly, spread_taus
+from wavesym.verification.return_mapping import REACH, DifferenceGrid
 
 # Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them
 _POINTS, _POINTS_OF_CONTACTS = 6, (8, 12)
@@ -173,48 +174,93 @@ def midpoints(known: ReferenceOutputs) -> list[Outcome]:
     Where steps stay coarse that is said, but no failure: what they allow is in the table. Where links have corners N is
     so large that the same happens at them with 2N and 4N; that is one more front.
     """
+    start = _start(known, 1)
+    if isinstance(start, str):
+        return refused_outcomes(known, "to", start)
+
+    def integrate(grid: MidpointGrid, instants: Instants) -> tuple[Array, Array]:
+        found = grid.integrate(instants)
+        return found.values, found.roundoff
+
+    return start.outcomes(known, "midpoint rule", integrate)
+
+
+def differences(known: ReferenceOutputs) -> list[Outcome]:
+    """Central differences with return mapping at links with a law; nothing where there are none, or no rods."""
+    problem = problem_of(known.integration_model)
+    if not problem.laws or problem.contacts or not problem.delays:
+        return []
+    start = _start(known, REACH)
+    if isinstance(start, str):
+        return refused_outcomes(known, "to", start)
+    return start.outcomes(
+        known,
+        "central differences",
+        lambda grid, instants: DifferenceGrid(grid.problem, grid.step).integrate(instants),
+    )
+
+
+@dataclass(frozen=True)
+class _Start:
+    """The coarsest grid, up to which tau it is taken, what happens at corners, and instants away from fronts."""
+
+    grid: MidpointGrid
+    until: float
+    struck: Sequence[tuple[Change, float]]
+    instants: Instants
+
+    def outcomes(
+        self,
+        known: ReferenceOutputs,
+        name: str,
+        integrate: Callable[[MidpointGrid, Instants], tuple[Array, Array]],
+    ) -> list[Outcome]:
+        """A row for each output of a method that steps through a grid."""
+        grid, problem, instants = self.grid, self.grid.problem, self.instants
+        taus = [grid.tau(k) for k in instants.tolist()]
+        truths = [
+            Truth(np.array(values), output.scale)
+            for values, output in zip(Reference(known.model).values(taus), known.outputs, strict=True)
+        ]
+
+        def solve(finer: int) -> list[Solution]:
+            values, roundoff = integrate(grid.finer(finer), finer * instants)
+            outputs = problem.outputs(values, np.array(taus))
+            return [Solution(*each) for each in zip(outputs, np.abs(problem.weights) @ roundoff, strict=True)]
+
+        def is_affordable(finer: int) -> bool:
+            return grid.finer(finer).cost(self.until) <= MOST_MOVED
+
+        rule: Rule = "extrapolated" if grid.is_aligned and not self.struck else "wandering"
+        method = Method(name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
+        return method.outcomes(known.model.name, known.names, truths, {"to": f"{self.until:.4g}"})
+
+
+@lru_cache(maxsize=2)
+def _start(known: ReferenceOutputs, reach: int) -> _Start | str:
+    """The coarsest grid on which there is something to read from so many steps around, or why there is none."""
     model = known.integration_model
     first, struck = _grid(model), list[tuple[Change, float]]()
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     while first.tau(1) > _STOPPED * first.problem.soonest:
         if first.finer(8).cost(until) > MOST_MOVED:
-            why = f"friction stops what moves within {first.problem.soonest:.1g}, sooner than steps that can be taken"
-            return refused_outcomes(known, "to", why)
+            return f"friction stops what moves within {first.problem.soonest:.1g}, sooner than steps that can be taken"
         first = first.finer(2)
     if model.network.corners:
         if (found := first.resolve_changes(until, MOST_MOVED)) is None:
-            return refused_outcomes(known, "to", _NO_GRID)
+            return _NO_GRID
         first, struck = found
-    while len(first.instants(until, struck)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
+    while len(first.instants(until, struck, reach)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
         first = first.finer(2)
     finest = first
     while finest.finer(8).cost(until) <= MOST_MOVED:
         finest = finest.finer(2)
     if (swing := first.problem.swings * finest.tau(1) / 4) > _SWING:
-        why = f"springs swing {swing:.2g} radians in the shortest step that can be taken"
-        return refused_outcomes(known, "to", why)
-    instants = sample_evenly(first.instants(until, struck), _MOST_INSTANTS)
+        return f"springs swing {swing:.2g} radians in the shortest step that can be taken"
+    instants = sample_evenly(first.instants(until, struck, reach), _MOST_INSTANTS)
     if not len(instants):
-        why = f"to step between the fronts would take too long (at {first.tau(1):.1g} a step)"
-        return refused_outcomes(known, "to", why)
-    taus = [first.tau(k) for k in instants.tolist()]
-    truths = [
-        Truth(np.array(values), output.scale)
-        for values, output in zip(Reference(known.model).values(taus), known.outputs, strict=True)
-    ]
-    problem = first.problem
-
-    def solve(finer: int) -> list[Solution]:
-        found = first.finer(finer).integrate(finer * instants)
-        outputs = problem.outputs(found.values, np.array(taus))
-        return [Solution(*each) for each in zip(outputs, np.abs(problem.weights) @ found.roundoff, strict=True)]
-
-    def is_affordable(finer: int) -> bool:
-        return first.finer(finer).cost(until) <= MOST_MOVED
-
-    rule: Rule = "extrapolated" if first.is_aligned and not struck else "wandering"
-    method = Method("midpoint rule", first.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
-    return method.outcomes(known.model.name, known.names, truths, {"to": f"{until:.4g}"})
+        return f"to step between the fronts would take too long (at {first.tau(1):.1g} a step)"
+    return _Start(first, until, struck, instants)
 
 
 def _grid(model: Model) -> MidpointGrid:

@@ -106,8 +106,8 @@ class MidpointGrid:
         """What it takes to come to tau = `until`: points moved, roughly."""
         return until / float(self.step) * (len(self.problem.delays) + self.problem.points**2 + _STEP)
 
-    def instants(self, until: float, struck: Sequence[tuple[Change, float]] = ()) -> Instants:
-        """Those up to `until` at which what every output is read from has no front inside.
+    def instants(self, until: float, struck: Sequence[tuple[Change, float]] = (), reach: int = _REACH) -> Instants:
+        """Those up to `until` at which what every output is read from, `reach` steps around it, has no front inside.
 
         Fronts set out from points at multiples of the delays' common measure after 0, after every load, and after
         what happened at corners: `struck` has when, and how well that is known.
@@ -122,11 +122,11 @@ class MidpointGrid:
             for way in (offset, -offset):
                 for cut in cuts:
                     passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
-                    free &= np.abs(passed) > _REACH - _SAME
+                    free &= np.abs(passed) > reach - _SAME
                 for change, slack in struck:
                     passed = instants - (change.tau - slack + way) / step
                     after = passed % window
-                    free &= (passed < -_REACH) | ((after > _REACH + 2 * slack / step) & (window - after > _REACH))
+                    free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
         return instants[free]
 
     def resolve_changes(

@@ -1,0 +1,87 @@
+"""Friction and springs with a law by central differences, which pull back what went too far: return mapping.
+
+`wavesym/methods/differences.py` has the steps. What rubs pulls in the mean from t - h to t + h what keeps it from
+moving, as much as it can; a spring pulls at t as much as it is longer, and what is beyond its limits becomes permanent.
+Nothing is known of events. Fronts stay as sharp as they are, and outputs are read where none is within a few cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.methods.differences import Grid, fields, point_steps
+from wavesym.methods.problem import Array
+from wavesym.numbers.doubles import UNIT_ROUNDOFF
+from wavesym.verification.problem import CornerProblem, LinkLaw
+
+REACH = 4
+"""Steps before and after an instant, and cells beside a place, that what is read there rests on."""
+
+# a point rounds three sums, a node and what is read off a little more
+_ROUNDINGS = 8
+
+
+@dataclass(frozen=True)
+class DifferenceGrid:
+    """A network whose bars have cells of a step of tau, which divides all delays. An instant k is tau = k * step."""
+
+    problem: CornerProblem
+    step: Fraction
+
+    def integrate(self, instants: NDArray[np.int_]) -> tuple[Array, Array]:
+        """The readings (readings, instants) at positive instants in ascending order, and what rounding adds to each."""
+        problem, h = self.problem, float(self.step)
+        grid = Grid(problem, np.array([int(delay / self.step) for delay in problem.delays]), h)
+        steps = int(instants[-1]) + 1
+        motion = fields(grid, point_steps(problem, h, steps), _ReturnMapping(problem.laws).settle)
+        stencils = [grid.stencil(reading) for reading in problem.readings]
+        kept = np.unique(np.concatenate([places for places, _ in stencils]))
+        history, largest, rows = np.zeros((steps + 1, len(kept))), 0.0, []
+        for row, field in zip(history[1:], motion, strict=False):
+            row[:], largest = field[kept], max(largest, float(np.max(np.abs(field))))
+        for reading, (places, weights) in zip(problem.readings, stencils, strict=True):
+            columns = np.searchsorted(kept, places)
+            before, now, after = (history[np.ix_(instants + k, columns)] @ weights for k in (-1, 0, 1))
+            changes = {-1: now, 0: (after - before) / (2 * h), 1: (after - 2 * now + before) / h**2}
+            of_strain = reading.quantity == "strain"
+            rows.append((now if of_strain else changes[reading.order]) + problem.strain_at_start(reading))
+        unsure = [self._roundoff(reading.quantity, reading.rod, steps) * largest for reading in problem.readings]
+        return np.array(rows).reshape(-1, len(instants)), np.array(unsure)
+
+    def _roundoff(self, quantity: str, rod: int, steps: int) -> float:
+        """What rounding adds to a reading for displacements of 1, at most: it goes on to every second point."""
+        h = float(self.step)
+        sizes = {"displacement": float(steps * steps), "velocity": steps / h, "acceleration": 4 * steps / h**2}
+        size = steps / h / float(self.problem.speed[rod - 1]) if quantity == "strain" else sizes[quantity]
+        return _ROUNDINGS * float(UNIT_ROUNDOFF) * size
+
+
+class _ReturnMapping:
+    """What links pull, step by step: that of a spring which yields goes on from its pull a step before."""
+
+    def __init__(self, laws: Sequence[LinkLaw]) -> None:
+        self._laws = laws
+        self._longer, self._pulls = np.zeros(len(laws)), np.zeros(len(laws))
+
+    def settle(self, after: Array, influence: Array, now: Array, before: Array) -> Array:
+        """Displacements with what each link pulls, within its limits."""
+        for number, law in enumerate(self._laws):
+            if law.friction:
+                trial = float(law.row @ (after - before) / (law.row @ influence @ law.row))
+            else:
+                trial = self._trial(number, law, float(law.row @ now))
+            after -= influence @ law.row * law.limit(trial)
+        return after
+
+    def _trial(self, number: int, law: LinkLaw, longer: float) -> float:
+        """What a spring would pull without limits."""
+        if law.side:
+            return law.stiffness * (longer - law.side * law.gap)
+        trial = float(self._pulls[number] + law.stiffness * (longer - self._longer[number]))
+        self._longer[number], self._pulls[number] = longer, law.limit(trial)
+        return trial
