@@ -8,7 +8,7 @@ from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
 from wavesym.verification import outcome, programs, report
 from wavesym.verification.checks import CHECKS
-from wavesym.verification.integrations import collocation_beyond, corner_changes, elements
+from wavesym.verification.integrations import collocation_beyond, corner_changes, differences, elements
 
 CLOSED = [Request("closed")]
 
@@ -41,8 +41,8 @@ def test_all_is_well():
     text, passed = verify(drive(until=2))
     assert passed
     assert text.isascii()
-    for check in CHECKS:  # one is for corners, one for damped modes, one for long horizons
-        assert (check.title in text) == (check.run not in (corner_changes, elements, collocation_beyond))
+    for check in CHECKS:  # two are for corners, one for damped modes, one for long horizons
+        assert (check.title in text) == (check.run not in (corner_changes, differences, elements, collocation_beyond))
     compared, integration, spacetime, invariants, extremes = found(text)
     names = [row["program"] for row in compared]
     assert names[:7] == ["run", *(f"{kind}, {of}" for kind in ("closed", "pieces", "march") for of in ("NumPy", "C"))]

@@ -127,7 +127,7 @@ CHECKS = (
     ),
     Check(
         "Central differences that pull back what went too far, where links have a law, with N, 2N and 4N cells a rod,\n"
-        "where no front is within four. Allowed: the difference from N and 2N, and rounding:",
+        "where no front is within four. Allowed: twice the differences of N, 2N and 4N, and rounding:",
         differences,
     ),
     Check(

@@ -182,7 +182,8 @@ def midpoints(known: ReferenceOutputs) -> list[Outcome]:
         found = grid.integrate(instants)
         return found.values, found.roundoff
 
-    return start.outcomes(known, "midpoint rule", integrate)
+    rule: Rule = "extrapolated" if start.grid.is_aligned and not start.struck else "wandering"
+    return start.outcomes(known, "midpoint rule", rule, integrate)
 
 
 def differences(known: ReferenceOutputs) -> list[Outcome]:
@@ -196,6 +197,7 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
     return start.outcomes(
         known,
         "central differences",
+        "late",
         lambda grid, instants: DifferenceGrid(grid.problem, grid.step).integrate(instants),
     )
 
@@ -213,6 +215,7 @@ class _Start:
         self,
         known: ReferenceOutputs,
         name: str,
+        rule: Rule,
         integrate: Callable[[MidpointGrid, Instants], tuple[Array, Array]],
     ) -> list[Outcome]:
         """A row for each output of a method that steps through a grid."""
@@ -231,7 +234,6 @@ class _Start:
         def is_affordable(finer: int) -> bool:
             return grid.finer(finer).cost(self.until) <= MOST_MOVED
 
-        rule: Rule = "extrapolated" if grid.is_aligned and not self.struck else "wandering"
         method = Method(name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
         return method.outcomes(known.model.name, known.names, truths, {"to": f"{self.until:.4g}"})
 

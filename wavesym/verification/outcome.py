@@ -114,8 +114,9 @@ class Truth:
     scale: float
 
 
-Rule = Literal["plain", "extrapolated", "wandering"]
-"""How errors fall: at least as the step does; as a series in its square; in two halvings by a half."""
+Rule = Literal["plain", "extrapolated", "wandering", "late"]
+"""How errors fall: at least as the step does; as a series in its square; in two halvings by a half; or not even that,
+as steps are late by a part of themselves that is another one on each grid."""
 
 
 @dataclass(frozen=True)
@@ -152,8 +153,10 @@ class Refinement:
         if rule == "extrapolated":
             best = quarter + (quarter - half) / 3
             between = largest(best - half - (half - coarse) / 3)
-        elif rule == "wandering":
+        elif rule in ("wandering", "late"):
             between += largest(half - coarse)
+        if rule == "late":
+            between *= 2
         right = truth.values if truth else best
         errors = tuple(largest(values - right) for values in (coarse, half, quarter))
         return cls(errors, largest(best - right), between, solutions[-1].rounding / size, best, size)
