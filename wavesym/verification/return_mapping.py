@@ -66,7 +66,7 @@ class _ReturnMapping:
 
     def __init__(self, laws: Sequence[LinkLaw]) -> None:
         self._laws = laws
-        self._longer, self._pulls = np.zeros(len(laws)), np.zeros(len(laws))
+        self._longer, self._pulls = np.zeros(len(laws)), np.array([law.preload for law in laws])
 
     def settle(self, after: Array, influence: Array, now: Array, before: Array) -> Array:
         """Displacements with what each link pulls, within its limits."""
