@@ -64,7 +64,7 @@ def worst_integral(scene: Scene) -> float:
     return float(np.max(np.abs(summed - gained)) / np.max(np.abs(acceleration)))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [2, 3, 4, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (0, 1, 5))])
 def test_the_integral_of_an_acceleration_is_what_the_velocity_gains(seed: int) -> None:
     assert worst_integral(drawn(Random(seed))) < 1e-12
 
@@ -92,15 +92,14 @@ def test_a_law_of_derivatives_that_is_wrong_is_seen(monkeypatch: pytest.MonkeyPa
 
 
 def test_programs_are_within_their_bounds() -> None:
-    for seed in (4, 5):
-        model = lower(drawn(Random(seed)))
-        form = attempt(model, "pieces").form
-        assert form is not None
-        taus = np.sort(np.random.default_rng(seed).uniform(0, 9, 60))
-        exact = np.array(Reference(model).values(taus.tolist()))
-        program = make(model)
-        for own, right, output in zip(program.evaluate(taus), exact, program.outputs, strict=True):
-            assert np.max(np.abs(own - right)) <= output.bound * output.largest * (1 + 1e-9)
+    model = lower(drawn(Random(4)))
+    form = attempt(model, "pieces").form
+    assert form is not None
+    taus = np.sort(np.random.default_rng(4).uniform(0, 9, 60))
+    exact = np.array(Reference(model).values(taus.tolist()))
+    program = make(model)
+    for own, right, output in zip(program.evaluate(taus), exact, program.outputs, strict=True):
+        assert np.max(np.abs(own - right)) <= output.bound * output.largest * (1 + 1e-9)
 
 
 def test_a_layer_on_an_absorbing_base_is_a_sum_of_reflections() -> None:

@@ -29,8 +29,8 @@ CHECKS = (integrations.midpoints, integrations.differences, integrations.corner_
 
 # yields and engages beside friction; a mirrored chain; a mass that turns under friction; differences late by parts of
 # steps that are others on each grid; springs of both sides
-SEEDS = (1, 38)
-LONGER = (8, 10, 72, 170, 288)
+SEEDS = (1,)
+LONGER = (38, 8, 10, 72, 170, 288)
 
 
 def known(table: dict[str, Any], claimed: dict[str, Any] | None = None) -> ReferenceOutputs:
@@ -92,7 +92,11 @@ def more(value: Any) -> str:
     return str(fmpq(51, 50) * exact(value))
 
 
-FALSE = [(damped_chain(10), "friction"), (damped_chain(8), "yield"), (damped_chain(22), "spring"), (STRUCK, "gap")]
+FALSE = [
+    (damped_chain(10), "friction"),
+    (STRUCK, "gap"),
+    *(pytest.param(damped_chain(seed), key, marks=pytest.mark.slow) for seed, key in ((8, "yield"), (22, "spring"))),
+]
 
 
 @pytest.mark.parametrize("check", [integrations.midpoints, integrations.differences])
