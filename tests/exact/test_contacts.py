@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -132,7 +133,7 @@ def test_a_force_of_the_wrong_sign_is_seen(monkeypatch):
     def wrong(*arguments):
         cluster = made(*arguments)
         pushes = {n: [(k, -factor) for k, factor in push] for n, push in cluster.pushes.items()}
-        return Cluster(cluster.points, cluster.law, pushes)
+        return replace(cluster, pushes=pushes)
 
     monkeypatch.setattr(Cluster, "from_law", wrong)
     assert differs()

@@ -199,7 +199,7 @@ def test_what_is_no_law_is_said_in_a_line(spring: dict[str, Any], line: str) -> 
         chain([{"mass": 1, "name": "a"}, spring, "fixed"], 3)
 
 
-def test_beside_a_contact_springs_with_a_law_are_refused() -> None:
-    parts = [{"rod": 1, "velocity": 1}, "contact", {"mass": 1, "name": "a"}, {"spring": 4, "yield": 1}, "fixed"]
-    with pytest.raises(SceneError, match="joined to a contact by what has no length; write a rod between them"):
+def test_beside_friction_springs_with_a_law_are_refused() -> None:
+    parts = [{"rod": 1, "velocity": 1}, {"mass": 1, "friction": 1, "name": "a"}, {"spring": 4, "yield": 1}, "fixed"]
+    with pytest.raises(SceneError, match=r"joined to a spring .* by what has no length; write a rod between them"):
         chain(parts, 3)

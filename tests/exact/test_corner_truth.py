@@ -9,12 +9,14 @@ from typing import Any
 import pytest
 from flint import ctx
 
-from tests.support.cornered import damped_chain, seeded
+from tests.support.cornered import damped_chain, seeded, touching_chain
 from tests.support.judging import BITS, CLOSE, wrong_events, wrong_values
 from tests.support.piecewise import PiecewiseChain
 from tests.support.series import Unclear
 from wavesym.errors import WavesymError
+from wavesym.exact.contacts.events import events
 from wavesym.exact.losses import losses
+from wavesym.exact.reference import Reference
 from wavesym.scene import Scene, lower
 
 # beside linear springs, between rods, on a mass and without one; a chain that is its own mirror image
@@ -28,6 +30,9 @@ LASTING = 72
 
 # dashpots beside springs that yield
 DAMPED = (1, 5, 11, 52)
+
+# contacts beside springs: many events of both; one that yields while a contact far from it is vague
+TOUCHING = (6, 18, 69, 85, 134, 186)
 
 
 def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None) -> list[str]:
@@ -66,6 +71,36 @@ def test_springs_with_laws_change_branches_as_they_should(seed: int) -> None:
 @pytest.mark.parametrize("seed", DAMPED)
 def test_dashpots_beside_springs_that_yield_act_all_the_time(seed: int) -> None:
     assert wrong(damped_chain(seed)) == []
+
+
+@pytest.mark.parametrize("seed", TOUCHING)
+def test_contacts_beside_springs_open_and_close_as_they_should(seed: int) -> None:
+    assert wrong(touching_chain(seed)) == []
+
+
+def test_springs_beside_contacts_that_nothing_makes_yield_are_linear() -> None:
+    def scene(law: dict[str, Any]) -> Scene:
+        parts = [{"rod": 1, "velocity": 1, "impedance": 2}, "contact", {"joint": True, "dashpot": "1/10"}]
+        parts += [{"spring": 4, **law}, {"mass": 1, "name": "n"}, {"rod": 2}]
+        output = {"until": 9, "displacement": ["n", "0"]}
+        return Scene(name="struck", system={"type": "chain", "parts": parts}, output=output)
+
+    linear, yielding = lower(scene({})), lower(scene({"yield": 1000}))
+    assert [(e.kind, e.double) for e in events(linear)] == [(e.kind, e.double) for e in events(yielding)]
+    taus = [k / 7 for k in range(63)]
+    assert Reference(linear).values(taus) == Reference(yielding).values(taus)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", range(0, 50, 10))
+def test_drawn_contacts_beside_springs_do_as_they_should(start: int) -> None:
+    refused = 0
+    for seed in range(start, start + 10):
+        try:
+            assert wrong(touching_chain(seed)) == [], seed
+        except (WavesymError, Unclear):
+            refused += 1
+    assert refused <= 1
 
 
 @pytest.mark.slow

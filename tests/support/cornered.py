@@ -63,6 +63,42 @@ def seeded(seed: int, kinds: Sequence[str] = LAWS) -> dict[str, Any]:
     return _scene(choose, parts, choose([3, "7/2", "2.000000001"]))
 
 
+def touching_chain(seed: int) -> dict[str, Any]:
+    """One with contacts in the joints of its springs: a rod strikes what stands on springs, and is struck."""
+    choose = Random(seed).choice
+    parts: list[Any] = [_rod(choose, choose([1, "1/2", "0.3", 0])), _contact(choose), _held(choose, 2)]
+    if choose([0, 1]):
+        parts += [spring(choose), _mass(choose, len(parts) + 1)]
+    for _ in range(choose([0, 1, 1])):
+        parts += [_rod(choose, 0), _contact(choose), _held(choose, len(parts) + 2)]
+    if choose([0, 1]):
+        parts.append(_rod(choose, 0))
+    if choose([0, 1, 1]):
+        parts.append(choose(["free", "fixed"]) if "rod" in parts[-1] else spring(choose))
+        parts += ["fixed"] * ("spring" in parts[-1] and isinstance(parts[-1], dict))
+    return _scene(choose, parts, choose([4, "7/2", "5.000000001"]))
+
+
+def _rod(choose: Choose, velocity: Any) -> dict[str, Any]:
+    return {"rod": choose(LENGTHS), "impedance": choose(IMPEDANCES), "velocity": velocity}
+
+
+def _contact(choose: Choose) -> dict[str, Any]:
+    return {"contact": choose([0, 0, "1/4", "0.1", "1e-9"])}
+
+
+def _held(choose: Choose, number: int) -> dict[str, Any]:
+    """A mass or a joint that a spring with a law may hold."""
+    if choose([0, 1]):
+        law = spring(choose, ["yield", "unequal", "linear"])
+        return {"joint": True, "name": f"n{number}", "dashpot": choose(["1/5", 1])} | law
+    node = _mass(choose, number)
+    if choose([0, 1, 1]):
+        node.pop("dashpot", None)
+        node |= spring(choose)
+    return node
+
+
 def damped_chain(seed: int) -> dict[str, Any]:
     """One with dashpots beside its springs that yield."""
     table, choose = seeded(seed), Random(seed).choice

@@ -11,7 +11,7 @@ import pytest
 from flint import fmpq
 
 from tests.support.assembly import exact
-from tests.support.cornered import damped_chain
+from tests.support.cornered import damped_chain, touching_chain
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
@@ -50,6 +50,15 @@ def test_drawn_chains_pass_every_check(seed: int) -> None:
         outcomes = judged(check(seen))
         assert outcomes
         assert all(outcome.passed for outcome in outcomes)
+
+
+@pytest.mark.parametrize(
+    "seed", [18, pytest.param(30, marks=pytest.mark.slow), pytest.param(69, marks=pytest.mark.slow)]
+)
+def test_contacts_beside_springs_pass_every_check(seed: int) -> None:
+    seen = known(touching_chain(seed))
+    for check in CHECKS:
+        assert all(outcome.passed for outcome in judged(check(seen)))
 
 
 @pytest.mark.slow

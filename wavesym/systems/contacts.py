@@ -40,21 +40,19 @@ _CALLED = {"contact": "a contact", "friction": "other friction", "spring": "a sp
 
 
 def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], written: Mapping[int, Keys]) -> None:
-    """What rubs must be alone in its joint with a law that has a corner, and springs that have one among themselves.
+    """What rubs must be alone in its joint with a law that has a corner.
 
     Raises that of `table.refusal`.
     """
     for joint in Network(tuple(points), (), tuple(links)).joints:
         corners = [link for link in links if link.has_corner and link.left in joint.points]
         rubbing = [link for link in corners if link.friction != 0]
-        springs = [link for link in corners if link.is_spring_with_corner]
-        alone = next((link for link in (*rubbing, *springs) if len(corners) > len(springs)), None)
-        if alone is not None and len(corners) > 1:
-            other = next(link for link in corners if link is not alone)
+        if rubbing and len(corners) > 1:
+            other = next(link for link in corners if link is not rubbing[0])
             raise refusal(
                 f"joined to {_CALLED[other.law]} by what has no length; write a rod between them",
-                *written[alone.right],
-                "friction" if alone.friction != 0 else "spring",
+                *written[rubbing[0].right],
+                "friction",
             )
         for link in rubbing:
             if points[link.right].mass != 0 and _damps_massless(points, links, link.right):

@@ -301,7 +301,8 @@ class _Books:
         work += self._q.T @ ((1 - free)[:, np.newaxis] * reaction)
         rate = self._all.form(work)
         for law, pull in zip(problem.laws, self._pulls, strict=True):
-            rate += pull.times(self._all.sums(-(law.row * free) @ self._q))
+            through = (1 - free) * (problem.parting.T @ self._pushes(-law.row))  # by contacts, on what is prescribed
+            rate += pull.times(self._all.sums(-(law.row * free + through) @ self._q))
         return self._balance(self.stored_energy, rate, self.initial_energy)
 
     # momentum
@@ -351,10 +352,13 @@ class _Books:
 
     @cached_property
     def _push(self) -> Array:
-        """What contacts push with, (contacts, rows): what points without mass need to be in balance."""
+        """What contacts push with, (contacts, rows), but for links: what points without mass need to be in balance."""
+        return self._pushes(self._load + self._problem.incidence @ self._force - self._resisted)
+
+    def _pushes(self, acting: Array) -> Array:
+        """What contacts push with where that acts on points."""
         problem = self._problem
         light = (problem.mass == 0) & problem.is_free
-        acting = self._load + problem.incidence @ self._force - self._resisted
         return np.asarray(-np.linalg.pinv(problem.parting[:, light].T) @ acting[light])
 
     def contacts(self, largest: float) -> BoundedValues:
@@ -362,6 +366,9 @@ class _Books:
         problem = self._problem
         length = (2 * largest / self.mass) ** 0.5 * float(np.max(self._delays))
         push = self._all.sums(length * self._push)
+        for law, pull in zip(problem.laws, self._pulls, strict=True):
+            share = length * self._pushes(-law.row)[:, np.newaxis]
+            push += BoundedValues(share * pull.value, np.abs(share) * pull.error)
         gap = self._all.sums(largest / length * problem.parting @ self._u)
         gap += largest / length * problem.gaps[:, np.newaxis]
         wrong = np.maximum(np.maximum(-push.value, -gap.value), np.minimum(np.abs(push.value), np.abs(gap.value)))

@@ -52,6 +52,11 @@ class Corner(ABC):
         """Whether a stretch may begin on which it is closed."""
 
     @property
+    def is_held(self) -> bool:
+        """Whether it is closed on a short stretch on which it is not left open what it does."""
+        return self.may_close
+
+    @property
     @abstractmethod
     def is_unclear(self) -> bool:
         """Whether nothing is certain of the branch that it is on."""

@@ -41,12 +41,14 @@ class Cluster:
     """The points, their law with closed contacts, and for each of these the points and factors that make its force.
 
     A contact pushes with N = sum over these of factor (C q + K u - s): what is on one side of it, without mass, or what
-    sticks to the ground. `stuck` are the points with mass that do, `springs` the links whose springs act in it.
+    sticks to the ground. `stuck` are the points with mass that do, `springs` the links whose springs act in it. The
+    `joint_law` is that of all points of the joint, each on its own, with these springs.
     """
 
     points: tuple[int, ...]
     law: JointLaw
     pushes: Mapping[int, Sequence[tuple[int, fmpq]]]
+    joint_law: JointLaw
     stuck: tuple[int, ...] = ()
     springs: Closed = frozenset()
 
@@ -83,7 +85,7 @@ class Cluster:
             pushes[n] = [(k, sign * members[k][1] / members[touch.right][1]) for k in side]
         local = {k: n for n, k in enumerate(points)}
         grouped = law.restrict(points).group([members[k] for k in points], [local[k] for k in leaders])
-        return cls(tuple(points), grouped, pushes, tuple(k for k in heavy if k not in leaders))
+        return cls(tuple(points), grouped, pushes, law, tuple(k for k in heavy if k not in leaders))
 
     @property
     def stateless(self) -> bool:

@@ -196,7 +196,7 @@ class Search:
     def _begin(self, course: Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
         begun = self._decide(course, start, limit) if course.spread is None else None
-        if begun is None and self.waves.joints[course.number].springs:
+        if begun is None and not self.waves.joints[course.number].touches:
             raise UndecidedError(course.contacts[0].link, course.contacts[0].closed, start)
         if begun is None:
             course.reached = self._drift(course, start, limit, course.spread or fmpq(0))
@@ -302,7 +302,7 @@ class Search:
         while True:
             others = [contact for contact in course.contacts if contact.link not in vague]
             sliding = frozenset((contact.link, contact.sign) for contact in others if contact.sign)
-            closed = frozenset(contact.link for contact in others if contact.may_close and not contact.sign)
+            closed = frozenset(contact.link for contact in others if contact.is_held and not contact.sign)
             moved = joint.move(arriving, start, length, closed, vague, sliding)
             steady = (contact for contact in course.contacts if contact.link not in vague)
             wrong = frozenset(contact.link for contact in steady if not contact.lasts(moved, length))

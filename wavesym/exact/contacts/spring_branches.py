@@ -32,6 +32,11 @@ class _SpringCorner(Corner):
     sign: int = 0
 
     @property
+    def is_held(self) -> bool:
+        """It keeps to its branch."""
+        return self.closed
+
+    @property
     def is_unclear(self) -> bool:
         """Its branch is always taken."""
         return False

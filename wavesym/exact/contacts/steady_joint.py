@@ -229,7 +229,7 @@ class SteadyJoint(ABC):
             pull = self._pull(cluster, push, result.velocities, forces)
             if places is not None:
                 pull += [
-                    (factor * self.law.stiffness[k][j], Enclosure.from_polynomial(places[j]))
+                    (factor * cluster.joint_law.stiffness[k][j], Enclosure.from_polynomial(places[j]))
                     for k, factor in push
                     for j in points
                 ]
@@ -354,10 +354,10 @@ class SteadyJoint(ABC):
         """What springs pull at a point on a stretch."""
         if not self._elastic(k):
             return STILL
-        polynomial = arb_poly()
+        polynomial, stiffness = arb_poly(), cluster.joint_law.stiffness[k]
         for j, series in zip(cluster.points, motion.places, strict=True):
-            polynomial += arb(self.law.stiffness[k][j]) * arb_poly(series)
-        return Enclosure(polynomial, (arb(self.law.stiffness[k][k]).sqrt() * motion.spring_error).upper())
+            polynomial += arb(stiffness[j]) * arb_poly(series)
+        return Enclosure(polynomial, (arb(stiffness[k]).sqrt() * motion.spring_error).upper())
 
     # in balls
 

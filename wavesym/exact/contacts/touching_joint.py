@@ -38,7 +38,7 @@ class TouchingJoint(SteadyJoint):
     ) -> None:
         law, points = cluster.law, cluster.points
         vague = frozenset(n for n in result.vague if self.touches[n].left in points)
-        closed = frozenset(n for n in result.closed if self.touches[n].left in points)
+        closed = frozenset(n for n in result.closed & self.touches.keys() if self.touches[n].left in points)
         span = arb(0).union(arb(result.length))
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
         bounds = {n: arb(self.touches[n].friction) for n in vague}
@@ -53,7 +53,7 @@ class TouchingJoint(SteadyJoint):
             pulls = list(forces)
             for k in points:
                 pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
-            found = self._try_every_choice(points, closed, vague, known, arriving, pulls, span)
+            found = self._try_every_choice(cluster, closed, vague, known, arriving, pulls, span)
             largest = {n: found.pushes[n].evaluate_on(span).upper().max(arb(0)) for n in pressing}
             if all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
                 break
@@ -67,6 +67,7 @@ class TouchingJoint(SteadyJoint):
         result.pushes |= found.pushes
         if not cluster.stateless:
             result.state |= self._state_after(cluster, motion)
+        self.springs.strain(cluster, result, self._state, motion)
 
     def _bound_sends(
         self,
@@ -110,7 +111,7 @@ class TouchingJoint(SteadyJoint):
 
     def _try_every_choice(
         self,
-        points: Sequence[int],
+        among: Cluster,
         closed: Closed,
         vague: Closed,
         known: Mapping[int, Terms],
@@ -119,12 +120,13 @@ class TouchingJoint(SteadyJoint):
         span: arb,
     ) -> JointStretch:
         """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points."""
+        points = among.points
         velocities: dict[int, list[Enclosure]] = {k: [] for k in points}
         sends: dict[int, list[Enclosure]] = {n: [] for n, end in enumerate(self._ends) if end.place in points}
         rates: dict[int, list[Enclosure]] = {}
         pushes: dict[int, list[Enclosure]] = {}
         for chosen, sliding in self._branches(vague):
-            cluster = Cluster.from_law(self.law, points, self.touches, closed | chosen)
+            cluster = Cluster.from_law(among.joint_law, points, self.touches, closed | chosen)
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
             rubbed = self._add_friction(pulls, sliding)
             q = scatter(cluster.law, group_forces(cluster, rubbed), rigid)
