@@ -238,8 +238,18 @@ def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmp
         UnservedError: for other outputs.
     """
     probe = _probe(model, name)
-    rules = Rules(symbols.chain)
-    chain, parts = symbols.chain, list(_wave_parts(probe))
+    if probe.quantity in ("force", "acceleration"):
+        raise UnservedError(
+            f"--symbolic: {probe.name} is no sum of waves without parameters; a strain, velocity, displacement, drift "
+            "or relative displacement is"
+        )
+    rules, chain = Rules(symbols.chain), symbols.chain
+    readings = [term for term in model.sums[probe] if term.reading.moves]
+    parts = [
+        (weight * sign, Function(letter, reading.rod), reading.place, reading.order < 0)
+        for weight, reading in readings
+        for letter, sign in zip("fg", reading.weights, strict=True)
+    ]
     gains: dict[fmpq, list[tuple[fmpq, Increment, bool]]] = {}
     for source in dict.fromkeys(load.source for load in model.loads):
         wanted: dict[Function, int] = {}
@@ -248,18 +258,18 @@ def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmp
             count = int(((model.until - delay) / rules.interval).floor()) + 1
             wanted[function] = max(count, wanted.get(function, 0))
         response = unit_response(rules, source, {function: count for function, count in wanted.items() if count > 0})
-        for factor, function, place, integral in parts:
+        for weight, function, place, integral in parts:
             delay = _delay(symbols, function, place)
             for load in (load for load in model.loads if load.source == source):
                 for n, increment in enumerate(response.get(function, ())):
                     time = load.time + delay + rules.interval * n
                     if increment and time <= model.until:
-                        gains.setdefault(time, []).append((probe.factor * factor * load.weight, increment, integral))
-    for sign, rod, integral in _moving_parts(probe):
-        velocity = chain.rod(rod).velocity + frame
-        if velocity != 0:
+                        gains.setdefault(time, []).append((weight * load.weight, increment, integral))
+    for weight, reading in readings:
+        velocity = chain.rod(reading.rod).velocity + frame
+        if reading.quantity != "strain" and velocity != 0:
             held: Increment = {fmpq(0): [velocity]}
-            gains.setdefault(fmpq(0), []).append((probe.factor * sign, held, integral))
+            gains.setdefault(fmpq(0), []).append((weight, held, reading.order < 0))
     made = []
     for time in sorted(gains):
         total: Increment = {}
@@ -269,37 +279,6 @@ def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmp
         if whole and not (time == model.until and begin(whole) == 0):
             made.append(Gain(time, whole))
     return _formula(model, probe, tuple(made), symbols.values)
-
-
-def _wave_parts(probe: Probe) -> Iterator[tuple[int, Function, fmpq, bool]]:
-    """The derivatives of wave functions in an output, or their integrals: a factor, and where on the rod."""
-    right, left = Function("f", probe.rod), Function("g", probe.rod)
-    match probe.quantity:
-        case "strain":
-            yield from ((-1, right, probe.place, False), (1, left, probe.place, False))
-        case "velocity":
-            yield from ((1, right, probe.place, False), (1, left, probe.place, False))
-        case "displacement":
-            yield from ((1, right, probe.place, True), (1, left, probe.place, True))
-        case "drift":
-            for factor, place in ((1, fmpq(1)), (-1, fmpq(0))):
-                yield from ((factor, right, place, True), (factor, left, place, True))
-        case "relative":
-            yield from ((1, right, probe.place, True), (1, left, probe.place, True))
-            yield from ((-1, Function("f", 1), fmpq(0), True), (-1, Function("g", 1), fmpq(0), True))
-        case _:
-            raise UnservedError(
-                f"--symbolic: {probe.name} is no sum of waves without parameters; a strain, velocity, displacement, "
-                "drift or relative displacement is"
-            )
-
-
-def _moving_parts(probe: Probe) -> Iterator[tuple[int, int, bool]]:
-    """The velocities of rods in an output: a factor, the rod, and whether it is their integral."""
-    if probe.quantity in ("velocity", "displacement", "relative"):
-        yield 1, probe.rod, probe.quantity != "velocity"
-    if probe.quantity == "relative":
-        yield -1, 1, True
 
 
 def _delay(symbols: SymbolicChain, function: Function, place: fmpq) -> fmpq:

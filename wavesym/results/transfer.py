@@ -11,7 +11,7 @@ so their sum needs no modes. What a prescribed motion imposes is not damped, nor
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import factorial
@@ -22,7 +22,7 @@ from wavesym.errors import WavesymError, did_you_mean
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.harmonic import Amplitudes, HarmonicNetwork, Quantity
 from wavesym.exact.modes.shape import rigid
-from wavesym.mechanics.gauge import ground
+from wavesym.mechanics.gauge import ReadingTerm, readings
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
@@ -202,33 +202,38 @@ class Transfer:
 
     def _of_shape(self, probe: Probe, shape: Callable[[int], fmpq]) -> fmpq:
         """What an output is of a motion without strain."""
-        if probe.quantity in ("strain", "force", "drift"):
-            return fmpq(0)
-        if probe.point is not None:
-            return probe.factor * shape(probe.point)
-        bar = self.model.network.bars[probe.rod - 1]
-        return probe.factor * shape(bar.left) * bar.ratios[0]
+        total, bars = fmpq(0), self.model.network.bars
+        for weight, reading in _motion_readings(self.model.network, probe):
+            if reading.point is not None:
+                total += weight * shape(reading.point)
+            elif reading.quantity != "strain":
+                bar = bars[reading.rod - 1]
+                total += weight * shape(bar.left) * bar.ratios[0]
+        return total
+
+
+def _motion_readings(network: Network, probe: Probe) -> list[ReadingTerm]:
+    """The strains and displacements that an output is the sum of, before it is differentiated in time."""
+    moved = replace(probe, quantity="displacement") if probe.quantity in ORDERS else probe
+    return [term for term in readings(network, moved) if term.reading.moves]
 
 
 def output_amplitude(network: Network, probe: Probe, amplitudes: Amplitudes) -> Quantity:
     """What an output is of amplitudes, its factor included, but not differentiated in time."""
-    bar = probe.rod - 1
-    match probe.quantity:
-        case "strain":
-            moved = amplitudes.slope(bar, probe.place) / network.bars[bar].speed
-        case "force":
-            moved = amplitudes.slope(bar, probe.place) * network.bars[bar].impedance
-            if network.bars[bar].loss != 0:
-                moved = moved * acb(1, arb(network.bars[bar].loss))
-        case "drift":
-            moved = amplitudes.displacement(bar, fmpq(1)) - amplitudes.displacement(bar, fmpq(0))
-        case _:
-            moved = (
-                amplitudes.point(probe.point) if probe.point is not None else amplitudes.displacement(bar, probe.place)
-            )
-            if probe.quantity == "relative":
-                moved = moved - amplitudes.point(ground(network))
-    return moved * probe.factor
+    total: Quantity = acb(0)
+    for weight, reading in _motion_readings(network, probe):
+        number, bar = reading.rod - 1, network.bars[reading.rod - 1] if reading.rod else None
+        if bar is None:
+            assert reading.point is not None  # which is read where no rod is
+            moved = amplitudes.point(reading.point)
+        elif reading.quantity == "strain":
+            moved = amplitudes.slope(number, reading.place) / bar.speed
+            if probe.quantity == "force" and bar.loss != 0:
+                moved = moved * acb(1, arb(bar.loss))
+        else:
+            moved = amplitudes.displacement(number, reading.place)
+        total = total + moved * weight
+    return total
 
 
 def angular(model: Model, frequency: float) -> arb:
