@@ -177,13 +177,8 @@ def midpoints(known: ReferenceOutputs) -> list[Outcome]:
     start = _start(known, 1)
     if isinstance(start, str):
         return refused_outcomes(known, "to", start)
-
-    def integrate(grid: MidpointGrid, instants: Instants) -> tuple[Array, Array]:
-        found = grid.integrate(instants)
-        return found.values, found.roundoff
-
     rule: Rule = "extrapolated" if start.grid.is_aligned and not start.struck else "wandering"
-    return start.outcomes(known, "midpoint rule", rule, integrate)
+    return start.outcomes(known, "midpoint rule", rule, MidpointGrid.integrate)
 
 
 def differences(known: ReferenceOutputs) -> list[Outcome]:

@@ -55,14 +55,6 @@ _STEP = 5000
 
 
 @dataclass(frozen=True)
-class GridReadings:
-    """Readings at some instants, (readings, instants), and what rounding may have added to each, (readings,)."""
-
-    values: Array
-    roundoff: Array
-
-
-@dataclass(frozen=True)
 class MidpointGrid:
     """Steps of tau, which divide all delays. An instant k is tau = k * step."""
 
@@ -166,13 +158,13 @@ class MidpointGrid:
             for change in kept[corner]
         )
 
-    def integrate(self, instants: Instants) -> GridReadings:
-        """The readings at positive instants in ascending order, off fronts."""
+    def integrate(self, instants: Instants) -> tuple[Array, Array]:
+        """The readings (readings, instants) at ascending instants off fronts, and what rounding may add to each."""
         motion = self._motion(int(instants[-1]) + 2)
         taus: Array = float(self.step) * instants.astype(np.float64)
         values = np.array([motion.evaluate(reading, taus) for reading in self.problem.readings])
         roundoff = np.array([motion.roundoff(reading) for reading in self.problem.readings])
-        return GridReadings(values.reshape(-1, len(instants)), roundoff)
+        return values.reshape(-1, len(instants)), roundoff
 
     def _motion(self, steps: int) -> _Motion:
         motion = _Motion(self, steps)
