@@ -110,11 +110,11 @@ class _Fronts:
             highest = _highest(self._model.sums[probe])
             for weight, reading in self._model.sums[probe]:
                 if reading.rod:
-                    for end, way, weighted in self._end_contributions(weight, reading, highest):
-                        bar = network.bars[end.bar]
-                        ends[end].append((k, way * bar.delay, weighted))
+                    for end, factor, delay in reading.waves(network):
+                        bar, weighted = network.bars[end.bar], self._velocity_weight(weight * factor, reading, highest)
+                        ends[end].append((k, delay, weighted))
                         # what a bar holds is there until something is sent into it
-                        gain(k, fmpq(0), weighted * _held_wave(bar, end.side, (1 - way) * bar.delay, self._t))
+                        gain(k, fmpq(0), weighted * _held_wave(bar, end.side, bar.delay - delay, self._t))
                 elif (point := reading.point) is None:
                     gain(k, fmpq(0), _modular(weight))  # a constant
                 elif reading.quantity == "load":
@@ -142,13 +142,6 @@ class _Fronts:
     def _velocity_weight(self, weight: fmpq, reading: Gauge, highest: int) -> int:
         """What a velocity counts, times t to the `highest` power; t to the order less where it is differentiated."""
         return _modular(weight) * pow(self._t, highest - reading.order, _MODULUS) % _MODULUS
-
-    def _end_contributions(self, weight: fmpq, reading: Gauge, highest: int) -> Iterator[tuple[End, fmpq, int]]:
-        """From which ends of its bar it is read, how far away (a part of the bar), and what each wave counts."""
-        over = 1 / self._network.bars[reading.rod - 1].speed if reading.quantity == "strain" else fmpq(1)
-        right, left = reading.weights
-        yield End(reading.rod - 1, 0), reading.place, self._velocity_weight(weight * over * right, reading, highest)
-        yield End(reading.rod - 1, 1), 1 - reading.place, self._velocity_weight(weight * over * left, reading, highest)
 
 
 class _Answer:

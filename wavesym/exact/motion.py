@@ -309,11 +309,8 @@ def _values(waves: Waves, terms: Iterable[ReadingTerm], start: fmpq) -> Iterator
             elif (point := waves.network.point_at(end)) in points:  # prescribed: as exact as it is given
                 yield weight * bar.ratios[end.side], shift(*points[point].locate(start))
                 continue
-        over = 1 / bar.speed if reading.quantity == "strain" else fmpq(1)
-        right, left = reading.weights
-        for factor, side, way in ((right, 0, reading.place), (left, 1, 1 - reading.place)):
-            known, offset = sent[End(reading.rod - 1, side)].locate(start - way * bar.delay)
-            yield weight * factor * over, shift(known, offset)
+        for sender, factor, delay in reading.waves(waves.network):
+            yield weight * factor, shift(*sent[sender].locate(start - delay))
 
 
 def waves_size(model: Model) -> int:

@@ -25,6 +25,14 @@ from wavesym.mechanics.quantities import order_of
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
+class WaveTerm(NamedTuple):
+    """So many times the wave, as a velocity, that an end has sent, `delay` (in tau) later."""
+
+    end: End
+    weight: fmpq
+    delay: fmpq
+
+
 @dataclass(frozen=True)
 class Gauge:
     """`quantity` (strain, velocity, displacement, acceleration) `place` rod lengths from the left end of a rod.
@@ -48,6 +56,16 @@ class Gauge:
     def weights(self) -> tuple[int, int]:
         """What the right-going and the left-going wave, each as a velocity, count in dU/dx or dU/dtau."""
         return (-1, 1) if self.quantity == "strain" else (1, 1)
+
+    def waves(self, network: Network) -> tuple[WaveTerm, WaveTerm]:
+        """On a rod: the right-going and the left-going wave, each from the end that sends it."""
+        bar = network.bars[self.rod - 1]
+        over = 1 / bar.speed if self.quantity == "strain" else _ONE
+        right, left = self.weights
+        return (
+            WaveTerm(End(self.rod - 1, 0), right * over, self.place * bar.delay),
+            WaveTerm(End(self.rod - 1, 1), left * over, (1 - self.place) * bar.delay),
+        )
 
     @property
     def moves(self) -> bool:

@@ -49,13 +49,7 @@ class RuledNetwork:
         """dU/dx = (g' - f')/speed, dU/dtau = f' + g' + v, each wave as late as it comes from its end."""
         if reading.point is not None:
             return (Part(1, Function(POINT, reading.point), fmpq(0)),)
-        bar = self.network.bars[reading.rod - 1]
-        over = 1 / bar.speed if reading.quantity == "strain" else fmpq(1)
-        right, left = reading.weights
-        return (
-            Part(right * over, Function("f", reading.rod), reading.place * bar.delay),
-            Part(left * over, Function("g", reading.rod), (1 - reading.place) * bar.delay),
-        )
+        return tuple(Part(weight, function_of(end), delay) for end, weight, delay in reading.waves(self.network))
 
     def motion(self, reading: Gauge) -> Increment:
         """The part of what is read that is not wave: what its bar, or the point, holds at tau = 0."""
