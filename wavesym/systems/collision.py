@@ -169,7 +169,7 @@ class RodOfBody(SceneTable):
 
     def rod(self) -> ElasticRod:
         """As waves see it."""
-        return ElasticRod(self.length, self.rho * self.A * self.length, self.E * self.A / self.length, self.A)
+        return ElasticRod.from_section(self.length, self.E, self.A, self.rho, self.A)
 
 
 class Body(SceneTable):

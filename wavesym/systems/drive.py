@@ -19,14 +19,13 @@ from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Integer, Numbers, Positives
 from wavesym.fields.quantity_fields import Bore, Density, Inertia, Length, Modulus, SecondMoment, one_of
-from wavesym.fields.rounding import polar_moment
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import SceneTable, as_list, key_context, refusal, show, without_usual
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
 from wavesym.systems.dimensionless import DimensionlessSystem, LoadUnit
-from wavesym.systems.elastic import ElasticRod, Rods
+from wavesym.systems.elastic import ElasticRod, Rods, round_section
 from wavesym.systems.parts import Table
 from wavesym.systems.preset import Preset
 
@@ -168,20 +167,9 @@ class Round(SceneTable):
         """As a rod. Raises the error of `table.refusal`."""
         if one_of(self, "J", "diameter") == "J" and self.bore is not None:
             raise refusal("stands beside J; write one of them", "bore")
-        moment = self.J if self.diameter is None else self._polar(self.diameter)
+        moment = self.J if self.diameter is None else round_section(self.diameter, self.bore)
         assert moment is not None  # one of the two is given
-        return ElasticRod(
-            self.length,
-            self.rho * moment * self.length,
-            self.G * moment / self.length,
-            self.diameter and self.diameter**2,
-        )
-
-    def _polar(self, diameter: Fraction) -> Fraction:
-        bore = self.bore or Fraction(0)
-        if bore >= diameter:
-            raise refusal("as wide as the shaft or wider; write a bore below the diameter", "bore")
-        return polar_moment(diameter, bore)
+        return ElasticRod.from_section(self.length, self.G, moment, self.rho, self.diameter and self.diameter**2)
 
 
 class Disc(SceneTable):

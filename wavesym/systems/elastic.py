@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from wavesym.fields.rounding import root, rounded_root
+from wavesym.fields.rounding import polar_moment, root, rounded_root
+from wavesym.fields.table import refusal
+
+
+def round_section(diameter: Fraction, bore: Fraction | None) -> Fraction:
+    """The polar moment of a round shaft. Raises the error of `table.refusal` for one that is all bore."""
+    if bore and bore >= diameter:
+        raise refusal("as wide as the shaft or wider; write a bore below the diameter", "bore")
+    return polar_moment(diameter, bore or Fraction(0))
 
 
 @dataclass(frozen=True)
@@ -21,6 +29,18 @@ class ElasticRod:
     mass: Fraction
     stiffness: Fraction
     width_squared: Fraction | None = None
+
+    @classmethod
+    def from_section(
+        cls,
+        length: Fraction,
+        modulus: Fraction,
+        section: Fraction,
+        density: Fraction,
+        width_squared: Fraction | None = None,
+    ) -> ElasticRod:
+        """A rod of one section: E A, k G A or G J over its length, and the density times A or J times that."""
+        return cls(length, density * section * length, modulus * section / length, width_squared)
 
     @property
     def slenderness(self) -> float | None:

@@ -13,10 +13,9 @@ from pydantic import Field, create_model
 
 from wavesym.fields.numbers import exact
 from wavesym.fields.quantity_fields import missing, one_of, read_quantity
-from wavesym.fields.rounding import polar_moment
 from wavesym.fields.table import SceneTable, key_context, refusal, show
 from wavesym.systems.dimensionless import Kind
-from wavesym.systems.elastic import ElasticRod
+from wavesym.systems.elastic import ElasticRod, round_section
 from wavesym.systems.parts import ChainPart, ContactPart, JointPart, LinkPart, MassPart, MotionPart, PartName
 
 
@@ -25,6 +24,7 @@ class RodKeys(SceneTable):
 
     key: ClassVar[str] = "rod"
     dimensions: ClassVar[Mapping[str, str]]
+    """Of its modulus, its section and its density, by their keys."""
 
     rod: Any = Field(description='a length such as "1.2 m"')
     impedance: Any = None
@@ -46,7 +46,8 @@ class RodKeys(SceneTable):
             length = read_quantity(self.rod, "length", 1)
         if self.impedance is None and self.speed is None:
             found = self._si_values()
-            return ElasticRod(length, self._mass(found) * length, self._stiffness(found) / length, self._square(found))
+            modulus, section, density = (found[key] for key in self.dimensions)
+            return ElasticRod.from_section(length, modulus, section, density, self._square(found))
         for key in self.material_keys():
             if getattr(self, key) is not None:
                 given = "impedance" if self.impedance is not None else "speed"
@@ -69,56 +70,49 @@ class RodKeys(SceneTable):
         """The keys that say what it is made of."""
         return tuple(key for key in cls.model_fields if key not in RodKeys.model_fields)
 
-    def _mass(self, found: Mapping[str, Fraction]) -> Fraction:
-        """Per length."""
-        return found["rho"] * found["A"]
-
     def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
-        """Of its width, where it should be small beside the length."""
-        return found["A"]
-
-    def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
-        """Times length."""
-        return found["E"] * found["A"]
+        """Of its width, where that is known and should be small beside the length."""
+        return None
 
 
 class LongitudinalRod(RodKeys):
     """It is stretched: E A and rho A."""
 
-    dimensions: ClassVar[Mapping[str, str]] = {"A": "area", "E": "modulus", "rho": "density"}
+    dimensions: ClassVar[Mapping[str, str]] = {"E": "modulus", "A": "area", "rho": "density"}
 
     A: Any = None
     E: Any = None
     rho: Any = None
 
+    def _square(self, found: Mapping[str, Fraction]) -> Fraction:
+        return found["A"]
+
 
 class ShearRod(RodKeys):
     """It is sheared: k G A and rho A."""
 
-    dimensions: ClassVar[Mapping[str, str]] = {"A": "area", "G": "modulus", "rho": "density"}
+    dimensions: ClassVar[Mapping[str, str]] = {"G": "modulus", "A": "area", "rho": "density"}
 
     A: Any = None
     G: Any = None
     rho: Any = None
     k: Any = None
 
-    def _square(self, found: Mapping[str, Fraction]) -> None:
-        """Shear asks for no slenderness: on the contrary."""
-
-    def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
+    def _si_values(self) -> dict[str, Fraction]:
+        found = super()._si_values()
         if self.k is None:
-            return found["G"] * found["A"]
+            return found
         with key_context("k"):
             factor = exact(self.k)
             if factor <= 0:
                 raise refusal(f"{show(self.k)} is not positive; write a number above 0")
-        return factor * found["G"] * found["A"]
+        return {**found, "G": factor * found["G"]}
 
 
 class TorsionalRod(RodKeys):
     """It is twisted: G J and rho J, J as it is or that of a round rod with a bore."""
 
-    dimensions: ClassVar[Mapping[str, str]] = {"G": "modulus", "rho": "density"}
+    dimensions: ClassVar[Mapping[str, str]] = {"G": "modulus", "J": "second moment of area", "rho": "density"}
 
     J: Any = None
     diameter: Any = None
@@ -126,28 +120,18 @@ class TorsionalRod(RodKeys):
     G: Any = None
     rho: Any = None
 
-    def _si_values(self) -> dict[str, Fraction]:
-        return {"J": self._polar(), **super()._si_values()}
-
-    def _polar(self) -> Fraction:
-        if one_of(self, "J", "diameter") == "J":
-            if self.bore is not None:
-                raise refusal("stands beside J; write one of them", "bore")
-            return self._si_value("J", "second moment of area")
-        diameter = self._si_value("diameter", "length")
-        bore = self._si_value("bore", "length", 0) if self.bore is not None else Fraction(0)
-        if bore >= diameter:
-            raise refusal(f"{show(self.bore)} is as wide as the shaft or wider; write less than the diameter", "bore")
-        return polar_moment(diameter, bore)
+    def _si_value(self, key: str, dimension: str, least: int = 1) -> Fraction:
+        if key != "J":
+            return super()._si_value(key, dimension, least)
+        if one_of(self, "J", "diameter") == "diameter":
+            bore = None if self.bore is None else self._si_value("bore", "length", 0)
+            return round_section(self._si_value("diameter", "length"), bore)
+        if self.bore is not None:
+            raise refusal("stands beside J; write one of them", "bore")
+        return super()._si_value(key, dimension)
 
     def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
         return None if self.diameter is None else self._si_value("diameter", "length") ** 2
-
-    def _mass(self, found: Mapping[str, Fraction]) -> Fraction:
-        return found["rho"] * found["J"]
-
-    def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
-        return found["G"] * found["J"]
 
 
 def _keys(part: type[ChainPart]) -> type[SceneTable]:
