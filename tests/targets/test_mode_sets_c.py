@@ -139,7 +139,7 @@ def loaded(scene, **options):
 def test_bad_numbers_are_refused_and_too_few_modes_told():
     frame, model = loaded(FRAME, parts=("peaks",)), wavesym.model(FRAME, NUMBERS)
     own = np.concatenate([model.parameters[name] for name in NUMBERS])
-    room, out = np.zeros(1 << 20, np.uint8), np.zeros((5, 4))
+    room, out = np.zeros(1 << 20, np.uint8), np.zeros((len(model.outputs), 4))
     of, place = room.ctypes.data_as(ctypes.c_void_p), out.ctypes.data_as(ctypes.c_void_p)
     at = dict(zip(NUMBERS, np.cumsum([0, *(len(model.parameters[name]) for name in NUMBERS[:-1])]), strict=True))
     for name, value, status in (
