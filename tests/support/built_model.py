@@ -12,7 +12,7 @@ from tests.support.builds import LANGUAGES, STRICT
 from wavesym import api as ways
 from wavesym import evaluator
 from wavesym.programs.request import PARTS, POSITIVE
-from wavesym.running.toolchain import compiler
+from wavesym.running.native import library, struct_size
 from wavesym.scene import Scene
 
 
@@ -45,16 +45,12 @@ class BuiltModel:
         # batches are compiled where they are tested: half a second each time
         written(scene, runtime, folder, changes, parts=["gradients", "bound"], kappa_max=kappa_max)
         name = scene.name
-        sizes = f"{{sizeof({name}_model), sizeof({name}_tangent)}}"
-        size = f'#include "{name}.h"\nextern const size_t size[2];\nconst size_t size[2] = {sizes};\n'
-        (folder / "size.c").write_text(size)
-        command = [*LANGUAGES["c99"], *STRICT, *flags, "-fPIC", "-shared", f"{name}.c", "size.c", "-o", "made.so"]
-        compiler().run(command, folder)
-        self.library = ctypes.CDLL(str(folder / "made.so"))
+        texts = tuple((folder / f"{name}.{suffix}").read_text() for suffix in ("h", "c"))
+        self.library = library(texts[1], (*LANGUAGES["c99"][1:], *STRICT, *flags), (f"{name}.h", texts[0]))
         self.outputs = len(scene.outputs)
-        self.until = float(re.search(r"_TAU_MAX (\S+)", (folder / f"{name}.h").read_text())[1])
+        self.until = float(re.search(r"_TAU_MAX (\S+)", texts[0])[1])
         self.model, self.tangent = (
-            np.zeros(size, np.uint8) for size in (ctypes.c_size_t * 2).in_dll(self.library, "size")
+            np.zeros(struct_size(self.library, kind), np.uint8) for kind in ("model", "tangent")
         )
         self._build = getattr(self.library, f"{name}_build")
         self._build.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
