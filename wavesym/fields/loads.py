@@ -73,6 +73,14 @@ class Load(SceneTable):
 LoadKinds = tuple[type[Load], ...]
 
 
+def refuse_falling(times: Sequence[Fraction], written: Sequence[object]) -> None:
+    """Raise the error of `table.refusal` for times that do not rise, which messages show as they are written."""
+    for k, (before, time) in enumerate(pairwise(times), 1):
+        if time <= before:
+            one, other = show(written[k]), show(written[k - 1])
+            raise refusal(f"{one} is not later than the {other} before it; write times in rising order", k)
+
+
 class TimedLoad(Load):
     """A load that changes at given times, with a number in each other list for each of them.
 
@@ -88,12 +96,7 @@ class TimedLoad(Load):
     def _check_times(cls, times: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
         if times and times[0] < 0:
             raise refusal(f"{show(times[0])} is before the start; write a time of 0 or later", 0)
-        for k, (before, time) in enumerate(pairwise(times), 1):
-            if time <= before:
-                raise refusal(
-                    f"{show(time)} is not later than the {show(before)} before it; write times in rising order",
-                    k,
-                )
+        refuse_falling(times, times)
         return times
 
     @model_validator(mode="after")

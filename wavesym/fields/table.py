@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from decimal import Decimal
 from fractions import Fraction
@@ -65,6 +65,18 @@ def without_usual(fields: dict[str, Any], **usual: object) -> dict[str, Any]:
 def refusal(what: str, *keys: str | int) -> PydanticCustomError:
     """The error to raise in a validator; `keys` lead from the field that is validated to what is wrong in it."""
     return _refusal([Fault(what, keys)])
+
+
+def read_choice(fault: str, *words: str) -> Callable[[object], str]:
+    """A validator of one of some words; `fault` is what a message says of anything else."""
+
+    def read(value: object) -> str:
+        if isinstance(value, str) and value in words:
+            return value
+        choice = " or ".join(f'"{word}"' for word in words)
+        raise refusal(f"{show(value)} {fault}; write {choice}")
+
+    return read
 
 
 def _refusal(faults: Sequence[Fault]) -> PydanticCustomError:

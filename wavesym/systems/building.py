@@ -40,7 +40,7 @@ from wavesym.fields.quantity_fields import (
     read_quantity,
 )
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.fields.table import SceneTable, as_list, key_context, refusal, show
+from wavesym.fields.table import SceneTable, as_list, key_context, read_choice, refusal, show
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
 from wavesym.systems.dimensionless import DimensionlessSystem, LoadUnit
@@ -118,11 +118,7 @@ class ShapedAcceleration(OfBase, ShapedLoad):
     """A base acceleration of one shape."""
 
 
-def known_base(base: object) -> str:
-    """Which of the two bases. Raises the error of `table.refusal`."""
-    if base in ("force", "ground"):
-        return str(base)
-    raise refusal(f'{show(base)} is not a base; write "force" or "ground"')
+read_base = read_choice("is not a base", "force", "ground")
 
 
 def building_parts(base: str, storeys: Iterable[tuple[Table, Fraction]]) -> list[object]:
@@ -151,7 +147,7 @@ class Building(Preset):
     @field_validator("base", mode="before")
     @classmethod
     def _check_base(cls, base: object) -> object:
-        return known_base(base)
+        return read_base(base)
 
     @property
     def system(self) -> System:
@@ -259,7 +255,7 @@ class PhysicalBuilding(SceneTable):
     """Storeys on a foundation."""
 
     type: str
-    base: Annotated[str, PlainValidator(known_base)] = Field(description='"force" or "ground"')
+    base: Annotated[str, PlainValidator(read_base)] = Field(description='"force" or "ground"')
     storey: Annotated[tuple[Storey, ...], FailFast(), BeforeValidator(as_list)] = Field(description="a list of storeys")
     foundation_mass: Mass | None = None
     damping: Any = None

@@ -28,7 +28,7 @@ from pydantic import (
 from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Numbers, Positives
 from wavesym.fields.quantity_fields import Area, Density, Length, Mass, Modulus, Velocity, tidy
-from wavesym.fields.table import SceneTable, as_list, refusal, show, without_usual
+from wavesym.fields.table import SceneTable, as_list, read_choice, refusal, show, without_usual
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network, with_contacts
@@ -74,11 +74,7 @@ def _indices(m: int) -> Mapping[str, range]:
 COLLISION = System("collision", _families, _indices, smallest=4, step=2)
 
 
-def known_contacts(contacts: object) -> str:
-    """Whether contacts open. Raises the error of `table.refusal`."""
-    if contacts in ("closed", "open"):
-        return str(contacts)
-    raise refusal(f'{show(contacts)} is unknown; write "closed" or "open"')
+read_contacts = read_choice("is unknown", "closed", "open")
 
 
 def collision_parts(
@@ -107,7 +103,7 @@ class Collision(Preset):
     @field_validator("contacts", mode="before")
     @classmethod
     def _check_contacts(cls, contacts: object) -> object:
-        return known_contacts(contacts)
+        return read_contacts(contacts)
 
     @model_serializer(mode="wrap")
     def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -211,7 +207,7 @@ class PhysicalCollision(SceneTable):
             table |= {"velocity": velocities, "contacts": self.contacts}
         else:
             masses = [body.mass / first.mass for body in bodies]
-            opens = known_contacts(self.contacts) == "open"
+            opens = read_contacts(self.contacts) == "open"
             table = {"type": "collision", "parts": collision_parts(rods.parts, masses, velocities, opens=opens)}
         return DimensionlessSystem(
             kind="longitudinal",

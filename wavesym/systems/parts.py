@@ -11,7 +11,7 @@ from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
 from wavesym.fields.damping import damping_ratio
 from wavesym.fields.numbers import Exact, Positive, exact
-from wavesym.fields.table import Faults, SceneTable, as_list, refusal, show
+from wavesym.fields.table import Faults, SceneTable, as_list, read_choice, refusal, show
 
 _NAMES = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _MOST_TOLD = 40
@@ -35,22 +35,6 @@ def _true(value: object) -> bool:
     if value is not True:
         raise refusal(f"{show(value)} is not true; write true, or leave it out")
     return True
-
-
-def _read_motion(value: object) -> Literal["velocity", "acceleration"]:
-    if value == "velocity":
-        return "velocity"
-    if value == "acceleration":
-        return "acceleration"
-    raise refusal(f'{show(value)} is not a motion; write "velocity" or "acceleration"')
-
-
-def _side(value: object) -> Literal["push", "pull"] | None:
-    if value == "push":
-        return "push"
-    if value == "pull":
-        return "pull"
-    raise refusal(f'{show(value)} is not a side; write "push" or "pull"')
 
 
 def _gap(value: object) -> Fraction | tuple[Fraction, Fraction]:
@@ -104,7 +88,7 @@ class SpringLaw(SceneTable):
 
     spring: NotNegative = Fraction(0)
     dashpot: NotNegative = Fraction(0)
-    only: Annotated[Any, PlainValidator(_side)] = Field(
+    only: Annotated[Any, PlainValidator(read_choice("is not a side", "push", "pull"))] = Field(
         None, description='"push" or "pull": the spring does nothing else'
     )
     gap: Annotated[Any, PlainValidator(_gap), PlainSerializer(_numbers)] = Field(
@@ -222,9 +206,10 @@ class MotionPart(ChainPart):
 
     key: ClassVar[str] = "motion"
 
-    motion: Annotated[Literal["velocity", "acceleration"], PlainValidator(_read_motion)] = Field(
-        description='"velocity" or "acceleration"'
-    )
+    motion: Annotated[
+        Literal["velocity", "acceleration"],
+        PlainValidator(read_choice("is not a motion", "velocity", "acceleration")),
+    ] = Field(description='"velocity" or "acceleration"')
     velocity: Exact = Fraction(0)
     name: PartName | None = None
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from itertools import pairwise
 from os import PathLike
 from typing import Any
 
@@ -12,6 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
+from wavesym.fields.loads import refuse_falling
 from wavesym.fields.numbers import decimal_text, exact
 from wavesym.fields.quantity import unit
 from wavesym.fields.quantity_fields import read_quantity
@@ -67,12 +67,7 @@ def _times(value: object, seconds: Fraction) -> list[Fraction]:
     for k, each in enumerate(values):
         with key_context(k):
             times.append(read_quantity(each, "time", 0))
-    for k, (before, time) in enumerate(pairwise(times), 1):
-        if time <= before:
-            raise refusal(
-                f"{show(values[k])} is not later than the {show(values[k - 1])} before it; write times in rising order",
-                k,
-            )
+    refuse_falling(times, values)
     return [time / seconds for time in times]
 
 
