@@ -38,6 +38,10 @@ class Truth:
     sizes: Array
     arrivals: Array
 
+    def errors(self, values: Array) -> Array:
+        """The largest error of any output at each of the `taus`, relative to its largest value."""
+        return np.asarray(np.max(np.abs(values - self.values) / self.sizes[:, np.newaxis], axis=0))
+
 
 @dataclass(frozen=True)
 class Attempt:
@@ -82,8 +86,7 @@ def attempt(known: Truth, name: str) -> Attempt:
     refused = "" if met else form.shortfall(model.tolerance)
     bounds = _bounds_by_horizon(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
     with np.errstate(over="ignore", invalid="ignore"):
-        found = program(model, form).evaluate(taus)
-    wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
+        wrong = known.errors(program(model, form).evaluate(taus))
     errors = np.where(np.isfinite(wrong), wrong, math.inf)
     return Attempt(name, taus, errors, bounds, refused)
 

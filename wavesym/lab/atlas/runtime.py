@@ -71,7 +71,7 @@ def _points(panel: str, kappa: Sequence[Fraction], until: int, x: float) -> list
     values = np.array([float(value) for value in kappa])
     checks = model.check(kappa=values)
     (why,), (estimate,) = checks.why, checks.estimate
-    wrong = np.abs(model.run(known.taus, kappa=values)[0] - known.values) / known.sizes[:, np.newaxis]
+    wrong = known.errors(model.run(known.taus, kappa=values)[0])
     bound = float(np.nan_to_num(np.max(model.bounds(kappa=values)), nan=np.inf))
     return [
         AtlasPoint(panel, "error", x, float(np.max(wrong)), bound, why),
