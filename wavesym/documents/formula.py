@@ -268,8 +268,8 @@ def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmp
     for weight, reading in readings:
         velocity = chain.rod(reading.rod).velocity + frame
         if reading.quantity != "strain" and velocity != 0:
-            held: Increment = {fmpq(0): [velocity]}
-            gains.setdefault(fmpq(0), []).append((weight, held, reading.order < 0))
+            constant: Increment = {fmpq(0): [velocity]}
+            gains.setdefault(fmpq(0), []).append((weight, constant, reading.order < 0))
     made = []
     for time in sorted(gains):
         total: Increment = {}
@@ -288,14 +288,14 @@ def _delay(symbols: SymbolicChain, function: Function, place: fmpq) -> fmpq:
 
 
 def _probe(model: Model, name: str) -> Probe:
-    found = [probe for probe in model.probes if probe.name == name]
-    if not found:
+    named = [probe for probe in model.probes if probe.name == name]
+    if not named:
         names = [probe.name for probe in model.probes]
         hint = did_you_mean(name, names)
         raise WavesymError(
             f"--output: {name} is no output of {model.name}; it has {', '.join(names)}{hint and '. '}{hint}"
         )
-    return found[0]
+    return named[0]
 
 
 def _formula(model: Model, probe: Probe, gains: Sequence[Gain], letters: Mapping[str, fmpq]) -> Formula:

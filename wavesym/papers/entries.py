@@ -122,8 +122,8 @@ class Passage(_Data):
         """The records, each with its place and its scan."""
         cells = {place.id for place in tables.places(self.table, self.text, self.lines[0])}
         used: list[tuple[int, int]] = []
-        found = [self._entry(id, data, used) for id, data in self.record.items() if id not in cells]
-        return (*found, *self._cells({entry.id: entry for entry in found}))
+        heads = [self._entry(id, data, used) for id, data in self.record.items() if id not in cells]
+        return (*heads, *self._cells({entry.id: entry for entry in heads}))
 
     def _entry(self, id: str, data: Mapping[str, Any], used: list[tuple[int, int]]) -> PaperEntry:
         entry = PaperEntry(**{"id": id, "kind": self.kind, "subject": self.subject, **data})
@@ -230,28 +230,28 @@ def merge_records(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str
     A key such as "T1.{I,III}.S" is of several records. Lists that several keys give one record are joined, and what a
     slip has; ValueError where anything else stands there twice.
     """
-    found: dict[str, dict[str, Any]] = {}
+    merged: dict[str, dict[str, Any]] = {}
     for key, data in tables.items():
         choices = [part.split(",") if number % 2 else [part] for number, part in enumerate(re.split(r"[{}]", key))]
         for parts in product(*choices):
             id = "".join(parts)
-            found[id] = _joined_values(id, found.get(id, {}), data)
-    return found
+            merged[id] = _joined_values(id, merged.get(id, {}), data)
+    return merged
 
 
 def _joined_values(name: str, known: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, Any]:
-    found = dict(known)
+    joined = dict(known)
     for key, value in more.items():
-        match found.get(key), value:
+        match joined.get(key), value:
             case None, _:
-                found[key] = value
+                joined[key] = value
             case list() as values, list():
-                found[key] = [*values, *value]
+                joined[key] = [*values, *value]
             case dict() as values, dict():
-                found[key] = _joined_values(f"{name}.{key}", values, value)
+                joined[key] = _joined_values(f"{name}.{key}", values, value)
             case _:
                 raise ValueError(f"{name}: {key} stands there twice")
-    return found
+    return joined
 
 
 def digest(text: str) -> str:

@@ -175,10 +175,10 @@ class Scope:
         return fmpq(base) ** whole if not isinstance(base, int) or whole < 0 else base**whole
 
     def _cases(self, cases: Cases) -> Any:
-        found = [value for value, where in cases.branches if holds(where, self)]
-        if len(found) != 1:
-            raise MeaninglessError(f"{'no' if not found else 'more than one'} case for {self.variables}")
-        return self.value(found[0])
+        values = [value for value, where in cases.branches if holds(where, self)]
+        if len(values) != 1:
+            raise MeaninglessError(f"{'no' if not values else 'more than one'} case for {self.variables}")
+        return self.value(values[0])
 
     def _refuse(self, tree: Tree) -> Any:
         raise MeaninglessError(f"{latex(tree)} is no value")
@@ -268,16 +268,16 @@ def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
 
 def places(ranges: Iterable[Tree], scope: Scope, most: int = 0) -> list[dict[str, Any]]:
     """The values of all running letters, range by range, for which the other ranges hold."""
-    found = [scope.variables]
+    kept = [scope.variables]
     for range_ in ranges:
-        before, found = found, []
+        before, kept = kept, []
         for place in before:
             with scope.bind(place):
                 if isinstance(range_, Progression) and latex(range_.variable) not in scope.variables:
-                    found += [{**place, latex(range_.variable): value} for value in span(range_, scope, most)]
+                    kept += [{**place, latex(range_.variable): value} for value in span(range_, scope, most)]
                 elif holds(range_, scope):
-                    found.append(place)
-    return found
+                    kept.append(place)
+    return kept
 
 
 def _switches(factor: Tree) -> bool:
@@ -293,9 +293,9 @@ def _runner(tree: Tree) -> Runner:
     try:
         return tree.__dict__["_runner"]  # type: ignore[no-any-return]
     except KeyError:
-        made = _MAKERS[type(tree)](tree)
-        tree.__dict__["_runner"] = made
-        return made
+        runner = _MAKERS[type(tree)](tree)
+        tree.__dict__["_runner"] = runner
+        return runner
 
 
 def _as_whole(value: Any, tree: Tree) -> int:
@@ -311,9 +311,9 @@ def _index_runners(symbol: Symbol) -> tuple[Callable[[Scope], tuple[int, ...]], 
     try:
         return symbol.__dict__["_index_runners"]  # type: ignore[no-any-return]
     except KeyError:
-        made = _indices(symbol.subscript), _indices(symbol.superscript)
-        symbol.__dict__["_index_runners"] = made
-        return made
+        runners = _indices(symbol.subscript), _indices(symbol.superscript)
+        symbol.__dict__["_index_runners"] = runners
+        return runners
 
 
 def _indices(trees: tuple[Tree, ...]) -> Callable[[Scope], tuple[int, ...]]:

@@ -105,9 +105,9 @@ def _from_parts(parts: dict[Key, fmpq]) -> Exponentials:
 
 def _from_nonzero_parts(parts: dict[Key, fmpq]) -> Exponentials:
     """The sum with these parts, none of which is 0."""
-    made = Exponentials.__new__(Exponentials)
-    made.parts = parts
-    return made
+    total = Exponentials.__new__(Exponentials)
+    total.parts = parts
+    return total
 
 
 def exponential(exponent: Exact) -> Exponentials:

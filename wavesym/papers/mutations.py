@@ -38,11 +38,11 @@ _TURNED_BRACKETS = {"(": r"\langle", r"\langle": "(", ")": r"\rangle", r"\rangle
 def mutations(tree: Tree) -> Iterator[tuple[str, Tree]]:
     """The tree with one fault each, by what was changed; no two have the same name."""
     seen: dict[str, int] = {}
-    made: set[Tree] = {tree}
+    known: set[Tree] = {tree}
     for change, wrong in _tree_faults(tree, ""):
-        if wrong in made:
+        if wrong in known:
             continue
-        made.add(wrong)
+        known.add(wrong)
         seen[change] = seen.get(change, 0) + 1
         yield (change if seen[change] == 1 else f"{change}, number {seen[change]}"), wrong
 
@@ -96,16 +96,16 @@ def _inner_faults(tree: Any, here: str) -> Iterator[tuple[str, Any]]:
         elif is_dataclass(value) and not _is_label(tree, field.name):
             inner = _context(value, here)
             # the letter of a function is no quantity
-            found = _inner_faults(value, inner) if isinstance(tree, Call) else _tree_faults(value, inner)
-            for change, wrong in found:
+            faults = _inner_faults(value, inner) if isinstance(tree, Call) else _tree_faults(value, inner)
+            for change, wrong in faults:
                 yield change, replace(tree, **{field.name: wrong})
 
 
 def _part_faults(part: Any, parent: Any, here: str) -> Iterator[tuple[str, Any]]:
     if isinstance(part, tuple):  # a branch of cases
         for place, inner in enumerate(part):
-            found = ends(inner) if isinstance(inner, Progression) else _tree_faults(inner, _context(inner, here))
-            for change, wrong in found:
+            faults = ends(inner) if isinstance(inner, Progression) else _tree_faults(inner, _context(inner, here))
+            for change, wrong in faults:
                 yield change, (*part[:place], wrong, *part[place + 1 :])
     elif is_dataclass(part):
         if isinstance(parent, Symbol) and not isinstance(part, Number):

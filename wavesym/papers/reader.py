@@ -96,8 +96,8 @@ class _Trees(Transformer[Token, Any]):
 
     def signed_terms(self, *items: Any) -> Tree:
         signs, terms = items[::2], items[1::2]
-        found = [Minus(term) if sign == "-" else term for sign, term in zip(signs, terms, strict=True)]
-        return found[0] if len(found) == 1 else Addition(tuple(found))
+        signed = [Minus(term) if sign == "-" else term for sign, term in zip(signs, terms, strict=True)]
+        return signed[0] if len(signed) == 1 else Addition(tuple(signed))
 
     def term(self, *items: Any) -> Tree:
         factors: list[Tree] = []

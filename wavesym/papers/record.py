@@ -257,9 +257,9 @@ def _kind(entry: PaperEntry, test: Test, printed: _Trial) -> tuple[Verdict, str]
     under += [("convention", f"Where {meaning},", cases) for meaning, cases in test.conventions.items()]
     text, ranges = entry.statement, (*entry.ranges, *entry.inferred_ranges)
     for verdict, words, cases in under:
-        held = _Trial.run(replace(test, cases=cases), text, ranges, stop_at="failure")
-        if held.telling_count and held.wrong is None:
-            return verdict, f"{words} it holds as printed in {_all(held.telling_count)}."
+        trial = _Trial.run(replace(test, cases=cases), text, ranges, stop_at="failure")
+        if trial.telling_count and trial.wrong is None:
+            return verdict, f"{words} it holds as printed in {_all(trial.telling_count)}."
     if printed.false is None:
         return "unreadable", "Wherever it fails it has no value."
     if test.variation and printed.agreeing_count:

@@ -98,12 +98,12 @@ def position(
     if not searched:
         return None
     starts = [match.start() for match in re.finditer(f"(?={re.escape(searched)})", traced.text)]
-    found = [
+    spans = [
         _extend_span(source, traced.spans[start][0], traced.spans[start + len(searched) - 1][1], strings[-1])
         for start in starts
     ]
     taken = set(used)
-    return next((span for span in found if span not in taken), found[0] if found else None)
+    return next((span for span in spans if span not in taken), spans[0] if spans else None)
 
 
 def _extend_span(source: str, start: int, end: int, printed: str) -> tuple[int, int]:

@@ -56,10 +56,10 @@ class SentencePattern:
 
     def match(self, sentence: str) -> Sentence | None:
         """The sentence with its words, where it is one of this pattern; UnreadableError for a list of other words."""
-        found = self._expression.fullmatch(sentence)
-        if not found:
+        match = self._expression.fullmatch(sentence)
+        if not match:
             return None
-        words = {place: word for place, word in found.groupdict().items() if word is not None}
+        words = {place: word for place, word in match.groupdict().items() if word is not None}
         if unknown := sorted(set(words.get("listed", "").split(LIST)) - {*self.list_words, ""}):
             raise UnreadableError(f"nothing is called {', '.join(unknown)}")
         return Sentence(self.name, words)

@@ -26,12 +26,12 @@ def requested_entries(entries: Sequence[PaperEntry], names: Iterable[str]) -> tu
     """
     wanted: set[str] = set()
     for name in names:
-        found = {entry.id for entry in entries if _means(name, entry)}
-        if not found:
+        ids = {entry.id for entry in entries if _means(name, entry)}
+        if not ids:
             near = get_close_matches(_bare(name), sorted(_typed_names(entries)), n=MOST_MEANT)
             meant = f". Did you mean {' or '.join(near)}?" if near else ""
             raise WavesymError(f"{name}: no such record, formula or group in the paper{meant}")
-        wanted |= found
+        wanted |= ids
     return tuple(entry for entry in entries if entry.id in wanted)
 
 

@@ -60,8 +60,8 @@ class Findings:
     @property
     def counts(self) -> list[tuple[Verdict, int]]:
         """How many records have each verdict, those that occur."""
-        found = Counter(record.verdict for record in self.records)
-        return [(verdict, found[verdict]) for verdict in VERDICTS if found[verdict]]
+        counted = Counter(record.verdict for record in self.records)
+        return [(verdict, counted[verdict]) for verdict in VERDICTS if counted[verdict]]
 
     @property
     def faults(self) -> tuple[int, int]:
@@ -402,10 +402,10 @@ def _place(entry: PaperEntry) -> str:
 
 def by_place(records: Iterable[Record]) -> dict[str, list[Record]]:
     """The records of each section and table."""
-    found: dict[str, list[Record]] = {}
+    places: dict[str, list[Record]] = {}
     for record in records:
-        found.setdefault(_place(record.entry), []).append(record)
-    return found
+        places.setdefault(_place(record.entry), []).append(record)
+    return places
 
 
 def span(lines: tuple[int, int]) -> str:

@@ -147,7 +147,7 @@ def as_json(findings: Findings) -> str:
 def _object(record: Record, findings: Findings) -> dict[str, object]:
     entry, slip, mutations = record.entry, record.entry.slip, record.mutations
     by_name = {field.name: TEXT.line(field.line) for field in fields(record, findings)}
-    found: dict[str, object] = {
+    row: dict[str, object] = {
         "id": record.id,
         "where": entry.where,
         "lines": list(entry.lines),
@@ -176,8 +176,8 @@ def _object(record: Record, findings: Findings) -> dict[str, object]:
         "problems": list(record.problems),
     }
     if findings.reproduce:
-        found["reproduce"] = _json_reproduction(record)
-    return found
+        row["reproduce"] = _json_reproduction(record)
+    return row
 
 
 def _corrected_ranges(ranges: Sequence[str], slip: Slip | None) -> list[str] | None:
@@ -200,9 +200,9 @@ def _json_reproduction(record: Record) -> dict[str, str] | None:
 
 def markdown(findings: Findings) -> str:
     """A document that lies beside the code: the errata that are kept in generated/."""
-    made = document(findings, "markdown")
-    parts = ["# Errata", f"{MARKDOWN.line(made.source)} {made.introduction}"]
-    for section in made.sections:
+    page = document(findings, "markdown")
+    parts = ["# Errata", f"{MARKDOWN.line(page.source)} {page.introduction}"]
+    for section in page.sections:
         parts += [f"## {section.title}"] * bool(section.title)
         for block in section.blocks:
             parts += _markdown_block(block)

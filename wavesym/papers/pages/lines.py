@@ -69,8 +69,8 @@ def prose(text: str) -> Line:
 def _token(text: str) -> str | Formula:
     if not text.startswith("$"):
         return readable(text)
-    found = formula(text.strip("$"))
-    return found if isinstance(found, Formula) else readable(text.strip("$"))
+    tree = formula(text.strip("$"))
+    return tree if isinstance(tree, Formula) else readable(text.strip("$"))
 
 
 def readable(text: str) -> str:

@@ -19,11 +19,11 @@ Token = tuple[int, str]
 
 def tokens(text: str) -> list[Token]:
     """The tokens of a formula in LaTeX, without spaces."""
-    found: list[Token] = []
+    parts: list[Token] = []
     for token in _TOKENS.findall(text):
-        depth = found[-1][0] + (found[-1][1] == "{") if found else 0
-        found.append((depth - (token == "}"), token))
-    return found
+        depth = parts[-1][0] + (parts[-1][1] == "{") if parts else 0
+        parts.append((depth - (token == "}"), token))
+    return parts
 
 
 def differences(one: Sequence[Hashable], other: Sequence[Hashable]) -> tuple[frozenset[int], frozenset[int]]:

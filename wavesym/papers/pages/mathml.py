@@ -27,13 +27,13 @@ def mathml(tree: Tree, differing: frozenset[int] = frozenset()) -> str:
         from latex2mathml.converter import convert
     except ImportError:
         raise WavesymError("latex2mathml is not installed; `pip install 'wavesym[papers]'` brings it") from None
-    found = []
+    elements = []
     for piece in mark(pieces(tree), differing):
-        made = convert(piece.replace(r"\marked{", r"\style{marked}{"), display="block")
+        element = convert(piece.replace(r"\marked{", r"\style{marked}{"), display="block")
         for before, after in _REPLACED:
-            made = made.replace(before, after)
-        found.append(made)
-    return " ".join(found)
+            element = element.replace(before, after)
+        elements.append(element)
+    return " ".join(elements)
 
 
 def pieces(tree: Tree) -> list[str]:
@@ -45,8 +45,8 @@ def pieces(tree: Tree) -> list[str]:
         case Relation(sides, signs):
             return _parts(sides, [f"{sign} " for sign in signs])
         case FormulaList(items):
-            found = [pieces(item) for item in items]
-            return [part for item in found[:-1] for part in (*item[:-1], f"{item[-1]},")] + found[-1]
+            cut = [pieces(item) for item in items]
+            return [part for item in cut[:-1] for part in (*item[:-1], f"{item[-1]},")] + cut[-1]
         case Addition(terms):
             bodies = [term.term if place and isinstance(term, Minus) else term for place, term in enumerate(terms)]
             return _parts(bodies, ["- " if isinstance(term, Minus) else "+ " for term in terms[1:]])

@@ -45,9 +45,9 @@ class RodKeys(SceneTable):
         with key_context("rod"):
             length = read_quantity(self.rod, "length", 1)
         if self.impedance is None and self.speed is None:
-            found = self._si_values()
-            modulus, section, density = (found[key] for key in self.dimensions)
-            return ElasticRod.from_section(length, modulus, section, density, self._square(found))
+            values = self._si_values()
+            modulus, section, density = (values[key] for key in self.dimensions)
+            return ElasticRod.from_section(length, modulus, section, density, self._square(values))
         for key in self.material_keys():
             if getattr(self, key) is not None:
                 given = "impedance" if self.impedance is not None else "speed"
@@ -99,14 +99,14 @@ class ShearRod(RodKeys):
     k: Any = None
 
     def _si_values(self) -> dict[str, Fraction]:
-        found = super()._si_values()
+        values = super()._si_values()
         if self.k is None:
-            return found
+            return values
         with key_context("k"):
             factor = exact(self.k)
             if factor <= 0:
                 raise refusal(f"{show(self.k)} is not positive; write a number above 0")
-        return {**found, "G": factor * found["G"]}
+        return {**values, "G": factor * values["G"]}
 
 
 class TorsionalRod(RodKeys):
