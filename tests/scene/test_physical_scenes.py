@@ -862,3 +862,15 @@ def test_colours_of_pictures_have_units() -> None:
 def test_scenes_without_units_do_not_wait_for_pint() -> None:
     code = "import sys, wavesym; wavesym.tables(wavesym.Scene.from_toml('drive_m1')); assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=FRAMES.parents[1])
+
+
+def test_a_delay_that_is_rational_is_exact() -> None:
+    """15 m at 450 m/s: samples 0.02 s apart are 3/5 of it, and not an ulp beside."""
+    parts = [{"rod": "15 m", "speed": "450 m/s", "impedance": "1 kN*s/m", "name": "a"}, {"joint": True, "name": "top"}]
+    load = {"at": "top", "spacing": "0.02 s", "samples": [0, 1, 0], "unit": "kN"}
+    output = {"until": "1 s", "velocity": ["top"]}
+    system = {"type": "chain", "parts": parts}
+    model = lower(Scene(name="column", units={"kind": "shear"}, system=system, load=[load], output=output))
+    assert model.clock is not None
+    assert model.clock.seconds == fmpq(1, 30)
+    assert model.spacing == fmpq(3, 5)

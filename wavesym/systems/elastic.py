@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from wavesym.fields.rounding import polar_moment, root, rounded_root
+from wavesym.fields.rounding import polar_moment, root
 from wavesym.fields.table import refusal
 
 
@@ -57,8 +57,8 @@ class ElasticRod:
 class Rods:
     """The rods of a scene, in order; all that is made relative is so to the first, or without any to 1 m, 1 s and 1 kg.
 
-    Irrational are its delay, l/c, which is rounded, and where rods differ the ratios of their delays, each of which is
-    rounded unless it is rational. Masses are kept, so that impedances follow: mass/delay.
+    The delay of the first, l/c, and where rods differ the ratios of their delays are rounded, each unless it is
+    rational. Masses are kept, so that impedances follow: mass/delay.
     """
 
     all: tuple[ElasticRod, ...]
@@ -78,7 +78,7 @@ class Rods:
                 ratios[square] = root(square)
         return cls(
             tuple(rods),
-            rounded_root(first.delay_squared),
+            root(first.delay_squared),
             tuple(ratios[rod.delay_squared / first.delay_squared] for rod in rods),
         )
 

@@ -14,6 +14,7 @@ from wavesym.fields.rounding import DIGITS
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
 from wavesym.scene.physical.scene import PhysicalScene
+from wavesym.systems.elastic import Rods
 
 _PERIODS = 5
 _RIGID = 1  # modes of a chain that nothing holds
@@ -39,9 +40,7 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
             "kind": scale.kind,
             "seconds_per_tau": Display(
                 str(scale.seconds),
-                f"{_si(seconds, 's')}, l/c rounded to {DIGITS} digits: {decimal_text(scale.seconds)} s"
-                if rods.all
-                else "1 s, as there are no rods",
+                f"{_si(seconds, 's')}, {_exact_delay(rods)}" if rods.all else "1 s, as there are no rods",
             ),
             "c": Display(float(first.length) / seconds, f"{float(first.length) / seconds:.6g} m/s, of the first rod")
             if rods.all
@@ -60,6 +59,13 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
     if not rods.alike:
         yield _rods(physical)
     yield Listing("remarks", "Remarks", [{"remark": line} for line in remarks(physical)], ("remark",))
+
+
+def _exact_delay(rods: Rods) -> str:
+    """What l/c of the first rod is taken to be."""
+    if rods.seconds**2 == rods.first.delay_squared:
+        return f"l/c: {rods.seconds} s"
+    return f"l/c rounded to {DIGITS} digits: {decimal_text(rods.seconds)} s"
 
 
 def _periods(model: Model, seconds: float) -> tuple[list[float], str]:

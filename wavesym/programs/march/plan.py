@@ -37,6 +37,7 @@ HELPS = "fewer samples, modes, or for what does not jump NumPy or run"
 """Beside another spacing, where loads leave more panels."""
 
 _LONG = 30  # characters of a number that nobody reads
+_LITTLE = 1e-3  # of a delay: as much is less than anyone knows of it
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
@@ -257,12 +258,32 @@ def _step(delays: list[fmpq]) -> fmpq:
     below = lcm(*(int(delay.q) for delay in delays))
     step = fmpq(gcd(*(int(delay * below) for delay in delays)), below)
     if step * FINEST < (shortest := min(delays)):
-        few = ", ".join(map(str, sorted(set(delays))[:3])) + (", ..." if len(set(delays)) > 3 else "")
         raise CostError(
-            f"system.parts: delays {few} have the common measure {step}, {float(shortest / step):.3g} to the "
-            f"shortest, the limit in a march is {FINEST} (lengths with a larger common measure, or pieces, help)"
+            f"system.parts: delays {_few(delays)} have the common measure {step}, {float(shortest / step):.3g} to the "
+            f"shortest, the limit in a march is {FINEST} ({_nearby(delays)}, or pieces, help)"
         )
     return step
+
+
+def _nearby(delays: list[fmpq]) -> str:
+    """What delays would do instead: multiples of a part of the shortest, the fewest parts that change little."""
+    shortest = min(delays)
+    tried = []
+    for parts in range(1, FINEST + 1):
+        unit = shortest / parts
+        near = [((2 * delay / unit + 1) / 2).floor() * unit for delay in delays]
+        change = max(abs(nearest(new / old) - 1) for new, old in zip(near, delays, strict=True))
+        tried.append((change, near))
+        if change <= _LITTLE:
+            break
+    change, near = min(tried, key=lambda each: each[0])
+    return (
+        f"lengths with a larger common measure, as of delays {_few(near)}, which are at most {100 * change:.2g} % off"
+    )
+
+
+def _few(delays: list[fmpq]) -> str:
+    return ", ".join(map(str, sorted(set(delays))[:3])) + (", ..." if len(set(delays)) > 3 else "")
 
 
 def _panels(times: list[fmpq], step: fmpq, helps: str) -> tuple[Panel, ...]:
