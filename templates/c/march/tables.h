@@ -29,24 +29,16 @@ enum {
 extern const int steps[];
 extern const int ring[];
 extern const real held[];
-/* joints: what they do (0 scatter, BODY, BLOCK), where their points, states and ports start in the next tables, how
- * strong loads are on a body; where on each panel their matrix is, by columns: of a body three numbers for each degree,
- * slack, loss and 0, then RATIO, SUM_FIRST and SUM_LAST */
+#include "../ports.h"
+/* what acts for a wave that arrives at a port; what joints do (0 scatter, BODY, BLOCK), how strong loads are on a body;
+ * where on each panel their matrix is, by columns: of a body three numbers for each degree, slack, loss and 0, then
+ * RATIO, SUM_FIRST and SUM_LAST */
+extern const real push[];
 extern const int law[];
-extern const int first_point[];
-extern const int first_state[];
-extern const int first_port[];
 extern const real drive[];
 extern const int answer[];
 extern const real matrix[];
 extern const real initial_state[];
-extern const int force_on[];
-/* ports: the point of the joint, factors, and tracks */
-extern const int point_of[];
-extern const real push[];
-extern const real ratio[];
-extern const int arrive[];
-extern const int send[];
 /* half the length of a panel; what its start is later than that of another: since[panel*PANELS + other] */
 extern const real half_length[];
 extern const real since[];

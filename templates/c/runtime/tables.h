@@ -108,10 +108,8 @@ extern const real roundings;
 extern const real window_length;
 extern const real span;
 
-/* where points, states and ends of rods of a joint begin, and its matrices; those of blocks at_square, too */
-extern const int first_point[];
-extern const int first_state[];
-extern const int first_port[];
+#include "../ports.h"
+/* where the matrices of a joint begin; those of blocks at_square, too */
 extern const int at_rates[];
 extern const int at_square[];
 extern const int at_pushed[];
@@ -120,11 +118,6 @@ extern const int at_passed[];
 /* bodies, one mass without springs: which joint each is, and whether a joint is one */
 extern const int body_joint[];
 extern const int is_body[];
-/* of an end its point, how fast it moves, the track that arrives and the one that it sends */
-extern const int point_of[];
-extern const real ratio[];
-extern const int arrive[];
-extern const int send[];
 /* of a track how many windows it takes, and where its ring begins */
 extern const int steps[];
 extern const int ring[];
@@ -133,8 +126,6 @@ extern const int is_mass[];
 /* half the length of a panel; what its start is later than that of another: since_panel[panel*PANELS + other] */
 extern const real half_length[];
 extern const real since_panel[];
-/* which load acts on a point, -1 for none */
-extern const int force_on[];
 /* changes of loads, in order: a weight times an amplitude times a strength is added to a power of the time since, or
  * where 3 is added to this power stands for all that acted before */
 extern const int event_window[];

@@ -87,18 +87,15 @@ extern const real held[];
 /* what an error of a track counts for: in its rod, or at its point, where states may count besides */
 extern const real root_impedance[];
 extern const real state_gain[];
-/* joints: what they do (0 scatter, BODY, BLOCK), where their points, states and ports start in the next tables, how
- * strong loads are on a body; their matrix, by columns: of a body three numbers for each degree, slack, loss and 0, then RATIO,
- * SUM_FIRST and SUM_LAST */
+#include "../ports.h"
+/* what acts for a wave that arrives at a port; what joints do (0 scatter, BODY, BLOCK), how strong loads are on a body;
+ * their matrix, by columns: of a body three numbers for each degree, slack, loss and 0, then RATIO, SUM_FIRST and SUM_LAST */
+extern const real push[];
 extern const int law[];
-extern const int first_point[];
-extern const int first_state[];
-extern const int first_port[];
 extern const real drive[];
 extern const int answer[];
 extern const real matrix[];
 extern const real initial_state[];
-extern const int force_on[];
 /* the point with which a state moves; where there is none, what it gains by how far points have moved, by rows */
 extern const int moves_with[];
 extern const int first_stretch[];
@@ -107,12 +104,6 @@ extern const real lengthening[];
  * of a block of what its matrix takes, by rows */
 extern const int first_slip[];
 extern const real slip[];
-/* ports: the point of the joint, factors, and tracks */
-extern const int point_of[];
-extern const real push[];
-extern const real ratio[];
-extern const int arrive[];
-extern const int send[];
 /* joints on which loads act */
 extern const int loaded[];
 /* forces: what they are without loads, how much of each load they are, and whether of its integral */

@@ -27,24 +27,25 @@ class MarchScheme:
         # tracks: how many windows later it arrives, and what is on its way at tau = 0
         "steps",
         "held",
-        # joints: what they do (0 scatter, 1 a body, 2 a block), where their points, states and ports start in the next
-        # tables, how strong loads are on a body, and where on each panel their matrix is: of a body three numbers for
-        # each degree, slack, loss and 0, then ratio, first and last
-        "law",
+        # joints: where their points, states and ports start in the next tables, and the force on each point
         "first_point",
         "first_state",
         "first_port",
+        "force_on",
+        # ports: the point of the joint, how fast an end moves with it, and tracks
+        "point_of",
+        "ratio",
+        "arrive",
+        "send",
+        # what acts for a wave that arrives at a port; what joints do (0 scatter, 1 a body, 2 a block), how strong loads
+        # are on a body, and where on each panel their matrix is: of a body three numbers for each degree, slack, loss
+        # and 0, then ratio, first and last
+        "push",
+        "law",
         "drive",
         "answer",
         "matrix",
         "initial_state",
-        "force_on",
-        # ports: the point of the joint, factors, and tracks
-        "point_of",
-        "push",
-        "ratio",
-        "arrive",
-        "send",
         # panels: half the length, and what its start is later than that of another
         "half_length",
         "since",

@@ -1,6 +1,7 @@
 """The tables and constants of a kernel, declared once: in the header that its C is read with, and written from there.
 
-templates/c/KIND/tables.h stands for what a program has above the text of its kernel. Of its paragraphs those of
+templates/c/KIND/tables.h stands for what a program has above the text of its kernel; ports.h there is part of it. Of
+its paragraphs those of
 `extern const real NAME[];` and `extern const real NAME;` with comments become definitions, in the same order; in those
 of `enum { NAME = 3 };` constants of a program take the places of numbers.
 """
@@ -32,7 +33,8 @@ class Declaration(NamedTuple):
 
 def declarations(file: str) -> Iterator[list[str | Declaration]]:
     """The paragraphs of templates/c/`file` that a program has: comments and enumerations are their text."""
-    for paragraph in text_of(f"c/{file}").rstrip().split("\n\n"):
+    ports = text_of("c/ports.h").partition("\n\n")[2]
+    for paragraph in text_of(f"c/{file}").replace('#include "../ports.h"\n', ports).rstrip().split("\n\n"):
         items: list[str | Declaration] = []
         for line in paragraph.splitlines():
             if found := _DECLARATION.fullmatch(line):
