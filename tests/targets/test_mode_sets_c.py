@@ -231,7 +231,7 @@ def test_an_fmu_takes_the_numbers_of_modes(tmp_path):
     samples = [0.25, -0.3, 0.2, -0.1, 0, *[0] * 20]
     found = []
     for k, sample in enumerate(samples):
-        instance.put({"load@a": sample * 9.80665})
+        instance.put({"load@0": sample * 9.80665})
         instance.step(spacing * k, spacing)
         found.append(instance.get(names))
     model = wavesym.model(FRAME, ["stiffness", "damping"])
