@@ -33,8 +33,9 @@ class ModalSets:
     ToleranceError where modes do not serve the model's own numbers to its tolerance.
     """
 
-    def __init__(self, parameters: ModeParameters) -> None:
-        self._parameters = parameters
+    def __init__(self, parameters: ModeParameters, expected: int = 0) -> None:
+        """`expected` is how many sets there will be in all, where that is known."""
+        self._parameters, self._expected = parameters, expected
         parameters.like.refuse()
         _ = parameters.fewest
         self.model, self.fields = parameters.model, parameters.fields
@@ -105,7 +106,7 @@ class ModalSets:
         Many sets are computed in C where there is a compiler; those that need more modes than others are not.
         """
         (rows,) = np.nonzero(~self._parameters.refused(given))
-        if len(rows) >= _WORTH_COMPILING and CompiledModeSets.is_possible():
+        if max(len(rows), self._expected) >= _WORTH_COMPILING and CompiledModeSets.is_possible():
             tolerance, left = nearest(self.model.tolerance), []
             for first in range(0, len(rows), _TOGETHER):
                 some = rows[first : first + _TOGETHER]

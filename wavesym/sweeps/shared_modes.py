@@ -132,7 +132,7 @@ class _Structure:
     def sets(self) -> ModalSets:
         """What computes sets of its numbers."""
         assert self.lanes
-        return ModalSets(self.lanes.parameters)
+        return ModalSets(self.lanes.parameters, self.plan.cases)
 
     @cached_property
     def _like(self) -> UndampedModes:
