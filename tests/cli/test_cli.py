@@ -231,7 +231,7 @@ def test_plot_of_another_kind_of_file(capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_plot_without_matplotlib(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr("wavesym.cli.plot.find_spec", lambda name: None)
+    monkeypatch.setattr("wavesym.cli.parameters.find_spec", lambda name: None)
     assert "matplotlib is not installed: pip install 'wavesym[plot]'" in refused(
         capsys, "plot", "mine.toml", "-o", "mine.svg"
     )

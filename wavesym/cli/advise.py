@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, deliver, format_option, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, deliver, format_option, put_notes, refuse_out
 from wavesym.cli.progress import progress
 from wavesym.errors import WavesymError
 
@@ -45,6 +45,5 @@ def advise(scene: Scene, tolerance: float, format: str, out: Path | None) -> Non
     with progress(f"advise {scene.name}"):
         found = api.advise(scene, tolerance)
     with suppress(WavesymError):  # when contacts open may be dear to know, or not be known
-        for warning in api.unexpected_lines(scene):
-            click.echo(f"{scene.name}: {warning}", err=True)
+        put_notes(scene, api.unexpected_lines(scene))
     deliver(found.json() if format == "json" else found.text(), out)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SCENE, put_notes, refuse_out, require_matplotlib
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -39,12 +38,9 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     Example:
       wavesym chart building_m2 -o chart.svg --csv chart.csv
     """
-    if not find_spec("matplotlib"):
-        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
-
+    require_matplotlib()
     for path in filter(None, (out, table)):
-        refuse_scene(path)
-        refuse_unwritable(path)
+        refuse_out(path)
     with progress(f"chart {scene.name}") as line:
         from wavesym.lab.chart.drawing import draw
         from wavesym.lab.chart.measure import measure, to_csv
@@ -55,7 +51,6 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
         picture_format(out)  # before the work, not after it
         measured = measure(scene, samples, line.tell)
         save(draw(scene, measured), out)
-    for each in unsupported_methods(scene):
-        click.echo(f"{scene.name}: left out: {each}", err=True)
+    put_notes(scene, (f"left out: {each}" for each in unsupported_methods(scene)))
     if table is not None:
         write_whole({table: to_csv(measured)})

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, decimals, format_option, is_drawn, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SCENE, decimals, format_option, is_drawn, put, put_notes, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -61,9 +61,7 @@ def frf(
     if at is not None and not low is high is points is None:
         raise click.UsageError("--at excludes --from, --to and --points; write one or the other", context)
     drawn = is_drawn(out, (".csv", ".json"))
-    if out is not None:
-        refuse_unwritable(out)
-        refuse_scene(out)
+    refuse_out(out)
     with progress(f"frf {scene.name}"):
         frequencies = decimals(at) if at is not None else None
         few = 2 if peaks and not drawn else POINTS
@@ -74,7 +72,6 @@ def frf(
             api.plot_frf(found, out)
         elif out is not None:
             write_whole({out: text})
-    for line in found.notes:
-        click.echo(f"{scene.name}: {line}", err=True)
+    put_notes(scene, found.notes)
     if out is None or (drawn and peaks):
         put(text)

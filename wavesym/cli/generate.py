@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import NAMES, PATH, SCENE, ParameterType, put, scene_argument
+from wavesym.cli.parameters import NAMES, PATH, SCENE, ParameterType, put, put_notes, scene_argument
 from wavesym.cli.progress import progress
 from wavesym.programs.request import AIMS, EVALUATORS, LANGUAGES, PRECISIONS, SIMULATORS, Request
 
@@ -130,8 +130,7 @@ def generate(
         written = api.write(scene, directory, request, force=force)
     for path in written:
         click.echo(path)
-    for line in _notes(scene, request, written):
-        click.echo(f"{scene.name}: {line}", err=True)
+    put_notes(scene, _notes(scene, request, written))
     return 0
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SceneParameter, format_option, is_drawn, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SceneParameter, format_option, is_drawn, put, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -62,9 +62,7 @@ def modes(
         raise click.UsageError("--range excludes --below, --shapes and a picture; write one of them", context)
     if points is not None and (format == "text" or ranges):
         raise click.UsageError("--points: shapes along rods are tables; write --format json or csv", context)
-    if out is not None:
-        refuse_unwritable(out)
-        refuse_scene(out)
+    refuse_out(out)
     with progress(f"modes {scene.name}"):
         if ranges:
             box = api.modes(scene, count or COUNT, ranges=dict(map(read_range, ranges)))

@@ -124,9 +124,15 @@ def is_drawn(out: Path | None, texts: Sequence[str]) -> bool:
         raise click.UsageError(
             f"-o: {out} is not a picture nor a table; write a name that ends in {known}, or in no suffix", context
         )
-    if suffix in PICTURES and not find_spec("matplotlib"):
-        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+    if suffix in PICTURES:
+        require_matplotlib()
     return suffix in PICTURES
+
+
+def require_matplotlib() -> None:
+    """UsageError where what draws is not installed: before the work that a picture takes."""
+    if not find_spec("matplotlib"):
+        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
 
 
 class RatioParameter(ParameterType):
@@ -194,6 +200,12 @@ def deliver(text: str, out: Path | None) -> None:
         put(text)
     else:
         write_whole({out: text if text.endswith("\n") else text + "\n"})
+
+
+def put_notes(scene: Scene, notes: Iterable[str]) -> None:
+    """What is to be known of a result, on standard error, a line for each with the name of the scene."""
+    for note in notes:
+        click.echo(f"{scene.name}: {note}", err=True)
 
 
 def put(text: str | Iterable[str]) -> None:

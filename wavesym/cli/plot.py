@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SCENE, put_notes, refuse_scene, refuse_unwritable, require_matplotlib
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -47,9 +46,7 @@ def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
     context = click.get_current_context()
     if published and scene:
         raise click.UsageError("SCENE and --published exclude each other; write one of them", context)
-    if not find_spec("matplotlib"):
-        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
-
+    require_matplotlib()
     refuse_unwritable(out, folder=published)
     if scene:
         refuse_scene(out)
@@ -57,8 +54,7 @@ def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
             from wavesym import api
 
             lines = [*api.unexpected_lines(scene), *api.plot_with_notes(scene, out, kind)[1]]
-        for line in lines:
-            click.echo(f"{scene.name}: {line}", err=True)
+        put_notes(scene, lines)
     elif published:
         with progress("plot --published"):
             from wavesym.pictures import figures

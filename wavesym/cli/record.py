@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 
 import click
 
-from wavesym.cli.parameters import PATH, refuse_unwritable
+from wavesym.cli.parameters import PATH, refuse_unwritable, require_matplotlib
 from wavesym.cli.progress import progress
 
 
@@ -27,8 +26,7 @@ def record(file: Path, unit: str | None, column: str | None, out: Path | None) -
     """
     context = click.get_current_context()
     if out is not None:
-        if not find_spec("matplotlib"):
-            raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+        require_matplotlib()
         refuse_unwritable(out)
         if out.exists() and file.exists() and out.samefile(file):
             raise click.UsageError(f"-o: {out} is the record itself; write another file", context)

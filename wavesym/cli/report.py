@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, ParameterType, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, SCENE, ParameterType, put_notes, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -56,5 +56,4 @@ def report(scene: Scene | Path, out: Path) -> None:
 
         warnings = api.unexpected_lines(scene)
         api.report(scene, out)
-    for line in warnings:
-        click.echo(f"{scene.name}: {line}", err=True)
+    put_notes(scene, warnings)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, decimals, put, refuse_scene
+from wavesym.cli.parameters import PATH, SCENE, decimals, put, put_notes, refuse_scene
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -57,7 +57,6 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
         lines = api.run_csv(scene, samples or DEFAULT_SAMPLES, taus, notes.append)
         if out is not None:
             write_whole({out: lines})
-    for line in notes:
-        click.echo(f"{scene.name}: {line}", err=True)
+    put_notes(scene, notes)
     if out is None:
         put(lines)

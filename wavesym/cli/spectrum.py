@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, RATIO, SCENE, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, RATIO, SCENE, put, put_notes, refuse_out, require_matplotlib
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -35,12 +34,8 @@ def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
       wavesym spectrum lab.toml --damping 0.02 -o floors.svg
     """
     if out is not None:
-        if not find_spec("matplotlib"):
-            raise click.UsageError(
-                "matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context()
-            )
-        refuse_unwritable(out)
-        refuse_scene(out)
+        require_matplotlib()
+        refuse_out(out)
     with progress(f"spectrum {scene.name}"):
         from wavesym import api
 
@@ -50,6 +45,5 @@ def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
         if out is not None:
             api.plot_spectra(found, out)
         notes = api.spectrum_notes(scene, found)
-    for line in notes:
-        click.echo(f"{scene.name}: {line}", err=True)
+    put_notes(scene, notes)
     put(found.csv())

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 
 import click
 
-from wavesym.cli.parameters import PATH, refuse_unwritable
+from wavesym.cli.parameters import PATH, refuse_unwritable, require_matplotlib
 from wavesym.cli.progress import progress
 
 
@@ -29,9 +28,7 @@ def stability(directory: Path) -> None:
     Example:
       wavesym stability -o atlas
     """
-    if not find_spec("matplotlib"):
-        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
-
+    require_matplotlib()
     refuse_unwritable(directory, folder=True)
     with progress("stability") as line:
         from wavesym.lab.stability import atlas

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, deliver, format_option, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, deliver, format_option, put_notes, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -43,6 +43,5 @@ def summary(scene: Scene, at_samples: bool, format: str, out: Path | None) -> No
         lines = api.unexpected_lines(scene)
     if format == "json" and not found.proved:
         lines.append(f"{found.how}: {found.certain}")
-    for line in lines:
-        click.echo(f"{scene.name}: {line}", err=True)
+    put_notes(scene, lines)
     deliver(summary_text(found, format), out)
