@@ -175,7 +175,7 @@ DAMAGED = [
     (CSV.replace("0.06", "0.04"), "line 6: the time 0.04 is not later than the 0.04 before it"),
     (CSV.replace("0.02", "0"), "line 4: the time 0 is not later than the 0 before it; write times in rising order"),
     # headers
-    (CSV.replace("time_s,accel_g\n", ""), "line 2: no header; write one such as time,acceleration"),
+    ("0 0 1\n1 1 2\n", "line 1: no header; write one such as time,acceleration"),
     ("time\n0\n1\n", "line 1: only a column of times; write a column of samples"),
     ("time,x\n# nothing\n", "line 1: the file ends after its header; write rows of numbers"),
     # no text
@@ -398,7 +398,6 @@ def test_cells_are_read_as_spreadsheets_write_them(tmp_path, text):
         ("time_s;accel_g\n0,0;1,234,5\n", "line 2: column 2 (accel_g) is no decimal"),
         ('time_s,accel_g\n"0,0","1,5"\n', "line 2: column 1 (time_s) is no decimal"),
         ("accel_g\n1,5\n", "line 2: column 1 (accel_g) is no decimal"),
-        ("0,0;1,5\n0,1;2,5\n", "line 1: no header"),
         ('time_s,accel_g\n0,"1\n', "line 2: quotes inside a cell; write them around whole cells"),
         ('time_s,accel_g\n0,1"2"\n', "line 2: column 2 (accel_g) is no decimal"),
     ],
@@ -415,3 +414,26 @@ def test_what_parts_columns_may_stand_in_the_name_of_one(tmp_path):
     assert (read.samples, read.unit) == ((1, 2), "g")
     read = read_record(made(tmp_path, 'time,"a, north # 1"\n0,1\n1,2\n'))
     assert (read.samples, read.kind) == ((1, 2), "CSV, a, north # 1")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "clock"),
+    [
+        ("# from a logger\n0.0 1.5\n0.1   -2e-1\n", "", ""),
+        ("0.0\t1.5\n0.1\t-2e-1\n", "", ""),
+        ("0,0;1,5\n0,1;-0,2\n", "", ""),
+        ("time [s]  acc [g]\n0.0 1.5\n 0.1 -0.2\n", "g", "s"),
+        ("t acc (cm/s^2)\n0.0 1.5\n0.1 -0.2\n", "cm/s^2", ""),
+        ("Zeit [s];a [m/s^2]\n0,0;1,5\n0,1;-0,2\n", "m/s^2", "s"),
+    ],
+)
+def test_tables_of_loggers_are_read(tmp_path, text, unit, clock):
+    """Parted by blanks, without a header, or with a foreign word for time."""
+    read = read_record(made(tmp_path, text))
+    assert (read.times, read.samples) == ((0, Fraction(1, 10)), (Fraction(3, 2), Fraction(-1, 5)))
+    assert (read.unit, read.clock) == (unit, clock)
+
+
+def test_a_column_alone_is_samples(tmp_path):
+    read = read_record(made(tmp_path, "1\n2\n"))
+    assert (read.times, read.samples, read.kind) == (None, (1, 2), "without a header: samples")

@@ -1,10 +1,13 @@
-"""CSV: comments after #, a header line with a name for each column, then a row for each sample.
+"""Columns of text: comments after #, a header line with a name for each column, then a row for each sample.
+
+Without a header one column is samples, and of two the first is the times. A first column in seconds is the times under
+whatever name.
 
 The unit of a column stands behind its name in brackets, `accel [m/s^2]` or `acc (g)`, or, where the name is a plain
 word for a quantity, after an underscore: `time_s`, `accel_g`. (a_g is the acceleration of the ground.)
 
-Columns stand apart by tabs, semicolons or commas; cells may be quoted. A decimal comma is read where no comma parts
-columns, and all numbers have it that have a fraction.
+Columns stand apart by tabs, semicolons or commas, or where there are none by blanks; cells may be quoted. A decimal
+comma is read where no comma parts columns, and all numbers have it that have a fraction.
 """
 
 from __future__ import annotations
@@ -20,9 +23,11 @@ from wavesym.records.record_file import RecordFile, bare, damage_error, decimal
 
 _TIMES = ("time", "t", "tau")
 _QUANTITIES = "acc|accel|acceleration|velocity|displacement|force|moment|torque"
-_MARKS = "\t;,"
+_SECONDS = ("s", "sec", "ms")
+_MARKS, _BLANK = "\t;,", " "
 _MOST_COLUMNS = 10_000
 _QUOTING = re.compile(r'(?:[^"#]|"[^"]*("|$))*')
+_NAMES = re.compile(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?")  # of columns, each with its unit
 _BRACKETS = re.compile(r"(.*\S)\s*(?:\[(.*)\]|\((.*)\))")
 _SUFFIX = re.compile(rf"(time|t|{_QUANTITIES})_([a-z].*)", re.IGNORECASE)
 
@@ -45,9 +50,13 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
         raise damage_error(file, at, f"more than {_MOST_COLUMNS} columns; write a column of samples and one of times")
     mark = _mark(file, top)
     named = [_column(place, cell) for place, cell in enumerate(_cells(file, at, head, mark))]
-    if all(decimal(column.header.replace(",", ".")) is not None for column in named):
+    headless = all(decimal(column.header.replace(",", ".")) is not None for column in named)
+    if headless and len(named) > 2:
         raise damage_error(file, at, "no header; write one such as time,acceleration")
-    clock = next((column for column in named if column.name.casefold() in _TIMES), None)
+    if headless:
+        named = [_Column(place, "", name, "") for place, name in enumerate(("time", "samples")[-len(named) :])]
+    first = next((column for column in named[:1] if len(named) > 1 and column.unit in _SECONDS), None)
+    clock = next((column for column in named if column.name.casefold() in _TIMES), first)
     below = _cells(file, *top[1], mark) if len(top) > 1 else []
     numeric = any(decimal(cell.replace(",", ".")) is not None for cell in below)
     column = _choose(file, at, named, clock, wanted, numeric=numeric)
@@ -56,7 +65,7 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
     samples: list[Fraction] = []
     written: list[str] = []
     places: list[int] = []
-    for number, row in chain(top[1:], rows):
+    for number, row in chain(top if headless else top[1:], rows):
         cells = _cells(file, number, row, mark)
         if len(cells) != len(named):
             raise damage_error(file, number, f"{len(cells)} columns, but {len(named)} in the header; write as many")
@@ -70,7 +79,7 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
         raise damage_error(file, at, "the file ends after its header; write rows of numbers")
     return RecordFile(
         file,
-        f"CSV, {bare(column.header)}",
+        f"CSV, {bare(column.header)}" if column.header else f"without a header: {', '.join(c.name for c in named)}",
         tuple(samples),
         tuple(written),
         tuple(places),
@@ -94,11 +103,14 @@ def _mark(file: str, top: Sequence[tuple[int, str]]) -> str | None:
     for mark in there:
         if len({len(_cells(file, number, row, mark)) for number, row in top}) == 1:
             return mark
-    return next(iter(there), None)
+    numbers = [decimal(word.replace(",", ".")) for word in top[-1][1].split()] if top and not there else []
+    return _BLANK if len(numbers) > 1 and None not in numbers else next(iter(there), None)
 
 
 def _cells(file: str, number: int, row: str, mark: str | None) -> list[str]:
     """The cells of a row, without quotes and without what is empty around them."""
+    if mark == _BLANK:
+        return row.split() if decimal(row.split()[0].replace(",", ".")) is not None else _NAMES.findall(row)
     if '"' not in row:
         return [cell.strip() for cell in row.split(mark)] if mark else [row]
     try:
