@@ -43,7 +43,8 @@ class IntegratedOutput:
     @property
     def steepest(self) -> float:
         """How fast it changes, at most."""
-        return float(np.max(np.abs(np.diff(self.values) / np.diff(self.taus)), initial=0.0))
+        apart = np.diff(self.taus)  # the last of them may be the horizon twice
+        return float(np.max(np.abs(np.diff(self.values)[apart > 0] / apart[apart > 0]), initial=0.0))
 
     @property
     def judges(self) -> bool:
