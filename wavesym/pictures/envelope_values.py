@@ -41,6 +41,19 @@ def extremes(found: LineHistories, band: Band) -> Iterator[BandExtreme]:
         yield BandExtreme(where, found.unit, spot.x, tau, value)
 
 
+def line_name(found: LineHistories, band: Band) -> str:
+    """What a quantity of a line is called."""
+    return f"{found.quantity}{band.line and ' of branch '}{band.line}"
+
+
+def describe_extremes(found: LineHistories, band: Band, scale: Timescale) -> str:
+    """The greatest and the least value in words."""
+    return " ".join(
+        f"{word}: {each.describe(scale)}."
+        for word, each in zip(("Greatest", "Least"), extremes(found, band), strict=True)
+    )
+
+
 def envelope(band: Band) -> tuple[Points, Points]:
     """The least and the greatest value at each place, (places,)."""
     return np.nanmin(band.values, axis=1), np.nanmax(band.values, axis=1)

@@ -8,12 +8,12 @@ import numpy as np
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
-from wavesym.pictures.envelope_values import BandExtreme, envelope, extremes
+from wavesym.pictures.envelope_values import describe_extremes, envelope, extremes, line_name
 from wavesym.pictures.groups import axis_title
 from wavesym.pictures.histories import Points
 from wavesym.pictures.line_histories import Band, LineHistories, cells, limit
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
-from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture, spot
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, labelled_spot, picture
 from wavesym.pictures.page.png import colour_image, colours
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line, polyline, text
 from wavesym.pictures.timescale import Timescale
@@ -28,13 +28,10 @@ def along_pictures(model: Model, found: Sequence[LineHistories], scale: Timescal
     upright = model.labels.system["type"] == "building"
     for k, quantity in enumerate(found):
         for j, band in enumerate(quantity.bands):
-            name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
+            name = line_name(quantity, band)
             where = "height" if upright else "chain"
             title = f"Least and greatest {name} along the {where}"
-            description = " ".join(
-                f"{word}: {each.describe(scale)}."
-                for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
-            )
+            description = describe_extremes(quantity, band, scale)
             make = _over_height if upright else _along_line
             content, height = make(model, quantity, band, scale)
             yield PagePicture(title, picture(f"along-{k}-{j}", title, description, height, content, class_="plot"))
@@ -63,7 +60,7 @@ def _over_height(model: Model, quantity: LineHistories, band: Band, scale: Times
         parts.append(polyline([(a, at) for at, a, _ in ends], "least"))
         parts.append(polyline([(b, at) for at, _, b in ends], "greatest"))
     parts += [
-        _labelled_spot(x.pixel(each.value), y.pixel(each.x), each, scale, below=k > 0)
+        labelled_spot(x.pixel(each.value), y.pixel(each.x), each.describe(scale), above=k == 0)
         for k, each in enumerate(extremes(quantity, band))
         if each.value
     ]
@@ -83,20 +80,11 @@ def _along_line(model: Model, quantity: LineHistories, band: Band, scale: Timesc
         polyline([(at, b) for at, _, b in ends], "greatest"),
     ]
     parts += [
-        _labelled_spot(x.pixel(each.x), y.pixel(each.value), each, scale, below=k > 0)
+        labelled_spot(x.pixel(each.x), y.pixel(each.value), each.describe(scale), above=k == 0)
         for k, each in enumerate(extremes(quantity, band))
         if each.value
     ]
     return concatenate(*parts), TOP + _ALONG + BELOW
-
-
-def _labelled_spot(x: float, y: float, extreme: BandExtreme, scale: Timescale, *, below: bool) -> Svg:
-    """A spot and what it is, written towards the middle, above or below it."""
-    right, down = x < (LEFT + WIDTH - RIGHT) / 2, 15 if below else -7
-    return concatenate(
-        spot(x, y),
-        text(x + (8 if right else -8), y + down, extreme.describe(scale), "start" if right else "end", class_="halo"),
-    )
 
 
 def maps(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Iterator[PagePicture]:
@@ -105,12 +93,9 @@ def maps(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Iter
         values = [cells(quantity, band, _COLUMNS) for band in quantity.bands]
         largest = limit(values)
         for j, (band, own) in enumerate(zip(quantity.bands, values, strict=True)):
-            name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
+            name = line_name(quantity, band)
             title = f"{name} over place and time".capitalize()
-            description = " ".join(
-                f"{word}: {each.describe(scale)}."
-                for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
-            )
+            description = describe_extremes(quantity, band, scale)
             content, height = _map(model, quantity, band, own, largest, scale)
             yield PagePicture(title, picture(f"map-{k}-{j}", title, description, height, content, class_="plot"))
 

@@ -12,7 +12,7 @@ from wavesym.pictures.groups import PlotPanel
 from wavesym.pictures.histories import History
 from wavesym.pictures.page.curves import HEIGHT, Grid, curve
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
-from wavesym.pictures.page.svg import Svg, element, line, text
+from wavesym.pictures.page.svg import Svg, concatenate, element, line, text
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.pictures.timescale import Timescale
 
@@ -146,3 +146,12 @@ def _label_near(x: float, y: float, words: str, above: bool) -> Svg:
 
 def spot(x: float, y: float) -> Svg:
     return element("circle", class_="spot", cx=x, cy=y, r=3)
+
+
+def labelled_spot(x: float, y: float, words: str, *, above: bool) -> Svg:
+    """A spot and what it is, written towards the middle."""
+    right = x < (LEFT + WIDTH - RIGHT) / 2
+    return concatenate(
+        spot(x, y),
+        text(x + (8 if right else -8), y + (-7 if above else 15), words, "start" if right else "end", class_="halo"),
+    )

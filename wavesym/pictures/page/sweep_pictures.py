@@ -9,9 +9,9 @@ import numpy as np
 from wavesym.pictures.histories import Points
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.places import colour_bar
-from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, picture, spot
+from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, labelled_spot, picture
 from wavesym.pictures.page.png import colour_image
-from wavesym.pictures.page.svg import Svg, polyline, text, upright
+from wavesym.pictures.page.svg import Svg, polyline, upright
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.results.presentation import number_text
 from wavesym.sweeps.results import StoredAxis, SweepResults
@@ -100,7 +100,9 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
             points = np.column_stack([points[starts, 0], sign * np.maximum.reduceat(sign * points[:, 1], starts)])
         places = [(x.pixel(at + x.low), y.pixel(value)) for at, value in points.tolist()]
         parts.append(polyline(places, class_) if ordered else upright(places, y.pixel(0.0), class_))
-    parts += _labelled_spot(x.pixel(float(along[worst])), y.pixel(value), _case_label(axis, worst), above=value > 0)
+    parts.append(
+        labelled_spot(x.pixel(float(along[worst])), y.pixel(value), _short(_case_label(axis, worst)), above=value > 0)
+    )
     return PagePicture(title, picture(number, title, description, TOP + _TALL + BELOW, *parts, class_="plot"))
 
 
@@ -121,12 +123,11 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     title = f"{output.name} over {across.name} and {upward.name}"
     ends = f"from {number_text(low, output.unit, 5)} to {number_text(high, output.unit, 5)}"
     description = f"Colours show the size, {ends}, the largest where {where}."
-    marks = _labelled_spot(
-        x.pixel(float(worst[0] + 1)), y.pixel(float(worst[1] + 1)), where, above=y.pixel(worst[1] + 1.0) > TOP + 30
-    )
+    across_at, upward_at = x.pixel(float(worst[0] + 1)), y.pixel(float(worst[1] + 1))
+    mark = labelled_spot(across_at, upward_at, _short(where), above=upward_at > TOP + 30)
     return PagePicture(
         title,
-        picture(number, title, description, TOP + _MAP + BELOW + 34, frame.draw(), image, *marks, bar, class_="plot"),
+        picture(number, title, description, TOP + _MAP + BELOW + 34, frame.draw(), image, mark, bar, class_="plot"),
     )
 
 
@@ -155,14 +156,6 @@ def _axis_title(axis: StoredAxis) -> str:
 
 def _case_label(axis: StoredAxis, k: int) -> str:
     return ", ".join(f"{column.path} = {column.format(k)}" for column in axis.columns)
-
-
-def _labelled_spot(x: float, y: float, words: str, *, above: bool) -> list[Svg]:
-    """A spot and what it is, written towards the middle."""
-    right = x < (LEFT + WIDTH - RIGHT) / 2
-    short = _short(words)
-    label = text(x + (8 if right else -8), y + (-7 if above else 15), short, "start" if right else "end", class_="halo")
-    return [spot(x, y), label]
 
 
 def _short(words: str) -> str:
