@@ -42,6 +42,18 @@ _SIZES = (
     "lanes",
     "groups",
 )
+_MARCH = ("polynomials.c", "elimination.c", *(f"runtime/{name}.c" for name in ("march", "outputs", "build")))
+_KERNEL = (*(f"runtime/{name}.c" for name in ("series", "reach", "one")), *_MARCH, "runtime/model.c")
+"""What builds models of one set."""
+_READ, _BLOCKS = "runtime/read.c", "runtime/blocks.c"
+_OF_PARTS = {
+    "peaks": (_BLOCKS, "runtime/peaks.c"),
+    "gradients": ("runtime/tangents.c",),
+    "bound": (_BLOCKS, "root.h", "runtime/bound.c"),
+}
+"""What stands below it besides what reads models."""
+_LANES, _MISFIT = "runtime/lanes.c", "runtime/misfit.c"
+_BATCH = ("runtime/set.h", *_MARCH, "runtime/batch.c")
 _SETS = {"misfit": "sets.c", "gradients": "sets_tangents.c", "bound": "sets_bounds.c"}
 _MOST_ON_STACK = 1 << 16
 """Bytes of work that `build` puts there: more is kept in the model."""
@@ -58,21 +70,6 @@ class CRuntimeField:
     check: str
     labels: tuple[str, ...]
     values: Lines
-
-
-@dataclass(frozen=True)
-class RuntimeTexts:
-    """The plain C of a program, part by part; `kernel` is its march and what builds models of it."""
-
-    kernel: str
-    read: str
-    blocks: str
-    peaks: str
-    gradients: str
-    bound: str
-    lanes: str
-    batch: str
-    misfit: str
 
 
 @dataclass(frozen=True)
@@ -103,6 +100,8 @@ class CRuntimeHeader:
 class CRuntime:
     """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression.
 
+    Plain C is the `kernel`, which builds models, what is `read` of them, and with batches `lanes` and `batch`.
+
     `products` are what is multiplied and added up on the way to them, `slope_products` to their derivatives. `slopes`
     are these, by the number of a parameter. Work is `inside` of models where it is too much for a stack. `arrays` are
     the laws with how many numbers each has.
@@ -120,25 +119,16 @@ class CRuntime:
     largest: str
     least: str
     numbers: str
-    texts: RuntimeTexts
+    kernel: str
+    read: str
+    lanes: str
+    batch: str
     arrays: tuple[tuple[str, str], ...]
 
 
 def files(scene: Description, program: Program) -> dict[str, str]:
     """NAME.h, NAME.c and NAME_selftest.c of a program."""
-    march = ("polynomials.c", "elimination.c", *(f"runtime/{name}.c" for name in ("march", "outputs", "build")))
-    texts = RuntimeTexts(
-        kernel=kernels(scene, *(f"runtime/{name}.c" for name in ("series", "reach", "one")), *march, "runtime/model.c"),
-        read=kernel("runtime/read.c", scene),
-        blocks=kernel("runtime/blocks.c", scene),
-        peaks=kernel("runtime/peaks.c", scene),
-        gradients=kernel("runtime/tangents.c", scene),
-        bound=kernels(scene, "root.h", "runtime/bound.c"),
-        lanes=kernel("runtime/lanes.c", scene),
-        batch=kernels(scene, "runtime/set.h", *march, "runtime/batch.c"),
-        misfit=kernel("runtime/misfit.c", scene),
-    )
-    context = _context(scene, program, texts)
+    context = _context(scene, program)
     structs = CRuntimeStructs(
         scene=scene,
         sizes=tuple((name.upper(), str(program.constants[name])) for name in _SIZES),
@@ -167,7 +157,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         scene=scene,
         parts=program.parts,
         memory=tuple(_struct_sizes(scene, program.parts, memory, inside)),
-        stack=tuple(_stack_sizes(scene, program.parts, memory, inside, texts)),
+        stack=tuple(_stack_sizes(scene, program.parts, memory, inside)),
         structs=declared,
     )
     made = {f"{scene.name}.h": render("c/runtime/runtime.h.j2", header), f"{scene.name}.c": source}
@@ -182,8 +172,8 @@ def _one_set(scene: Description) -> str:
     return re.sub(r"\bOF\((\w+)\)", rf"{scene.name}_\1", text)
 
 
-def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRuntime:
-    laws, real = program.laws, program.real
+def _context(scene: Description, program: Program) -> CRuntime:
+    laws, real, parts = program.laws, program.real, program.parts
     assert laws is not None
     own = not any(field.name == "load" for field in laws.fields)
     derived, bounded = "gradients" in program.parts, "bound" in program.parts
@@ -216,7 +206,10 @@ def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRunt
         largest=largest,
         least=least,
         numbers=kernels(scene, "real.h", "vectors.h"),
-        texts=texts,
+        kernel=kernels(scene, *_KERNEL),
+        read=kernels(scene, _READ, *dict.fromkeys(file for part in parts for file in _OF_PARTS.get(part, ()))),
+        lanes=kernel(_LANES, scene),
+        batch=kernels(scene, *_BATCH, *([_MISFIT] if "misfit" in parts else ())),
         arrays=tuple((name, str(len(functions))) for name, functions in needed.items()),
     )
 
@@ -235,25 +228,27 @@ def _struct_sizes(scene: Description, parts: Sequence[str], memory: Memory, insi
             yield str(memory.size(f"{scene.name}_{struct}")), f"{scene.name}_{struct}, {description}"
 
 
-def _stack_sizes(
-    scene: Description, parts: Sequence[str], memory: Memory, inside: bool, texts: RuntimeTexts
-) -> Iterator[tuple[str, str]]:
+def _stack_sizes(scene: Description, parts: Sequence[str], memory: Memory, inside: bool) -> Iterator[tuple[str, str]]:
     """What functions need of a stack, at most."""
-    building = memory.stack(texts.kernel)
+
+    def stack(*files: str, num: str = "real") -> int:
+        return memory.stack(kernels(scene, *files), num=num)
+
+    building = stack(*_KERNEL)
     work = 0 if inside else memory.size(f"{scene.name}_work")
     yield str(building + work), "build"
     yield str(building), "build_with"
-    yield str(memory.stack(texts.read)), "error_estimate, model_eval, model_sample"
+    yield str(stack(_READ)), "error_estimate, model_eval, model_sample"
     if "peaks" in parts:
-        yield str(memory.stack(texts.read, texts.blocks, texts.peaks)), "model_peaks"
+        yield str(stack(_READ, *_OF_PARTS["peaks"])), "model_peaks"
     if "gradients" in parts:
-        yield str(building + memory.stack(texts.read, texts.gradients)), "functions of a tangent"
+        yield str(building + stack(_READ, *_OF_PARTS["gradients"])), "functions of a tangent"
     if "batch" in parts:
-        misfit = (texts.misfit,) if "misfit" in parts else ()
+        misfit = (_MISFIT,) if "misfit" in parts else ()
         description = "functions of a batch and of data" if misfit else "functions of a batch"
-        yield str(building + memory.stack(texts.lanes, texts.batch, *misfit, num="wide")), description
+        yield str(building + stack(_LANES, *_BATCH, *misfit, num="wide")), description
     if "bound" in parts:
-        bounded = building + memory.stack(texts.read, texts.blocks, texts.bound)
+        bounded = building + stack(_READ, *_OF_PARTS["bound"])
         yield str(bounded + work), "error_bound"
         yield str(bounded), "error_bound_with"
 
