@@ -13,6 +13,8 @@ from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, constants
 from wavesym.targets.literals import Lines, c_constants
 
+_KERNEL = tuple(f"stream/{part}.c" for part in ("waves", "panels", "breakpoints", "stream"))
+
 
 @dataclass(frozen=True)
 class CStream:
@@ -26,7 +28,6 @@ class CStream:
     tables: str
     numbers: str
     series: str
-    joint: str
     kernel: str
     fields: tuple[CRuntimeField, ...]
     functions: tuple[tuple[str, str], ...]
@@ -37,8 +38,6 @@ class CStream:
     calm: str
     largest: str
     least: str
-    elimination: str
-    made: str
 
 
 @dataclass(frozen=True)
@@ -65,9 +64,8 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables=program_tables("stream/tables.h", scene, known),
         numbers=kernel("real.h", scene),
-        series=kernels(scene, "root.h", "polynomials.c", "series.h"),
-        joint=kernel("joint.c", scene),
-        kernel=kernels(scene, *(f"stream/{part}.c" for part in ("waves", "panels", "breakpoints", "stream"))),
+        series=kernels(scene, "root.h", "polynomials.c", "series.h", "joint.c"),
+        kernel=kernels(scene, *_KERNEL, *(("elimination.c", "stream/made.c") if laws else ())),
         fields=_fields(program),
         functions=tuple((name, str(len(of))) for name, of in laws.functions.items()) if laws else (),
         made_tables=made,
@@ -77,8 +75,6 @@ def source(scene: Description, program: Program) -> str:
         calm=str(program.constants["calm"]) if laws else "",
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",
-        elimination=kernel("elimination.c", scene) if laws else "",
-        made=kernel("stream/made.c", scene) if laws else "",
     )
     return render("c/stream/stream.c.j2", context)
 
