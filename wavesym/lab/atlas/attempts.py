@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, UnservedError
-from wavesym.exact.reference import Reference
 from wavesym.lab.atlas.family import AtlasPoint
 from wavesym.lab.atlas.scenes import AIM
+from wavesym.lab.standard import Standard, standard
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import midpoint, rational
+from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.choice import MAKERS
 from wavesym.programs.closed import ClosedForm
@@ -30,17 +30,16 @@ ROUNDED = 2.0**-53
 
 @dataclass(frozen=True)
 class Truth:
-    """The outputs of a model at ascending `taus`, (outputs, n), the least their largest values are, their arrivals."""
+    """The outputs of a model at ascending `taus`, (outputs, n), by a `standard`."""
 
     model: Model
+    standard: Standard
     taus: Array
     values: Array
-    sizes: Array
-    arrivals: Array
 
     def errors(self, values: Array) -> Array:
         """The largest error of any output at each of the `taus`, relative to its largest value."""
-        return np.asarray(np.max(np.abs(values - self.values) / self.sizes[:, np.newaxis], axis=0))
+        return np.asarray(np.max(self.standard.errors(values, self.values), axis=0))
 
 
 @dataclass(frozen=True)
@@ -64,14 +63,12 @@ class Attempt:
 
 def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:
     """At `per_unit` places in a unit of tau, at every arrival, and just before it or at these distances from it."""
-    model = lower(scene)
-    reference = Reference(model)
-    until, arrivals = reference.tau_max, reference.breakpoints()
+    known = standard(model := lower(scene))
+    until, arrivals = known.until, known.arrivals.tolist()
     taus = {float(tau) for tau in np.linspace(0.0, until, round(per_unit * until) + 1)} | set(arrivals)
     taus |= {arrival + by for arrival in arrivals for by in around} or {math.nextafter(tau, 0.0) for tau in arrivals}
     where = sorted(tau for tau in taus if 0.0 <= tau <= until)
-    sizes = [midpoint(size) or 1.0 for size in reference.largest()]
-    return Truth(model, np.array(where), np.array(reference.values(where)), np.array(sizes), np.array(arrivals))
+    return Truth(model, known, np.array(where), np.array(known.values(where)))
 
 
 def attempt(known: Truth, name: str) -> Attempt:

@@ -10,16 +10,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wavesym.errors import ToleranceError, WavesymError
-from wavesym.exact.reference import Reference
 from wavesym.fields.numbers import decimal_text
 from wavesym.lab.atlas.attempts import Array, Truth, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import atlas_scene, with_tolerance
+from wavesym.lab.standard import standard
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
 from wavesym.methods.network_problem import problem_of
-from wavesym.numbers.doubles import midpoint, nearest, rational
+from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.hats.evaluator import hat_march
 from wavesym.programs.making import make, program
@@ -93,7 +93,7 @@ def _one_output(known: Truth, number: int, panel: str, digits: Sequence[int]) ->
             return
         count = len(form.system.frequency)
         if count not in counts:
-            error = largest_error(values, known.values[[number]], known.sizes[[number]])
+            error = largest_error(values, known.values[[number]], known.standard.sizes[[number]])
             yield AtlasPoint(panel, probe.name, count, error, form.error_bound)
         counts.add(count)
 
@@ -195,20 +195,19 @@ def spacings(progress: Progress, counts: Sequence[int] = PARTS) -> CurveFamily:
     points = []
     for parts in counts:
         scene = shaken_building(spacing(parts), RECORD_SAMPLES, TOLERANCE, force=[0], drift=[1], relative=[2])
-        reference = Reference(lower(scene))
+        known = standard(model := lower(scene))
         times = (nearest(rational(k * spacing(parts))) for k in range(RECORD_SAMPLES))
-        taus = np.array([min(time, reference.tau_max) for time in times])
-        sizes = np.array([midpoint(size) for size in reference.largest()])
-        right = np.array(reference.values(taus.tolist()))
+        taus = np.array([min(time, known.until) for time in times])
+        right = np.array(known.values(taus.tolist()))
         for name, form in _PROGRAMS.items():
             progress(f"samples 5 - 1/{parts} apart, {name}")
             try:
-                found = form(reference.model)
+                found = form(model)
                 values = found.evaluate(taus)
             except WavesymError as why:
                 points.append(AtlasPoint("", name, parts, float("nan"), refusal=str(why)))
                 continue
-            error = largest_error(values, right, sizes)
+            error = float(np.max(known.errors(values, right)))
             refused = f"{name}: a bound of {found.error_bound:.1e} in all" if found.error_bound > TOLERANCE else ""
             points.append(AtlasPoint("", name, parts, error, found.error_bound, refused))
     return CurveFamily(

@@ -69,7 +69,7 @@ def fronts(progress: Progress) -> CurveFamily:
 def errors(method: Method, resolution: float, known: Truth) -> tuple[float, float]:
     """The largest error at fronts, and away from them."""
     wrong = known.errors(method.prepare(method.state(known.model), resolution)(known.taus))
-    distance = np.min(np.abs(known.taus[:, np.newaxis] - known.arrivals), axis=1)
+    distance = np.min(np.abs(known.taus[:, np.newaxis] - known.standard.arrivals), axis=1)
     # at an arrival itself either side of the jump will do
     near = (distance > _SAME) & (distance <= _NEAR)
     return float(np.max(wrong[near])), float(np.max(wrong[distance >= _FAR]))

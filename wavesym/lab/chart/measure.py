@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import WavesymError
-from wavesym.lab.chart.standard import standard
 from wavesym.lab.chart.subjects import Subject, other_methods, reference, subjects, taus
 from wavesym.lab.floor import floor
+from wavesym.lab.standard import standard
 from wavesym.lab.timing import medians
 from wavesym.programs.runtime.making import sets_program
 from wavesym.running.model import compiled_model
@@ -158,7 +158,7 @@ class _Judge:
             fronts = fronts[fronts <= self.known.until]
             where, values = np.concatenate([where, fronts]), np.hstack([values, subject.evaluate(fronts)])
         where = where.astype(np.float64)
-        relative = np.abs(values.astype(np.float64) - self._truth(where)) / self.known.sizes[:, np.newaxis]
+        relative = self.known.errors(values, self._truth(where))
         after = where[:, np.newaxis] - self.arrivals
         meant = ~np.any((after < 0) & (after > -_ROUNDED[single]), axis=1)
         near = np.any(np.abs(after) <= NEAR, axis=1)

@@ -1,10 +1,11 @@
-"""What errors of a chart are measured from: values right to the last bit, or the modes that prove most."""
+"""What errors are measured from: values right to the last bit, or the modes that prove most."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +33,10 @@ class Standard:
     arrivals: NDArray[np.float64]
     bound: float
     values: Callable[[Sequence[float]], ArrayLike]
+
+    def errors(self, found: NDArray[Any], right: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far outputs (outputs, n) are from the right ones, relative to the largest value of each."""
+        return np.asarray(np.abs(found.astype(np.float64) - right) / self.sizes[:, np.newaxis])
 
 
 def standard(model: Model) -> Standard:
