@@ -70,20 +70,24 @@ static void start_loads(errors *w)
     }
 }
 
-/* A sum that is read loses 12 roundings of a coefficient times (k + 1)(k + 2) + degree; before, it is multiplied by what
- * is rounded, too, and added to others. */
+/* What a coefficient loses where it is read, in `unit`, which is two roundings. T_(j + 1) = 2 u T_j - T_(j - 1) is wrong by
+ * 3 roundings more, which T_k has k - j times: 3/4 k (k - 1). u is no more than 2 until 1 goes off: two sums, a product,
+ * its factor and the last difference are 9 roundings of u, and |T_k'| is at most k^2: 9/2 k^2. Both are less than
+ * 6 (k + 1)(k + 2). The product with T_k and degree + 1 sums are less than degree + 4. Before, it is multiplied by what is
+ * rounded, too, and added to others. */
 static void start_reading(errors *w, int degree)
 {
     if (degree > w->degree) {
         for (int k = 0; k < NAME_ROW + LANES; ++k) {
-            w->reading[k] = unit * (roundings + (real)(NAME_GAINS + 4 + 12 * degree) + 12 * ((real)k + 1) * ((real)k + 2));
+            w->reading[k] = unit * (roundings + (real)(NAME_GAINS + 4 + degree) + 6 * ((real)k + 1) * ((real)k + 2));
         }
         w->least = w->degree < 0 ? w->reading[0] : w->least;
         w->degree = degree;
     }
 }
 
-/* As apply_loads, with the absolute values of all that is added. */
+/* As apply_loads, with the absolute values of all that is added. In load_series the third power has most roundings: 5 of
+ * the middle, twice, a product, a sum, another product, a sum: 14, which are 7 `unit`. */
 static void bound_loads(errors *w, const real *change, int window, int event)
 {
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
@@ -98,7 +102,7 @@ static void bound_loads(errors *w, const real *change, int window, int event)
         for (int f = 0; f < NAME_FORCES; ++f) {
             const real *const c = w->load[f];
             const real time = time_since(w->since[f], window, panel) + 2 * half_length[panel];
-            w->force[panel][f] = (w->roundings[f] + 12) * unit * (c[0] + 2 * time * (c[1] + 2 * time * c[2]));
+            w->force[panel][f] = (w->roundings[f] + 7) * unit * (c[0] + 2 * time * (c[1] + 2 * time * c[2]));
         }
     }
 }
@@ -239,14 +243,15 @@ static real load_error(const errors *w, const real *row, int joint, int panel)
 }
 
 /* What a joint of n states and so many points and ends adds to the energy of errors on a panel, and to what each end sends;
- * of a body nothing that acts passes at once. */
+ * of a body nothing that acts passes at once. The sums of x at the ends of a panel lose `few`: each of the lanes, at most
+ * 16, adds degree/LANES numbers to its first one, and 4 sums make one of the lanes; a `unit` is one for each end. */
 WITHIN void add_residual(const progress *b, const places *now, errors *w, int joint, int panel, int n, int points,
                          int passing, int ends, slice *energy, real *apart)
 {
     const march_state *const m = b->sets;
     const laws *const law = b->law;
     const int first = first_state[joint], ports = first_port[joint], degree = b->degree;
-    const real half = half_length[panel], few = unit * ((real)(degree / LANES + 12) + 2 * w->bent[panel][joint]);
+    const real half = half_length[panel], few = unit * ((real)(degree / LANES + 4) + 2 * w->bent[panel][joint]);
     const real exact = unit * ((real)(n + points + ends + 10) + 3 * roundings);
     real rate_of[NAME_WIDEST][NAME_ROW + LANES + 1];
     slice x[NAME_WIDEST], x_size[NAME_WIDEST], s[NAME_WIDEST], s_size[NAME_WIDEST];
