@@ -60,7 +60,8 @@ class Motion:
         self._acting = model.loads_until(until)
         self._breakpoints = Breakpoints(model, until)
         self._solved: dict[int, Waves] = {}
-        if (kept := self._breakpoints.crossings) > MOST_STRETCHES:
+        counted = self._breakpoints.schedule is not None  # of joints with contacts, as they were found
+        if not counted and (kept := self._breakpoints.crossings) > MOST_STRETCHES:
             raise CostError(
                 f"output.until: {self._breakpoints.label} are {kept:g} stretches to keep, the limit is "
                 f"{MOST_STRETCHES} (a shorter horizon helps)"

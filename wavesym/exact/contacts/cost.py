@@ -18,8 +18,8 @@ from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
 
-# stretches in all, and those whose motion is a series: half a minute
-MOST_STAGES, MOST_SERIES = 20_000, 10_000
+# stretches in all, which take half a minute and half a gigabyte, and those whose motion is a series: half a minute
+MOST_STAGES, MOST_SERIES = 150_000, 10_000
 # how often joints are moved: half a minute
 MOST_MOVES = 500_000
 # after so many series, half a second, it is reckoned how many there would be; the margin of that, which gets less
@@ -27,7 +27,7 @@ _RECKONED, _MARGIN = 96, 3
 # after so many times that count what happened lately is more than all that did, and what dies away counts
 _LATELY = 8
 # after each time so many stretches it is reckoned how they grow with the fronts; fronts that are counted
-_GROWN, _MOST_FRONTS = 1024, 100_000
+_GROWN, _MOST_FRONTS = 1024, 200_000
 
 
 class Cost:
@@ -91,7 +91,7 @@ class Cost:
         now, then = (bisect_right(fronts, time) for time in (start, self._starts[count // 2]))
         if not then < now < len(fronts):
             return
-        reckoned = fmpq(int(count * (len(fronts) / now) ** min(1.0, log(2) / log(now / then))))
+        reckoned = fmpq(int(count * (self._front_count / now) ** min(1.0, log(2) / log(now / then))))
         if reckoned > MOST_STAGES * (1 + fmpq(_MARGIN * _GROWN, count)):
             raise self._refusal(count, start, reckoned, MOST_STAGES, events)
 
@@ -100,6 +100,15 @@ class Cost:
         """When fronts would meet joints if all contacts were closed, as far as they are counted."""
         sources = front_sources(self._network, self._loads, self._last)
         return [time for time, _ in islice(front_times(self._network, sources, self._last), _MOST_FRONTS)]
+
+    @cached_property
+    def _front_count(self) -> float:
+        """How many fronts there are by the end; beyond those that are counted at the rate of their last half."""
+        fronts = self._fronts
+        half, last = (nearest(fronts[k]) for k in (len(fronts) // 2, -1))
+        if len(fronts) < _MOST_FRONTS or last == half:
+            return len(fronts)
+        return len(fronts) * (1 + (nearest(self._until) - last) / (last - half) / 2)
 
     def _refusal(self, count: int, start: fmpq, reckoned: fmpq, most: int, events: int) -> CostError:
         return CostError(

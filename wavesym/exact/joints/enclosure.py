@@ -18,6 +18,7 @@ from math import inf, perm, prod
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 ORDER = 6  # powers that are known of how a function begins, at first: each mass that it passes makes them one more
+_LONGEST = 1 << 14  # bits of the denominator of what is known exactly
 _CHOICES = 8  # of functions, that are told apart
 # of what is shortened: bits that bounds are computed with, and how many of the first powers tell its size
 _COARSE, _FIRST = 32, 8
@@ -191,7 +192,8 @@ def _add(terms: Terms) -> Enclosure:
             onset = combine(begin) if len(begin) == len(terms) else None
             return with_bounds(weighted_sum(terms), onset, *_bounds(terms))
         exact += factor * known.exact
-    return Enclosure.from_polynomial(exact)
+    known = Enclosure.from_polynomial(exact)
+    return known if exact.denom().bit_length() <= _LONGEST else replace(known, exact=None)
 
 
 def _bounds(terms: Terms) -> tuple[fmpq_poly | None, fmpq_poly | None]:
