@@ -100,6 +100,14 @@ def test_a_hopkinson_specimen_in_layers_is_refused_before_it_is_computed() -> No
     assert events(lower(Scene(**specimen("250 us")))) == ()
 
 
+def test_a_train_of_rods_whose_events_multiply_is_refused_early() -> None:
+    """There are few fronts, as all delays are equal, and many openings at other instants."""
+    parts = [rod(1, [1, "3/2"][k % 2], velocity=int(k == 0)) for k in range(30)]
+    train = [part for one in parts for part in (one, contact())][:-1]
+    with pytest.raises(CostError, match=r"make [1-9]\d{3} stretches by .* which would be"):
+        events(line([*train, FIXED], 300))
+
+
 def summed_fronts(until: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """When the strain at 0.7 m of the specimen changes, in tau, and what it is then; its second contact stays closed.
 

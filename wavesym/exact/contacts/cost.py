@@ -27,7 +27,7 @@ _RECKONED, _MARGIN = 96, 3
 # after so many times that count what happened lately is more than all that did, and what dies away counts
 _LATELY = 8
 # after each time so many stretches it is reckoned how they grow with the fronts; fronts that are counted
-_GROWN, _MOST_FRONTS = 1024, 200_000
+_GROWN, _MOST_FRONTS, _MANY = 1024, 200_000, 4
 
 
 class Cost:
@@ -86,12 +86,16 @@ class Cost:
             raise self._refusal(count, starts[-1], reckoned, MOST_SERIES, events)
 
     def _refuse_growth(self, start: fmpq, events: int) -> None:
-        """Where all, as a power of the number of fronts that they grew like since half of them, would be too many."""
+        """Where all, as a power of the number of fronts that they grew like since half of them, would be too many.
+
+        No more than the fronts, unless events have made many more of them than there are fronts: then as the square.
+        """
         count, fronts = len(self._starts), self._fronts
         now, then = (bisect_right(fronts, time) for time in (start, self._starts[count // 2]))
         if not then < now < len(fronts):
             return
-        reckoned = fmpq(int(count * (self._front_count / now) ** min(1.0, log(2) / log(now / then))))
+        power = min(2.0 if count > _MANY * now else 1.0, log(2) / log(now / then))
+        reckoned = fmpq(int(count * (self._front_count / now) ** power))
         if reckoned > MOST_STAGES * (1 + fmpq(_MARGIN * _GROWN, count)):
             raise self._refusal(count, start, reckoned, MOST_STAGES, events)
 

@@ -18,7 +18,7 @@ from math import inf, perm, prod
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 ORDER = 6  # powers that are known of how a function begins, at first: each mass that it passes makes them one more
-_LONGEST = 1 << 14  # bits of the denominator of what is known exactly
+_LONGEST = 1 << 14  # bits of the denominator of what is known exactly: each joint adds some, and longer ones take long
 _CHOICES = 8  # of functions, that are told apart
 # of what is shortened: bits that bounds are computed with, and how many of the first powers tell its size
 _COARSE, _FIRST = 32, 8
@@ -159,7 +159,7 @@ def scale_terms(terms: Terms, factor: fmpq) -> Terms:
 
 
 def add_terms(terms: Terms) -> Enclosure:
-    """A sum with exact factors; exact where all of it is. What is in it twice is one."""
+    """A sum with exact factors; exact where all of it is, and no fraction is very long. What is in it twice is one."""
     counted = collect(terms)
     number = prod(len(known.choices) or 1 for _, known in counted)
     if number == 1:
