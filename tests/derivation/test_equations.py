@@ -36,7 +36,9 @@ def rods(relation: Relation, known: dict[sympy.Basic, sympy.Expr]) -> range:
     return range(first, last + 1, relation.step)
 
 
-@pytest.mark.parametrize("name", ["drive_m1", "drive_equal", "building_m2", "collision_m4"])
+@pytest.mark.parametrize(
+    "name", ["drive_m1", "building_m2", "collision_m4", pytest.param("drive_equal", marks=pytest.mark.slow)]
+)
 def test_tables_satisfy_the_recurrences(name: str) -> None:
     scene = Scene.from_toml(name)
     known = numbers(scene)
@@ -70,7 +72,7 @@ def test_tables_satisfy_the_recurrences(name: str) -> None:
                                         r, k, _, p = (int(x) if x.is_Integer else x for x in f.indices)
                                         value = table.get((function, r, source, k, rate, p), 0)
                                         left = left.subs(f, Rational(str(value)))
-                            assert sympy.simplify(left.replace(KroneckerDelta, lambda a, b: Integer(int(a == b)))) == 0
+                            assert sympy.expand(left.replace(KroneckerDelta, lambda a, b: Integer(int(a == b)))) == 0
                             checked += 1
     assert checked > 50
 
