@@ -4,7 +4,7 @@ from pathlib import Path
 
 from flint import fmpq
 
-from tools.bench import equal_degree, record_response, report
+from tools.bench import equal_degree, frames, record_response, report
 from tools.bench.equal_degree import FittedPieces, at_degree, fit_pieces, ratios
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.contacts.events import events
@@ -63,3 +63,14 @@ def test_a_record_has_rows_of_modes_and_elements(monkeypatch):
     assert float(error) < 1e-6
     errors = [float(error) for _, _, error in elements]
     assert errors[0] > 2 * errors[-1] > 0
+
+
+def test_frames_have_rows_in_c_and_in_numpy(monkeypatch):
+    """The same errors, within their estimates."""
+    monkeypatch.setattr(frames, "_IN_C", 3)
+    monkeypatch.setattr(frames, "_IN_NUMPY", 3)
+    monkeypatch.setattr(frames, "_HELD", 1)
+    c, numpy = frames.rows(FOLDER.parent / "examples" / "records")
+    assert [c[1], numpy[1]] == ["C", "NumPy"]
+    assert 0 < float(c[-1]) < 1
+    assert 0 < float(numpy[-1]) < 1
