@@ -32,7 +32,7 @@ from wavesym.targets.c.tables import Declaration, declarations
 from wavesym.targets.manifest import CODE_AT_MOST
 
 BUILDS = {"plain": ("-std=c99", "-O0"), "contracted": (*FLAGS, "-march=native", "-ffp-contract=fast")}
-COMPILERS = first_always(at_hand())
+SELFTESTS = first_always([(each, real) for each in at_hand() for real in (SINGLE, DOUBLE)])
 
 
 def scene(system, load=(), until=9, **outputs) -> Scene:
@@ -68,10 +68,10 @@ def scene_of(name) -> Scene:
     return SCENES.get(name) or every(3, tolerance="1e-3")
 
 
-@pytest.mark.parametrize("compiler", COMPILERS, ids=lambda each: each.name)
-@pytest.mark.parametrize("real", [DOUBLE, SINGLE], ids=["double", "single"])
+@pytest.mark.parametrize("how", SELFTESTS, ids=lambda how: "-".join(each.name for each in how))
 @EACH
-def test_c_passes_its_self_test(name, real, compiler, monkeypatch) -> None:
+def test_c_passes_its_self_test(name, how, monkeypatch) -> None:
+    compiler, real = how
     monkeypatch.setenv("CC", shlex.join(compiler.command))
     model = lower(scene_of(name))
     with compile_files(program_files(model, march(model, real), "c", tested=True), len(model.probes)) as program:
@@ -87,6 +87,7 @@ def test_c_is_numpy_and_sample_is_eval(name) -> None:
     taus = [0.0, 1 / 3, 0.9999, 1.0, 2.5, 2.4999999999999996, 0.7 * end, np.nextafter(end, 0), end]
     taus += [-1.0, end + 0.1, np.nan]
     with compile_files(program_files(model, made, "c", tested=True), len(model.probes)) as program:
+        assert program.selftest() == 0
         assert program.names == module.OUTPUTS
         values = program(taus)
         expected = module.evaluate(taus)
