@@ -7,7 +7,7 @@ estimated.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -24,12 +24,10 @@ Key = tuple[int, int]
 
 
 class Exponentials:
-    """sum_q c_q exp(q), made of a mapping from q to c_q; `parts` holds those that are not 0, by the key of q."""
+    """sum_q c_q exp(q): `parts` holds the c_q that are not 0, by the key of q."""
 
     __slots__ = ("parts",)
-
-    def __init__(self, parts: Mapping[fmpq, fmpq]) -> None:
-        self.parts: dict[Key, fmpq] = {(int(q.p), int(q.q)): c for q, c in parts.items() if c != 0}
+    parts: dict[Key, fmpq]
 
     @classmethod
     def from_number(cls, value: Number) -> Exponentials:
@@ -112,7 +110,8 @@ def _from_nonzero_parts(parts: dict[Key, fmpq]) -> Exponentials:
 
 def exponential(exponent: Exact) -> Exponentials:
     """e to a rational power."""
-    return Exponentials({fmpq(exponent): fmpq(1)})
+    q = fmpq(exponent)
+    return _from_nonzero_parts({(int(q.p), int(q.q)): fmpq(1)})
 
 
 @dataclass(frozen=True)

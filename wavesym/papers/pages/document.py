@@ -313,8 +313,8 @@ def fields(record: Record, findings: Findings) -> Iterable[Field]:
     yield Field("evidence", ((readable(" ".join(record.evidence)),),))
     if record.note:
         yield Field("note", ((readable(record.note),),))
-    if slip and record.verdict in ("misprint", "unreadable"):
-        yield Field("origin", ((ORIGINS[slip.origin],),))
+    if origin := describe_origin(record):
+        yield Field("origin", ((origin,),))
     yield Field("tested", ((f"Compared with {record.reference}; {_faults(record)}.",),))
     for change, because in record.mutations.survivors if not findings.whole else ():
         yield Field("survived", ((Code(change), f": {because}"),))
@@ -322,6 +322,12 @@ def fields(record: Record, findings: Findings) -> Iterable[Field]:
         yield Field("problem", ((problem,),))
     if findings.reproduce:
         yield from _reproduction(record)
+
+
+def describe_origin(record: Record) -> str | None:
+    """Whether the print or the scan is at fault; None where neither is."""
+    slip = record.entry.slip
+    return ORIGINS[slip.origin] if slip and record.verdict in ("misprint", "unreadable") else None
 
 
 def _reproduction(record: Record) -> Iterable[Field]:

@@ -18,6 +18,7 @@ from wavesym.papers.pages.document import (
     Findings,
     Table,
     appendices,
+    describe_origin,
     document,
     fields,
     scene_file,
@@ -146,7 +147,6 @@ def as_json(findings: Findings) -> str:
 
 def _object(record: Record, findings: Findings) -> dict[str, object]:
     entry, slip, mutations = record.entry, record.entry.slip, record.mutations
-    by_name = {field.name: TEXT.line(field.line) for field in fields(record, findings)}
     row: dict[str, object] = {
         "id": record.id,
         "where": entry.where,
@@ -161,7 +161,7 @@ def _object(record: Record, findings: Findings) -> dict[str, object]:
         "corrected_ranges": _corrected_ranges(entry.ranges, slip),
         "verdict": record.verdict,
         "origin": slip.origin if slip else None,
-        "origin_meaning": by_name.get("origin"),
+        "origin_meaning": describe_origin(record),
         "note": record.note,
         "against": record.reference,
         "evidence": " ".join(record.evidence),
