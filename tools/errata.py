@@ -158,7 +158,7 @@ def errata_page(text: str) -> str:
     right = CODE.sub(lambda span: formulas(span[0]), right)
     return "\n\n".join(
         [
-            f"{heading} to Pielorz 1979",
+            f"{heading} to Piełorz 1979",
             f'<p class="paper">{escape(paper)}</p>',
             "wavesym reads every formula of this paper as it is printed, and compares it with the derived laws. The "
             f"{len(first)} slips that change results come first: who computes by what is printed gets another number.",

@@ -42,7 +42,7 @@ def test_the_law_of_a_joint_by_hand() -> None:
     assert seat["M"] == [["0", "0"], ["0", "1/2"]]
     assert seat["C"] == [["107/20", "-1/4"], ["-1/4", "9/4"]]
     assert seat["K"] == [["3", "-3"], ["-3", "3"]]
-    assert [joint["knots"] for joint in read["joints"]] == [4, 4, 3], "0, 2, 3, 4 and 0, 1, 2, 3 and 0, 3/2, 5/2"
+    assert [joint["breakpoints"] for joint in read["joints"]] == [4, 4, 3], "0, 2, 3, 4 and 0, 1, 2, 3 and 0, 3/2, 5/2"
     assert read["not_served"]["refusal"] == LINE
 
 

@@ -222,7 +222,7 @@ def test_the_size_of_the_table(name: str) -> None:
 def test_the_knots_are_where_segments_start(changes: dict[str, object]) -> None:
     model = lower(scene("drive_m1", **changes))
     motion = Motion(model, model.until)
-    for probe, row in zip(model.probes, told(scene("drive_m1", **changes), "table")["knots"], strict=True):
+    for probe, row in zip(model.probes, told(scene("drive_m1", **changes), "table")["breakpoints"], strict=True):
         starts = list(map(str, motion.starts(probe)))
         assert row["count"] == len(starts)
         assert row["first"] == starts[:8]
@@ -293,7 +293,7 @@ def test_a_scene_that_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: P
     assert told(given)["program"] == {"refusal": str(error.value)}
     assert "the limit is 10000" in told(given, "table")["table"]["refusal"]
     assert "coefficients of about" in told(scene(until=300), "table")["table"]["refusal"]
-    assert all(row["count"] is None and "the limit is" in row["refusal"] for row in told(given, "table")["knots"])
+    assert all(row["count"] is None and "the limit is" in row["refusal"] for row in told(given, "table")["breakpoints"])
     file = tmp_path / "far.toml"
     file.write_text(_toml("building_m2").replace("until = 12", "until = 1e6"))
     for stage in ("scene", "laws", "program"):

@@ -150,6 +150,13 @@ def test_a_scene_to_start_from_works_and_is_explained(kind: str, capsys: pytest.
     assert np.all(np.isfinite(scene.run(samples=3).values))
 
 
+def test_the_soil_of_the_pile_to_start_from_yields(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", "pile"]) == 0
+    Path("first.toml").write_text(capsys.readouterr().out, encoding="utf-8")
+    events = wavesym.run(wavesym.Scene.from_toml("first.toml")).events
+    assert {event.kind for event in events} == {"yields", "holds"}
+
+
 def test_a_scene_to_start_from_takes_a_record(capsys: pytest.CaptureFixture[str]) -> None:
     Path("quake.csv").write_text("time,acc\n0,0\n0.5,0.1\n1,-0.2\n")
     for kind, unit in (("frame", "g"), ("wall", "g"), ("soil", "g"), ("drive", "N*m")):

@@ -60,6 +60,11 @@ def test_every_page_has_every_record_every_reason_and_every_survivor(format: str
     assert {"holds", "misprint", "unreadable"} <= set(re.findall(r"\w+", words))
 
 
+def test_what_a_text_says_of_a_record_stands_apart_from_the_word_for_it() -> None:
+    ranged = replace(records()[-1], entry=entry("T1.b", "n + 1 = 1 + n", "row b", inferred_ranges=("n = 1, 2",)))
+    assert "not printed n = 1, 2" in PAGES["text"](Findings(PAPER, (*records(), ranged), False))
+
+
 @pytest.mark.parametrize("format", PAGES)
 def test_every_page_has_the_same_facts(format: str) -> None:
     left = "(2) M"
@@ -163,8 +168,8 @@ def test_what_could_not_be_tested_is_a_failure() -> None:
 def test_a_record_asked_for_by_name_is_shown_in_full_and_nothing_else() -> None:
     page = text(Findings(PAPER, records(ENTRIES[5])))
     assert page.startswith("T1.b.x: holds, right as printed\n")
-    assert "range      n = 1, 2" in page
-    assert "survived   2 n for n in n: 0 times n is 0" in page
+    assert "range       n = 1, 2" in page
+    assert "survived    2 n for n in n: 0 times n is 0" in page
     assert "not judged" not in page
 
 

@@ -32,6 +32,7 @@ def _json(summary: Summary) -> str:
         {
             "place": link.place,
             "law": link.law,
+            "between": link.between,
             "set": link.set._asdict(),
             "dissipated": link.dissipated._asdict(),
         }

@@ -8,6 +8,7 @@ from flint import fmpq
 
 from wavesym.errors import CostError
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import midpoint
 from wavesym.results.presentation import number_text
 
@@ -25,19 +26,26 @@ class MeasuredQuantity(NamedTuple):
 
 
 class LinkSummary(NamedTuple):
-    """A link with friction, or a spring that yields (`law`), at a `place` as the scene calls it.
+    """A link with friction, or a spring that yields (`law`), at a `place` as the scene calls it, `between` two points.
 
+    Points are called by their names, else by their places: links at one place differ in them, or in their laws.
     `set` is how far it slid or yielded until the end of the horizon, lengthening it (or, of friction, along x) where
     that is positive; `dissipated` the energy that this took. Both are right to rounding.
     """
 
     place: str
     law: str
+    between: tuple[str, str]
     set: MeasuredQuantity
     dissipated: MeasuredQuantity
 
     def __str__(self) -> str:
         return f"{self.law} at {self.place}: set {self.set}, dissipated {self.dissipated}"
+
+
+def _names(model: Model, link: Link) -> tuple[str, str]:
+    left, right = (model.network.points[number] for number in (link.left, link.right))
+    return left.name or left.place, right.name or right.place
 
 
 def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
@@ -58,6 +66,7 @@ def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
         LinkSummary(
             each.link.place,
             each.link.law,
+            _names(model, each.link),
             MeasuredQuantity(midpoint(each.set * stretch[0]), stretch[1]),
             MeasuredQuantity(midpoint(each.dissipated * energy[0]), energy[1]),
         )

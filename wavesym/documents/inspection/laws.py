@@ -70,14 +70,14 @@ def joints(model: Model) -> Listing:
 
 
 def joint_laws(model: Model) -> Listing:
-    """M, C and K of the joints in the light cone, and the knots of each."""
+    """M, C and K of the joints in the light cone, and the breakpoints of each."""
     until = rational(model.horizon())
     try:
         found = Breakpoints(model, until)
-        knots = {number: found.count(number) for number in found.joints_in_reach}
+        counts = {number: found.count(number) for number in found.joints_in_reach}
         refusal = ""
     except CostError as error:
-        knots, refusal = {}, str(error)
+        counts, refusal = {}, str(error)
     rows: list[dict[str, Plain | Display]] = []
     for number in model.joints_in_reach(until):
         joint = model.network.joints[number]
@@ -88,7 +88,7 @@ def joint_laws(model: Model) -> Listing:
                 "joint": number,
                 "points": Display([_point_name(model, point) for point in joint.points], _point_names(model, joint)),
                 "ends": len(joint.ends),
-                "knots": knots.get(number),
+                "breakpoints": counts.get(number),
                 "M": _matrix("M", mass),
                 "C": _matrix("C", law.damping),
                 "K": _matrix("K", law.stiffness),

@@ -15,12 +15,12 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
 MOST_COUNTED = 30_000  # coefficients, which take a second or two to make
-MOST_SHOWN = 8  # knots of an output
+MOST_SHOWN = 8  # breakpoints of an output
 LONGEST = 10_000  # tau; to estimate the size of longer tables takes seconds, too
 
 
 def table_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
-    """The size of the table that `tables` prints, and the knots of every output."""
+    """The size of the table that `tables` prints, and the breakpoints of every output."""
     try:
         _refuse_long(model)
         made = _table(model, chain)
@@ -28,8 +28,8 @@ def table_sections(model: Model, chain: Chain | None) -> Iterator[Section]:
         yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
     else:
         yield from _sizes(made)
-    words = f"Knots: an output may jump or bend at `count` instants; here are the first {MOST_SHOWN}"
-    yield Listing("knots", words, list(_knots(model)), ("first", "refusal"))
+    words = f"Breakpoints: an output may jump or bend at `count` instants; here are the first {MOST_SHOWN}"
+    yield Listing("breakpoints", words, list(_breakpoints(model)), ("first", "refusal"))
 
 
 def _refuse_long(model: Model) -> None:
@@ -75,7 +75,7 @@ def _sizes(table: Table | NetworkTable) -> Iterator[Section]:
     yield Listing("functions", "Its wave functions, for each source", rows)
 
 
-def _knots(model: Model) -> Iterator[dict[str, Plain]]:
+def _breakpoints(model: Model) -> Iterator[dict[str, Plain]]:
     try:
         motion = Motion(model, rational(model.horizon()))
     except (CostError, UnservedError) as refusal:

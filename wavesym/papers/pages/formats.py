@@ -120,7 +120,7 @@ def _text_field(field: Field) -> Iterator[str]:
     for number, line in enumerate(field.lines):
         name = "range" if number and field.name in ("printed", "corrected", "in English") else field.name
         yield fill(
-            f"{name:11}{TEXT.line(line)}", WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 15,
+            f"{name:12}{TEXT.line(line)}", WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 16,
             break_long_words=False, break_on_hyphens=False,
         )  # fmt: skip
     if field.listing:

@@ -1,4 +1,4 @@
-"""What A. Pielorz's paper of 1979 prints, as data, and the four tests that say what it means.
+"""What Amalia Piełorz's paper of 1979 prints, as data, and the four tests that say what it means.
 
 data/          passages of the text, cut into records; hashes of the lines of the source. transcript.py reads them
 chains.py      the chains that all is tried on: exact tables, motion under loads, scenes that show it
