@@ -199,7 +199,16 @@ def test_what_is_no_law_is_said_in_a_line(spring: dict[str, Any], line: str) -> 
         chain([{"mass": 1, "name": "a"}, spring, "fixed"], 3)
 
 
-def test_beside_friction_springs_with_a_law_are_refused() -> None:
-    parts = [{"rod": 1, "velocity": 1}, {"mass": 1, "friction": 1, "name": "a"}, {"spring": 4, "yield": 1}, "fixed"]
-    with pytest.raises(SceneError, match=r"joined to a spring .* by what has no length; write a rod between them"):
+@pytest.mark.parametrize(
+    ("parts", "line"),
+    [
+        ([{"joint": True, "dashpot": 1, "friction": 1}, {"spring": 4, "yield": 1}, "fixed"], "joined to a spring"),
+        ([{"mass": 1, "friction": 1}, "contact", {"rod": 1}], "joined to a contact"),
+        ([{"mass": 1, "friction": 1}, {"friction": 1}, "fixed"], "nothing says what each takes"),
+        ([{"mass": 1, "friction": 1}, {"friction": 1}, {"mass": 1, "friction": 1}], "nothing says what each takes"),
+        ([{"mass": 1, "friction": 1}, {"dashpot": 1}, {"joint": True}, {"rod": 1}], "not proved"),
+    ],
+)
+def test_friction_that_is_not_proved_is_refused_in_a_line(parts: list[Any], line: str) -> None:
+    with pytest.raises(SceneError, match=line):
         chain(parts, 3)

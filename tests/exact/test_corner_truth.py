@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from flint import ctx
 
-from tests.support.cornered import damped_chain, seeded, touching_chain
+from tests.support.cornered import damped_chain, rubbing_masses, seeded, sliding_chain, touching_chain
 from tests.support.judging import BITS, CLOSE, wrong_events, wrong_values
 from tests.support.piecewise import PiecewiseChain
 from tests.support.series import Unclear
@@ -34,15 +34,22 @@ DAMPED = (1, 5, 11, 52)
 # contacts beside springs: many events of both; one that yields while a contact far from it is vague
 TOUCHING = (6, 18, 69, 85, 134, 186)
 
+# friction between masses, with a spring beside it, of a joint without mass, beside a rod; on a belt that jumps or is
+# accelerated; slipping the other way at once; at an instant that is exact
+SLIDING = (0, 12, 41, 42, 45, 51, 74, 104)
 
-def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None) -> list[str]:
+# friction beside springs that yield, engage, and other friction
+RUBBING = (4, 38, 49, 51)
+
+
+def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None, first: str = "-1") -> list[str]:
     """What is not as the truth has it; `claimed` is another scene to take the package's word for."""
     model = lower(Scene(**(claimed or table)))
     until = Fraction(model.horizon())
     made = PiecewiseChain(table, until)
     taus = [float(until) * part for part in (0.1234, 0.377, 0.71, 0.97)]
     # two sides of a gap are two springs of one place
-    faults = [*wrong_events(model, made, lambda place: place.rstrip("+-")), *wrong_values(model, made, taus)]
+    faults = [*wrong_events(model, made, lambda place: place.rstrip("+-"), first), *wrong_values(model, made, taus)]
     with ctx.workprec(BITS):
         for loss in losses(model):
             here = (loss.link.place.rstrip("+-"), loss.link.law)
@@ -89,6 +96,28 @@ def test_springs_beside_contacts_that_nothing_makes_yield_are_linear() -> None:
     assert [(e.kind, e.double) for e in events(linear)] == [(e.kind, e.double) for e in events(yielding)]
     taus = [k / 7 for k in range(63)]
     assert Reference(linear).values(taus) == Reference(yielding).values(taus)
+
+
+@pytest.mark.parametrize("seed", SLIDING)
+def test_what_rubs_on_another_part_slips_and_sticks_as_it_should(seed: int) -> None:
+    assert wrong(sliding_chain(seed), first="0") == []
+
+
+@pytest.mark.parametrize("seed", RUBBING)
+def test_friction_beside_springs_slips_and_sticks_as_it_should(seed: int) -> None:
+    assert wrong(rubbing_masses(seed)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", range(0, 100, 20))
+def test_drawn_friction_between_parts_does_as_it_should(start: int) -> None:
+    refused = 0
+    for seed in range(start, start + 20):
+        try:
+            assert wrong(sliding_chain(seed), first="0") == [], seed
+        except (WavesymError, Unclear):
+            refused += 1
+    assert refused <= 4
 
 
 @pytest.mark.slow

@@ -211,7 +211,7 @@ def test_pieces_follow_friction(tmp_path):
 @pytest.mark.parametrize(
     ("held", "message"),
     [
-        ("{ mass = 1, friction = 1 }, { spring = 1 }, { mass = 1, friction = 2 }", "other friction"),
+        ("{ joint = true, friction = 1 }, { spring = 1 }, { mass = 1, friction = 2 }", "other friction"),
         ('{ mass = 1, friction = 1 }, "contact"', "a contact"),
         ("{ mass = 1, friction = -1 }", "negative"),
         ("{ mass = 1, friction = 1 }, { dashpot = 1 }, { joint = true }", "dashpot ties"),

@@ -99,6 +99,66 @@ def _held(choose: Choose, number: int) -> dict[str, Any]:
     return node
 
 
+def sliding_chain(seed: int) -> dict[str, Any]:
+    """One with friction between its parts: masses, joints without mass, an end that moves, ends of a rod."""
+    choose = Random(seed).choice
+    parts: list[Any] = []
+    if choose([0, 1]):
+        parts = [_side(choose, 1), _rod(choose, choose([0, 1, "0.3"]))]
+    limit = choose(LIMITS[1:])
+    match choose(["between", "between", "belt", "rod"]):
+        case "between":
+            sides = [_side(choose, len(parts) + 1), _side(choose, len(parts) + 3)]
+            between = {"friction": limit} | ({"spring": choose(SPRINGS)} if choose([0, 0, 1]) else {})
+            parts += [sides[0], between, sides[1]]
+            if not _braced(parts, 0 if len(parts) == 3 else 2):
+                parts.insert(len(parts) - 3, _rod(choose, 1)) if len(parts) > 3 else parts.insert(0, _rod(choose, 1))
+            if _massless(sides[1]) or choose([0, 1]):
+                parts += [_rod(choose, 0), choose(["free", "fixed"])]
+        case "belt":
+            parts += [_mass(choose, len(parts) + 1) | {"dashpot": 0}, {"friction": limit}]
+            parts += [{"motion": choose(["velocity", "acceleration"]), "velocity": 0, "name": "belt"}]
+            if len(parts) == 3:
+                parts = ["fixed", spring(choose, ["linear"]), *parts]
+        case "rod":
+            parts += [_mass(choose, len(parts) + 1) | {"dashpot": 0}]
+            parts += [_rod(choose, 0) | {"friction": limit}, _side(choose, len(parts) + 2)]
+    table = _scene(choose, parts, choose([3, "7/2", 5]))
+    if isinstance(parts[-1], dict) and parts[-1].get("name") == "belt":
+        load = {"at": "belt", "times": [0, choose([1, "1.1"])]}
+        table["load"].append(
+            load | choose([{"steps": ["1/2", -1]}, {"ramps": ["1/3", -1]}, {"steps": [1, 0], "ramps": [0, "-1/2"]}])
+        )
+    return table
+
+
+def _side(choose: Choose, number: int) -> dict[str, Any]:
+    """A mass or a joint beside friction."""
+    if choose([0, 0, 1]):
+        return {"joint": True, "name": f"n{number}"}
+    return _mass(choose, number) | {"dashpot": 0}
+
+
+def _braced(parts: list[Any], first: int) -> bool:
+    """Whether what stands there has a mass, or a rod."""
+    return not _massless(parts[first]) or (first > 0 and "rod" in parts[first - 1])
+
+
+def rubbing_masses(seed: int) -> dict[str, Any]:
+    """Two masses that may rub on the ground, with springs between them and to the ground."""
+    choose = Random(seed).choice
+    first = _mass(choose, 1) | {"dashpot": 0, "friction": choose(LIMITS[1:])}
+    if choose([0, 1]):
+        first |= spring(choose)
+    last = _mass(choose, 3) | {"dashpot": 0}
+    if choose([0, 0, 1]):
+        last |= spring(choose)
+    elif choose([0, 0, 1]):
+        last["friction"] = choose(LIMITS[1:])
+    end = choose([[], [{"rod": choose(LENGTHS)}, "fixed"], [spring(choose), "fixed"]])
+    return _scene(choose, [first, spring(choose), last, *end], choose([3, "7/2"]))
+
+
 def damped_chain(seed: int) -> dict[str, Any]:
     """One with dashpots beside its springs that yield."""
     table, choose = seeded(seed), Random(seed).choice

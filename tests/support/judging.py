@@ -17,13 +17,18 @@ CLOSE = arb("1e-18")
 """How near events are to the truth; what happens this near to the horizon may count or not."""
 
 
-def wrong_events(model: Model, made: PiecewiseChain, name: Callable[[str], str] = str) -> Iterator[str]:
-    """Where links with corners do something else than they should; those at places of one `name` are taken together."""
+def wrong_events(
+    model: Model, made: PiecewiseChain, name: Callable[[str], str] = str, first: str = "-1"
+) -> Iterator[str]:
+    """Where links with corners do something else than they should; those at places of one `name` are taken together.
+
+    What happens up to the `first` tau does not count.
+    """
     found = events(model)
     with ctx.workprec(BITS):
         last = arb(model.until) - CLOSE
-        ours = [(name(event.x), event.kind, event.tau) for event in found if event.tau < last]
-        true = [(name(event.place), event.kind, arb(event.tau)) for event in made.events if arb(event.tau) < last]
+        ours = [(name(event.x), event.kind, event.tau) for event in found if arb(first) < event.tau < last]
+        true = [(name(e.place), e.kind, arb(e.tau)) for e in made.events if arb(first) < arb(e.tau) < last]
         for place in {name(model.network.links[number].place) for number in model.contacts(model.until)}:
             here, there = ([each[1:] for each in told if each[0] == place] for told in (ours, true))
             kinds = [kind for kind, _ in here] == [kind for kind, _ in there]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 
 from wavesym.fields.table import refusal
 from wavesym.mechanics.network import Link, Network, Point
@@ -16,46 +17,63 @@ def refuse_impacts(points: Sequence[Point], contacts: Iterable[tuple[Link, Keys]
 
     Nor through what has no mass and touches both: all that contacts connect may have one rigid part.
     """
-    leader = list(range(len(points)))
     rigid = [point.mass != 0 or point.motion is not None for point in points]
+    every = list(contacts)
+    for number in _joining_two([link for link, _ in every], rigid):
+        raise refusal(
+            'a contact between two rigid parts ("fixed" and a motion are rigid too), which would need a law '
+            "of impact; write a rod on one side of it",
+            *every[number][1],
+        )
+
+
+def _joining_two(links: Sequence[Link], distinct: Sequence[bool]) -> Iterator[int]:
+    """The links that join two `distinct` points, one after another, or what is joined already."""
+    leader, found = list(range(len(distinct))), list(distinct)
 
     def leader_of(point: int) -> int:
         while leader[point] != point:
             point = leader[point]
         return point
 
-    for link, at in contacts:
+    for number, link in enumerate(links):
         one, other = leader_of(link.left), leader_of(link.right)
-        if rigid[one] and rigid[other]:
-            raise refusal(
-                'a contact between two rigid parts ("fixed" and a motion are rigid too), which would need a law '
-                "of impact; write a rod on one side of it",
-                *at,
-            )
+        if one == other or (found[one] and found[other]):
+            yield number
         leader[other] = one
-        rigid[one] = rigid[one] or rigid[other]
+        found[one] = found[one] or found[other]
 
 
 _CALLED = {"contact": "a contact", "friction": "other friction", "spring": "a spring that acts on one side or yields"}
 
 
 def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], written: Mapping[int, Keys]) -> None:
-    """What rubs must be alone in its joint with a law that has a corner.
+    """What rubs, in its joint with a law that has a corner, must be between masses, and it must be known what it takes.
 
     Raises that of `table.refusal`.
     """
+    rigid = [point.mass != 0 or point.motion is not None for point in points]
     for joint in Network(tuple(points), (), tuple(links)).joints:
         corners = [link for link in links if link.has_corner and link.left in joint.points]
         rubbing = [link for link in corners if link.friction != 0]
-        if rubbing and len(corners) > 1:
-            other = next(link for link in corners if link is not rubbing[0])
+        light = [link for link in rubbing if not (rigid[link.left] and rigid[link.right])]
+        for link, other in product(rubbing, corners):
+            if other is not link and (light or other.contact):
+                raise refusal(
+                    f"joined to {_CALLED[other.law]} by what has no length; write a rod between them",
+                    *written[link.right],
+                    "friction",
+                )
+        for number in _joining_two(rubbing, [point.motion is not None for point in points]):
             raise refusal(
-                f"joined to {_CALLED[other.law]} by what has no length; write a rod between them",
-                *written[rubbing[0].right],
+                "of parts that other friction, or what moves as is given, may hold as well, so that nothing says what "
+                "each takes; write a rod between them",
+                *written[rubbing[number].right],
                 "friction",
             )
         for link in rubbing:
-            if points[link.right].mass != 0 and _damps_massless(points, links, link.right):
+            ends = link.left, link.right
+            if any(points[end].mass != 0 and _damps_massless(points, links, end) for end in ends):
                 raise refusal(
                     "of a mass that a dashpot ties to a joint without mass, not proved; write a mass there too",
                     *written[link.right],

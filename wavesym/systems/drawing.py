@@ -169,10 +169,8 @@ class _Pen:
         ground = len(self.points) - 1
         self.paths[ground] = at
         self.places[len(self.links)] = place
-        if part.friction:
-            self.links.append(Link(ground, point, friction=rational(part.friction)))
-        if part.has_law:
-            self._link(part.model_copy(update={"dashpot": Fraction(0)}), ground, point, Fraction(1))
+        linear = {} if part.has_law else {"spring": Fraction(0)}  # which the point has
+        self._link(part.model_copy(update={"dashpot": Fraction(0), **linear}), ground, point, Fraction(1))
 
     def _wheel(self, point: int, part: ChainPart | str, ratio: Fraction, at: Keys) -> None:
         """What stands first in a branch turns with its node, `ratio` times as fast: the node has all of it."""
@@ -207,12 +205,12 @@ class _Pen:
                 rational(part.loss),
             )
         )
-        if part.spring or part.dashpot:
+        if part.spring or part.dashpot or part.friction:
             self._link(part, left, right, ratio)
         return len(self.bars) - 1
 
     def _link(self, part: SpringLaw, left: int, right: int, ratio: Fraction) -> None:
-        """A spring and a dashpot; with a gap on both sides two springs."""
+        """A spring and a dashpot, with a gap on both sides two springs; and friction."""
         linear = Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio))
         strained = replace(linear, preload=rational(part.preload))
         number = len(self.links)
@@ -221,8 +219,10 @@ class _Pen:
             self.links.append(replace(strained, limits=(rational(pull), rational(push))))
         elif part.sides:
             self.links += [replace(linear, side=side, gap=rational(gap)) for side, gap in part.sides]
-        else:
+        elif part.spring or part.dashpot:
             self.links.append(strained)
+        if part.friction:
+            self.links.append(Link(left, right, ratio=rational(ratio), friction=rational(part.friction)))
         if number in self.places:
             self.places |= dict.fromkeys(range(number, len(self.links)), self.places[number])
 

@@ -81,13 +81,14 @@ class ChainPart(SceneTable):
 
 
 class SpringLaw(SceneTable):
-    """What a spring does beyond being linear: it acts on one side, with a gap, or it yields.
+    """A spring, a dashpot and friction, and what the spring does beyond being linear: it acts on one side, or yields.
 
     A dashpot beside one that yields acts all the time, with all its force.
     """
 
     spring: NotNegative = Fraction(0)
     dashpot: NotNegative = Fraction(0)
+    friction: NotNegative = Field(Fraction(0), description="what holds it, at most, and acts against its sliding")
     only: Annotated[Any, PlainValidator(read_choice("is not a side", "push", "pull"))] = Field(
         None, description='"push" or "pull": the spring does nothing else'
     )
@@ -150,7 +151,7 @@ class SpringLaw(SceneTable):
 
 
 class RodPart(ChainPart, SpringLaw):
-    """An elastic rod; a spring and a dashpot in parallel to it go from end to end."""
+    """An elastic rod; a spring, a dashpot and friction in parallel to it go from end to end."""
 
     key: ClassVar[str] = "rod"
 
@@ -159,8 +160,6 @@ class RodPart(ChainPart, SpringLaw):
     speed: Positive = Fraction(1)
     velocity: Exact = Fraction(0)
     strain: Exact = Fraction(0)
-    spring: NotNegative = Fraction(0)
-    dashpot: NotNegative = Fraction(0)
     loss: Annotated[Fraction, PlainValidator(damping_ratio), PlainSerializer(str, return_type=str)] = Fraction(0)
     name: PartName | None = None
 
@@ -169,9 +168,6 @@ class PointPart(ChainPart, SpringLaw):
     """What moves as one: a rigid mass or a massless joint, with a dashpot, a spring and friction to the ground."""
 
     velocity: Exact | None = None
-    dashpot: NotNegative = Fraction(0)
-    spring: NotNegative = Fraction(0)
-    friction: NotNegative = Fraction(0)
     name: PartName | None = None
 
     @property
@@ -215,17 +211,14 @@ class MotionPart(ChainPart):
 
 
 class LinkPart(ChainPart, SpringLaw):
-    """A spring and a dashpot between the parts on its two sides."""
+    """A spring, a dashpot and friction between the parts on its two sides."""
 
     key: ClassVar[str] = "spring"
 
-    spring: NotNegative = Fraction(0)
-    dashpot: NotNegative = Fraction(0)
-
     @model_validator(mode="after")
-    def _require_stiffness(self) -> LinkPart:
-        if self.spring == self.dashpot == 0:
-            raise refusal("0 holds nothing; write a spring or a dashpot above 0")
+    def _require_force(self) -> LinkPart:
+        if self.spring == self.dashpot == self.friction == 0:
+            raise refusal("0 holds nothing; write a spring, a dashpot or friction above 0")
         return self
 
 
@@ -252,8 +245,8 @@ def _part(value: object) -> ChainPart | str:
     if not isinstance(value, Mapping):
         raise refusal(f"{show(value)} is not a part; write a table, or one of {', '.join(MARKS)}")
     kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
-    if kind is LinkPart and not value.keys() & {"spring", "dashpot"}:
-        raise refusal("not a part; write one of rod, mass, joint, motion, contact, spring and dashpot")
+    if kind is LinkPart and not value.keys() & {"spring", "dashpot", "friction"}:
+        raise refusal("not a part; write one of rod, mass, joint, motion, contact, spring, dashpot and friction")
     return kind.model_validate(value)
 
 

@@ -282,6 +282,7 @@ def _span(part: RodPart | LinkPart | ContactPart) -> Span:
     if isinstance(part, ContactPart):
         return (Link(0, 0, contact=True, gap=rational(part.contact)),)
     held = _springs(part, part.dashpot) if part.spring or part.dashpot else ()
+    held += (Link(0, 0, friction=rational(part.friction)),) if part.friction else ()
     if isinstance(part, LinkPart):
         return held
     rod, speed, impedance, velocity, strain = map(

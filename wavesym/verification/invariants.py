@@ -143,13 +143,18 @@ class Balancing:
             error, slack = float(np.max(np.abs(ours.value))), float(np.max(ours.error))
             return Balance(name, error / scale, (slack + missed) / scale + unit)
 
-        found = (
-            balance("momentum", fine.momentum, coarse.momentum, (2 * largest * fine.mass) ** 0.5),
-            balance("energy", fine.energy, coarse.energy, largest),
-        )
+        found = [balance("momentum", fine.momentum, coarse.momentum, (2 * largest * fine.mass) ** 0.5)]
+        if not self._rubs_on_motion:
+            found.append(balance("energy", fine.energy, coarse.energy, largest))
         if not len(self.problem.gaps):
-            return found
+            return tuple(found)
         return (*found, balance("contacts", fine.contacts(largest), coarse.contacts(largest), largest))
+
+    @property
+    def _rubs_on_motion(self) -> bool:
+        """Whether friction may hold something on what moves: what that takes, and so the work, no output says."""
+        moving = [number for number in self.problem.prescribed if self.model.network.points[number].motion != "fixed"]
+        return any(law.friction and np.any(law.row[moving] != 0) for law in self.problem.laws)
 
     def _cuts(self, fronts: Iterable[Fraction], struck: Sequence[Fraction]) -> list[Fraction]:
         """Where panels end: at fronts, and where what is in a bar when a balance is struck has come in."""

@@ -46,7 +46,7 @@ class _Spring:
 
 @dataclass
 class _Friction:
-    """What rubs on the ground: its `speed` at the start of a step, 0 where it has no mass, and its branch.
+    """What rubs: how fast it slides at the start of a step (`speed`, 0 where a side has no mass), and its branch.
 
     `inertia` is its mean velocity in a step if nothing but its mass acts, over that speed.
     """
@@ -99,9 +99,8 @@ class LinkPulls:
     def _link(self, law: LinkLaw, inverse: Array) -> _Spring | _Friction:
         if not law.friction:
             return _Spring(law, law.first, law.preload)
-        point = int(np.flatnonzero(law.row * self._problem.is_free)[0])
-        inertia = float(inverse[point, point]) * 2 * float(self._problem.mass[point]) / self._h
-        return _Friction(law, law.first, inertia)
+        compliance = float(law.row @ inverse @ (law.row * self._problem.is_free))
+        return _Friction(law, law.first, compliance * 2 * self._problem.sliding_mass(law) / self._h)
 
     def settle(self, free: Array, q: Array, u: Array, step: int) -> Array:
         """The mean velocities of points in a step, from those without links, `free`, and their state before it."""
@@ -109,7 +108,7 @@ class LinkPulls:
             return free
         for link in self._laws:
             if isinstance(link, _Friction):
-                link.speed = float(link.law.row @ (q * (self._problem.mass > 0)))
+                link.speed = float(link.law.row @ q) if self._problem.sliding_mass(link.law) else 0.0
         rates, longer = self._rows @ free, self._rows @ u
         for _ in range(_ROUNDS):
             before = self._pulls.copy()

@@ -163,11 +163,16 @@ class CornerProblem(Problem):
         stiff = np.sum(np.abs(self.stiffness), axis=1)
         return float(np.sqrt(np.max(stiff[heavy] / self.mass[heavy], initial=0.0)))
 
+    def sliding_mass(self, law: LinkLaw) -> float:
+        """The mass that a force against its sliding slows down; 0 where a side has none."""
+        free = (law.row != 0) & self.is_free
+        return float(1 / np.sum(law.row[free] ** 2 / self.mass[free])) if np.all(self.mass[free] > 0) else 0.0
+
     @cached_property
     def soonest(self) -> float:
         """How soon friction alone would stop what moves at first."""
         stops = [
-            np.abs(law.row) @ (self.mass * np.abs(self.velocity)) / law.friction for law in self.laws if law.friction
+            self.sliding_mass(law) * abs(law.row @ self.velocity) / law.friction for law in self.laws if law.friction
         ]
         return float(min((stop for stop in stops if stop > 0), default=inf))
 

@@ -204,10 +204,10 @@ class Friction(Corner):
     _decided: Branch
 
     @classmethod
-    def begin(cls, link: int, limit: fmpq, inert: bool, rate: fmpq) -> Friction:
+    def begin(cls, link: int, limit: fmpq, inert: bool, rate: arb) -> Friction:
         """At the start: what is at rest sticks."""
         sign = int(rate > 0) - int(rate < 0)
-        return cls(link, limit, inert, arb(rate), sign, rate == 0, Branch(rate == 0, sign))
+        return cls(link, limit, inert, rate, sign, sign == 0, Branch(sign == 0, sign))
 
     @property
     def may_close(self) -> bool:
@@ -215,9 +215,14 @@ class Friction(Corner):
         return not self.inert or bool(self.rate.contains(0))
 
     @property
+    def is_held(self) -> bool:
+        """What is inert, and may be at rest; else what sticks for certain."""
+        return bool(self.rate.contains(0)) if self.inert else self.sign == 0
+
+    @property
     def is_unclear(self) -> bool:
         """It is not known whether it sticks, nor which way it slides."""
-        return not self.closed and self.sign == 0
+        return not self.closed and self.sign == 0 and not (self.inert and self.is_held)
 
     @property
     def ways(self) -> tuple[int, ...]:
@@ -255,13 +260,13 @@ class Friction(Corner):
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether they are on all of a short stretch."""
         if self.link in moved.closed:
-            return all(_is_not_negative(margin, length) for margin in self._margins(moved))
+            return self.inert or all(_is_not_negative(margin, length) for margin in self._margins(moved))
         return bool(_range(self._forward(moved), length) > 0)
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Know how fast it slides at the end of a stretch."""
         if self.link in moved.closed:
-            self.rate = arb(0)
+            self.rate, self.sign, self.closed = arb(0), 0, True
             return
         self.rate = moved.rates[self.link].evaluate(length)
         if self.link in moved.vague:

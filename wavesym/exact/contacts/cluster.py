@@ -40,15 +40,18 @@ class Touch:
 class Cluster:
     """The points, their law with closed contacts, and for each of these the points and factors that make its force.
 
-    A contact pushes with N = sum over these of factor (C q + K u - s): what is on one side of it, without mass, or what
-    sticks to the ground. `stuck` are the points with mass that do, `springs` the links whose springs act in it. The
-    `joint_law` is that of all points of the joint, each on its own, with these springs.
+    A contact pushes with N = sum over these of factor (C q + K u - s), of what is on one side of it. Where that has
+    mass m, as it sticks to what moves as given, there is m times the acceleration of that too: `inertia`. Where it
+    sticks to another mass, M with its own, the sum over both sides, times m/M, is taken off. `stuck` are the points
+    with mass that stick, `springs` the links whose springs act in it. The `joint_law` is that of all points of the
+    joint, each on its own, with these springs.
     """
 
     points: tuple[int, ...]
     law: JointLaw
     pushes: Mapping[int, Sequence[tuple[int, fmpq]]]
     joint_law: JointLaw
+    inertia: Mapping[int, fmpq]
     stuck: tuple[int, ...] = ()
     springs: Closed = frozenset()
 
@@ -65,27 +68,33 @@ class Cluster:
         members: dict[int, tuple[int, fmpq]] = {}
         leaders: list[int] = []
 
-        def sticks(point: int) -> bool:
-            """Whether it is held by the ground."""
-            return law.motions[leaders[members[point][0]]] == "fixed"
-
+        rubs = any(touches[n].friction != 0 for n in inside)
         for leader in chain(rigid, heavy, points):
             if leader not in members:
                 members |= {k: (len(leaders), ratio) for k, ratio in _moving(leader, ways)}
                 leaders.append(leader)
-            elif leader not in leaders and (leader in rigid or (leader in heavy and not sticks(leader))):
+            elif leader not in leaders and (leader in rigid or (leader in heavy and not rubs)):
                 raise WavesymError("contacts: two rigid bodies would touch each other; write a rod between them")
-        pushes = {}
+        pushes, inertia = {}, {}
         for n in inside:
             touch = touches[n]
             cut = {k: [(j, r) for j, r in way if {k, j} != {touch.left, touch.right}] for k, way in ways.items()}
             side, sign = [k for k, _ in _moving(touch.right, cut)], fmpq(1)
             if leaders[members[touch.right][0]] in side:
                 side, sign = [k for k, _ in _moving(touch.left, cut)], fmpq(-1)
-            pushes[n] = [(k, sign * members[k][1] / members[touch.right][1]) for k in side]
+            share = sign / members[touch.right][1]
+            pushes[n] = [(k, share * members[k][1]) for k in side]
+            if heavier := sum((members[k][1] ** 2 * law.mass[k] for k in side), fmpq(0)):
+                group = members[touch.right][0]
+                among = [(k, ratio) for k, (other, ratio) in members.items() if other == group]
+                if law.motions[leaders[group]] is not None:
+                    inertia[n] = share * heavier
+                else:
+                    mass = sum((ratio**2 * law.mass[k] for k, ratio in among), fmpq(0))
+                    pushes[n] += [(k, -share * heavier / mass * ratio) for k, ratio in among]
         local = {k: n for n, k in enumerate(points)}
         grouped = law.restrict(points).group([members[k] for k in points], [local[k] for k in leaders])
-        return cls(tuple(points), grouped, pushes, law, tuple(k for k in heavy if k not in leaders))
+        return cls(tuple(points), grouped, pushes, law, inertia, tuple(k for k in heavy if k not in leaders))
 
     @property
     def stateless(self) -> bool:
@@ -99,6 +108,14 @@ class Cluster:
         A body alone that presses on a contact is let die away as it does: the sign of its force stays known.
         """
         return () if self.pushes and len(self.law.mass) == 1 and not self.law.springs else Relaxation.separate(self.law)
+
+    def group(self, point: int) -> int:
+        """The group of one of its points."""
+        return self.law.moves[self.points.index(point)][0]
+
+    def ratio(self, point: int) -> fmpq:
+        """How fast a point moves in its group."""
+        return self.law.moves[self.points.index(point)][1]
 
     def leader(self, group: int) -> int:
         """The point that a group moves like."""

@@ -115,8 +115,10 @@ class Search:
             return OneSided.begin(n, spring) if link.side else Yielding.begin(n, spring)
         if link.friction == 0:
             return Contact.begin(n, link.gap)
-        rate = points[link.right].velocity - link.ratio * points[link.left].velocity
-        return Friction.begin(n, link.friction, self.waves.joints[number].is_inert(n), rate)
+        joint = self.waves.joints[number]
+        rate = arb(points[link.right].velocity - link.ratio * points[link.left].velocity)
+        on_motion = joint.rate_on_motion(n, fmpq(0))
+        return Friction.begin(n, link.friction, joint.is_inert(n), rate if on_motion is None else on_motion)
 
     def steps(self) -> Iterator[None]:
         """Joints are moved in order of time."""
@@ -195,6 +197,7 @@ class Search:
 
     def _begin(self, course: Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
+        self._meet_jumps(course, start)
         begun = self._decide(course, start, limit) if course.spread is None else None
         if begun is None and not self.waves.joints[course.number].touches:
             raise UndecidedError(course.contacts[0].link, course.contacts[0].closed, start)
@@ -213,6 +216,13 @@ class Search:
         course.since, course.late = start, fmpq(0)
         self._add_stage(course, Stage(start, moved.closed, frozenset(), moved.sliding), moved)
         self._keep(course, moved, end)
+
+    def _meet_jumps(self, course: Course, start: fmpq) -> None:
+        """Know how fast masses slide on what moves as is given, which may jump."""
+        joint = self.waves.joints[course.number]
+        for contact in course.contacts:
+            if isinstance(contact, Friction) and (rate := joint.rate_on_motion(contact.link, start)) is not None:
+                contact.rate = rate
 
     def _decide(self, course: Course, start: fmpq, limit: fmpq) -> tuple[JointStretch, BranchEnd | None] | None:
         """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
@@ -301,8 +311,8 @@ class Search:
         vague = frozenset(contact.link for contact in course.contacts if contact.is_unclear)
         while True:
             others = [contact for contact in course.contacts if contact.link not in vague]
-            sliding = frozenset((contact.link, contact.sign) for contact in others if contact.sign)
-            closed = frozenset(contact.link for contact in others if contact.is_held and not contact.sign)
+            closed = frozenset(contact.link for contact in others if contact.is_held)
+            sliding = frozenset((each.link, each.sign) for each in others if each.sign and each.link not in closed)
             moved = joint.move(arriving, start, length, closed, vague, sliding)
             steady = (contact for contact in course.contacts if contact.link not in vague)
             wrong = frozenset(contact.link for contact in steady if not contact.lasts(moved, length))

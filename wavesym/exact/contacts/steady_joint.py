@@ -65,6 +65,22 @@ class SteadyJoint(ABC):
         self._state |= moved.state
         self.springs.take(moved)
 
+    def rate_on_motion(self, n: int, start: fmpq) -> arb | None:
+        """How fast a mass slides on what moves as is given, from an instant on; None of other friction."""
+        touch, total = self.touches[n], arb(0)
+        motions = [self.law.motions[k] for k in (touch.left, touch.right)]
+        if "velocity" not in motions and "acceleration" not in motions:
+            return None
+        for k, factor, motion in zip((touch.left, touch.right), (-touch.ratio, _ONE), motions, strict=True):
+            if motion is None and self.law.mass[k] == 0:
+                return None
+            velocity = arb(self._loads[k].polynomial_from(start)(fmpq(0)))
+            if motion is None:
+                unknown = (2 * self._state[k].unknown / arb(self.law.mass[k])).sqrt().upper()
+                velocity = self._state[k].velocity + arb(0, unknown)
+            total += arb(factor) * velocity
+        return total
+
     def move(
         self,
         arriving: Sequence[Enclosure],
@@ -193,7 +209,7 @@ class SteadyJoint(ABC):
         motion, places = None, None
         if cluster.stateless:
             q = scatter(law, pushed, prescribed_terms(law, prescribed))
-            result.state |= self._stopped(cluster)
+            result.state |= self._stopped(cluster, prescribed, result.length)
         elif (exact := self._move_exactly(cluster, pushed, prescribed)) is not None:
             q = [[(_ONE, Enclosure.from_polynomial(p))] for p in exact]
             places = {
@@ -204,7 +220,7 @@ class SteadyJoint(ABC):
                 place = places[k](result.length) if self._elastic(k) else fmpq(0)
                 result.state[k] = PointState.from_exact(ratio * exact[group](result.length), place)
         else:
-            motion = self._balls(cluster)
+            motion = self._balls(cluster, prescribed)
             waves = [add_terms(force) for force in pushed]
             longest = max(wave.polynomial.length() for wave in waves)
             if law.fastest * result.length > MOST_SWING:
@@ -221,12 +237,15 @@ class SteadyJoint(ABC):
             self._energy = self._energy.max(motion.energy(motion.velocity, motion.displacement))
         for k, (group, ratio) in zip(points, law.moves, strict=True):
             result.velocities[k] = scale_terms(q[group], ratio)
-        for k in cluster.stuck:
+        for k in self._held_masses(cluster):
             if (unknown := result.state.get(k, self._state[k]).unknown) != 0:
                 slow = (2 * unknown / arb(self.law.mass[k])).sqrt().upper()
-                result.velocities[k] = [(_ONE, Enclosure(arb_poly(), slow))]
+                result.velocities[k] = [*result.velocities[k], (_ONE, Enclosure(arb_poly(), slow))]
         for n, push in cluster.pushes.items():
             pull = self._pull(cluster, push, result.velocities, forces)
+            if n in cluster.inertia:
+                given = prescribed[cluster.group(self.touches[n].right)].derivative()
+                pull.append((cluster.inertia[n], Enclosure.from_polynomial(given)))
             if places is not None:
                 pull += [
                     (factor * cluster.joint_law.stiffness[k][j], Enclosure.from_polynomial(places[j]))
@@ -243,12 +262,13 @@ class SteadyJoint(ABC):
         """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it."""
         for n in cluster.pushes:
             touch = self.touches[n]
-            for k in {touch.left, touch.right} & set(cluster.stuck):
-                force = result.pushes[n]
-                excess = abs(force.evaluate(fmpq(0))).max(abs(force.evaluate(result.length))) - arb(touch.friction)
-                if touch.friction == 0 or not excess.upper() > 0:
+            for _ in {touch.left, touch.right} & set(cluster.stuck):
+                ends = (_excess(result.pushes[n], tau, touch.friction) for tau in (fmpq(0), result.length))
+                excess = max(ends)
+                if touch.friction == 0 or not excess > 0:
                     continue
-                more = (excess.upper() * arb(result.length)) ** 2 / (2 * arb(self.law.mass[k]))
+                lightness = sum(1 / self.law.mass[j] for j in (touch.left, touch.right) if self.law.mass[j] != 0)
+                more = (excess * arb(result.length)) ** 2 * arb(lightness) / 2
                 for j in cluster.points:
                     result.state[j] = result.state.get(j, self._state[j]).lose(more)
 
@@ -288,8 +308,15 @@ class SteadyJoint(ABC):
 
     def _exact_state(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
         """The state of a cluster, where it is known exactly."""
-        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
-        return known if len(known) == len(cluster.points) and self.springs.are_exact(cluster) else None
+        known = {k: exact for k in cluster.points if (exact := self._state[k].exact) is not None}
+        if len(known) < len(cluster.points) or not self.springs.are_exact(cluster):
+            return None
+        together = all(
+            known[k][0] == cluster.ratio(k) * known[leader][0]
+            for k in cluster.stuck
+            if cluster.law.motions[cluster.group(k)] is None and (leader := cluster.leader(cluster.group(k))) in known
+        )
+        return list(known.values()) if together else None
 
     def _move_exactly(
         self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
@@ -361,37 +388,59 @@ class SteadyJoint(ABC):
 
     # in balls
 
-    def _balls(self, cluster: Cluster) -> JointMotion:
+    def _balls(self, cluster: Cluster, prescribed: Sequence[fmpq_poly]) -> JointMotion:
         """The state of a cluster; what rounding loses of one that was exact is energy not known."""
         points = cluster.points
         state = [self._state[k] for k in points]
         unknown = sum((self._state[each[0]].unknown for each in self._sets if each[0] in points), arb(0))
-        velocity = [state[leader].velocity for leader in cluster.law.leaders]
+        velocity, lost = self._joined_velocities(cluster, prescribed)
         displacement = [each.displacement for each in state]
         motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], unknown, decays=True)
         motion.round(velocity, displacement)
         motion.lose(self.springs.energy(cluster))
-        for k in cluster.stuck:
-            motion.lose(self._energy_of(k))
+        motion.lose(lost)
         return motion
 
-    def _energy_of(self, k: int) -> arb:
-        """The kinetic energy of a point, at most."""
-        return (arb(self.law.mass[k]) * self._state[k].velocity ** 2 / 2).upper()
+    def _held_masses(self, cluster: Cluster) -> list[int]:
+        """The points with mass in groups of which some stick: what is not known of a group may be in one of them."""
+        groups = {cluster.group(k) for k in cluster.stuck}
+        return [k for k in cluster.points if self.law.mass[k] != 0 and cluster.group(k) in groups]
 
-    def _stopped(self, cluster: Cluster) -> dict[int, PointState]:
-        """What was sliding and sticks, where nothing has a state: how fast it may be yet is energy not known of it."""
-        if not cluster.stuck or self._exact_state(cluster) is not None:
+    def _joined_velocities(self, cluster: Cluster, prescribed: Sequence[fmpq_poly]) -> tuple[list[arb], arb]:
+        """The velocities of groups, and the energy that masses that stick, with the same momentum, lose by it."""
+        law = cluster.law
+        velocity, lost = [self._state[cluster.leader(a)].velocity for a in range(len(law.mass))], arb(0)
+        held = self._held_masses(cluster)
+        for a in {cluster.group(k) for k in cluster.stuck}:
+            among = [(k, arb(cluster.ratio(k)), arb(self.law.mass[k])) for k in held if cluster.group(k) == a]
+            if law.motions[a] is not None:
+                velocity[a] = arb(prescribed[a](fmpq(0)))
+            else:
+                momentum = sum((ratio * mass * self._state[k].velocity for k, ratio, mass in among), arb(0))
+                velocity[a] = (momentum / sum((ratio**2 * mass for _, ratio, mass in among), arb(0))).mid()
+            apart = ((mass, abs(self._state[k].velocity - ratio * velocity[a]).upper()) for k, ratio, mass in among)
+            lost += sum((mass * each * each / 2 for mass, each in apart), arb(0)).upper()
+        return velocity, lost
+
+    def _stopped(self, cluster: Cluster, prescribed: Sequence[fmpq_poly], length: fmpq) -> dict[int, PointState]:
+        """What sticks, where nothing has a state: how fast it may be yet is energy not known of it."""
+        if not cluster.stuck:
             return {}
+        given = {k: cluster.ratio(k) * prescribed[cluster.group(k)] for k in self._held_masses(cluster)}
+        if self._exact_state(cluster) is not None:
+            return {
+                k: PointState.from_exact(p(length), self._state[k].place + p.integral()(length))
+                for k, p in given.items()
+            }
         unknown = max(self._state[k].unknown for k in cluster.points)
-        for k in cluster.stuck:
-            unknown = ((unknown.sqrt() + self._energy_of(k).sqrt()) ** 2).upper()
-        return {k: PointState(arb(0), self._state[k].displacement, None, unknown) for k in cluster.points}
+        unknown = ((unknown.sqrt() + self._joined_velocities(cluster, prescribed)[1].sqrt()) ** 2).upper()
+        return {k: PointState(arb(p(length)), self._state[k].displacement, None, unknown) for k, p in given.items()}
 
     def _state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
-        leaders = dict(zip(cluster.law.leaders, motion.velocity, strict=True))
+        moving = {cluster.leader(a): each for a, each in enumerate(motion.velocity)}
+        moving |= {k: (arb(cluster.ratio(k)) * motion.velocity[cluster.group(k)]).mid() for k in cluster.stuck}
         return {
-            k: PointState(leaders.get(n, arb(0)), motion.displacement[n], None, motion.unknown_energy)
+            k: PointState(moving.get(k, arb(0)), motion.displacement[n], None, motion.unknown_energy)
             for n, k in enumerate(cluster.points)
         }
 
@@ -402,6 +451,13 @@ def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
     for k, (group, ratio) in zip(cluster.points, cluster.law.moves, strict=True):
         terms[group] += scale_terms(forces[k], ratio)
     return terms
+
+
+def _excess(force: Enclosure, tau: fmpq, limit: fmpq) -> arb:
+    """By how much a force is beyond its limit at an instant, at most."""
+    if force.exact is not None:
+        return arb(abs(force.exact(tau)) - limit).upper()
+    return (abs(force.evaluate(tau)) - arb(limit)).upper()
 
 
 def prescribed_terms(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:

@@ -44,7 +44,7 @@ class TouchingJoint(SteadyJoint):
         bounds = {n: arb(self.touches[n].friction) for n in vague}
         pressing = [n for n in vague if self.touches[n].friction == 0]
         for _ in range(_ROUNDS):
-            motion = self._balls(cluster)
+            motion = self._balls(cluster, prescribed)
             pushed = [add_terms(each) for each in group_forces(cluster, self._add_pushes(forces, bounds))]
             terms = series_terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
             q = motion.move(pushed, prescribed, result.length, terms)

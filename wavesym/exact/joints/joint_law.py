@@ -29,7 +29,8 @@ class JointLaw:
 
     Where contacts are closed rows are those of groups of points, and so are the columns of C; those of K are points.
     `members` has the group of each point and how fast the point moves in it, `leaders` the point that a group moves
-    like, and `elastic` the K of all points. They are empty where each point is on its own.
+    like, and `elastic` the K of all points. They are empty where each point is on its own. Where it `rubs` friction
+    holds masses of one group together, as far as is known.
     """
 
     mass: tuple[fmpq, ...]
@@ -39,6 +40,7 @@ class JointLaw:
     members: tuple[tuple[int, fmpq], ...] = ()
     leaders: tuple[int, ...] = ()
     elastic: tuple[tuple[fmpq, ...], ...] = ()
+    rubs: bool = False
 
     @classmethod
     def assemble(cls, network: Network, joint: Joint, acting: Collection[int] | None = None) -> JointLaw:
@@ -89,7 +91,7 @@ class JointLaw:
         """The same with points that move as one: the group of each, its ratio, and the point that each moves like."""
         of = [[(k, ratio) for k, (group, ratio) in enumerate(members) if group == a] for a in range(len(leaders))]
         return JointLaw(
-            tuple(self.mass[k] for k in leaders),
+            tuple(sum((x * x * self.mass[k] for k, x in row), fmpq(0)) for row in of),
             tuple(
                 tuple(sum((x * y * self.damping[k][j] for k, x in row for j, y in column), fmpq(0)) for column in of)
                 for row in of
@@ -102,6 +104,7 @@ class JointLaw:
             tuple(members),
             tuple(leaders),
             self.stiffness,
+            any(sum(self.mass[k] != 0 for k, _ in row) > 1 for row in of),
         )
 
     @cached_property
@@ -167,8 +170,11 @@ class JointLaw:
     def absorption(self) -> dict[int, fmpq]:
         """What takes energy from each point with mass, at least: c_k of q'S q >= sum of c_k q_k^2, where positive.
 
-        S is C on those points, less what points without mass take of it as they follow: its Schur complement.
+        S is C on those points, less what points without mass take of it as they follow: its Schur complement. Where it
+        `rubs` there is none: each mass may go another way.
         """
+        if self.rubs:
+            return {}
         schur = {a: {b: self.damping[a][b] for b in self.heavy} for a in self.heavy}
         for a, row in schur.items():
             for b in row:

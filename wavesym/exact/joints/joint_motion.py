@@ -216,7 +216,7 @@ class JointMotion:
         self.unknown_energy = (root * root).upper()
         self.spring_error = speed = (root * arb(2).sqrt()).upper()
         errors = {k: (speed / arb(law.mass[k]).sqrt()).upper() for k in law.heavy}
-        if len(law.mass) == 1 and law.heavy and not law.springs and law.damping[0][0] != 0:
+        if len(law.mass) == 1 and law.heavy and not (law.springs or law.rubs) and law.damping[0][0] != 0:
             (k,) = law.heavy  # a body alone comes to rest
             held = defect[k] / arb(law.damping[k][k])
             errors[k] = errors[k].min((before + held).upper())

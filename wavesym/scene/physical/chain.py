@@ -126,7 +126,7 @@ def _read(faults: Faults, parts: object, kind: Kind, *at: str | int) -> list[_Re
 def _part(value: object, kind: Kind) -> object:
     if not isinstance(value, Mapping):
         return value  # a mark, or what is refused with the chain
-    known = {"rod": RODS[kind], **OTHERS, "dashpot": OTHERS["spring"]}
+    known = {"rod": RODS[kind], **OTHERS, "dashpot": OTHERS["spring"], "friction": OTHERS["spring"]}
     keys = next((known[key] for key in known if key in value), None)
     return value if keys is None else keys.model_validate(value)
 

@@ -32,6 +32,7 @@ class RodKeys(SceneTable):
     velocity: Any = None
     strain: Any = None
     spring: Any = None
+    friction: Any = None
     dashpot: Any = None
     only: Any = Field(None, description='"push" or "pull"')
     gap: Any = Field(None, description="how far it gets shorter or longer before it acts, or two such numbers")
