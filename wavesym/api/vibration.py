@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from wavesym.results.frequency_response import FrequencyResponse
     from wavesym.results.mode_ranges import ModeRanges
     from wavesym.results.modes import Modes
+    from wavesym.results.response_ranges import ResponseRanges
 
 
 @overload
@@ -71,6 +72,7 @@ def modes(
     return modes_of(lower(chain, loads=False), count, below, chain.system.lines, points)
 
 
+@overload
 def frf(
     scene: Scene,
     frequencies: ArrayLike | None = None,
@@ -79,7 +81,32 @@ def frf(
     low: float | None = None,
     high: float | None = None,
     points: int = 400,
-) -> FrequencyResponse:
+) -> FrequencyResponse: ...
+
+
+@overload
+def frf(
+    scene: Scene,
+    frequencies: ArrayLike | None = None,
+    load: str | int | None = None,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    points: int = 400,
+    ranges: Mapping[str, tuple[str, str]],
+) -> ResponseRanges: ...
+
+
+def frf(
+    scene: Scene,
+    frequencies: ArrayLike | None = None,
+    load: str | int | None = None,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    points: int = 400,
+    ranges: Mapping[str, tuple[str, str]] | None = None,
+) -> FrequencyResponse | ResponseRanges:
     """The frequency response of a scene: complex amplitudes of its outputs under one unit of a load exp(+i w t).
 
     They come from the dynamic stiffness K(w) of the chain, in balls: dashpots, absorbing ends and modal damping too.
@@ -92,6 +119,8 @@ def frf(
         low: the first frequency; None for one step above 0, where chains that nothing holds have no answer.
         high: the last one; None for that of the fifth mode without dashpots.
         points: how many.
+        ranges: of paths to masses, springs and dashpots, as of `scene.with_`, the least and the greatest value: for
+            the range of each amplitude over the box, `low` and `high` (outputs, n), enclosed, in place of responses.
 
     Returns:
         `frequency`, `response[NAME]`, `amplitude`, `phase`, `values` (outputs, n), `bound`, `poles`; `peaks()` encloses
@@ -102,7 +131,7 @@ def frf(
         WavesymError: for a load or a frequency that is none.
         UnservedError: for contacts that open, and modes that cannot be told apart.
         ToleranceError: where damping ratios would need too many modes for the scene's tolerance.
-        CostError: for too many frequencies.
+        CostError: for too many frequencies, and where a range has no enclosure.
 
     >>> import wavesym
     >>> response = wavesym.frf(wavesym.Scene.from_toml("building_m2"), [0.5, 1.0])
@@ -118,4 +147,10 @@ def frf(
     lowered = lower(scene, loads=False)
     acting = harmonic_load(lowered, sources(scene), load)
     at = equally_spaced(lowered, low, high, points) if frequencies is None else frequencies
+    if ranges is not None:
+        import numpy as np
+
+        from wavesym.results.response_ranges import response_ranges
+
+        return response_ranges(scene, acting, ranges, np.asarray(at, np.float64).ravel().tolist())
     return frequency_response(lowered, acting, at)

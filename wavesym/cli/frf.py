@@ -32,6 +32,13 @@ POINTS = 400
 @click.option(
     "--peaks", is_flag=True, help="The greatest amplitude of each output in the band, enclosed, in their place."
 )
+@click.option(
+    "--range",
+    "ranges",
+    multiple=True,
+    metavar="PATH=A..B",
+    help="The least and greatest amplitudes where a mass, spring or dashpot goes from A to B; any number.",
+)
 @format_option("csv", "json")
 @click.option("-o", "out", type=PATH, metavar="FILE|PICTURE", help="Where it goes; .svg, .png, .pdf: drawn.")
 def frf(
@@ -42,6 +49,7 @@ def frf(
     points: int | None,
     at: Path | None,
     peaks: bool,
+    ranges: tuple[str, ...],
     format: str,
     out: Path | None,
 ) -> None:
@@ -55,23 +63,31 @@ def frf(
       wavesym frf building_m2 --to 5 --points 11
     """
     from wavesym import api
+    from wavesym.results.mode_ranges import read_range
     from wavesym.writing import write_whole
 
     context = click.get_current_context()
     if at is not None and not low is high is points is None:
         raise click.UsageError("--at excludes --from, --to and --points; write one or the other", context)
     drawn = is_drawn(out, (".csv", ".json"))
+    if ranges and (peaks or drawn):
+        raise click.UsageError("--range excludes --peaks and a picture; write one of them", context)
     refuse_out(out)
     with progress(f"frf {scene.name}"):
         frequencies = decimals(at) if at is not None else None
         few = 2 if peaks and not drawn else POINTS
-        found = api.frf(scene, frequencies, load, low=low, high=high, points=points or few)
-        table = found.peaks() if peaks else found
-        text = table.json() if format == "json" else "".join(table.csv())
+        if ranges:
+            box = dict(map(read_range, ranges))
+            over = api.frf(scene, frequencies, load, low=low, high=high, points=points or few, ranges=box)
+            text, notes = over.json() if format == "json" else "".join(over.csv()), over.notes
+        else:
+            found = api.frf(scene, frequencies, load, low=low, high=high, points=points or few)
+            table = found.peaks() if peaks else found
+            text, notes = table.json() if format == "json" else "".join(table.csv()), found.notes
         if drawn and out is not None:
             api.plot_frf(found, out)
         elif out is not None:
             write_whole({out: text})
-    put_notes(scene, found.notes)
+    put_notes(scene, notes)
     if out is None or (drawn and peaks):
         put(text)
