@@ -237,3 +237,40 @@ def test_what_sticks_from_the_start_is_no_event() -> None:
     result = wavesym.run(wavesym.Scene(name="held", system={"type": "chain", "parts": parts}, output=output))
     assert result.events == ()
     assert not np.any(result["velocity@held"])
+
+
+def test_masses_that_friction_holds_for_good_are_one():
+    def moved(parts):
+        load = [{"at": "a", "times": [0, 1], "steps": [1, "-1/2"]}]
+        output = {"until": 6, "velocity": ["a"], "strain": ["0"]}
+        system = {"type": "chain", "parts": ["fixed", {"rod": 1}, *parts]}
+        return wavesym.run(wavesym.Scene(name="held", system=system, load=load, output=output))
+
+    two = moved([{"mass": 1, "name": "a"}, {"friction": 1000}, {"mass": "1/2"}])
+    one = moved([{"mass": "3/2", "name": "a"}])
+    assert two.events == ()
+    for name in one.outputs:
+        assert np.array_equal(one[name], two[name])
+
+
+def test_a_block_and_a_plate_share_their_momentum() -> None:
+    parts = [{"mass": 2, "velocity": 1, "name": "block"}, {"friction": "1/4"}, {"mass": 3, "name": "plate"}]
+    output = {"until": 8, "velocity": ["block", "plate"], "displacement": ["block", "plate"]}
+    result = wavesym.run(wavesym.Scene(name="block", system={"type": "chain", "parts": parts}, output=output))
+    (stuck,) = result.events
+    assert stuck.kind == "sticks"
+    assert stuck.double == 4.8  # (1/4) t = (2 * 3/5) 1
+    assert result["velocity@block"][-1] == result["velocity@plate"][-1] == 0.4
+    assert result["displacement@block"][-1] - result["displacement@plate"][-1] == pytest.approx(2.4, rel=1e-15)
+
+
+def test_a_mass_on_a_belt_goes_with_it_until_its_spring_is_as_strong() -> None:
+    parts = ["fixed", {"spring": 1}, {"mass": 1, "name": "m"}, {"friction": "1/4"}, {"motion": "velocity", "name": "b"}]
+    load = [{"at": "b", "times": [0], "steps": ["1/5"]}]
+    scene = wavesym.Scene(
+        name="belt", system={"type": "chain", "parts": parts}, load=load, output={"until": 20, "displacement": ["m"]}
+    )
+    sticks, slips = wavesym.run(scene).events  # and then swings about 1/4, as friction has one limit
+    assert (sticks.kind, slips.kind) == ("sticks", "slips")
+    assert sticks.double == pytest.approx(np.arcsin(0.8), rel=1e-15)  # (1/4) sin t = 1/5
+    assert slips.double == pytest.approx(np.arcsin(0.8) + 0.75, rel=1e-15)  # from (1/4) (1 - 3/5) on to 1/4
