@@ -9,12 +9,13 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
+from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.sprung import LawSpring, Sprung
 from wavesym.errors import SceneError
-from wavesym.exact.contacts.events import events
+from wavesym.exact.contacts.events import events, scheduled
 from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
@@ -212,3 +213,31 @@ def test_what_is_no_law_is_said_in_a_line(spring: dict[str, Any], line: str) -> 
 def test_friction_that_is_not_proved_is_refused_in_a_line(parts: list[Any], line: str) -> None:
     with pytest.raises(SceneError, match=line):
         chain(parts, 3)
+
+
+@pytest.mark.parametrize("limit", ["1/3", "1/4", "1"])
+def test_what_yields_beside_a_spring_holds_when_it_comes_to_rest(limit: str) -> None:
+    """A mass between a spring that yields and one that does not: until it rests, in closed form."""
+    spring = {"mass": 1, "velocity": 1, "spring": 20, "name": "a"}
+    model = chain(["fixed", {"spring": 100, "yield": limit}, spring], "2/5")
+    with mp.workdps(30):
+        most = mp.mpf(Fraction(limit).numerator) / Fraction(limit).denominator
+        both, own = mp.sqrt(120), mp.sqrt(20)
+        yields = mp.asin(both * most / 100) / both
+        rate, away = mp.cos(both * yields), most / 100 + most / 20
+        holds = yields + mp.atan(rate / (own * away)) / own
+        (first, then, *_) = events(model)
+        assert (first.kind, then.kind) == ("yields", "holds")
+        assert abs(mp.mpf(first.digits) - yields) < 1e-19
+        assert abs(mp.mpf(then.digits) - holds) < 1e-19
+
+
+def test_a_toe_that_takes_no_pull_is_known_closely() -> None:
+    """Its guard is flat where a blow comes that rises as a power: no event may be known to half of the bits alone."""
+    ram = [{"mass": 4, "velocity": 1}, {"spring": 3, "only": "push"}, {"mass": "1/2"}]
+    toe = [{"joint": True, "name": "a"}, {"spring": 1, "dashpot": "1/3", "yield": [0, "1/4"]}, "fixed"]
+    model = chain([*ram, {"rod": 1}, {"rod": 1}, *toe], 5)
+    known = scheduled(model, fmpq(5))
+    assert known is not None
+    (change, *_) = known.changes
+    assert change.high - change.low < fmpq(1, 2**400)

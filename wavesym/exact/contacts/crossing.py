@@ -70,15 +70,16 @@ def shortfall(known: Enclosure, high: fmpq) -> arb:
     if known.exact is not None and first_fall(known.exact, fmpq(0), high) is None:
         return arb(0)
     p, error, worst = known.polynomial, known.error, arb(0)
-    course = _Course(p, error, high)
+    course, finest = _Course(p, error, high), high / fmpq(2) ** ctx.prec  # what rises as a power does is flat at first
     stack = [(fmpq(0), high)]
     while stack:
         a, b = stack.pop()
         positive, way = course.sign_on(a, b)
         if positive:
             continue
-        low = p(arb(a)).min(p(arb(b))) if way else _least_on(p, a, b)
-        if way or low >= -TINY * error or b - a <= high * _FINEST:
+        seen = p(arb(a)).min(p(arb(b)))
+        low = seen if way else _least_on(p, a, b)
+        if way or low >= (-TINY * error).min(2 * seen) or b - a <= finest:
             worst = worst.max((error - low).upper())
             continue
         half = (b - a) / 2

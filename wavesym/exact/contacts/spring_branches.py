@@ -19,6 +19,7 @@ from wavesym.exact.joints.enclosure import Enclosure
 _CLOSE = 64  # resolutions: a stretch is not shortened to less
 _NEAR = arb(2) ** -64
 _FINER = 2**112  # than what contacts are known by
+_TURNED = 2**32  # errors: what yielded comes back at a rate that was known less closely than it is now
 
 
 @dataclass
@@ -124,7 +125,7 @@ class Yielding(_SpringCorner):
         guards = moved.strained[self.link].guards
         if self.link not in moved.closed:
             return leaning(guards[0], moved.length) > 0
-        return all(_begins(guard, moved.length) or leaning(guard, moved.length, 1) > 0 for guard in guards)
+        return all(_begins(guard, moved.length) or leaning(guard, moved.length, 1, _TURNED) > 0 for guard in guards)
 
 
 def _begins(guard: Enclosure, length: fmpq) -> bool:
@@ -137,11 +138,11 @@ def _well_below(value: arb, limit: arb) -> bool:
     return bool(value + (abs(value) + abs(limit)) * _NEAR < limit)
 
 
-def leaning(known: Enclosure, length: fmpq, first: int = 0) -> int:
-    """The sign just after the start: of the first power, from `first` on, that is more than rounding; else 0."""
+def leaning(known: Enclosure, length: fmpq, first: int = 0, tiny: int = TINY) -> int:
+    """The sign just after the start: of the first power, from `first` on, of more than `tiny` errors; else 0."""
     if known.exact is not None:
         return sign_after(fmpq_poly([fmpq(0)] * first + known.exact.coeffs()[first:]), fmpq(0))
-    allowed, h = TINY * known.error, arb(length)
+    allowed, h = tiny * known.error, arb(length)
     for n, c in enumerate(known.polynomial.coeffs()[first:], first):
         if abs(c) * h**n > allowed:
             return 1 if c > 0 else -1
