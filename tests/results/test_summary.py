@@ -20,6 +20,7 @@ from wavesym.exact.extremes import extremes
 from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
+from wavesym.mechanics.model import Model
 from wavesym.programs.making import make
 from wavesym.programs.modes.records import Panels
 from wavesym.programs.request import Request
@@ -340,3 +341,22 @@ def test_a_top_beside_both_sides_of_an_instant_is_found():
     values, when = sampled_extremes(taus, top(taus)[None], top)
     assert values[0, 1] == pytest.approx(1, abs=1e-6)
     assert when[0, 1] == pytest.approx(0.9, abs=2e-3)
+
+
+def test_no_program_is_made_for_drifts_that_nobody_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where they cost too much to be known exactly, a summary is as fast as that of the outputs alone."""
+    exact = summary._exact
+
+    def refuse_many(model: Model) -> object:
+        if any(probe.quantity == "drift" for probe in model.probes):
+            raise CostError("output: it would take minutes")
+        return exact(model)
+
+    def refuse(model: Model) -> None:
+        pytest.fail("a program was made")
+
+    monkeypatch.setattr(summary, "_exact", refuse_many)
+    monkeypatch.setattr(summary, "make", refuse)
+    found = wavesym.summary(Scene.from_toml("drive_m1"))
+    assert found.proved
+    assert found.largest_drift is None

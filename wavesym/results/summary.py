@@ -187,10 +187,14 @@ def summary_and_program(
 def _drift_groups(
     model: Model, solved: Model, others: Sequence[Probe], samples: Sequence[float] | None
 ) -> Iterator[tuple[Probe, OutputSummary]]:
-    """Drifts that cost too much beside the outputs, by themselves; none where they cannot be had."""
+    """Drifts that cost too much beside the outputs, by themselves; none where that does, too.
+
+    No program is made for them: that would take longer than all that was asked for.
+    """
     if others and solved is model:
         with suppress(WavesymError):
-            alone, found = _solve_extremes([model.watching(others)], samples)
+            alone = model.watching(others)
+            found = _exact(alone) if samples is None else _extremes_at(alone, np.asarray(samples))
             yield from zip(others, _outputs(alone, found), strict=True)
 
 
