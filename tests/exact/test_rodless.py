@@ -211,8 +211,11 @@ def test_what_is_of_rods_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[s
 @pytest.mark.parametrize(
     ("wheel", "why"),
     [
-        ({"mass": 1, "name": "w"}, "name: what turns with the node of the branch has that of the node; leave it out"),
-        ({"mass": 1, "velocity": 2}, "velocity: what turns with the node of the branch"),
+        (
+            {"mass": 1, "name": "w"},
+            "name: what stands first in a branch is part of its node, and has the name of that; leave it out",
+        ),
+        ({"mass": 1, "velocity": 2}, "velocity: what stands first in a branch is part of its node"),
         ("fixed", '"fixed" first; write a mass, or what holds the branch to its node'),
     ],
 )

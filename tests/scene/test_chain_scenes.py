@@ -53,7 +53,8 @@ MISTAKES = [
     (
         "parts = [{ rod = 1, imp",
         "parts = [{ mass = 1, velocity = 1 }, { rod = 1, imp",
-        "system.branch[0].parts[0].velocity: what turns with the node of the branch has that of the node; leave it out",
+        "system.branch[0].parts[0].velocity: what stands first in a branch is part of its node, and has the velocity "
+        "of that; leave it out",
     ),
     (
         '"1/2" }, { mass = 1, name = "far" }]',
@@ -196,8 +197,16 @@ MISTAKES = [
     (ROD, "{ rod = 1, stiffness = 1 }", "system.parts[1].stiffness: unknown key"),
     (ROD, '{ rod = 1, name = "a b" }', 'system.parts[1].name: "a b" is not a name'),
     (ROD, "{ rod = 1 }, { spring = -3 }", "system.parts[2].spring: -3 is negative; write a number of 0 or more"),
-    (ROD, "{ rod = 1 }, { spring = 0 }", "system.parts[2]: 0 holds nothing; write a spring or a dashpot above 0"),
-    (ROD, "{ rod = 1 }, { dashpot = 0 }", "system.parts[2]: 0 holds nothing; write a spring or a dashpot above 0"),
+    (
+        ROD,
+        "{ rod = 1 }, { spring = 0 }",
+        "system.parts[2]: 0 holds nothing; write a spring, a dashpot or friction above 0",
+    ),
+    (
+        ROD,
+        "{ rod = 1 }, { dashpot = 0 }",
+        "system.parts[2]: 0 holds nothing; write a spring, a dashpot or friction above 0",
+    ),
     (ROD, '{ rod = 1 }, { spring = 1, name = "s" }', "system.parts[2].name: unknown key"),
     (ROD, "{ rod = 1 }, {}", "system.parts[2]: not a part"),
     (ROD, "{ rod = 1 }, { nothing = 1 }", "system.parts[2]: not a part"),

@@ -157,6 +157,12 @@ def test_any_mixture_of_units_is_exact(number: Fraction, name: str, length: str,
         ("3 \uff4d", "length", "is not a"),  # a full-width m
         ("3 m\u00b2", "area", "is not a"),  # a superscript 2
         ("3 \u212b", "length", "is not a"),  # the Angstrom sign
+        (
+            "3 cm4",
+            "length",
+            '"cm4" is not a known unit; write one of length, mass, time or angle, or made of these. '
+            'Did you mean "cm^4"?',
+        ),
         ("3 KN", "force", '"KN" is not a known unit'),
         ("3 Mpa", "modulus", 'Did you mean "MPa"?'),
         ("3 dB", "angle", '"dB" is not a known unit'),

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _QUANTITY = re.compile(r"([+-]?[0-9]+(?:/[0-9]+|(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)) ?(?![eE][+-]?[0-9])([^\s0-9.+-].*)")
 _NAME = r"[A-Za-z\u00b5\u03bc%][A-Za-z_0-9]*"  # with either mu, for micro
 _UNIT = re.compile(rf"{_NAME}(?:\^-?[1-9])?(?:[*/]{_NAME}(?:\^-?[1-9])?)*")
+_RAISED = re.compile(r"([A-Za-z]+)([2-9])")  # a power as drawings have it
 _FACTOR = re.compile(rf"([*/]?)({_NAME})(?:\^(-?[1-9]))?")
 _SLIPS = (
     (re.compile(r"N([ms])(?![A-Za-z_0-9])"), r"N*\1"),  # Nm is a unit of its own, of yarn
@@ -134,7 +135,9 @@ def _meaning(text: str, value: str, *, gravity: bool) -> _Meaning:
             raise refusal(f"{show(value)}: {show(name)} is two units; write {_AMBIGUOUS[name]}")
         one = _unit_meaning("standard_gravity" if gravity and name == "g" else name)
         if one is None:
-            meant = did_you_mean(name, _names())
+            raised = _RAISED.fullmatch(name)
+            drawn = f'Did you mean "{raised[1]}^{raised[2]}"?' if raised and _unit_meaning(raised[1]) else ""
+            meant = drawn or did_you_mean(name, _names())
             known = "one of length, mass, time or angle, or made of these"
             raise refusal(f"{show(value)}: {show(name)} is not a known unit; write {known}{meant and f'. {meant}'}")
         factor *= one.factor**power

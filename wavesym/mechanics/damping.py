@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
+from wavesym.numbers.doubles import nearest
+
 
 @dataclass(frozen=True)
 class Damping:
@@ -21,6 +23,14 @@ class Damping:
     def acts(self) -> bool:
         """Whether any mode is damped: then all of the chain acts on all of it at once, and there is no light cone."""
         return any(self.ratios)
+
+    @property
+    def in_words(self) -> str:
+        """For people: in per cent of what is critical."""
+        ratios = ", ".join(f"{100 * nearest(ratio):g} %" for ratio in self.ratios)
+        if self.modes:
+            return f"{ratios} of critical in modes {self.modes[0]} and {self.modes[1]}, Rayleigh"
+        return f"{ratios} of critical in every mode" if len(self.ratios) == 1 else f"{ratios} of critical, mode by mode"
 
     @property
     def description(self) -> str:

@@ -178,7 +178,9 @@ class _Pen:
             raise refusal(f"{show(part)} first; write a mass, or what holds the branch to its node", *at)
         if part.name or part.velocity is not None:
             key = "name" if part.name else "velocity"
-            raise refusal("what turns with the node of the branch has that of the node; leave it out", *at, key)
+            raise refusal(
+                f"what stands first in a branch is part of its node, and has the {key} of that; leave it out", *at, key
+            )
         if part.friction or part.has_law:
             key = "friction" if part.friction else "spring"
             raise refusal("not of what turns with the node of a branch; write it at the node", *at, key)

@@ -190,7 +190,7 @@ def _facts(
     rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
     yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
     if model.damping is not None:
-        yield "Damping", f"of modes: {model.damping.description}"
+        yield "Damping", model.damping.in_words
     if load_texts := _loads(model, loads):
         yield "Loads", load_texts
     yield "Horizon", scale.format(nearest(model.until))
