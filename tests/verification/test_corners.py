@@ -11,7 +11,7 @@ import pytest
 from flint import fmpq
 
 from tests.support.assembly import exact
-from tests.support.cornered import damped_chain, touching_chain
+from tests.support.cornered import damped_chain, sliding_chain, touching_chain
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
@@ -50,6 +50,13 @@ def test_drawn_chains_pass_every_check(seed: int) -> None:
         outcomes = judged(check(seen))
         assert outcomes
         assert all(outcome.passed for outcome in outcomes)
+
+
+@pytest.mark.parametrize("seed", [16, 42])
+def test_belts_that_jump_pass_every_check(seed: int) -> None:
+    seen = known(sliding_chain(seed))
+    for check in CHECKS:
+        assert all(outcome.passed for outcome in judged(check(seen)))
 
 
 @pytest.mark.parametrize(

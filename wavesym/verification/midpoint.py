@@ -193,6 +193,7 @@ class _Motion:
         self._v, self._u = np.zeros((steps, problem.points)), np.zeros((steps + 1, problem.points))
         self._q = problem.velocity.copy()
         self._loads = problem.load_means(times[:-1], times[1:])
+        self._begun = problem.loads(times[:-1])
         self._impedance = np.repeat(problem.impedance, 2)
         matrix: Array = np.diag(2 * problem.mass / h + problem.incidence**2 @ self._impedance)
         matrix += problem.damping + h / 2 * problem.stiffness
@@ -214,6 +215,7 @@ class _Motion:
         acting += 2 * problem.incidence @ (self._impedance * came)
         prescribed = list(problem.prescribed)
         acting[prescribed] = self._loads[step, prescribed]
+        self._q[prescribed] = self._begun[prescribed, step]  # it may jump there
         v = self._links.settle(self._inverse @ acting, self._q, u, step)
         self._v[step], self._u[step + 1], self._q = v, u + h * v, 2 * v - self._q
         self._sent[step] = problem.incidence.T @ v - came
