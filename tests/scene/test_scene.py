@@ -16,9 +16,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wavesym
+from wavesym.errors import SceneError
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.numbers.doubles import fraction, rational
-from wavesym.scene import Scene, builtin_names, lower
+from wavesym.scene import Scene, builtin_names, builtin_text, lower
 
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
 DRIVE = {"type": "drive", "m": 11, "kappa": [1] * 11, "inertia": [1] * 12}
@@ -169,3 +170,10 @@ def test_a_scene_does_not_change() -> None:
     with pytest.raises(ValueError, match="frozen"):
         frozen.name = "other"  # type: ignore[misc]
     assert hash(frozen) == hash(Scene.from_toml("drive_m1"))
+
+
+def test_a_text_is_a_scene(tmp_path: Path) -> None:
+    text = builtin_text("drive_m1")
+    assert Scene.from_toml(text) == Scene.from_toml("drive_m1")
+    with pytest.raises(SceneError, match=r"scene: name: .* \(line 1\)"):
+        Scene.from_toml('name = "1"\n[output]\n')

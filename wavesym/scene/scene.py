@@ -77,7 +77,7 @@ class Scene(SceneTable):
 
     @classmethod
     def from_toml(cls, source: str | PathLike[str]) -> Self:
-        """The scene in a file, on standard input (`-`), or built in (by name).
+        """The scene in a file, on standard input (`-`), built in (by name), or in a text of some lines.
 
         A built-in scene goes before a file of the same name; `./NAME` is the file. Raises SceneError.
 

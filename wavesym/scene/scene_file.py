@@ -15,6 +15,7 @@ from wavesym.errors import SceneError, did_you_mean
 from wavesym.fields.table import WrittenDecimal
 from wavesym.reading import read_text
 
+_TEXT = "scene"  # what a text is called that is in no file
 _BUILTIN = files("wavesym.scene") / "builtin"
 
 
@@ -31,15 +32,19 @@ def _builtin(name: str) -> bytes:
 def read_toml(source: str | PathLike[str]) -> tuple[str, str, dict[str, Any]]:
     """The name a source goes by in messages, its text, and the table in it.
 
-    `source` is a path, `-` for standard input, or the name of a built-in scene. Raises SceneError.
+    `source` is a path, `-` for standard input, the name of a built-in scene, or the text itself, whose records count
+    from the working folder. Raises SceneError.
     """
     file, text = toml_text(source)
-    return file, text, _absolute_records(os.path.dirname(os.fspath(source)), parse_text(file, text))
+    folder = "" if file == _TEXT else os.path.dirname(os.fspath(source))
+    return file, text, _absolute_records(folder, parse_text(file, text))
 
 
 def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
     """The name a source goes by in messages, and its text, not parsed yet. Raises SceneError."""
     path = os.fspath(source)
+    if isinstance(source, str) and "\n" in source:  # no scene has but one line
+        return _TEXT, source
     if path in builtin_names():
         return path, _builtin(path).decode()
     try:
