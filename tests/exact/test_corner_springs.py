@@ -17,6 +17,7 @@ from tests.support.sprung import LawSpring, Sprung
 from wavesym.errors import SceneError
 from wavesym.exact.contacts.events import events, scheduled
 from wavesym.exact.contacts.springs import CornerSpring
+from wavesym.exact.first_arrivals import first_arrivals
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.scene import Scene, lower
@@ -241,3 +242,20 @@ def test_a_toe_that_takes_no_pull_is_known_closely() -> None:
     assert known is not None
     (change, *_) = known.changes
     assert change.high - change.low < fmpq(1, 2**400)
+
+
+def test_what_begins_at_once_arrives_at_once() -> None:
+    """Not after the moment in which it is left open what the spring does."""
+    rod = {"rod": "12 m", "A": "0.09 m^2", "E": "30 GPa", "rho": "2500 kg/m^3"}
+    parts = [
+        {"mass": "2000 kg", "velocity": "4 m/s"},
+        {"spring": "200 MN/m", "only": "push"},
+        {"mass": "400 kg", "name": "cap"},
+        rod,
+        {"joint": True, "name": "toe"},
+        {"spring": "200 MN/m", "yield": ["0 N", "600 kN"]},
+        "fixed",
+    ]
+    output = {"until": "25 ms", "displacement": ["cap", "toe"]}
+    model = lower(Scene(name="pile", units={}, system={"type": "chain", "parts": parts}, output=output))
+    assert first_arrivals(model) == [0, 1]

@@ -18,6 +18,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
 _MOST = 200_000  # fronts that are followed: some seconds
+_MOMENT = fmpq(1, 2**64)  # of the horizon: pieces as short are stretches on which it is left open what a link does
 
 
 def first_arrivals(model: Model) -> list[fmpq | None]:
@@ -66,8 +67,10 @@ def light_arrivals(model: Model) -> list[fmpq | None]:
 
 
 def _begins(segments: Sequence[Segment], until: fmpq) -> fmpq | None:
-    ends = [*(segment.start for segment in segments[1:]), until]
+    ends, begin = [*(segment.start for segment in segments[1:]), until], fmpq(0)
     for segment, end in zip(segments, ends, strict=True):
+        if segment.start - begin > until * _MOMENT:
+            begin = segment.start
         if any(segment.evaluate((end - segment.start) * fmpq(k, 3)) != 0 for k in range(4)):
-            return segment.start
+            return begin
     return None
