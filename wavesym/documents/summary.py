@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 from wavesym.mechanics.probe import with_unit
 from wavesym.results.presentation import align_columns, number_text
-from wavesym.results.statistics import STATISTICS, Statistic, cells, headings
-from wavesym.results.summary import OutputSummary, Summary
+from wavesym.results.statistics import STATISTICS, OutputSummary, Statistic, cells, headings
+from wavesym.results.summary import Summary
 
 FORMATS = ("text", "json")
 

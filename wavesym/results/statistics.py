@@ -8,12 +8,59 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 from wavesym.results.presentation import number_text
 
-if TYPE_CHECKING:
-    from wavesym.results.summary import OutputSummary, OutputTime
+
+class OutputTime(NamedTuple):
+    """`tau`, and the `time` in the scene's unit; None where it has none."""
+
+    tau: float
+    time: float | None
+
+    @property
+    def in_scene_time(self) -> float:
+        """The time of a scene that has units, else tau."""
+        return self.tau if self.time is None else self.time
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A `value` in the output's unit, and the first instant `at` which it is taken.
+
+    Where it is not `reached` the output comes up to it and jumps at that instant.
+    """
+
+    value: float
+    at: OutputTime
+    reached: bool = True
+
+
+@dataclass(frozen=True)
+class OutputSummary:
+    """An output, its least and its greatest value, when it first differs from 0 (None: not on the horizon), its mean
+    and root mean square over the horizon, and its value at the end."""
+
+    name: str
+    unit: str
+    min: Peak
+    max: Peak
+    arrival: OutputTime | None
+    mean: float = 0.0
+    rms: float = 0.0
+    residual: float = 0.0
+    title: str = ""
+
+    @property
+    def label(self) -> str:
+        """What people are shown: its title, or its name."""
+        return self.title or self.name
+
+    @property
+    def largest(self) -> Peak:
+        """The one of `min` and `max` with the larger absolute value, and of equal ones the first."""
+        return min(self.min, self.max, key=lambda peak: (-abs(peak.value), peak.at.tau))
 
 
 @dataclass(frozen=True)

@@ -24,63 +24,13 @@ from wavesym.results.optional import require_packages
 from wavesym.results.presentation import html_table, output_number
 from wavesym.results.response import Response
 from wavesym.results.sampling import sampled_extremes
-from wavesym.results.statistics import STATISTICS
+from wavesym.results.statistics import STATISTICS, OutputSummary, OutputTime, Peak
 from wavesym.results.stepping import describe_step, sample_program, spacing
 
 Numbers = NDArray[np.float64]
 
 _MOST_SAMPLES = 8_000_000
 _MOST_DRIFTS = 50  # rods in which the largest is looked for, though nobody asked for them
-
-
-class OutputTime(NamedTuple):
-    """`tau`, and the `time` in the scene's unit; None where it has none."""
-
-    tau: float
-    time: float | None
-
-    @property
-    def in_scene_time(self) -> float:
-        """The time of a scene that has units, else tau."""
-        return self.tau if self.time is None else self.time
-
-
-@dataclass(frozen=True)
-class Peak:
-    """A `value` in the output's unit, and the first instant `at` which it is taken.
-
-    Where it is not `reached` the output comes up to it and jumps at that instant.
-    """
-
-    value: float
-    at: OutputTime
-    reached: bool = True
-
-
-@dataclass(frozen=True)
-class OutputSummary:
-    """An output, its least and its greatest value, when it first differs from 0 (None: not on the horizon), its mean
-    and root mean square over the horizon, and its value at the end."""
-
-    name: str
-    unit: str
-    min: Peak
-    max: Peak
-    arrival: OutputTime | None
-    mean: float = 0.0
-    rms: float = 0.0
-    residual: float = 0.0
-    title: str = ""
-
-    @property
-    def label(self) -> str:
-        """What people are shown: its title, or its name."""
-        return self.title or self.name
-
-    @property
-    def largest(self) -> Peak:
-        """The one of `min` and `max` with the larger absolute value, and of equal ones the first."""
-        return min(self.min, self.max, key=lambda peak: (-abs(peak.value), peak.at.tau))
 
 
 @dataclass(frozen=True, repr=False)

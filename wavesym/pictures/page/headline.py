@@ -19,7 +19,8 @@ from wavesym.pictures.timescale import Timescale
 from wavesym.pictures.units import unit_text
 from wavesym.results.modes import modes
 from wavesym.results.presentation import number_text
-from wavesym.results.summary import OutputSummary, Summary, summarise
+from wavesym.results.statistics import OutputSummary
+from wavesym.results.summary import Summary, summarise
 from wavesym.scene import Scene
 from wavesym.scene.lowering import probes
 from wavesym.scene.outputs import Output, observables

@@ -11,8 +11,8 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.advice import advise
 from wavesym.pictures.timescale import Timescale
 from wavesym.results.presentation import number_text
-from wavesym.results.statistics import cells, headings
-from wavesym.results.summary import OutputSummary, Summary
+from wavesym.results.statistics import OutputSummary, cells, headings
+from wavesym.results.summary import Summary
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
 _CALLED = {
