@@ -19,12 +19,13 @@ from typing import Any
 from flint import fmpq, fmpq_poly
 
 from wavesym.derivation.exact_rule import joint_rule
-from wavesym.errors import CostError, SpacingError, UnservedError
+from wavesym.errors import CostError, SpacingError
 from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Joint, Network, Point
 from wavesym.mechanics.node import UnitLoad
+from wavesym.mechanics.time_derivative import with_derivatives
 from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.space import SHOWN, JointSpace, Port, joint_space
@@ -199,11 +200,8 @@ def march_plan(
     network.refuse_dead_loads()
     model.refuse_damping()
     network.refuse_rodless("a march", "take pieces or modes")
-    for probe, terms in model.sums.items():
-        if any(reading.order > 0 for _, reading in terms):
-            raise UnservedError(
-                f"output.acceleration: {probe.name}: a march supports no place without mass (pieces and `run` do)"
-            )
+    model = with_derivatives(model)
+    network = model.network
     tau_max = model.horizon(real)
     until = rational(tau_max)
     reached = model.joints_in_reach(until)
