@@ -130,7 +130,7 @@ def test_units_are_on_the_axes_and_in_the_colours():
         there = wavesym.evaluator(scene)([(row + 0.4142) / rows * until for row in near])[quantity]
         assert np.max(np.abs(cells[near, int(0.75 * columns)] - there)) < 0.01 * np.max(np.abs(cells))
         assert np.max(np.abs(there)) > 0.1 * np.max(np.abs(cells))
-    assert [text.get_text() for text in figure.texts[2:]] == ["Velocity in rpm", "Moment in kN\u00b7m"]
+    assert [text.get_text() for text in figure.texts[2:]] == ["Angular velocity in rpm", "Moment in kN\u00b7m"]
 
 
 def test_names_do_not_lie_over_one_another():

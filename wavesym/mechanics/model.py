@@ -27,13 +27,15 @@ class Labels:
     `load_names` what each is, `sources` what a unit load is one of, and `titles` its name for people, if it has one.
 
     `sha256` is that of the scene, whatever way it was written. `notes` say how the scene was read where that may
-    surprise. `size` is how many rods there are, `dimensions` what lengths and times count.
+    surprise. `kind` is that of the rods of a physical scene. `size` is how many rods there are, `dimensions` what
+    lengths and times count.
     """
 
     system: Mapping[str, str]
     loads: tuple[str, ...]
     sha256: str
     notes: tuple[str, ...] = ()
+    kind: str = ""
     size: str = ""
     dimensions: str = ""
     load_names: tuple[str, ...] = ()

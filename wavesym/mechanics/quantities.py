@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -16,6 +16,7 @@ class Quantity:
         order: how often the waves are differentiated: -1 for an integral.
         words: in a sentence; the name where there is nothing better.
         title: the same in a title.
+        torsion: what people call it of a shaft.
         usual: whether it has been there from the start, so that it is part of every scene's canonical form.
     """
 
@@ -25,7 +26,12 @@ class Quantity:
     order: int = 0
     words: str = ""
     title: str = ""
+    torsion: str = ""
     usual: bool = False
+
+    def in_words_of(self, kind: str) -> Quantity:
+        """The same in the words for a `kind` of rods."""
+        return replace(self, words=self.torsion, title="") if kind == "torsional" and self.torsion else self
 
     @property
     def phrase(self) -> str:
@@ -47,17 +53,26 @@ QUANTITIES = {
     each.name: each
     for each in (
         Quantity("strain", "(l / {0}\u2080) \u2202{0}/\u2202x", "strain", usual=True),
-        Quantity("velocity", "(l / (c {0}\u2080)) \u2202{0}/\u2202t", "velocity", usual=True),
-        Quantity("displacement", "{0} / {0}\u2080", "displacement", -1, usual=True),
-        Quantity("acceleration", "(l\u00b2 / (c\u00b2 {0}\u2080)) \u2202\u00b2{0}/\u2202t\u00b2", "velocity", 1),
-        Quantity("force", "impedance \u00d7 strain", "force"),
-        Quantity("drift", "\u0394{0} / {0}\u2080", ""),
+        Quantity(
+            "velocity", "(l / (c {0}\u2080)) \u2202{0}/\u2202t", "velocity", torsion="angular velocity", usual=True
+        ),
+        Quantity("displacement", "{0} / {0}\u2080", "displacement", -1, torsion="rotation", usual=True),
+        Quantity(
+            "acceleration",
+            "(l\u00b2 / (c\u00b2 {0}\u2080)) \u2202\u00b2{0}/\u2202t\u00b2",
+            "velocity",
+            1,
+            torsion="angular acceleration",
+        ),
+        Quantity("force", "impedance \u00d7 strain", "force", torsion="moment"),
+        Quantity("drift", "\u0394{0} / {0}\u2080", "", torsion="twist"),
         Quantity(
             "relative",
             "({0} \u2212 ground) / {0}\u2080",
             "displacement",
             words="relative displacement",
             title="displacement relative to the ground",
+            torsion="relative rotation",
         ),
     )
 }

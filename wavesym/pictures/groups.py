@@ -98,7 +98,7 @@ def load_panel(loads: Sequence[History], height: float) -> PlotPanel:
 def axis_title(model: Model, quantity: str, unit: str = "") -> str:
     """A quantity in its unit, or as section 4 of the paper makes it dimensionless."""
     if unit or model.clock is not None:
-        words = QUANTITIES[quantity].phrase
+        words = QUANTITIES[quantity].in_words_of(model.labels.kind).phrase
         return f"{words}\nin {unit_text(unit)}" if unit else words
     letter = _SYMBOL.get(model.labels.system["type"], "u")
     return f"{quantity}\n{QUANTITIES[quantity].axis.format(letter)} (dimensionless)"

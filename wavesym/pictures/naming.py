@@ -33,7 +33,7 @@ def output_title(model: Model, probe: Probe) -> str:
         probe: its name is QUANTITY@PLACE.
     """
     quantity, _, place = probe.name.partition("@")
-    words = QUANTITIES[quantity].heading
+    words = QUANTITIES[quantity].in_words_of(model.labels.kind).heading
     side = {"+": "above", "-": "below"}.get(place[-1:], "at")
     if model.labels.system["type"] == "building" and quantity != "strain" and place.rstrip("+-").isdecimal():
         place = place.rstrip("+-")
@@ -44,7 +44,7 @@ def output_title(model: Model, probe: Probe) -> str:
         floor = {"0": "Foundation", str(len(model.network.bars)): "Roof"}.get(place, f"Floor {place}")
         return f"{floor} {words}"
     if quantity == "drift":
-        return f"Deformation of rod {place}"
+        return f"{'Twist' if model.labels.kind == 'torsional' else 'Deformation'} of rod {place}"
     line, colon, x = place.rpartition(":")
     if _PLACE.fullmatch(x):
         where = f"{line}{colon}{x}" if line or re.search("[ +-]", x) else f"x = {x}"

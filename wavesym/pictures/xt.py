@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.field import Field
 from wavesym.pictures.stations import loose_times
@@ -42,6 +43,7 @@ _ROWS, _COLUMNS = 600, 500  # cells of all lines together
 _OFF = 0.4142  # of a cell: where in it the value is taken
 _MOST_FRONTS = 400  # lines that can be told apart
 _NARROWEST = 0.12  # of all lines together: where names and numbers still fit
+_DIGITS = 36  # that numbers below a panel may have together
 _SENSE = {"velocity": "", "force": ": pull red, push blue"}
 
 
@@ -131,7 +133,7 @@ def _quantity_title(quantity: str, units: Scale | None) -> str:
     """A quantity in its unit; only along a rod is one sign a pull."""
     if units is None:
         return quantity.capitalize() if quantity == "velocity" else f"Force (impedance \u00d7 strain){_SENSE[quantity]}"
-    words = "moment" if (quantity, units.kind) == ("force", "torsional") else quantity
+    words = QUANTITIES[quantity].in_words_of(units.kind).phrase
     return (
         f"{words.capitalize()} in {unit_text(units.unit(quantity))}{_SENSE[quantity] * (units.kind == 'longitudinal')}"
     )
@@ -141,7 +143,8 @@ def _lengths(axes: Axes, label: str, length: float) -> None:
     """Places that are lengths, one of x being so long; named systems go on counting rods."""
     low, high = axes.get_xlim()
     end = high * length * (1 + 1e-9)  # rounding must not take the tick at the end
-    places = [x for x in MaxNLocator(len(axes.get_xticks())).tick_values(0, high * length) if x <= end]
+    most = min(len(axes.get_xticks()), max(2, _DIGITS // len(f"{end:.0f}")))
+    places = [x for x in MaxNLocator(most).tick_values(0, high * length) if x <= end]
     axes.set_xticks([min(place / length, high) for place in places], [f"{place:.6g}" for place in places])
     axes.set_xlim(low, high)
     axes.set_xlabel(label)

@@ -145,6 +145,7 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         loads=scene.physical.loads if scene.physical else tuple(load.description for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
         notes=(*_damping_notes(scene), *_record_notes(scene), *_shape_notes(scene)),
+        kind=scene.scale.kind if scene.scale else "",
         size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
         dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",
         load_names=load_names(scene),
