@@ -9,10 +9,15 @@ from flint import fmpq
 from wavesym.errors import ToleranceError
 from wavesym.mechanics.damping import Damping
 from wavesym.methods.discrete import DiscreteModel
+from wavesym.programs.mode_sets.parameters import mode_parameters
 from wavesym.programs.request import Request
+from wavesym.running.compiled_modes import CompiledModeSets
+from wavesym.running.mode_sets import ModalSets
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import amplitudes
 from wavesym.verification import integrations as module
 from wavesym.verification import programs
+from wavesym.verification.mode_sets import mode_set_names
 from wavesym.verification.outcome import IntegratedOutput
 from wavesym.verification.report import verify
 
@@ -94,3 +99,28 @@ def test_an_instant_that_is_there_twice_has_no_slope():
     """As the horizon may be: a program that is right was called wrong by not a number."""
     values = np.array([0.0, 1.0, 1.5])
     assert IntegratedOutput([0.0, 2.0, 2.0], values, 0.0).steepest == 0.5
+
+
+@pytest.mark.parametrize("language", ["NumPy", "C"])
+def test_modes_whose_numbers_are_given_are_verified(language, monkeypatch):
+    """Both pass, and one whose dampings are 2 % more is seen."""
+    names = mode_set_names(lower(frame()))
+    request = [Request("modes", runtime=names)]
+    text, passed = verified(frame(), requests=request)
+    assert passed
+    assert text.count(f"runtime {' '.join(names)}, {language}") == 1
+    home, method = {"NumPy": (ModalSets, "values"), "C": (CompiledModeSets, "responses")}[language]
+    right, column = getattr(home, method), 0
+    for field in mode_parameters(lower(frame()), names, amplitudes(frame())).fields:
+        if field.name == "damping":
+            break
+        column += len(field.values)
+
+    def wrong(self, given, tau):
+        other = given.copy()
+        other[:, column] *= 1.02
+        return right(self, other, tau)
+
+    monkeypatch.setattr(home, method, wrong)
+    text, passed = verified(frame(), requests=request)
+    assert not passed

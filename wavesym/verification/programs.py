@@ -34,6 +34,7 @@ from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes, sources
 from wavesym.targets.files import files
 from wavesym.verification.integrations import collocation_method
+from wavesym.verification.mode_sets import mode_set_names, mode_set_values
 from wavesym.verification.models import ParameterSet, functions_of_parameters, model_values
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
 from wavesym.verification.outcome import Integrals, IntegratedOutput, Outcome, ProgramValues, format_error
@@ -59,6 +60,8 @@ def all_requests(scene: Scene, model: Model) -> Iterator[Request]:
         yield Request(runtime=names)
         yield Request(runtime=tuple(name for name in names if name != "load"), stream=True)
     yield Request(stream=True)
+    if names := mode_set_names(model):
+        yield Request("modes", runtime=names)
 
 
 def compare_programs(
@@ -79,6 +82,9 @@ def compare_programs(
             continue
         name = _name(request)
         try:
+            if request.runtime and not request.stream and request.is_of_mode_sets(model):
+                found += _run_mode_sets(scene, known, integrals, request, name)
+                continue
             program = _build(scene, model, request, is_required=requests is not None)
         except (CostError, UnservedError, ToleranceError, RangeError) as error:
             refused.add(request.evaluator)
@@ -153,6 +159,14 @@ def _run_numpy(known: ReferenceOutputs, integrals: Integrals, program: Program, 
     taus, given, late = _instants(known, integrals, program)
     values = np.asarray(module.evaluate(given), np.float64)
     yield ProgramValues(f"{name}, NumPy", taus, values, _sizes(known, integrals, program), _bounds(program), late)
+
+
+def _run_mode_sets(
+    scene: Scene, known: ReferenceOutputs, integrals: Integrals, request: Request, name: str
+) -> Iterator[ProgramValues]:
+    sizes = [output.scale for output in known.outputs] or [each.size if each else 0.0 for each in integrals]
+    taus = np.unique(np.array([*known.taus, *(tau for each in integrals if each for tau in each.taus)]))
+    return mode_set_values(scene, known.whole, request.runtime, taus, sizes, name)
 
 
 def _run_c(

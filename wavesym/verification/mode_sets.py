@@ -1,0 +1,45 @@
+"""Modes whose numbers are given at run time, in NumPy and in C, with the scene's own numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from wavesym.errors import WavesymError
+from wavesym.mechanics.model import Model
+from wavesym.methods.problem import Array
+from wavesym.numbers.doubles import nearest
+from wavesym.programs.mode_sets.parameters import mode_parameters, names_of
+from wavesym.running.compiled_modes import CompiledModeSets
+from wavesym.running.mode_sets import ModalSets
+from wavesym.scene import Scene
+from wavesym.scene.lowering import amplitudes
+from wavesym.verification.outcome import ProgramValues
+
+
+def mode_set_names(model: Model) -> tuple[str, ...]:
+    """All numbers that may be given of a damped model; none of another one, which marches serve."""
+    if model.damping is None:
+        return ()
+    try:
+        return (*names_of(model), *(["load"] if model.loads else []))
+    except WavesymError:
+        return ()
+
+
+def mode_set_values(
+    scene: Scene, model: Model, names: Sequence[str], taus: Array, sizes: Sequence[float], name: str
+) -> Iterator[ProgramValues]:
+    """Values at `taus`, each relative to the `sizes` of outputs, with the estimate as bound.
+
+    Raises:
+        WavesymError: where modes do not serve the model, or these numbers of it.
+    """
+    parameters = mode_parameters(model, names, amplitudes(scene) if "load" in names else ())
+    own = np.array([[nearest(value) for field in parameters.fields for value in field.values]])
+    count, sets = len(sizes), ModalSets(parameters).values(own, taus)
+    yield ProgramValues(f"{name}, NumPy", taus, sets.values[0, 0], sizes, [float(sets.estimate[0])] * count)
+    if CompiledModeSets.is_possible():
+        found = CompiledModeSets(parameters).responses(own, taus)
+        yield ProgramValues(f"{name}, C", taus, found.values[0], sizes, [float(found.estimate[0])] * count)
