@@ -13,6 +13,7 @@ from wavesym.numbers.doubles import midpoint
 from wavesym.results.presentation import number_text
 
 _PLAIN = (fmpq(1), "")
+_GROUND = "ground"  # the place of what does not move
 
 
 class MeasuredQuantity(NamedTuple):
@@ -40,7 +41,9 @@ class LinkSummary(NamedTuple):
     dissipated: MeasuredQuantity
 
     def __str__(self) -> str:
-        return f"{self.law} at {self.place}: set {self.set}, dissipated {self.dissipated}"
+        names = ", ".join(name for name in self.between if name != _GROUND and not name.startswith(self.place))
+        where = f"{self.place} ({names})" if names else self.place
+        return f"{self.law} at {where}: set {self.set}, dissipated {self.dissipated}"
 
 
 def _names(model: Model, link: Link) -> tuple[str, str]:
