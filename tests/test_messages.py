@@ -15,7 +15,7 @@ PACKAGE = Path(wavesym.__file__).parent
 COSTS = {"CostError", "_TooLarge"}
 KEY = (
     r"(output|output\.until|load|frequency|system|system\.(m|parts)|"
-    r"--below|--count|--intervals|--peaks|--points|--to|--until|\{key\})"
+    r"--below|--count|--intervals|--peaks|--points|--range|--to|--until|\{key\})"
 )
 FORM = re.compile(rf"{KEY}: .+, the limit.* is .+ \(.+ helps?\)")
 PASSED_ON = re.compile(r".*\{error\} \(.+ helps?\)")  # the sentence of another error, which says how much

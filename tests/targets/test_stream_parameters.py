@@ -282,7 +282,7 @@ OF_SCATTERERS, OF_BODIES = ("what goes back",), ("a ratio", "a loss", "a drive")
 @pytest.mark.slow
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_in_the_tables_is_seen(fault, monkeypatch):
-    from wavesym.targets.c import stream
+    from wavesym.targets.c import kernel as kernels
 
     right, wrong = FAULTS[fault]
     case = "base force" if fault in OF_SCATTERERS else "drive" if fault in OF_BODIES else "every joint"
@@ -293,12 +293,12 @@ def test_a_fault_in_the_tables_is_seen(fault, monkeypatch):
     scene = loaded(scene, places, PANEL)
     counts = []
 
-    def spoiled(file, of, kernel=stream.kernel):
+    def spoiled(file, of, kernel=kernels.kernel):
         text = kernel(file, of)
         counts.append(text.count(right))
         return text.replace(right, wrong)
 
-    monkeypatch.setattr(stream, "kernel", spoiled)
+    monkeypatch.setattr(kernels, "kernel", spoiled)
     with np.errstate(invalid="ignore"):
         found, error = ran(built(scene, runtime=names), scene)
     assert sum(counts) == 1

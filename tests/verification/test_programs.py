@@ -98,8 +98,11 @@ def test_a_fault_is_seen_and_its_program_named(
     assert main(["verify", str(tmp_path / "small.toml"), *options.split()]) == 1
     found = failing(capsys.readouterr().out)
     assert found
-    language = "NumPy" if "NumPy" in kernel else "C"
-    assert all(f", {language}" in name for name in found)
+    languages = ("NumPy",) if "NumPy" in kernel else ("C", "FMI 2", "FMI 3")  # an FMU has the same C
+    assert all(
+        name.endswith(tuple(f", {language}" for language in languages)) or f", {languages[0]}," in name
+        for name in found
+    )
 
 
 @pytest.mark.parametrize(

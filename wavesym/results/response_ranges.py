@@ -231,8 +231,9 @@ def _enclose(box: _Box, load: HarmonicLoad, frequency: float) -> tuple[list[floa
                 return low, high
             if len(parts) >= _MOST_PARTS:
                 raise CostError(
-                    f"--range: the amplitude at {frequency:g} has no enclosure, as where a natural frequency lies in "
-                    "the box (smaller ranges, a dashpot, or other frequencies help)"
+                    f"--range: at {frequency:g} an amplitude is enclosed in no {len(parts)} parts of the box, as where "
+                    f"a natural frequency lies in the box, the limit is {_MOST_PARTS} (smaller ranges, a dashpot, or "
+                    "other frequencies help)"
                 )
             k = wide[0]
             worst = next(

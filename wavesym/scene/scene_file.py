@@ -43,7 +43,7 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, str, dict[str, Any]]:
 def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
     """The name a source goes by in messages, and its text, not parsed yet. Raises SceneError."""
     path = os.fspath(source)
-    if isinstance(source, str) and "\n" in source:  # no scene has but one line
+    if isinstance(source, str) and "\n" in source and "=" in source:  # no scene has but one line
         return _TEXT, source
     if path in builtin_names():
         return path, _builtin(path).decode()
