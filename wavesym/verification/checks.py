@@ -122,7 +122,7 @@ CHECKS = (
     Check(
         "Characteristics and the midpoint rule, links with corners a complementarity problem in each step, with N, 2N\n"
         "and 4N steps a rod, where no front is within one. Allowed: the difference from what N and 2N extrapolate to\n"
-        "(fronts or outputs off the grid, or corners: from N and 2N), and rounding:",
+        "(fronts or outputs off the grid, or contacts: from N and 2N; laws with corners: twice that), and rounding:",
         midpoints,
     ),
     Check(

@@ -178,6 +178,7 @@ def midpoints(known: ReferenceOutputs) -> list[Outcome]:
     if isinstance(start, str):
         return refused_outcomes(known, "to", start)
     rule: Rule = "extrapolated" if start.grid.is_aligned and not start.struck else "wandering"
+    rule = "late" if start.grid.problem.laws else rule
     return start.outcomes(known, "midpoint rule", rule, MidpointGrid.integrate)
 
 
