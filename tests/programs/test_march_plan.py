@@ -98,7 +98,7 @@ def test_panels_begin_where_loads_do() -> None:
     assert [len(later.events), len(later.panels)] == [2, 2]
     assert later.windows == 3
     assert planned(DRIVE, LOADS, until=3).windows == 4
-    twice = made.scaled(fmpq(2))
+    twice = made.scale(fmpq(2))
     assert [event.powers[0] for event in twice.events] == [-2, 1, fmpq(1, 2)]
     assert largest_number(twice) == 2 * largest_number(made) == 2
 

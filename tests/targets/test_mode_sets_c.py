@@ -117,6 +117,7 @@ def test_it_compiles_without_warnings(tmp_path, language, options):
     for name, text in program_files(FRAME, **options).items():
         (tmp_path / name).write_text(text)
     compiler().run([*LANGUAGES[language], *STRICT, "-c", "frame.c", "-o", "frame.o"], tmp_path)
+    assert (tmp_path / "frame.o").stat().st_size > 0
 
 
 @pytest.mark.parametrize("scene", [SPRUNG, FRAME, RAYLEIGH], ids=["sprung", "frame", "rayleigh"])

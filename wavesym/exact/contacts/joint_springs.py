@@ -24,7 +24,7 @@ class JointSprings:
     def __init__(self, network: Network, place: Mapping[int, int]) -> None:
         """Those between points that have a place in the joint."""
         self.of_link = {
-            n: CornerSpring.of(link, place)
+            n: CornerSpring.from_link(link, place)
             for n, link in enumerate(network.links)
             if link.is_spring_with_corner and link.left in place
         }

@@ -54,7 +54,7 @@ class CornerSpring:
     start: fmpq
 
     @classmethod
-    def of(cls, link: Link, place: Mapping[int, int]) -> CornerSpring:
+    def from_link(cls, link: Link, place: Mapping[int, int]) -> CornerSpring:
         """That of a link, where points have these places."""
         limits = link.limits or (fmpq(0), fmpq(0))
         start = link.preload / link.stiffness

@@ -94,7 +94,7 @@ def judge(plan: MarchPlan, degree: int, real: Real) -> Verdict:
     grow beyond what programs take.
     """
     scale = power_of_two([largest_number(plan)])
-    verdict = _judge(plan.scaled(1 / scale), degree, real, scale)
+    verdict = _judge(plan.scale(1 / scale), degree, real, scale)
     errors, sizes, heights, slopes = (
         tuple(nearest(scale) * value for value in of)
         for of in (verdict.errors, verdict.sizes, verdict.heights, verdict.slopes)

@@ -162,7 +162,7 @@ class MarchPlan:
         shortest = min(track.steps for track in self.tracks if track.steps)
         return -(-self.windows // shortest)
 
-    def scaled(self, factor: fmpq) -> MarchPlan:
+    def scale(self, factor: fmpq) -> MarchPlan:
         """The same with all that moves it `factor` times as large; every motion is, then."""
 
         def louder(joint: MarchedJoint) -> MarchedJoint:

@@ -29,7 +29,7 @@ from wavesym.programs.mode_sets.network import (
     double,
     drawn,
     pattern,
-    stacked,
+    stack_networks,
 )
 from wavesym.programs.modes.loads import Numbers, Roughness
 from wavesym.programs.modes.projection import (
@@ -242,10 +242,10 @@ def mode_sets(models: Sequence[Model], fewest: int) -> ModeSets:
     if any(pattern(each.network) != pattern(cuts[0].network) for each in cuts[1:]):
         raise UnservedError("system: these models differ in more than numbers")
     rows = [[modal_output(m.network, c, probe) for probe in m.probes] for m, c in zip(models, cuts, strict=True)]
-    drivers = [_acting(model, like) for model in models]
+    drivers = [_drivers_of(model, like) for model in models]
     return ModeSets(
         like,
-        stacked([each.network for each in cuts]),
+        stack_networks([each.network for each in cuts]),
         [_output_columns(each) for each in zip(*rows, strict=True)],
         [replace(each[0], gain=column(d.gain for d in each)) for each in zip(*drivers, strict=True)],
         generic_zeros(like),
@@ -253,7 +253,7 @@ def mode_sets(models: Sequence[Model], fewest: int) -> ModeSets:
     )
 
 
-def _acting(model: Model, like: UndampedModes) -> list[Driver]:
+def _drivers_of(model: Model, like: UndampedModes) -> list[Driver]:
     """The loads of a model that are those of another."""
     sources = set(like.sources)
     return [each for each in drivers_of(model.network) if (each.step, each.ramp) in sources]

@@ -44,7 +44,7 @@ def pattern(network: Network) -> object:
     )
 
 
-def stacked(networks: Sequence[Network]) -> Network:
+def stack_networks(networks: Sequence[Network]) -> Network:
     """Networks of one pattern as one. UnservedError where modes are not real: for dashpots and contacts."""
     for network in networks:
         refuse_damped(network)

@@ -26,7 +26,7 @@ from wavesym.mechanics.network import Bar, Network
 from wavesym.mechanics.parameters import ModelParameter, PartParameters, describe_part
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.mode_sets.modes import ModeSets, enough_modes, generic_zeros
-from wavesym.programs.mode_sets.network import Columns, double, stacked
+from wavesym.programs.mode_sets.network import Columns, double, stack_networks
 from wavesym.programs.modes.loads import Numbers
 from wavesym.programs.modes.projection import ModalOutput
 from wavesym.programs.modes.undamped import UndampedModes
@@ -132,7 +132,7 @@ class ModeParameters:
         labels = {
             label: numbers[field.name][:, k : k + 1] for field in self.fields for k, label in enumerate(field.labels)
         }
-        base = stacked([cut.network])
+        base = stack_networks([cut.network])
         whole: Columns = np.ones((sets, 1))
         bars = []
         for k, bar in enumerate(self.model.network.bars):

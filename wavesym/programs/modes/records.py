@@ -32,7 +32,7 @@ class Panels(ModesScheme):
     """The panels of a program of modes."""
 
     @classmethod
-    def of(cls, program: Program) -> Panels:
+    def from_program(cls, program: Program) -> Panels:
         """Those of a program in double precision."""
         return cls(program.tables, program.constants, program.tau_max, np.float64)
 
