@@ -1,6 +1,7 @@
 /* closed.c: sums of pulses.
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
+#include "library.h"
 #include "tables.h"
 
 /* The closed form: at tau = start + (little less than one ulp, `excess`) an output gains a pulse,
@@ -8,7 +9,6 @@
  *     sum over its families of exp(-rate*w) * (coefficient[0] + coefficient[1]*w + ...),  w = tau - arrival,
  *
  * the increments of (4.9), (4.10), (4.12) with the waves of its rod, the loads and the output's own factors merged. */
-#include <math.h>
 
 static real exponential(real x)
 {

@@ -11,7 +11,7 @@ from wavesym.targets.c.kernel import kernels
 from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description
 
-_NUMBERS = {"pieces": ("real.h", "vectors.h")}
+_NUMBERS = {"closed": ("closed/library.h", "real.h"), "pieces": ("real.h", "vectors.h")}
 _BELOW = {"march": ("polynomials.c", "series.h", "joint.c")}
 """What stands below the tables besides the kernel."""
 
