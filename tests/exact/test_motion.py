@@ -253,6 +253,16 @@ def test_values_that_would_take_minutes_are_refused_before_the_first(monkeypatch
         motion.refuse_long(1_000_000)
 
 
+@pytest.mark.parametrize("light", ["1e-290", "1e-300"])
+def test_bodies_too_light_for_any_bits_are_refused_in_a_line(light):
+    """Terms of their series are more than a float holds where they are raised to the power of 3/2."""
+    parts = ["fixed", {"rod": 1}, {"mass": light, "name": "a"}]
+    system = {"type": "chain", "parts": parts, "gravity": "1e-300", "initial": "static"}
+    scene = wavesym.Scene.model_validate({"name": "light", "system": system, "output": {"until": 3, "force": ["1/2"]}})
+    with pytest.raises(CostError, match=r"1048576 bits .*heavier bodies help"):
+        scene.run()
+
+
 @pytest.mark.parametrize("quantity", ["strain", "displacement"])
 @pytest.mark.parametrize("taus", [3, 1000])
 def test_the_seconds_told_are_those_of_segments_and_values(quantity, taus, monkeypatch):

@@ -34,8 +34,8 @@ _TO_THE_END = (
     *("-eva-precision", "0", "-eva-slevel", "20000", "-eva-ilevel", "64"),
     *("-eva-split-return", "auto"),
 )
-# a batch of none has no laws
-_NONE_IS_NONE = ("-eva-split-return-function", "check_batch:0")
+# what is refused has no laws, nor has a batch of none
+_REFUSED_IS_REFUSED = ("-eva-split-return-function", "check_laws:0,check_batch:0")
 _WITH_ITS_DEGREE = "integrate,empty,clear_part,add_series,add_series_batch,acting_again,gather"
 _AT_ONCE = ("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals")
 _ONE_BY_ONE = "main:100,name_build_with:100,sampled:100,run:100,output_block:100"
@@ -44,9 +44,9 @@ _EFFORTS = {
     "more": ("-eva-precision", "3", *_FOR_EVER),
     "followed": _TO_THE_END,
     # of models
-    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate", *_NONE_IS_NONE),
+    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate", *_REFUSED_IS_REFUSED),
     # of chains: what is asked of a copy of the degree is known of the degree
-    "equal": (*_TO_THE_END, "-inline-calls", _WITH_ITS_DEGREE, *_NONE_IS_NONE, "-eva-domains", "equality"),
+    "equal": (*_TO_THE_END, "-inline-calls", _WITH_ITS_DEGREE, *_REFUSED_IS_REFUSED, "-eva-domains", "equality"),
     # windows and samples one by one, all else at once: which locals were set is not followed then
     "bounds": (*_AT_ONCE, "-eva-slevel-function", _ONE_BY_ONE),
     # and joints of a chain one by one

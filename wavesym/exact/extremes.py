@@ -48,8 +48,7 @@ _POINTS = (33, 513)
 _ROUNDING = 2.0**-52
 _SPARE = 96  # bits of what is far below what counts as constant
 _NEWTON = 200  # steps at most; a dozen do
-# measured: seconds for a piece of an output or wave, times its terms to the power of 3/2
-_COMPOSED, _MOST_SECONDS = 4e-7, 8
+_MOST_SECONDS = 5  # of composing; what else is done took 3 more
 # times the bits that there are to begin with: what needs more is not told from 0
 _MORE_BITS = 8
 _AVERAGED = arb(2) ** -56  # of the largest value: how well averages must be known
@@ -88,7 +87,7 @@ def extremes_and_averages(model: Model) -> list[tuple[Range, Averages]]:
         raise UnservedError("system.damping: supported by modes only (leave it out, or take modes)")
     motion = Motion(model, rational(model.horizon()))
     pieces = motion.stretches + sum(len(motion.starts(probe)) for probe in motion.probes)
-    if (seconds := pieces * motion.terms(motion.first_bits) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
+    if (seconds := motion.composing_time(pieces)) > _MOST_SECONDS:
         raise CostError(
             f"output.until: true extremes of {len(motion.probes)} outputs, with their waves {pieces} polynomials "
             f"in {motion.first_bits} bits, would take about {seconds:.0f} s, the limit is {_MOST_SECONDS} (a "

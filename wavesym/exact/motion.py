@@ -159,12 +159,21 @@ class Motion:
         """Whether what is at most so large counts as 0, where contacts open and close: no sum is exact then."""
         return bool(self._network.corners) and all(size < self.size * NEGLIGIBLE_WAVE for size in sizes)
 
+    def composing_time(self, polynomials: float) -> float:
+        """About how many seconds so many polynomials take; CostError where `first_bits` are more than is had."""
+        if self.first_bits >= _MOST_FIRST:
+            raise CostError(
+                f"output.until: more than {_MOST_FIRST} bits would be needed to tau = {float(self.until):g}, the limit "
+                f"is {_MOST_FIRST} ({self.helps} help)"
+            )
+        return float(polynomials * self.terms(self.first_bits) ** 1.5 * _COMPOSED)
+
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""
-        terms = self.terms(self.first_bits)
         sums = any(map(self._integrates, self.probes))
         segments = sum(min(len(self.starts(probe)), inf if sums else taus) for probe in self.probes)
-        seconds = segments * terms**1.5 * _COMPOSED + taus * len(self.probes) * terms * _EVALUATED
+        seconds = self.composing_time(segments)
+        seconds += taus * len(self.probes) * self.terms(self.first_bits) * _EVALUATED
         if seconds > MOST_SECONDS:
             raise CostError(
                 f"output: {taus} values of {len(self.probes)} outputs to tau = {float(self.until):g} would take "
