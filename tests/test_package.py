@@ -158,7 +158,6 @@ def contents(project: Path) -> set[str]:
         *(f"wavesym/scene/builtin/{scene}.toml" for scene in (*SCENES, *CHAINS)),
         "wavesym/papers/latex.lark",
         *(f"{path.relative_to(ROOT).as_posix()}" for path in (ROOT / "wavesym/papers").rglob("*.toml")),
-        "wavesym/papers/pielorz1979/data/hashes.txt",
         *(f"wavesym/scene/first/{kind}.toml" for kind in KINDS),
         "wavesym/methods/characteristics.c",
         "wavesym/py.typed",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from wavesym.papers.entries import Aside, PaperDescription, PaperEntry, Passage, Slip, passage_hashes
 from wavesym.papers.entries import Paper as EntriesPaper
+from wavesym.papers.entries import PaperDescription, PaperEntry, Passage, Slip, digest
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.mutations import mutations
 from wavesym.papers.pages.document import Findings
@@ -59,12 +59,11 @@ PASSAGES = (
         lines=(1, 2),
         where="section 1, (1.2)",
         kind="sum",
-        text="n + 2 = 2 + n\nn + n = 3n, żółć Резюме $a_1$",
+        text="⟦(1.1): n + 2 = 2 + n⟧\n⟦(1.2).1: n + n = 3n⟧, ⟦[names <a> & b] żółć Резюме $a_1$⟧",
         record={
-            "(1.1)": {"printed": "n + 2 = 2 + n", "where": "section 1, (1.1)"},
-            "(1.2).1": {"printed": "n + n = 3n", **_slip("n + n = 2n", origin="print", note="A factor.")},
+            "(1.1)": {"where": "section 1, (1.1)"},
+            "(1.2).1": _slip("n + n = 2n", origin="print", note="A factor."),
         },
-        aside=(Aside(scan="żółć Резюме $a_1$", why="names <a> & b"),),
     ),
     Passage(
         lines=(4, 6),
@@ -72,9 +71,8 @@ PASSAGES = (
         kind="sum",
         text="\t$\\bar{x}_{0,i}$\twho & what\tU\n"
         "a\tn - 1 = n + 1\tn + 1 + 1 = n + 1\tU(x, t)\n"
-        "n + 1 = 1 + n\t0n + n = n\tn = n\tV(x, t)",
+        "⟦T1.b: n + 1 = 1 + n⟧\t0n + n = n\tn = n\tV(x, t)",
         record={
-            "T1.b": {"printed": "n + 1 = 1 + n"},
             "T1.a.x": _slip("n + 1 = n + 1"),
             "T1.a.y": _slip("n + 1 = n + 1", note="One less."),
             "T1.b.x": {"ranges": ("n = 1, 2",), "equivalent": EQUIVALENT},
@@ -100,12 +98,12 @@ PASSAGES = (
         lines=(8, 8),
         where="section 1, after (1.2)",
         kind="sum",
-        text="n + n = [2",
-        record={"text.1": {"printed": "n + n = [2", **_slip("n + n = 2n", note="#1_%")}},
+        text="⟦text.1: n + n = [2⟧",
+        record={"text.1": _slip("n + n = 2n", note="#1_%")},
     ),
     Passage(lines=(10, 10), where="section 1", why="a title"),
 )
-PAPER = EntriesPaper(ABOUT, PASSAGES, {each.lines: passage_hashes(each.text, each.entries) for each in PASSAGES})
+PAPER = EntriesPaper(ABOUT, PASSAGES, digest(PASSAGES))
 ENTRIES = tuple(PAPER.entries.values())
 
 

@@ -93,15 +93,15 @@ def test_a_counterexample_says_where_to_look():
 @pytest.mark.parametrize(
     ("before", "after", "problem"),
     [
-        ("\t1\t$", "\t2\t$", "they are not the source's"),
-        ("g_1\tn", "g_2\tn", "has no label g_1"),
-        ("F_i\t", "F_i\tn+3", "neither judged nor set aside: n+3"),
+        ("\t1\t$", "\t2\t$", "are not those that were checked"),
+        ("g_1⟧\tn", "g_2⟧\tn", "has no label g_1"),
+        ("F_i⟧\t", "F_i⟧\tn+3", "neither judged nor set aside: n+3"),
     ],
 )
 def test_a_table_is_bound_to_the_source(before, after, problem):
     (table,) = (passage for passage in paper().passages if passage.where == "Table 2")
-    assert before in table.text
+    assert before in table.marked
     changed = data.Paper(
-        paper().description, (changed_passage(table, text=table.text.replace(before, after, 1)),), paper().hashes
+        paper().description, (changed_passage(table, marked=table.marked.replace(before, after, 1)),), paper().digest
     )
     assert any(problem in found for _, found in data.problems(changed))

@@ -1,9 +1,9 @@
 """A paper as data: passages of its text in their order, each cut into records, or set aside with a reason.
 
-A passage is some whole lines of the source, as they stand. A record says what is printed there, and selects its part of
-the passage by that (selection.py); what of a passage is no record is set aside with a reason, so that nothing can be
-left out unseen. The lines of every passage, and its translations and edits, have a committed hash: a transcription that
-is changed afterwards no longer fits it (`problems`).
+A passage is some whole lines of the source, as they stand, with marks around what is a record (selection.py); what of a
+passage is no record is set aside with a reason, so that nothing can be left out unseen. All passages together, with
+their marks, translations and edits, have a committed hash: a transcription that is changed afterwards no longer fits it
+(`problems`).
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from functools import cached_property
 from hashlib import sha256
 from itertools import pairwise, product
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from wavesym.papers import tables
-from wavesym.papers.selection import plain, position
+from wavesym.papers.selection import Aside, MarkedText, formula_text, has_edit, read_marks
 from wavesym.papers.tables import PrintedTable
 
 Origin = Literal["print", "scan", "unknown"]
 
 
 class _Data(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
 
 class Slip(_Data):
@@ -46,11 +46,10 @@ class Slip(_Data):
 class PaperEntry(_Data):
     """One printed formula, cell or sentence.
 
-    `printed` stands in one line, a formula without words; `scan` is its part of the source, verbatim, from which it
-    differs by `edits` alone (from, to, why). `english` is a sentence in the words that are judged; then `edits` are of
-    what it says. `ranges` are printed too, `inferred_ranges` are not. `equivalent` are the faults that no case can
-    turn (name, why). `subject` is what the test of this `kind` needs to know. The ranges of a cell of a table are those
-    of its `heads`, whose records bind them to the source.
+    `scan` is its part of the source, verbatim; `printed` is what is read of it, in one line, without layout and with
+    its `edits` (from, to, why). `english` is a sentence in the words that are judged; then `edits` are of what it says.
+    `ranges` are printed too, `inferred_ranges` are not. `equivalent` are the faults that no case can turn (name, why).
+    `subject` is what the test of this `kind` needs to know. The ranges of a cell of a table are those of its `heads`.
     """
 
     id: str
@@ -92,50 +91,56 @@ class PaperEntry(_Data):
         return self.slip.correction, (*ranges, *self.inferred_ranges)
 
 
-class Aside(NamedTuple):
-    """A part of a passage that is not judged: a definition, an announcement, a reference."""
-
-    scan: str
-    why: str
-
-
 class Passage(_Data):
     """Lines of the source, first to last, with their text where anything of it is judged, else the reason.
 
-    `where` names the place; {line} in it is the last part of a record's id. `record` has what is printed, by id
-    (`merge_records`); its records have the `kind` and `subject` of the passage unless they say otherwise. Every cell of
-    a `table` is a record too, about which `record` may say more.
+    `marked` is the text with its marks. `where` names the place; {line} in it is the last part of a record's id.
+    `record` has what there is to say of records, by id (`merge_records`); those of the passage have its `kind` and
+    `subject` unless they say otherwise. Every cell of a `table` is a record too.
     """
 
     lines: tuple[int, int]
     where: str = ""
-    text: str = ""
+    marked: str = Field("", alias="text")
     why: str = ""
     kind: str = ""
     subject: Mapping[str, Any] = {}
     record: Mapping[str, Mapping[str, Any]] = {}
-    aside: tuple[Aside, ...] = ()
     table: tuple[PrintedTable, ...] = ()
+
+    @cached_property
+    def marks(self) -> MarkedText:
+        """The text, and its parts."""
+        return read_marks(self.marked)
+
+    @property
+    def text(self) -> str:
+        """The lines as they stand."""
+        return self.marks.text
 
     @cached_property
     def entries(self) -> tuple[PaperEntry, ...]:
         """The records, each with its place and its scan."""
-        cells = {place.id for place in tables.places(self.table, self.text, self.lines[0])}
-        used: list[tuple[int, int]] = []
-        heads = [self._entry(id, data, used) for id, data in self.record.items() if id not in cells]
+        heads = [self._entry(id) for id in self.marks.records]
         return (*heads, *self._cells({entry.id: entry for entry in heads}))
 
-    def _entry(self, id: str, data: Mapping[str, Any], used: list[tuple[int, int]]) -> PaperEntry:
-        entry = PaperEntry(**{"id": id, "kind": self.kind, "subject": self.subject, **data})
-        strings = (entry.printed,) if entry.english else (entry.printed, *entry.ranges)
-        start, end = span = position(self.text, strings, () if entry.english else entry.edits, used) or (0, 0)
-        used.append(span)
-        place = {
-            "scan": self.text[start:end],
-            "where": entry.where or self.where.replace("{line}", id.rpartition(".")[-1]),
-            "lines": (self._line(start), self._line(max(start, end - 1))),
-        }
-        return entry.model_copy(update=place)
+    def _entry(self, id: str) -> PaperEntry:
+        parts, data = self.marks.records[id], self.record.get(id, {})
+        edits, (start, end) = data.get("edits", ()), parts.span
+        (formula,) = (self.text[slice(*span)] for span in parts.formulas)
+        return PaperEntry(
+            id=id,
+            printed=" ".join(formula.split()) if data.get("english") else formula_text(formula, edits),
+            scan=self.text[start:end],
+            lines=(self._line(start), self._line(max(start, end - 1))),
+            **{
+                "kind": self.kind,
+                "subject": self.subject,
+                "where": self.where.replace("{line}", id.rpartition(".")[-1]),
+                "ranges": [formula_text(self.text[slice(*span)], edits) for span in parts.ranges],
+                **data,
+            },
+        )
 
     def _line(self, place: int) -> int:
         """The number of the line in which a place of the text is."""
@@ -147,22 +152,29 @@ class Passage(_Data):
             if place.column.name in place.table.unjudged_columns:
                 continue
             heads = tuple(head for head in place.heads if head in known)
-            data: dict[str, Any] = {
-                "kind": "cell",
-                "printed": place.scan.strip("$"),
-                "ranges": tuple(range_ for head in heads for range_ in _head_ranges(known[head])),
-                "subject": {"row": place.row.name, "column": place.column.name},
-                "where": f"{self.where}, row {place.row.name}, column {place.column.name}",
-                **self.record.get(place.id, {}),
-            }
-            yield PaperEntry(id=place.id, scan=place.scan, lines=(place.line, place.line), heads=heads, **data)
+            own = self.record.get(place.id, {})
+            yield PaperEntry(
+                id=place.id,
+                printed=formula_text(place.scan, own.get("edits", ())),
+                scan=place.scan,
+                lines=(place.line, place.line),
+                heads=heads,
+                **{
+                    "kind": "cell",
+                    "ranges": tuple(range_ for head in heads for range_ in _head_ranges(known[head])),
+                    "subject": {"row": place.row.name, "column": place.column.name},
+                    "where": f"{self.where}, row {place.row.name}, column {place.column.name}",
+                    **own,
+                },
+            )
 
     @property
     def asides(self) -> tuple[Aside, ...]:
         """The parts that are not judged, columns of tables among them."""
         cells = tables.places(self.table, self.text, self.lines[0])
         named = ((cell.scan, cell.table.unjudged_columns.get(cell.column.name)) for cell in cells)
-        return (*self.aside, *(Aside(scan, why) for scan, why in named if why))
+        unjudged = dict.fromkeys((self.text[slice(*span)], why) for span, why in self.marks.asides)
+        return tuple(Aside(scan, why) for scan, why in (*unjudged, *named) if why)
 
 
 def _head_ranges(head: PaperEntry) -> tuple[str, ...]:
@@ -180,20 +192,15 @@ class PaperDescription(_Data):
     transcription: str
 
 
-class PassageHashes(NamedTuple):
-    """The hashes of the lines of a passage, and of its translations and edits."""
-
-    lines: str
-    edits: str
-
-
 @dataclass(frozen=True)
 class Paper:
-    """What is known of a paper itself, all passages in the order of the source, and their hashes, by their lines."""
+    """What is known of a paper itself, all passages in the order of the source, and the `digest` that they had when
+    they were checked.
+    """
 
     description: PaperDescription
     passages: tuple[Passage, ...]
-    hashes: Mapping[tuple[int, int], PassageHashes]
+    digest: str
 
     @cached_property
     def entries(self) -> Mapping[str, PaperEntry]:
@@ -207,21 +214,19 @@ class Paper:
 
 
 def read_paper(directory: Path) -> Paper:
-    """The passages of the TOML files of a directory, what paper.toml says of the paper, and hashes.txt."""
+    """The passages of the TOML files of a directory, and what paper.toml says of the paper."""
     data = {file.stem: tomllib.loads(file.read_text(encoding="utf-8")) for file in sorted(directory.glob("*.toml"))}
-    description = PaperDescription(**data.pop("paper"))
+    about = data.pop("paper")
+    checked = about.pop("digest")
     passages = [
         Passage(**{**passage, "record": merge_records(passage.get("record", {}))})
         for file in data.values()
         for passage in file["passage"]
     ]
     for first, last, where, why in (row for file in data.values() for row in file.get("unjudged_lines", ())):
-        passages.append(Passage(lines=(first, last), where=where, why=why))
-    hashes = {}
-    for line in (directory / "hashes.txt").read_text(encoding="utf-8").splitlines():
-        first, last, *known = line.split()
-        hashes[int(first), int(last)] = PassageHashes(*known)
-    return Paper(description, tuple(sorted(passages, key=lambda passage: passage.lines)), hashes)
+        passages.append(Passage(lines=(first, last), where=where, text="", why=why))
+    in_order = tuple(sorted(passages, key=lambda passage: passage.lines))
+    return Paper(PaperDescription(**about), in_order, checked)
 
 
 def merge_records(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
@@ -254,17 +259,13 @@ def _joined_values(name: str, known: Mapping[str, Any], more: Mapping[str, Any])
     return joined
 
 
-def digest(text: str) -> str:
-    """The hash of a text; how many spaces there are makes no difference."""
-    return sha256(" ".join(text.split()).encode()).hexdigest()[:16]
-
-
-def passage_hashes(text: str, entries: Iterable[PaperEntry] = ()) -> PassageHashes:
-    """The hashes of a text of some lines, and of the translations and edits of its records."""
-    checked = [
-        part for entry in entries for part in (entry.english, *(part for edit in entry.edits for part in edit[:2]))
-    ]
-    return PassageHashes(digest(text), digest(" | ".join(part for part in checked if part)))
+def digest(passages: Iterable[Passage]) -> str:
+    """The hash of passages with their marks, translations and edits; how many spaces there are makes no difference."""
+    parts: list[object] = []
+    for passage in passages:
+        parts += [passage.lines, passage.marked]
+        parts += [part for entry in passage.entries for part in (entry.english, *entry.edits) if part]
+    return sha256(" ".join(" ".join(map(str, parts)).split()).encode()).hexdigest()
 
 
 WHOLE = "paper"
@@ -273,9 +274,13 @@ WHOLE = "paper"
 
 def problems(paper: Paper) -> Iterator[tuple[str, str]]:
     """What does not fit: the id of a record, or `WHOLE`, and what is wrong. A passage's are all its records'."""
-    yield from _coverage_problems(paper)
+    if (found := digest(paper.passages)) != paper.digest:
+        yield WHOLE, f"passages, marks, translations and edits are not those that were checked: their digest is {found}"
+    spans = [passage.lines for passage in paper.passages]
+    if twice := [after for before, after in pairwise(spans) if after[0] <= before[1]]:
+        yield WHOLE, f"lines in two passages: {twice}"
     for passage in paper.passages:
-        for problem in _misfits(passage, paper.hashes.get(passage.lines)):
+        for problem in _misfits(passage):
             message = f"lines {passage.lines[0]}-{passage.lines[1]}: {problem}"
             yield from ((entry.id, message) for entry in passage.entries)
             if not passage.entries:
@@ -284,47 +289,27 @@ def problems(paper: Paper) -> Iterator[tuple[str, str]]:
             yield from ((entry.id, problem) for problem in _unlike(entry))
 
 
-def _coverage_problems(paper: Paper) -> Iterator[tuple[str, str]]:
-    spans = [passage.lines for passage in paper.passages]
-    if twice := [after for before, after in pairwise(spans) if after[0] <= before[1]]:
-        yield WHOLE, f"lines in two passages: {twice}"
-    if missing := sorted(paper.hashes.keys() - set(spans)):
-        yield WHOLE, f"lines in no passage: {missing}"
-
-
-def _misfits(passage: Passage, known: PassageHashes | None) -> Iterator[str]:
-    """How a passage does not fit the source, or leaves out something of it."""
+def _misfits(passage: Passage) -> Iterator[str]:
+    """How a passage leaves out something of its lines."""
     if not passage.text:
         if not passage.why:
             yield "neither judged nor set aside"
         return
-    hashes = passage_hashes(passage.text, passage.entries)
-    if known is None or hashes.lines != known.lines:
-        yield "they are not the source's"
-    if known is None or hashes.edits != known.edits:
-        yield "their translations and edits are not those that were checked"
     if len(passage.text.split("\n")) != passage.lines[1] - passage.lines[0] + 1:
         yield "not as many lines as it says"
     ids = {entry.id for entry in passage.entries}
     yield from (f"there is no cell {id}" for id in passage.record if id not in ids)
     if passage.table:
-        others = [entry.scan for entry in passage.entries] + [aside.scan for aside in passage.aside]
+        others = [entry.scan for entry in passage.entries] + [aside.scan for aside in passage.asides]
         yield from tables.problems(passage.table, passage.text, passage.lines[0], others)
-    elif rest := _rest(passage):
-        yield f"neither judged nor set aside: {rest}"
-    yield from (f"set aside without a reason: {aside.scan}" for aside in passage.aside if not aside.why)
+    else:
+        yield from (f"neither judged nor set aside: {rest.strip()}" for rest in passage.marks.rest if _says(rest))
 
 
-def _rest(passage: Passage) -> str:
-    """Formulas and long stretches of words that are in no record and not set aside."""
-    text = passage.text
-    for scan in sorted([e.scan for e in passage.entries if e.scan] + [a.scan for a in passage.aside], key=len)[::-1]:
-        text = text.replace(scan, "\0")
-    for rest in text.split("\0"):
-        words = plain(_TAGS.sub("", rest))
-        if len(words) > LONGEST_REST or re.search(r"[\d\\]", words):
-            return rest.strip()
-    return ""
+def _says(rest: str) -> bool:
+    """Whether what is left of a passage is more than the number of an equation and a few words."""
+    words = formula_text(_TAGS.sub("", rest)).replace(" ", "")
+    return len(words) > LONGEST_REST or bool(re.search(r"[\d\\]", words))
 
 
 LONGEST_REST = 25
@@ -333,17 +318,9 @@ _TAGS = re.compile(r"\(\d\.\d+\)(_\d)?|\[cd\.\]")
 
 
 def _unlike(entry: PaperEntry) -> Iterator[str]:
-    """How a record is not what its edits make of its scan."""
-    text = plain(entry.scan)
-    if not text:
-        yield f"does not stand in its passage: {entry.printed}"
-        return
+    """Edits that are none."""
     for before, after, _ in entry.edits:
-        if plain(before) not in text:
+        if not has_edit(entry.scan, before):
             yield f"nothing to edit: {before}"
-        if entry.english and plain(after) not in plain(entry.english):
+        if entry.english and formula_text(after) not in entry.english:
             yield f"is not in the English: {after}"
-        text = text if entry.english else text.replace(plain(before), plain(after))
-    printed = plain(entry.printed if entry.heads or entry.english else ",".join((entry.printed, *entry.ranges)))
-    if text != printed:
-        yield f"is not what its edits make of the scan: {text} there, {printed} printed"

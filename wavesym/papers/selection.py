@@ -1,120 +1,128 @@
-"""Where a printed string stands in the lines of its passage: without layout, and with its edits.
+"""Where the records of a passage stand, by marks in its text; and what is printed there, in one line, with its edits.
 
-A record does not repeat the text of its passage. Its `printed` string and its ranges, without what only lays them out,
-are looked for in the passage, which is read in the same way after the record's edits; what was found is its scan.
+A formula stands once in the data, in its passage: ⟦id: formula ¦range ¦range⟧. A part that several records share has
+all their ids, and may hold other parts; a range that stands elsewhere is ⟦id¦: range⟧. What is not judged is
+⟦[why] text⟧.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import accumulate
+from typing import NamedTuple
 
 Edits = Iterable[tuple[str, str, str]]
 """From, to, and why."""
+Span = tuple[int, int]
 
-_LAYOUT: Sequence[tuple[re.Pattern[str], str]] = tuple(
-    (re.compile(pattern), instead)
-    for pattern, instead in (
-        (r"(?s)&(?=(?:(?!\\begin\{).)*\\end\{cases\})", " , "),
-        (r"\\(?:begin|end)\{cases\}", " "),
-        (r"\\begin\{aligned\}|\\end\{aligned\}|\\left\.|\\right\.|\$|&|\\\\|\\quad", " "),
-        (r"\\left(?=[\W_])|\\right(?=[\W_])", " "),
-        (r"\\text\{([^}]*)\}", r"\1"),
-        (r"(^|\s)dla(\s|$)", " , "),
-        (r"\s+", ""),
-        (r",+", ","),
-    )
+_MARK = re.compile(r"⟦(?:\[(?P<why>[^\]]+)\]|(?P<ids>[^:⟧¦]+)(?P<range>¦?):) ?|¦|⟧")
+_CASES = re.compile(r"(?s)(\\begin\{cases\}.*?\\end\{cases\})")
+_LAYOUT = re.compile(
+    r"(?s)\\(?:begin|end)\{aligned\}|\\right\.|\\left\.(?!(?:(?!\\left|\\right).)*\\right\|)|\$|&|\\\\|\\quad"
+    r"|(?:^|(?<=\s))dla(?=\s|$)"
 )
+_SIZE = re.compile(r"\\(?:left|right)(?=[^\w.|])")
+_WORDS = re.compile(r"\\text\{([^}]*)\}")
+
+
+class Aside(NamedTuple):
+    """A part of a passage that is not judged: a definition, an announcement, a reference."""
+
+    scan: str
+    why: str
+
+
+@dataclass
+class MarkedParts:
+    """The parts of a text that are a record: its formula or sentence, and its ranges."""
+
+    formulas: list[Span] = field(default_factory=list)
+    ranges: list[Span] = field(default_factory=list)
+
+    @property
+    def span(self) -> Span:
+        """From the first to the last of them."""
+        starts, ends = zip(*self.formulas, *self.ranges, strict=True)
+        return min(starts), max(ends)
 
 
 @dataclass(frozen=True)
-class TracedText:
-    """A text that was changed; `spans` are the start and end in the source of each of its characters."""
+class MarkedText:
+    """A text without its marks, what it has of each record, and what of it is not judged."""
 
     text: str
-    spans: tuple[tuple[int, int], ...]
+    records: Mapping[str, MarkedParts]
+    asides: tuple[tuple[Span, str], ...]
 
-    @classmethod
-    def from_source(cls, source: str) -> TracedText:
-        """A source as it stands."""
-        return cls(source, tuple((place, place + 1) for place in range(len(source))))
-
-    def replace(self, pattern: re.Pattern[str], instead: str) -> TracedText:
-        """Every match replaced; each character of what stands there instead has the span of the whole match."""
-        text, spans, end = "", list[tuple[int, int]](), 0
-        for match in pattern.finditer(self.text):
-            new, start = match.expand(instead), match.start()
-            text += self.text[end:start] + new
-            spans += self.spans[end:start]
-            end = match.end()
-            spans += [(self.spans[start][0], self.spans[end - 1][1])] * len(new)
-        return TracedText(text + self.text[end:], (*spans, *self.spans[end:]))
-
-    def edit(self, before: str, after: str) -> TracedText:
-        """Plain text put for other plain text; where that is nothing, the next character has its place."""
-        start = self.text.find(before)
-        if after or start < 0:
-            return self.replace(re.compile(re.escape(before)), after.replace("\\", r"\\"))
-        end = start + len(before)
-        first = self.spans[start][0], self.spans[end][1]
-        return TracedText(self.text[:start] + self.text[end:], (*self.spans[:start], first, *self.spans[end + 1 :]))
+    @property
+    def rest(self) -> list[str]:
+        """What stands outside of all marks."""
+        spans = sorted([*(parts.span for parts in self.records.values()), *(span for span, _ in self.asides)])
+        starts = [0, *accumulate((end for _, end in spans), max)]
+        ends = [*(start for start, _ in spans), len(self.text)]
+        return [self.text[start:end] for start, end in zip(starts, ends, strict=True) if start < end]
 
 
-@lru_cache(maxsize=64)
-def _without_layout(source: str) -> TracedText:
-    traced = TracedText.from_source(source)
-    for pattern, instead in _LAYOUT:
-        traced = traced.replace(pattern, instead)
-    return traced
+@dataclass(frozen=True)
+class _Mark:
+    """One that is open: what it marks, and from where."""
+
+    ids: tuple[str, ...]
+    is_range: bool
+    why: str
+    start: int
 
 
-def plain(text: str) -> str:
-    """A formula without what only lays it out: spaces, alignment, braces of cases, sizes of brackets.
+def read_marks(marked: str) -> MarkedText:
+    """A text that is marked. ValueError where marks are not in pairs."""
+    records: dict[str, MarkedParts] = {}
+    asides: list[tuple[Span, str]] = []
+    opened: list[_Mark] = []
+    text, end = "", 0
+    for found in _MARK.finditer(marked):
+        text += marked[end : found.start()]
+        end, here = found.end(), len(text)
+        if found[0][0] == "⟦":
+            ids = tuple((found["ids"] or "").split())
+            records |= {id: MarkedParts() for id in ids if id not in records}
+            opened.append(_Mark(ids, bool(found["range"]), found["why"] or "", here))
+            continue
+        if not opened:
+            raise ValueError(f"{found[0]} stands outside of a record: {marked[: found.end()][-40:]}")
+        mark = opened.pop()
+        for parts in map(records.__getitem__, mark.ids):
+            (parts.ranges if mark.is_range else parts.formulas).append((mark.start, here))
+        if mark.why:
+            asides.append(((mark.start, here), mark.why))
+        if found[0] == "¦":
+            opened.append(replace(mark, is_range=True, start=here))
+    if opened:
+        raise ValueError(f"{' '.join(opened[-1].ids) or opened[-1].why} has no end")
+    return MarkedText(text + marked[end:], records, tuple(asides))
 
-    "dla" (for), and what stands for it in cases, is a comma.
-    """
-    return _without_layout(text).text.strip(",.;")
 
-
-def position(
-    source: str, strings: Sequence[str], edits: Edits = (), used: Iterable[tuple[int, int]] = ()
-) -> tuple[int, int] | None:
-    """Where a source has some strings, one after another, once it is edited.
-
-    Args:
-        source: the lines of a passage.
-        strings: what is printed, and its ranges.
-        edits: what is read otherwise than it stands.
-        used: parts that are selected already: where the strings stand more than once, another part comes first.
-
-    Returns:
-        The start and the end of the part; None where there is none.
-    """
-    traced, searched = _without_layout(source), plain(",".join(strings))
+def formula_text(source: str, edits: Edits = ()) -> str:
+    """A part of a source as it is read: in one line, without alignment, sizes of brackets and "dla" (for), edited."""
+    parts = _CASES.split(_WORDS.sub(r"\1", source))
+    text = "".join(part if number % 2 else _LAYOUT.sub(" ", part) for number, part in enumerate(parts))
+    text = _one_line(_SIZE.sub("", text))
     for before, after, _ in edits:
-        traced = traced.edit(plain(before), plain(after))
-    if not searched:
-        return None
-    starts = [match.start() for match in re.finditer(f"(?={re.escape(searched)})", traced.text)]
-    spans = [
-        _extend_span(source, traced.spans[start][0], traced.spans[start + len(searched) - 1][1], strings[-1])
-        for start in starts
-    ]
-    taken = set(used)
-    return next((span for span in spans if span not in taken), spans[0] if spans else None)
+        text = _one_line(_edit_pattern(before).sub(lambda _, after=after: after.replace("$", ""), text))  # type: ignore[misc]
+    return text
 
 
-def _extend_span(source: str, start: int, end: int, printed: str) -> tuple[int, int]:
-    """A part, longer by the end of cases that it begins, the dollar signs around it, and its last full stop."""
-    part = source[start:end]
-    if part.count(_CASES_BEGIN) > part.count(_CASES_END):
-        end = source.index(_CASES_END, end) + len(_CASES_END)
-    start -= bool(_DOLLAR.match(source, start - 1)) if start else 0
-    end += bool(_DOLLAR.match(source, end))
-    stop = re.compile(rf"\s*{re.escape(printed[-1])}").match(source, end) if printed[-1] in ".:,;" else None
-    return start, stop.end() if stop else end
+def has_edit(source: str, before: str) -> bool:
+    """Whether what is to be edited stands there."""
+    return bool(_edit_pattern(before).search(formula_text(source)))
 
 
-_CASES_BEGIN, _CASES_END, _DOLLAR = r"\begin{cases}", r"\end{cases}", re.compile(r"(?<!\$)\$(?!\$)")
+def _edit_pattern(before: str) -> re.Pattern[str]:
+    """However it is spaced."""
+    return re.compile(r"\s*".join(map(re.escape, re.sub(r"[\s$]", "", before))))
+
+
+def _one_line(text: str) -> str:
+    """Spaced alike: none before a comma, some around "=" that is not of an index."""
+    return re.sub(r" ?=(?![^{}]*\}) ?", " = ", re.sub(r" (?=[,;])", "", " ".join(text.split()))).strip(" ,.;")

@@ -1,6 +1,6 @@
 """What Amalia Piełorz's paper of 1979 prints, as data, and the four tests that say what it means.
 
-data/          passages of the text, cut into records; hashes of the lines of the source. transcript.py reads them
+data/          passages of the text, cut into records by marks. transcript.py reads them
 chains.py      the chains that all is tried on: exact tables, motion under loads, scenes that show it
 letters.py     the one scope: what letters mean on a chain that moves, with and without dimensions
 equations.py   the test of equations: (2.1)-(2.5), (3.1), (3.2), (4.1)-(4.8), (4.11), constants, Table 1; groups of them
