@@ -19,6 +19,8 @@ from tests.pictures.test_page import LOOK
 from tools.notebooks import NOTEBOOKS
 from tools.site import NAMED, PAGES, ROOT, gallery, lay_out, public_names
 
+FOREIGN = re.compile(r'<(?:script|img|iframe)[^>]* src="?(?:https?:)?//|<link[^>]* href="?(?:https?:)?//')
+
 
 def test_the_gallery_has_every_picture_of_the_examples() -> None:
     page = gallery(ROOT / "examples")
@@ -61,7 +63,9 @@ def test_the_site_builds_and_a_broken_link_is_seen(tmp_path: Path) -> None:
         (pages / "docs" / "notebooks" / source.stem).with_suffix(".md").write_text(f"# {source.stem}\n")
     done = build(tmp_path)
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "build" / "site" / "index.html").is_file()
+    site = tmp_path / "build" / "site"
+    assert (site / "index.html").is_file()
+    assert [page.name for page in site.rglob("*.html") if FOREIGN.search(page.read_text(encoding="utf-8"))] == []
     with (pages / "README.md").open("a") as page:
         page.write("\n[nothing](docs/nothing.svg)\n")
     done = build(tmp_path)

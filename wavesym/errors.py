@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from math import inf
 from typing import ClassVar
 
 MOST_FAULTS = 20
@@ -131,7 +132,7 @@ class RangeError(WavesymError, OverflowError):
 
 
 class ToleranceError(WavesymError):
-    """The scene's tolerance cannot be met; the message says what every evaluator could reach, or why it was refused.
+    """The scene's tolerance cannot be met; the message says which could be, and last why no program meets this one.
 
     >>> import wavesym
     >>> scene = wavesym.Scene.from_toml("drive_m1").with_({"output.tolerance": "1e-20"})
@@ -139,7 +140,16 @@ class ToleranceError(WavesymError):
     ...     wavesym.generate(scene, "out", evaluator="pieces")
     ... except wavesym.ToleranceError as error:
     ...     print(error)
-    output.tolerance: 1e-20 cannot be met: pieces: rounding leaves a bound of 4e-16 for strain@0
+    output.tolerance: 1e-20 cannot be met; write 8e-16 or more (pieces: rounding leaves a bound of 4e-16 for strain@0)
+
+    Args:
+        message: the line that is shown.
+        refusal: why the one program is refused that the error is of.
+        bound: of the error that this program has instead, relative to an output's largest value; infinite for none.
     """
 
     status: ClassVar[int] = 1
+
+    def __init__(self, message: str, refusal: str = "", bound: float = inf) -> None:
+        super().__init__(message)
+        self.refusal, self.bound = refusal, bound

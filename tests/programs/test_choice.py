@@ -78,7 +78,7 @@ def test_a_bound_that_is_the_tolerance_meets_it_and_one_above_does_not(makers):
     makers(pieces=Made("pieces", 2.0**-10 + 2.0**-60))
     with pytest.raises(
         ToleranceError,
-        match=r"^output.tolerance: 0.000976562 cannot be met: closed: output.until: 9 coins, at most 5 exp",
+        match=r"^output.tolerance: 0.000976562 cannot be met; write 2e-03 or more \(closed: output.until: 9 coins, ",
     ):
         choose(lower(scene()))
     makers(pieces=Made("pieces", float("inf")))
@@ -109,10 +109,19 @@ def test_only_the_one_asked_for_is_made(makers):
     assert choose(lower(scene()), "closed", "single") == ("closed", made.closed, "closed is good to 1e-09")
     assert made.closed.asked == [(lower(scene()), REALS["single"], True, "size", False)]
     assert not made.pieces.asked + made.march.asked
-    with pytest.raises(ToleranceError, match=r"cannot be met: pieces: 1 at best$"):
+    with pytest.raises(ToleranceError, match=r"cannot be met \(pieces: 1 at best\)$"):
         choose(lower(scene()), "pieces")
     choose(lower(scene()))
     assert made.closed.asked[1:] == [(lower(scene()), REALS["double"], False, "speed", False)]
+
+
+def test_the_tolerance_that_a_refusal_names_is_met():
+    fine = wavesym.Scene.from_toml("building_m2").with_({"output.tolerance": "1e-17"})
+    with pytest.raises(ToleranceError, match=r"^output.tolerance: 1e-17 cannot be met; write ") as refused:
+        choose(lower(fine))
+    assert "helps" not in str(refused.value)
+    named = str(refused.value).partition("write ")[2].split()[0]
+    assert choose(lower(fine.with_({"output.tolerance": named}))).name == "pieces"
 
 
 def test_what_was_asked_for_says_why_it_is_refused(makers):

@@ -22,7 +22,7 @@ from wavesym.programs.choice import attempts, choose
 from wavesym.programs.making import make
 from wavesym.programs.modes import evaluator
 from wavesym.programs.modes.evaluator import modes
-from wavesym.programs.request import Request
+from wavesym.programs.request import Request, unmet
 from wavesym.results.response import Response
 from wavesym.running.compilation import import_text
 from wavesym.running.native import library
@@ -198,15 +198,19 @@ def test_what_auto_takes():
 
 def test_a_tolerance_that_takes_too_many_modes_is_refused_with_all_that_was_tried(monkeypatch):
     def refuse(model):
-        raise ToleranceError("output.tolerance: 0.01 cannot be met: modes: 7 modes leave 0.1")
+        raise unmet(model.tolerance, {"modes": "7 modes leave 0.06"}, 0.06)
 
     monkeypatch.setattr(evaluator, "modal_system", refuse)
     monkeypatch.delitem(choice.MAKERS, "march")
     with pytest.raises(
-        ToleranceError, match=r"^output.tolerance: 0.01 cannot be met: closed: .*; modes: 7 modes leave"
+        ToleranceError,
+        match=r"^output.tolerance: 0.01 cannot be met; write 1e-01 or more \(closed: .*; modes: 7 modes leave 0.06\)$",
     ):
         choose(lower(LONG))
-    with pytest.raises(ToleranceError, match=r"^output.tolerance: 0.01 cannot be met: modes: 7 modes leave 0.1$"):
+    with pytest.raises(
+        ToleranceError,
+        match=r"^output.tolerance: 0.01 cannot be met; write 1e-01 or more \(modes: 7 modes leave 0.06\)$",
+    ):
         choose(lower(LONG), "modes")
     with pytest.raises(ToleranceError, match="modes: 7 modes leave"):
         wavesym.evaluator(LONG)([1.0])

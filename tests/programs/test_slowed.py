@@ -236,7 +236,7 @@ def test_what_modes_with_dashpots_do_not_tell_apart_is_refused():
 def test_what_nearly_swallows_waves_is_refused_with_numbers():
     end = {"joint": True, "name": "n", "dashpot": "1000001/1000000"}
     model = chain(["fixed", {"rod": 1}, end], [PUSH], velocity=["n"], tolerance="1e-9")
-    with pytest.raises(ToleranceError, match=r"1e-09 cannot be met: modes: \d+ modes, the most taken"):
+    with pytest.raises(ToleranceError, match=r"1e-09 cannot be met.* \(modes: \d+ modes, the most taken"):
         modal_system(model)
 
 

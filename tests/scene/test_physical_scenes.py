@@ -124,6 +124,14 @@ def test_good_scenes_are_good(name: str) -> None:
     assert lower(Scene(**ALL[name])).clock
 
 
+@pytest.mark.parametrize(("until", "noted"), [(30, True), ("1/2", True), ("30 s", False), ("50 ms", False)])
+def test_a_horizon_of_tau_says_which_time_that_is(until: object, noted: bool) -> None:
+    model = lower(Scene(**BUILDING | {"output": BUILDING["output"] | {"until": until}}))
+    assert model.clock
+    line = f'output.until: {until} is taken as tau, {model.clock.format(model.until)}; write "{until} s" if seconds are'
+    assert [note.startswith(line) for note in model.labels.notes] == [True] * noted
+
+
 @pytest.mark.parametrize(
     ("name", "kappa", "seconds", "horizon"), [("steel", 0.031, 4.00e-3, 7787), ("concrete", 0.093, 7.07e-3, 4413)]
 )

@@ -49,6 +49,13 @@ class Attempt:
         """The refusal, with the kind that it is of."""
         return f"{self.kind}: {self.refusal}"
 
+    @property
+    def bound(self) -> float:
+        """The error that it has, relative to the largest value of an output; infinite where nothing is known of it."""
+        if self.form:
+            return self.form.error_bound
+        return self.error.bound if isinstance(self.error, ToleranceError) else inf
+
 
 class Choice(NamedTuple):
     """The name of the evaluator chosen, itself, and the reason in one line."""
@@ -131,7 +138,7 @@ def attempt(
     except (CostError, UnservedError) as refusal:
         return Attempt(kind, None, str(refusal), refusal)
     except ToleranceError as refusal:
-        return Attempt(kind, None, str(refusal).partition(f"{kind}: ")[2], refusal)
+        return Attempt(kind, None, refusal.refusal or str(refusal), refusal)
     except OverflowError:
         beyond = f"numbers beyond the range of {precision} precision"
         return Attempt(kind, None, beyond, RangeError(f"output: {kind} needs {beyond}"))
@@ -145,15 +152,15 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
     found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
     # where modes are for something else altogether that is no news, but of a record that nothing serves
     silent = found or not model.spacing
-    refused = [one.why for one in tried if one.refusal and not (silent and one.kind == "modes" and _unserved(one))]
+    refused = [one for one in tried if one.refusal and not (silent and one.kind == "modes" and _unserved(one))]
     if not found:
         if len(tried) == 1 and tried[0].error:
             raise tried[0].error
-        raise unmet(model.tolerance, "; ".join(refused))
+        raise unmet(model.tolerance, {one.kind: one.refusal for one in refused}, min(one.bound for one in tried))
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
     dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]
-    return Choice(name, chosen, "; ".join([*refused, *dearer, chosen.summary]))
+    return Choice(name, chosen, "; ".join([*(one.why for one in refused), *dearer, chosen.summary]))
 
 
 def _unserved(one: Attempt) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -33,6 +34,8 @@ OF_MODES = {
 """The parameters at run time that modes alone have, and what of them no march can take."""
 POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedance"})
 """The parameters at run time that have to be positive, and that a largest rate is about."""
+
+_HELPS = re.compile(r" \([^()]* help(s)?\)$")
 
 
 @dataclass(frozen=True)
@@ -194,8 +197,18 @@ def _one_of(names: Sequence[str]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def unmet(tolerance: fmpq, why: str) -> ToleranceError:
-    """The error that says that a tolerance cannot be met."""
+def unmet(tolerance: fmpq, refusals: Mapping[str, str], bound: float) -> ToleranceError:
+    """The error that says that a tolerance cannot be met, which can, and why each kind of program is refused.
+
+    Args:
+        tolerance: that of the scene.
+        refusals: a sentence for each kind of program.
+        bound: the least of their errors, relative to an output's largest value; 1 or more where there is none.
+    """
     from wavesym.numbers.doubles import nearest
 
-    return ToleranceError(f"output.tolerance: {nearest(tolerance):g} cannot be met: {why}")
+    remedy = f"; write {2 * bound:.0e} or more" if bound < 0.1 else ""
+    # what would help one kind of program alone is no news where a tolerance helps
+    why = (f"{kind}: {re.sub(_HELPS, '', refusal) if remedy else refusal}" for kind, refusal in refusals.items())
+    message = f"output.tolerance: {nearest(tolerance):g} cannot be met{remedy} ({'; '.join(why)})"
+    return ToleranceError(message, "; ".join(refusals.values()), bound)

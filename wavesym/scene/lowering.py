@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
@@ -144,7 +145,7 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
         loads=scene.physical.loads if scene.physical else tuple(load.description for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
-        notes=(*_damping_notes(scene), *_record_notes(scene), *_shape_notes(scene)),
+        notes=(*_horizon_notes(scene), *_damping_notes(scene), *_record_notes(scene), *_shape_notes(scene)),
         kind=scene.scale.kind if scene.scale else "",
         size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
         dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",
@@ -152,6 +153,14 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         sources={source: load.label for load in scene.load for source in load.sources},
         titles={source: load.name for load in scene.load if load.name for source in load.sources},
     )
+
+
+def _horizon_notes(scene: Scene) -> Iterator[str]:
+    """A line where a scene with units says a horizon of tau: whoever writes a number may have meant seconds."""
+    until = scene.physical.fields_in_units.get("output", {}).get("until") if scene.physical else None
+    if until is not None and scene.scale and re.fullmatch(r"[\d./eE+-]+", written := str(until).strip()):
+        horizon = scene.scale.clock.format(rational(scene.output.until))
+        yield f'output.until: {written} is taken as tau, {horizon}; write "{written} s" if seconds are meant'
 
 
 def _damping_notes(scene: Scene) -> Iterator[str]:

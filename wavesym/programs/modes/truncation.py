@@ -24,6 +24,7 @@ from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
 from wavesym.programs.modes.projection import Driver, ModalOutput, drivers_of, modal_output
 from wavesym.programs.modes.rounding import rounding_errors
 from wavesym.programs.modes.zero_outputs import zero_outputs
+from wavesym.programs.request import unmet
 from wavesym.programs.schemes.modes import ModesScheme
 
 
@@ -246,14 +247,12 @@ def _unmet(chain: ModalModel[K], errors: Numbers, largest: Numbers, better: floa
     bounds = _relative(errors, largest)
     worst = int(np.argmax(bounds))
     name = model.probes[worst].name
-    if bounds[worst] < inf:
-        what = f"leave a bound of about {2 * bounds[worst] / better:.2g} for {name}"
+    bound = 2 * float(bounds[worst]) / better
+    if bound < inf:
+        what = f"leave a bound of about {bound:.2g} for {name}"
     else:
         what = f"would not tell the largest value of {name} from 0 (leaving it out may help)"
-    return ToleranceError(
-        f"output.tolerance: {nearest(model.tolerance):g} cannot be met: modes: {chain.most} modes, the most "
-        f"taken, {what}"
-    )
+    return unmet(model.tolerance, {"modes": f"{chain.most} modes, the most taken, {what}"}, bound)
 
 
 def _relative(errors: Numbers, largest: Numbers) -> Numbers:
