@@ -10,7 +10,7 @@ from functools import cache
 import pytest
 from hypothesis import Phase, is_hypothesis_test, settings
 
-from wavesym.running import compiled_modes, native, sets, stream
+from wavesym.running import mode_sets, native, sets, stream
 from wavesym.running.toolchain import CompilerError, compiler
 
 settings.register_profile("wavesym", deadline=None, derandomize=True)
@@ -47,7 +47,7 @@ def quick_builds(pytestconfig: pytest.Config) -> Iterator[None]:
     """Without --run-slow, C that Python loads is compiled in a third of the time, for the same machine."""
     with pytest.MonkeyPatch.context() as patch:
         if not pytestconfig.getoption("--run-slow"):
-            for module in (compiled_modes, sets, stream):
+            for module in (mode_sets, sets, stream):
                 patch.setattr(module, "FAST", ("-O1", *native.FAST[1:]))
         yield
 

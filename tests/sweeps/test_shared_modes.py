@@ -24,7 +24,16 @@ FRAME: dict[str, Any] = {
     "units": {"length": "mm"},
     "system": {"type": "building", "base": "ground", "damping": "1/20", "storey": [{**STOREY, "count": 2}, STOREY]},
     "load": [{"spacing": "0.1 s", "samples": ["0", "1/4", "-3/10", "1/5", "-1/10", 0], "unit": "g"}],
-    "output": {"until": "2 s", "tolerance": "1e-3", "drift": [1, 3], "acceleration": [3], "relative": [3]},
+    "output": {
+        "until": "2 s",
+        "tolerance": "1e-3",
+        "drift": [1, 3],
+        "acceleration": [3],
+        "relative": [3],
+        "force": [0],
+        "strain": ["1-"],
+        "velocity": [2],
+    },
 }
 NUMBERS = {
     "system.storey[0].stiffness": ["500 MN/m", "600 MN/m", "711 MN/m"],

@@ -1,4 +1,4 @@
-"""Numbers of modes that are given at run time, as C: against modes that are proved and against those in NumPy."""
+"""Numbers of modes that are given at run time, as C: against modes that are proved."""
 
 import ctypes
 import subprocess
@@ -8,19 +8,20 @@ import numpy as np
 import pytest
 
 import wavesym
-from tests.programs.test_mode_sets import MODELS
+from tests.programs.test_modal_systems import PUSH, UNDAMPED
 from tests.running.test_model_modes import FRAME, SPRUNG
 from tests.support.builds import LANGUAGES, STRICT
 from tests.support.fmus import Instance, made, needs_fmpy
+from tests.support.modal import building, chain, samples
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.mode_sets.making import ModeSetsTables
 from wavesym.programs.mode_sets.parameters import mode_parameters, names_of
 from wavesym.programs.modes.evaluator import modes
+from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.programs.request import Request
-from wavesym.running.compiled_modes import CompiledModeSets
 from wavesym.running.mode_sets import ModalSets
-from wavesym.running.native import library
+from wavesym.running.native import address, library, struct_size
 from wavesym.running.toolchain import compiler
 from wavesym.scene import lower
 from wavesym.targets.files import files
@@ -30,6 +31,36 @@ NUMBERS = ["stiffness", "rod_mass", "mass", "damping", "load"]
 RAYLEIGH = wavesym.Scene(
     **{**FRAME.model_dump(), "system": {**FRAME.model_dump()["system"], "damping": {"modes": [1, 2], "ratio": "1/20"}}}
 )
+
+FIXED = chain(
+    ["fixed", {"rod": 1}, {"mass": 1, "name": "n"}, {"rod": 1}, {"mass": 1}, {"rod": 1}, "fixed"],
+    [PUSH],
+    tolerance="1e-3",
+    strain=["0", "1-", "3-"],
+    displacement=["n", "3/2"],
+    until=6,
+)
+SPRINGS = chain(
+    [
+        {"motion": "acceleration", "name": "m"},
+        {"spring": 3},
+        {"mass": 1, "name": "n"},
+        {"spring": 2},
+        {"mass": 2},
+        {"rod": "1/7", "impedance": 4},
+        {"joint": True},
+        {"rod": "1/5", "impedance": 2},
+        {"mass": 1, "name": "top"},
+    ],
+    [{"at": "m", "times": [0, 1], "ramps": [1, -2]}],
+    tolerance="1e-3",
+    relative=["n", "top"],
+    acceleration=["top"],
+    velocity=["n"],
+    until=9,
+)
+ALIKE = building(["1/20"] * 11, [samples(6)], until=40, tolerance="1e-2", drift=[1, 10], force=[0], acceleration=[10])
+MODELS = {**UNDAMPED, "fixed at both ends": FIXED, "springs and rods": SPRINGS, "ten storeys alike": ALIKE}
 
 
 def parameters_of(model):
@@ -49,8 +80,8 @@ def test_sets_are_what_proved_modes_say(name):
     """For chains of all kinds: held, free, with gears, springs and branches, damped or not."""
     parameters = parameters_of(MODELS[name])
     rows, taus = drawn_rows(parameters, 3), np.linspace(0, parameters.model.horizon(), 83)
-    found = CompiledModeSets(parameters).responses(rows, taus[::-1].copy())
-    for row, estimate, peaks, values in zip(rows, *found, strict=True):
+    found = ModalSets(parameters).responses(rows, taus[::-1].copy())
+    for row, _, estimate, peaks, values in zip(rows, *found, strict=True):
         proved = modes(parameters.exact(row), DOUBLE)
         largest = np.array([output.largest for output in proved.outputs])
         error = np.abs(values[:, ::-1] - proved.scheme.evaluate(taus)).max(axis=1)
@@ -62,41 +93,100 @@ def test_sets_are_what_proved_modes_say(name):
         assert np.all(peaks[:, 2] >= exact.max(axis=1) - allowed)
 
 
-@pytest.mark.parametrize("scene", [SPRUNG, FRAME, RAYLEIGH], ids=["sprung", "frame", "rayleigh"])
-def test_sets_are_those_of_numpy(scene):
-    """With the same modes: values to rounding, extremes and their instants, estimates."""
-    lowered = lower(scene)
-    parameters = parameters_of(lowered)
-    rows = drawn_rows(parameters, 5)
-    taus = np.linspace(0, lowered.horizon(), 61)
-    found = CompiledModeSets(parameters).responses(rows, taus)
-    assert found.estimate.max() < 1
-    for row, each in ModalSets(parameters).responses(rows, taus):
-        if each.modes != parameters.fewest:
-            continue
-        size = np.abs(each.values[0]).max(axis=1)
-        assert np.abs(found.values[row] - each.histories[0]).max(axis=1) == pytest.approx(
-            0 * size, abs=1e-11 * size.max()
-        )
-        assert np.all(np.abs(found.peaks[row, :, ::2] - each.values[0]) <= 1e-7 * size[:, None])
-        assert found.estimate[row] == pytest.approx(each.bounds[0], rel=0.1)
+class BuiltModel:
+    """What `build` writes of a set: NAME_model as templates/c/mode_sets/model.h has it, of doubles."""
+
+    def __init__(self, parameters, row):
+        name, engine = parameters.model.name, ModalSets(parameters)
+        c, tables = engine._library(0), ModeSetsTables(parameters)
+        room = np.zeros(struct_size(c, "model") // 8)
+        given = np.ascontiguousarray(row)
+        self.status = getattr(c, f"{name}_build")(room.ctypes.data_as(ctypes.c_void_p), ctypes.c_void_p(address(given)))
+        modes, loads, filled = (tables._constants()[key] for key in ("modes", "loads", "filled"))
+        rest = iter(room[1:])
+
+        def take(*shape):
+            return np.array([next(rest) for _ in range(int(np.prod(shape)))]).reshape(shape)
+
+        self.estimate = take(1)[0]
+        self.frequency, self.damping, self.shares = take(modes), take(modes), take(loads, modes)
+        take(6 * modes)
+        self.displacements, self.velocities = take(modes, filled), take(modes, filled)
 
 
-def test_many_sets_are_computed_in_c_and_are_the_same(monkeypatch):
-    """Those whose modes are too few for the tolerance are taken by NumPy."""
+@pytest.mark.parametrize("name", MODELS)
+def test_modes_in_doubles_are_the_proved_ones(name):
+    """Frequencies, and what outputs and loads have of each mode, up to its sign."""
+    parameters = parameters_of(MODELS[name])
+    row = drawn_rows(parameters, 2)[1]
+    built = BuiltModel(parameters, row)
+    chain_of_row = UndampedModes(parameters.exact(row).to_horizon())
+    true = chain_of_row.project(parameters.fewest)
+    count = parameters.fewest
+    w = true.w[:count, None]
+    assert built.frequency[:count] == pytest.approx(true.w[:count], rel=1e-12, abs=1e-12)
+    orders = np.array([output.order for output in chain_of_row.outputs])
+    shares = built.shares[:, :count]
+    outputs = np.where(
+        orders == 1,
+        built.velocities[:count, : len(orders)],
+        built.displacements[:count, : len(orders)] / np.where((orders == 2) & (w > 0), -w * w, 1.0),
+    ).T
+    assert np.abs(np.abs(shares) - np.abs(true.shares[:, :count])).max() <= 1e-7 * np.abs(true.shares).max()
+    signs = np.sign((shares * true.shares[:, :count]).sum(axis=0))
+    outputs = np.where((orders[:, None] == 2) & (w.T == 0), signs * true.outputs[:, :count], outputs)  # rigid: not kept
+    moved = ~np.array(parameters.zero_outputs)
+    assert np.abs(signs * outputs - true.outputs[:, :count])[moved].max() <= 1e-7 * np.abs(true.outputs[moved]).max()
+
+
+def test_equal_frequencies_are_known_to_be_loose():
+    """Two branches alike have a mode in which the rest is still: which shapes doubles find is open."""
+    arm = [{"spring": 1}, {"mass": 1}]
+    model = chain(
+        ["fixed", {"spring": 1}, {"mass": 1, "name": "n"}],
+        [PUSH],
+        [{"from": "n", "name": name, "parts": arm} for name in ("a", "b", "c")],
+        displacement=["n"],
+        until=6,
+    )
+    parameters = parameters_of(model)
+    assert ModalSets(parameters).responses(drawn_rows(parameters, 1), np.empty(0)).estimate[0] > 1e-3
+
+
+def test_an_output_that_symmetry_alone_makes_0_is_not_0_for_all_sets():
+    """In the middle of a chain pushed alike from both sides nothing moves, as long as both halves are alike."""
+    push = {key: PUSH[key] for key in ("times", "ramps")}
+    model = chain(
+        [{"mass": 1, "name": "l"}, {"rod": 1}, {"mass": 1, "name": "n"}, {"rod": 1}, {"mass": 1, "name": "r"}],
+        [{"at": "l", **push}, {"at": "r", **push, "ramps": [-x for x in PUSH["ramps"]]}],
+        displacement=["n", "l"],
+        until=6,
+    )
+    assert UndampedModes(model).zero_outputs == (True, False)
+    assert parameters_of(model).zero_outputs == (False, False)
+
+
+def test_sets_that_need_more_modes_get_them():
+    """A storey that is 400 times softer needs more modes than the scene has; the others stay what they are."""
     model = wavesym.model(FRAME, NUMBERS)
     own = model.parameters["stiffness"]
-    stiffness = own * RNG.uniform(0.5, 2, (256, len(own)))
-    stiffness[7] = own / 400
+    stiffness = own * RNG.uniform(0.5, 2, (4, len(own)))
+    few = model.peaks(stiffness=stiffness)
+    stiffness[2] = own / 400
     many = model.peaks(stiffness=stiffness)
-    monkeypatch.setattr("wavesym.running.mode_sets._WORTH_COMPILING", 10**9)
-    few = wavesym.model(FRAME, NUMBERS).peaks(stiffness=stiffness[:16])
-    size = np.maximum(np.abs(few.max), np.abs(few.min))
-    assert np.all(
-        np.abs(many.max[:16] - few.max) <= (many.checks.estimate[:16, None] + few.checks.estimate[:, None]) * size
-    )
-    assert np.all(many.checks.estimate[:16] <= 1e-4)
-    assert np.all(many.checks.status == 0)
+    assert np.all(many.checks.estimate <= 1e-4)
+    assert np.array_equal(many.max[[0, 1, 3]], few.max[[0, 1, 3]])
+    engine = model._engine
+    row = np.concatenate([stiffness[2], *(model.parameters[name] for name in engine_names(engine)[1:])])
+    assert engine._by_modes(0, row[None], np.empty(0)).estimate[0] > 1e-4
+    proved = modes(engine.parameters.exact(row), DOUBLE)
+    fine = proved.scheme.evaluate(np.linspace(0, model.tau_max, 4001))
+    size = np.abs(fine).max(axis=1)
+    assert np.all(np.abs(many.max[2] - fine.max(axis=1)) <= 1e-3 * size)
+
+
+def engine_names(engine):
+    return [field.name for field in engine.fields]
 
 
 def runtime_of(scene):
@@ -186,7 +276,7 @@ def test_a_stream_of_the_scenes_loads_gives_its_histories(scene):
     assert getattr(found, f"{scene.name}_build")(state, row.ctypes.data_as(ctypes.c_void_p)) == 0
     count = int(lowered.horizon() / spacing)
     taus = spacing * np.arange(1, count + 1)
-    expected = CompiledModeSets(parameters).responses(row[None], taus[taus <= lowered.horizon()]).values[0].T
+    expected = ModalSets(parameters).responses(row[None], taus[taus <= lowered.horizon()]).values[0].T
     size = np.abs(expected).max(axis=0)
     for values, load in zip(expected, samples[1:], strict=False):
         now = np.ascontiguousarray(load)
@@ -199,7 +289,11 @@ def test_a_stream_of_the_scenes_loads_gives_its_histories(scene):
 @pytest.mark.parametrize(
     ("options", "error", "message"),
     [
-        ({"parts": ("gradients",)}, UnservedError, "--with: gradients is not supported by modes at run time"),
+        (
+            {"parts": ("gradients",)},
+            UnservedError,
+            r"gradients is not supported by modes at run time \(write wavesym.model",
+        ),
         ({"precision": "single"}, WavesymError, "--precision: single does not go with --runtime of modes"),
         ({"stream": True, "evaluator": "modes"}, WavesymError, "--runtime: load is no parameter of a stream"),
         ({"evaluator": "march"}, WavesymError, "--evaluator: march does not go with --runtime of modes"),
@@ -215,7 +309,7 @@ def test_the_same_modes_serve_a_finer_tolerance():
     coarse = parameters_of(lower(FRAME))
     fine = parameters_of(replace(coarse.model, tolerance=coarse.model.tolerance / 100))
     rows, taus = drawn_rows(coarse, 4), np.linspace(0, coarse.model.horizon(), 301)
-    one, other = (CompiledModeSets(each).responses(rows, taus) for each in (coarse, fine))
+    one, other = (ModalSets(each).responses(rows, taus) for each in (coarse, fine))
     size = np.abs(other.values).max(axis=2)
     errors = np.abs(one.values - other.values).max(axis=2) / size
     assert np.all(errors <= 1.1 * one.estimate[:, None])

@@ -11,7 +11,7 @@ from wavesym.mechanics.damping import Damping
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.programs.mode_sets.parameters import mode_parameters
 from wavesym.programs.request import Request
-from wavesym.running.compiled_modes import CompiledModeSets
+from wavesym.running import mode_sets
 from wavesym.running.mode_sets import ModalSets
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes
@@ -101,16 +101,14 @@ def test_an_instant_that_is_there_twice_has_no_slope():
     assert IntegratedOutput([0.0, 2.0, 2.0], values, 0.0).steepest == 0.5
 
 
-@pytest.mark.parametrize("language", ["NumPy", "C"])
-def test_modes_whose_numbers_are_given_are_verified(language, monkeypatch):
-    """Both pass, and one whose dampings are 2 % more is seen."""
+def test_modes_whose_numbers_are_given_are_verified(monkeypatch):
+    """They pass, and one whose dampings are 2 % more is seen."""
     names = mode_set_names(lower(frame()))
     request = [Request("modes", runtime=names)]
     text, passed = verified(frame(), requests=request)
     assert passed
-    assert text.count(f"runtime {' '.join(names)}, {language}") == 1
-    home, method = {"NumPy": (ModalSets, "values"), "C": (CompiledModeSets, "responses")}[language]
-    right, column = getattr(home, method), 0
+    assert text.count(f"runtime {' '.join(names)}, C") == 1
+    right, column = ModalSets.values, 0
     for field in mode_parameters(lower(frame()), names, amplitudes(frame())).fields:
         if field.name == "damping":
             break
@@ -121,6 +119,37 @@ def test_modes_whose_numbers_are_given_are_verified(language, monkeypatch):
         other[:, column] *= 1.02
         return right(self, other, tau)
 
-    monkeypatch.setattr(home, method, wrong)
+    monkeypatch.setattr(ModalSets, "values", wrong)
     text, passed = verified(frame(), requests=request)
     assert not passed
+
+
+FAULTS = {
+    "more damping": ("2 * z * w * made.p12", "2.1 * z * w * made.p12"),
+    "no statics": ("{p->settled[output][load], 0}", "{0, 0}"),
+    "bars a third heavier": ("real same = (t * s * s", "real same = 4 / 3.0 * (t * s * s"),
+}
+QUICK = "more damping"
+
+
+@pytest.mark.parametrize("streamed", [True, False], ids=["stream", "read"])
+@pytest.mark.parametrize("fault", [pytest.param(x, marks=[pytest.mark.slow] * (x != QUICK)) for x in FAULTS])
+def test_faults_in_the_c_of_modes_at_run_time_are_seen(fault, streamed, monkeypatch):
+    """Where it is stepped sample by sample, and where it is read."""
+    names = tuple(name for name in mode_set_names(lower(frame())) if name != "load")
+    requests = [Request("modes", runtime=names, stream=streamed)]
+    text, passed = verified(frame(), requests=requests)
+    assert passed
+    assert ("modes, stream, runtime" in text) == streamed
+
+    def broken(right):
+        def files(*arguments):
+            made = right(*arguments)
+            assert FAULTS[fault][0] in made["frame.c"]
+            return {**made, "frame.c": made["frame.c"].replace(*FAULTS[fault])}
+
+        return files
+
+    monkeypatch.setattr(programs, "files", broken(programs.files))
+    monkeypatch.setattr(mode_sets, "runtime_sets", broken(mode_sets.runtime_sets))
+    assert not verified(frame(), requests=requests)[1]

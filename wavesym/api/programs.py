@@ -203,11 +203,10 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
             "damping" (ratios), "mass" (kg), "load".
 
     Returns:
-        What has `run`, `peaks`, `gradients`, `misfit` and `bounds`, compiled when they are first asked for; of modes
-        in NumPy, without gradients.
+        What has `run`, `peaks`, `gradients`, `misfit` and `bounds`, compiled when they are first asked for.
 
     Raises:
-        CompilerError: where there is no C compiler: the extra `compiler` brings one. Modes need none.
+        CompilerError: where there is no C compiler: the extra `compiler` brings one.
         WavesymError: for a scene that has not got these parameters.
         UnservedError, CostError: for one that no such program serves.
         ToleranceError: where modes do not serve the scene's own numbers to its tolerance.

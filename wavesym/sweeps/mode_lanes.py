@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 
 from wavesym.errors import WavesymError
-from wavesym.mechanics.model import Model
 from wavesym.programs.mode_sets.parameters import ModeParameters, mode_parameters, names_of
 from wavesym.programs.modes.loads import Numbers
+from wavesym.programs.runtime.network import RuntimeField
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import amplitudes
 from wavesym.scene.paths import replace_at_path
 from wavesym.sweeps.batches import Place
 from wavesym.sweeps.dimension import Column
@@ -35,7 +36,6 @@ _SAME = 1e-13
 class ModeLanes:
     """The numbers of modes of a sweep: those of the first case, and the `places` and `factors` of each column."""
 
-    parameters: ModeParameters
     own: Numbers
     places: dict[str, Any]
     factors: dict[str, Numbers]
@@ -51,16 +51,16 @@ class ModeLanes:
         return rows
 
 
-def mode_lanes(plan: SweepPlan, model: Model, bare: SweepPlan) -> ModeLanes | None:
-    """Those of a sweep whose first case has this model; `bare` is the sweep with next to no samples in its loads."""
+def mode_lanes(plan: SweepPlan, first: ModeParameters, bare: SweepPlan) -> ModeLanes | None:
+    """Those of a sweep whose first case has these; `bare` is the sweep with next to no samples in its loads."""
     columns = [column for dimension in plan.dimensions for column in dimension.columns]
     if not all(_PATHS.fullmatch(column.path) and isinstance(column.coordinate[0], float) for column in columns):
         return None
-    own = _numbers(model)
+    own = own_numbers(first.fields)
     places, factors, taken = dict[str, Any](), dict[str, Numbers](), set[int]()
     for column in columns:
         try:
-            probes = [_numbers(lower(Scene(**_probe(bare, column, times)))) for times in _PROBES]
+            probes = [_probe(bare, column, times) for times in _PROBES]
         except WavesymError:
             return None
         ratios = [probe / np.where(own == 0, 1.0, own) for probe in probes]
@@ -74,16 +74,23 @@ def mode_lanes(plan: SweepPlan, model: Model, bare: SweepPlan) -> ModeLanes | No
             return None
         taken |= set(varied.tolist())
         places[column.path], factors[column.path] = varied, own[varied] / float(column.coordinate[0])
-    return ModeLanes(mode_parameters(model, names_of(model), ()), own, places, factors)
+    return ModeLanes(own, places, factors)
 
 
-def _numbers(model: Model) -> Numbers:
-    """All numbers of modes, in the units of the scene."""
-    fields = mode_parameters(model, names_of(model), ()).fields
+def own_numbers(fields: Sequence[RuntimeField]) -> Numbers:
+    """All numbers of fields, in the units of the scene."""
     return np.array([float(value) for field in fields for value in field.values])
 
 
-def _probe(plan: SweepPlan, column: Column, times: Fraction) -> dict[str, Any]:
-    """The fields of the first case with another value of a column."""
+def structure_parameters(scene: Scene) -> ModeParameters:
+    """All numbers of a scene's modes, the factors of its loads last."""
+    model = lower(scene)
+    names = (*names_of(model), *(["load"] if model.loads else []))
+    return mode_parameters(model, names, amplitudes(scene))
+
+
+def _probe(plan: SweepPlan, column: Column, times: Fraction) -> Numbers:
+    """The numbers of the first case with another value of a column."""
     value = times * Fraction(column.coordinate[0])
-    return replace_at_path(plan.fields, column.path, f"{value} {column.unit}" if column.unit else str(value))
+    text = f"{value} {column.unit}" if column.unit else str(value)
+    return own_numbers(structure_parameters(Scene(**replace_at_path(plan.fields, column.path, text))).fields)

@@ -1,8 +1,8 @@
-"""Damped structures that differ in their systems alone: modes of many found at once, under loads that they share.
+"""Damped structures that differ in their systems alone: sets of numbers of one of them, under loads that they share.
 
-Where all that is varied are numbers of modes (`mode_lanes`) cases are sets of `ModalSets`. Else each case is lowered by
+Where all that is varied are numbers of modes (`mode_lanes`) these are known at once. Else each case is lowered by
 itself, with next to no samples in its loads, so that whatever is varied may be: a height, the second moment of columns.
-Cases whose networks have one pattern stand side by side, under the loads of the first case in the units of each.
+It is a set of numbers of the first case that has the same layout, in the units of that one.
 """
 
 from __future__ import annotations
@@ -11,33 +11,38 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import ceil
-from typing import Any
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.mode_sets.modes import ModesOfSet, enough_modes, mode_sets
-from wavesym.programs.mode_sets.network import pattern
-from wavesym.programs.modes.loads import Numbers, Roughness, sampled_roughness
-from wavesym.programs.modes.undamped import UndampedModes
-from wavesym.results.many_records import ManyRecords, RecordedExtremes, SharedModes
+from wavesym.programs.mode_sets.making import ModeSetsTables, Tables
+from wavesym.programs.mode_sets.parameters import ModeParameters
+from wavesym.programs.modes.loads import Numbers
+from wavesym.results.near_zero import zero_within
 from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.running.mode_sets import ModalSets
-from wavesym.scene import lower
+from wavesym.running.toolchain import compiler
 from wavesym.scene.paths import steps
 from wavesym.sweeps.batches import Place
-from wavesym.sweeps.mode_lanes import ModeLanes, mode_lanes
+from wavesym.sweeps.mode_lanes import ModeLanes, mode_lanes, structure_parameters
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.single import instants, of_model, output_rows, spread_out
 from wavesym.sweeps.values import CaseValues
 
 _FEWEST = 8  # cases that are worth it
 _MOST_MODES = 400
-_MOST_SAMPLES = 1 << 20
 _FEW = ["0", "1"]  # samples of a load that tell where it acts
+_SAME = (
+    *("parent", "beside", "bar_rod", "bar_part", "bar_left", "bar_right", "bar_left_ratio", "bar_right_ratio"),
+    *("link_left", "link_right", "link_ratio", "load_place", "first_term", "term_place"),
+    *("output_order", "output_power", "output_bar", "output_side", "output_force"),
+)
+"""What cases that are numbers of one another have in common."""
+_ROUNDED = 1e-13
 
 
 def serves(plan: SweepPlan) -> bool:
@@ -56,109 +61,133 @@ def structure_cases(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[
     if (first := _first_structure(plan)) is None:
         return
     if first.lanes:
-        yield from _as_sets(plan, first, first.lanes, places)
+        yield from first.cases(places, [first.model] * len(places), first.lanes.rows(plan, places))
         return
-    alike: list[tuple[object, list[tuple[Place, Model]]]] = []
+    groups: list[tuple[_Structure, list[tuple[Place, Model, _Likeness]]]] = [(first, [])]
     for place in places:
         with suppress(WavesymError):  # by itself it says what is wrong
-            model = lower(first.bare.scene(place))
-            own = pattern(model.network)
-            group = next((group for other, group in alike if other == own), None)
-            if group is None:
-                alike.append((own, group := []))
-            group.append((place, model))
-    for own, cases in alike:
-        with suppress(WavesymError):
-            fewest = (
-                first.fewest if own == pattern(first.model.network) else enough_modes(lower(plan.scene(cases[0][0])))
-            )
-            yield from _side_by_side(plan, first, fewest, cases)
+            own = structure_parameters(first.bare.scene(place))
+            for structure, cases in groups:
+                if likeness := structure.likeness(own):
+                    cases.append((place, own.model, likeness))
+                    break
+            else:
+                structure = _Structure(plan, structure_parameters(plan.scene(place)))
+                if likeness := structure.likeness(own):
+                    groups.append((structure, [(place, own.model, likeness)]))
+    for structure, cases in groups:
+        if cases:
+            with suppress(WavesymError):
+                some, models, found = zip(*cases, strict=True)
+                yield from structure.cases(some, models, np.array([each.numbers for each in found]), found)
 
 
-def _side_by_side(
-    plan: SweepPlan, first: _Structure, fewest: int, cases: Sequence[tuple[Place, Model]]
-) -> Iterator[tuple[Place, CaseValues]]:
-    """Cases of one pattern."""
-    sets = mode_sets([model for _, model in cases], fewest)
-    for number, (place, model) in enumerate(cases):
-        with suppress(WavesymError):
-            records, spacing = first.records(model)
-            shared = SharedModes(ModesOfSet(model.to_horizon(), sets, number), spacing)
-            found = shared.extremes(records, instants(model, plan.histories) if plan.histories else ())
-            if found.bounds[0] <= nearest(model.tolerance):
-                yield place, _case(plan, model, found)
+class _Likeness(NamedTuple):
+    """A case as `numbers` of another's parameters, in the units of that one; its `tau` in that one's, and what
+    `outputs` of these numbers are multiplied by."""
 
-
-def _as_sets(
-    plan: SweepPlan, first: _Structure, lanes: ModeLanes, places: Sequence[Place]
-) -> Iterator[tuple[Place, CaseValues]]:
-    """Cases that are numbers of the first one's modes."""
-    tau = instants(first.model, plan.histories) if plan.histories else []
-    for row, found in first.sets.responses(lanes.rows(plan, places), np.array(tau)):
-        if found.bounds[0] <= nearest(first.model.tolerance):
-            yield places[row], _case(plan, first.model, found)
-
-
-def _case(plan: SweepPlan, model: Model, found: RecordedExtremes) -> CaseValues:
-    rows = output_rows(plan, model)
-    made: dict[str, Numbers | float] = {**of_model(plan, model), "bound": float(found.bounds[0])}
-    for side, name in enumerate(("min", "max")):
-        made[name] = spread_out(plan, rows, found.values[0, :, side])
-        made[f"tau_{name}"] = spread_out(plan, rows, found.taus[0, :, side])
-    if plan.histories:
-        made["history"] = spread_out(plan, rows, found.histories[0])
-    return CaseValues(made, "modes of many structures together, errors estimated")
+    numbers: Numbers
+    tau: float
+    outputs: Numbers
 
 
 @dataclass(frozen=True)
 class _Structure:
-    """The first case of a sweep, whose loads all others share, and as many modes as it needs; `bare` is the sweep with
-    next to no samples in its loads."""
+    """A case of a sweep, of whose modes others are numbers: cases have the same loads."""
 
     plan: SweepPlan
-    model: Model
-    fewest: int
+    parameters: ModeParameters
+
+    @property
+    def model(self) -> Model:
+        return self.parameters.model
 
     @cached_property
     def bare(self) -> SweepPlan:
+        """The sweep with next to no samples in its loads."""
         return replace(self.plan, fields=_without_samples(self.plan.fields))
 
     @cached_property
     def lanes(self) -> ModeLanes | None:
         """What the columns are of its numbers, if they are that."""
-        return mode_lanes(self.plan, self.model, self.bare)
+        return mode_lanes(self.plan, self.parameters, self.bare)
 
     @cached_property
-    def sets(self) -> ModalSets:
-        """What computes sets of its numbers."""
-        assert self.lanes
-        return ModalSets(self.lanes.parameters, self.plan.cases)
+    def _sets(self) -> ModalSets:
+        return ModalSets(self.parameters)
 
     @cached_property
-    def _like(self) -> UndampedModes:
-        return UndampedModes(self.model.to_horizon())
+    def _tables(self) -> ModeSetsTables:
+        return ModeSetsTables(self.parameters)
 
-    @cached_property
-    def _sampled(self) -> tuple[float, Numbers, list[Roughness]]:
-        """How far samples are apart in tau, the samples (n, loads), and their roughness."""
-        step = self._like.loads.spacing(self.model.until, self.model.spacing)
-        spacing = nearest(step)
-        count = ceil(self.model.horizon() / spacing) + 3
-        if count > _MOST_SAMPLES:
-            raise MemoryError
-        samples = self._like.loads.sampled(step, count)
-        return spacing, samples, [sampled_roughness(column) for column in samples.T]
+    def cases(
+        self, places: Sequence[Place], models: Sequence[Model], numbers: Numbers, likeness: Sequence[_Likeness] = ()
+    ) -> Iterator[tuple[Place, CaseValues]]:
+        """Cases that are sets of its numbers."""
+        plan = self.plan
+        tau = np.array(instants(self.model, plan.histories) if plan.histories else [])
+        found = self._sets.responses(numbers, tau)
+        for k, (place, model) in enumerate(zip(places, models, strict=True)):
+            if not found.estimate[k] <= nearest(self.model.tolerance):
+                continue
+            values, taus, histories = found.peaks[k, :, ::2].copy(), found.peaks[k, :, 1::2].copy(), found.values[k]
+            zero_within(values, taus, found.estimate[k], 0.0)  # all are at rest at first
+            if likeness:
+                _, time, outputs = likeness[k]
+                values, taus, histories = values * outputs[:, None], taus / time, histories * outputs[:, None]
+            rows = output_rows(plan, model)
+            made: dict[str, Numbers | float] = {**of_model(plan, model), "bound": float(found.estimate[k])}
+            for side, name in enumerate(("min", "max")):
+                made[name] = spread_out(plan, rows, values[:, side])
+                made[f"tau_{name}"] = spread_out(plan, rows, taus[:, side])
+            if plan.histories:
+                made["history"] = spread_out(plan, rows, histories)
+            yield place, CaseValues(made, "modes of many structures together, errors estimated")
 
-    def records(self, model: Model) -> tuple[ManyRecords, float]:
-        """The loads as another case takes them, and how far their samples are apart in its tau."""
-        spacing, samples, rough = self._sampled
-        if model.clock and self.model.clock:
-            spacing *= nearest(self.model.clock.seconds / model.clock.seconds)
-        sizes = [
-            nearest(self.model.inputs[source][0] / model.inputs[source][0]) if source in model.inputs else 1.0
-            for source in (step or ramp for step, ramp in self._like.sources)
+    def likeness(self, other: ModeParameters) -> _Likeness | None:
+        """Another case as numbers of this one; None where it is none. Both have the impedance of the first rod as unit,
+        and tau_here = r tau_there: masses there are r times as large here, stiffnesses 1/r times, forces 1/r times.
+        """
+        own, its = self._tables.layout, ModeSetsTables(other).layout
+        damping = [each.damping and each.damping.modes for each in (self.model, other.model)]
+        if damping[0] != damping[1] or [f.labels for f in self.parameters.fields] != [f.labels for f in other.fields]:
+            return None
+        pairs = [(own[name], its[name]) for name in _SAME]
+        if not all(len(one) == len(that) and np.allclose(one, that, _ROUNDED, 0) for one, that in pairs):
+            return None
+        r = 1.0
+        if self.model.clock and other.model.clock:
+            r = nearest(other.model.clock.seconds / self.model.clock.seconds)
+        sizes = []
+        for o, (begin, end) in enumerate(pairwise(map(int, own["first_term"]))):
+            ratios = np.divide(its["term_weight"][begin:end], own["term_weight"][begin:end])
+            if own["output_bar"][o] >= 0:
+                ratios = np.array([its["output_scale"][o] / own["output_scale"][o]])
+            if np.ptp(ratios) > _ROUNDED * abs(ratios[0]):
+                return None
+            power = 1 if own["output_force"][o] and own["output_bar"][o] >= 0 else int(own["output_order"][o])
+            sizes.append(ratios[0] * r**power)
+        times = {"stiffness": 1 / r, "rod_mass": r, "mass": r}
+        numbers = [
+            float(value / theirs.size * ours.size) * times.get(field.name, 1.0)
+            for field, there in zip(self.parameters.fields, other.fields, strict=True)
+            if field.name != "load"
+            for value, theirs, ours in zip(there.values, there.units, field.units, strict=True)
         ]
-        return ManyRecords(samples[None] * sizes, 0.0, spacing, [rough], np.array([sizes])), spacing
+        return _Likeness(np.array([*numbers, *self._loads(other.model, its, r)]), r, np.array(sizes))
+
+    def _loads(self, model: Model, its: Tables, r: float) -> Iterator[float]:
+        """The loads of another case, which are this one's in its units, as numbers of this one's."""
+        like = self.parameters.like
+        values = [value for field in self.parameters.fields if field.name == "load" for value in field.values]
+        for amplitude, value in zip(self.parameters.amplitudes, values, strict=True):
+            load, pair = next((j, pair) for j, pair in enumerate(like.sources) if amplitude.source in pair)
+            driver, input_name = like.drivers[load], pair[0] or pair[1]
+            size = its["load_gain"][load] / nearest(driver.gain)
+            if input_name in self.model.inputs:
+                size *= nearest(self.model.inputs[input_name][0] / model.inputs[input_name][0])
+            moves = like.cut.network.points[driver.point].motion is not None
+            yield float(value) * size / (r * r if moves else r)
 
 
 _STRUCTURES: dict[str, _Structure | None] = {}
@@ -170,9 +199,10 @@ def _first_structure(plan: SweepPlan) -> _Structure | None:
         _STRUCTURES.clear()
         _STRUCTURES[plan.sha256] = None
         with suppress(WavesymError):
-            model = lower(plan.scene((0,) * len(plan.dimensions)))
-            if model.damping is not None and (fewest := enough_modes(model)) <= _MOST_MODES:
-                _STRUCTURES[plan.sha256] = _Structure(plan, model, fewest)
+            parameters = structure_parameters(plan.scene((0,) * len(plan.dimensions)))
+            if parameters.model.damping is not None and parameters.fewest <= _MOST_MODES:
+                compiler()
+                _STRUCTURES[plan.sha256] = _Structure(plan, parameters)
     return _STRUCTURES[plan.sha256]
 
 

@@ -1,4 +1,4 @@
-"""Modes whose numbers are given at run time, in NumPy and in C, with the scene's own numbers."""
+"""Modes whose numbers are given at run time, with the scene's own numbers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.mode_sets.parameters import mode_parameters, names_of
-from wavesym.running.compiled_modes import CompiledModeSets
 from wavesym.running.mode_sets import ModalSets
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes
@@ -38,8 +37,5 @@ def mode_set_values(
     """
     parameters = mode_parameters(model, names, amplitudes(scene) if "load" in names else ())
     own = np.array([[nearest(value) for field in parameters.fields for value in field.values]])
-    count, sets = len(sizes), ModalSets(parameters).values(own, taus)
-    yield ProgramValues(f"{name}, NumPy", taus, sets.values[0, 0], sizes, [float(sets.estimate[0])] * count)
-    if CompiledModeSets.is_possible():
-        found = CompiledModeSets(parameters).responses(own, taus)
-        yield ProgramValues(f"{name}, C", taus, found.values[0], sizes, [float(found.estimate[0])] * count)
+    sets = ModalSets(parameters).values(own, taus)
+    yield ProgramValues(f"{name}, C", taus, sets.values[0, 0], sizes, [float(sets.estimate[0])] * len(sizes))

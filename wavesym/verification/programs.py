@@ -23,6 +23,7 @@ from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import SINGLE
 from wavesym.programs.making import make
+from wavesym.programs.mode_sets.making import mode_sets_program
 from wavesym.programs.program import Program
 from wavesym.programs.request import KINDS, PARTS, Request
 from wavesym.programs.runtime.making import runtime_program
@@ -62,6 +63,7 @@ def all_requests(scene: Scene, model: Model) -> Iterator[Request]:
     yield Request(stream=True)
     if names := mode_set_names(model):
         yield Request("modes", runtime=names)
+        yield Request("modes", runtime=tuple(name for name in names if name != "load"), stream=True)
 
 
 def compare_programs(
@@ -82,7 +84,7 @@ def compare_programs(
             continue
         name = _name(request)
         try:
-            if request.runtime and not request.stream and request.is_of_mode_sets(model):
+            if request.runtime and not request.stream and request.is_of_mode_sets(model) and compiles:
                 found += _run_mode_sets(scene, known, integrals, request, name)
                 continue
             program = _build(scene, model, request, is_required=requests is not None)
@@ -122,6 +124,8 @@ def _name(request: Request) -> str:
 
 def _build(scene: Scene, model: Model, request: Request, *, is_required: bool) -> Program:
     """The program; in single precision for a larger tolerance, where it has to be."""
+    if request.runtime and request.is_of_mode_sets(model):
+        return mode_sets_program(model, request, ())
     if request.stream and request.evaluator != "modes":
         endless = replace(model, endless=True)
         return stream_program(endless, request, inputs_of(endless, sources(scene)))
@@ -153,7 +157,7 @@ def _run(known: ReferenceOutputs, integrals: Integrals) -> ProgramValues:
 
 
 def _run_numpy(known: ReferenceOutputs, integrals: Integrals, program: Program, name: str) -> Iterator[ProgramValues]:
-    if program.evaluator in ("runtime", "stream"):
+    if program.laws or program.evaluator == "stream":
         return
     module = import_text(files(program, "numpy")[f"{known.whole.name}.py"], known.whole.name)
     taus, given, late = _instants(known, integrals, program)
@@ -180,7 +184,7 @@ def _run_c(
         note = fails if program.reference and built.selftest() != 0 else ""
         if program.evaluator == "runtime":
             yield from _with_parameters(scene, known, integrals, program, built, name)
-        elif program.evaluator in ("stream", "modes"):
+        elif program.evaluator in ("stream", "modes", "mode_sets"):
             for stream in run_streams(scene, known, program, built, taus):
                 said = f"{model.name}: {name}, {stream.language}: a step returns {stream.status}"
                 wrong = f"{said}, lost is {stream.lost:.1e}" if stream.status else note

@@ -2,14 +2,8 @@
  * Plain C that stands below the text of peaks.c in generated files, which have what stands below the first empty line. */
 #include "peaks.c"
 
-size_t name_model_size(void);
 void name_sets(const name_parameters *parameters, size_t sets, model *m, const real *tau, size_t count, int *status,
                real *estimate, real *peaks, real *values);
-
-size_t name_model_size(void)
-{
-    return sizeof(model);
-}
 
 /* Histories at tau[count], ascending, values[output*count + k]. */
 static void read_all(const model *m, const real *tau, size_t count, real *values)

@@ -35,7 +35,7 @@ _CHECKED, _FINER = 40, 8  # instants of a self-test, whose values are so many ti
 _ULPS = 16 * 2.0**-53  # by which a step may differ from the spacing
 _ANY, _NOT_NEGATIVE, _POSITIVE = 0, 1, 2
 _REMEDY = {
-    "gradients": "take differences of models that are built with other numbers",
+    "gradients": "write wavesym.model(scene, [...]).gradients(tau) in Python",
     "batch": "build one model after the other",
     "misfit": "sum up what `sample` gives less the data",
     "bound": "write wavesym.model(scene, [...]).bounds() in Python",
@@ -79,6 +79,8 @@ class ModeSetsTables:
 
     parameters: ModeParameters
     streamed: bool = False
+    doublings: int = 0
+    """How often there are twice as many modes as the scene's own numbers need, for others that need more."""
 
     @property
     def _network(self) -> Network:
@@ -94,6 +96,11 @@ class ModeSetsTables:
         free = self._stiffness.points
         held = [n for n in range(len(self._network.points)) if n not in self._stiffness.rows]
         return {point: place for place, point in enumerate([*free, *held])}
+
+    @property
+    def found(self) -> int:
+        """How many modes there are."""
+        return min(self.parameters.fewest << self.doublings, self.parameters.like.most)
 
     @cached_property
     def amplitudes(self) -> SampledAmplitudes:
@@ -159,11 +166,11 @@ class ModeSetsTables:
         return replace(made, outputs=outputs, reference=reference)
 
     def _constants(self) -> dict[str, float]:
-        parameters, like, model = self.parameters, self.parameters.like, self.parameters.model
+        like, model = self.parameters.like, self.parameters.model
         network, stiffness = self._network, self._stiffness
         damping = model.damping
         rayleigh = damping.modes if damping and damping.modes else (0, 0)
-        found, loads, outputs = parameters.fewest, len(like.drivers), len(model.probes)
+        found, loads, outputs = self.found, len(like.drivers), len(model.probes)
         spacing, tau_max = nearest(self.amplitudes.step), model.horizon()
         whole = int(tau_max / spacing + 5e-10)
         starts = self._starts
@@ -251,6 +258,26 @@ class ModeSetsTables:
         return starts["mass" if field == "mass" else "spring"] + self._places[int(last)]
 
     def _tables(self) -> Tables:
+        like, amplitudes = self.parameters.like, self.amplitudes
+        spacing = nearest(amplitudes.step)
+        return {
+            "value_of_scene": tuple(self._values()),
+            **self._parameter_tables(),
+            **self.layout,
+            "rigid": tuple(self._rigid()),
+            "is_zero": tuple(map(int, self.parameters.zero_outputs)),
+            "group_moves": tuple(
+                int(any(output.order for output in like.outputs[first : first + LANES]))
+                for first in range(0, len(like.outputs), LANES)
+            ),
+            "amplitude_load": amplitudes.loads,
+            "in_step": tuple(float(np.nextafter(rough.in_step / spacing, np.inf)) for rough in amplitudes.rough),
+            "sample": tuple(amplitudes.samples.T.ravel().tolist()),
+        }
+
+    @cached_property
+    def layout(self) -> Tables:
+        """All that is neither a number of a part nor a sample: what hangs on what, and where outputs and loads are."""
         network, places, rows = self._network, self._places, len(self._stiffness.points)
 
         def coupling(left: int, right: int) -> int:
@@ -260,8 +287,6 @@ class ModeSetsTables:
         bars = [(places[bar.left], places[bar.right]) for bar in network.bars]
         links = [(places[link.left], places[link.right]) for link in network.links]
         return {
-            "value_of_scene": tuple(self._values()),
-            **self._parameter_tables(),
             "parent": tuple(-1 if row is None else row for row in self._stiffness.parents),
             "beside": tuple(self._beside()),
             **self._bar_tables(),
@@ -274,9 +299,9 @@ class ModeSetsTables:
             "link_right": tuple(right for _, right in links),
             "link_ratio": tuple(nearest(link.ratio) for link in network.links),
             "link_up": tuple(coupling(*pair) for pair in links),
-            "rigid": tuple(self._rigid()),
             **self._output_tables(),
-            **self._load_tables(),
+            "load_place": tuple(places[each.point] for each in self.parameters.like.drivers),
+            "load_gain": tuple(nearest(each.gain) for each in self.parameters.like.drivers),
         }
 
     def _parameter_tables(self) -> Tables:
@@ -330,23 +355,7 @@ class ModeSetsTables:
             "output_side": tuple(0 if end is None else end.side for end in ends),
             "output_force": tuple(map(int, forces)),
             "output_scale": tuple(map(nearest, scales)),
-            "is_zero": tuple(map(int, self.parameters.zero_outputs)),
-            "group_moves": tuple(
-                int(any(output.order for output in like.outputs[first : first + LANES]))
-                for first in range(0, len(like.outputs), LANES)
-            ),
             "first_term": firsts(len(output.points) for output in like.outputs),
             "term_place": tuple(place for place, _ in terms),
             "term_weight": tuple(nearest(weight) for _, weight in terms),
-        }
-
-    def _load_tables(self) -> Tables:
-        like, amplitudes = self.parameters.like, self.amplitudes
-        spacing = nearest(amplitudes.step)
-        return {
-            "load_place": tuple(self._places[each.point] for each in like.drivers),
-            "load_gain": tuple(nearest(each.gain) for each in like.drivers),
-            "amplitude_load": amplitudes.loads,
-            "in_step": tuple(float(np.nextafter(rough.in_step / spacing, np.inf)) for rough in amplitudes.rough),
-            "sample": tuple(amplitudes.samples.T.ravel().tolist()),
         }

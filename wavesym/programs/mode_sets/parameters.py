@@ -11,10 +11,10 @@ A wave takes sqrt(rod_mass/stiffness) through a rod: marches cannot vary that, m
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from itertools import count
 
 import numpy as np
 from flint import fmpq
@@ -25,13 +25,13 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Network
 from wavesym.mechanics.parameters import ModelParameter, PartParameters, describe_part
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.programs.mode_sets.modes import ModeSets, enough_modes, generic_zeros
-from wavesym.programs.mode_sets.network import Columns, double, stack_networks
 from wavesym.programs.modes.loads import Numbers
-from wavesym.programs.modes.projection import ModalOutput
+from wavesym.programs.modes.truncation import truncated
 from wavesym.programs.modes.undamped import UndampedModes
 from wavesym.programs.request import refuse_others
 from wavesym.programs.runtime.network import PLAIN, ParameterUnit, RuntimeField, field_of, unit_of_load
+
+_MORE = 1.1  # times as many modes as one set of numbers needs
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,11 @@ class ModeParameters:
 
     @cached_property
     def fewest(self) -> int:
-        """The modes to begin with. ToleranceError where no number of them is enough."""
-        return enough_modes(self.model)
+        """As many modes as the model needs for its tolerance, and some more for others like it.
+
+        UnservedError, ToleranceError as for `modal_system`.
+        """
+        return min(int(_MORE * truncated(self.like).count) + 1, self.like.most)
 
     def numbers(self, given: Numbers) -> dict[str, Numbers]:
         """The numbers of each field without units, (sets, numbers)."""
@@ -61,44 +64,21 @@ class ModeParameters:
             for field, part in zip(self.fields, rows, strict=True)
         }
 
-    def refused(self, given: Numbers) -> Any:
-        """The sets with a number that is not finite, or not positive where it has to be."""
-        bad = ~np.isfinite(given).all(axis=1)
-        for name, part in self.numbers(given).items():
-            least = -np.inf if name == "load" else 0.0
-            bad |= (part < least if name == "damping" else part <= least).any(axis=1)
-        return bad
-
-    def mode_sets(self, given: Numbers) -> ModeSets:
-        """The modes of sets of numbers, (sets, numbers), none of which are refused."""
-        network = self._columns(self.numbers(given))
-        outputs = [
-            self._output(network, output, probe.quantity, probe.factor)
-            for output, probe in zip(self.like.outputs, self.model.probes, strict=True)
-        ]
-        drivers = [replace(each, gain=double(each.gain)) for each in self.like.drivers]
-        return ModeSets(self.like, network, outputs, drivers, self.zero_outputs, self.fewest)
-
     @cached_property
     def zero_outputs(self) -> tuple[bool, ...]:
-        """The outputs that are 0 whatever the numbers."""
-        return generic_zeros(self.like)
-
-    def damping(self, given: Numbers) -> list[Damping | None]:
-        """That of each set."""
-        own, numbers = self.model.damping, self.numbers(given)
-        if "damping" not in numbers:
-            return [own] * len(given)
-        modes = own.modes if own else None
-        return [Damping(tuple(map(rational, row)), modes) for row in numbers["damping"].tolist()]
-
-    def factors(self, given: Numbers) -> Numbers | None:
-        """What each of the loads' `amplitudes` is multiplied by, (sets, amplitudes); None where they are not given."""
-        return self.numbers(given).get("load")
+        """The outputs that are 0 whatever the numbers: with the model's own, and with others that do not fit."""
+        own = self.like.zero_outputs
+        if not any(own):
+            return own
+        other = UndampedModes(replace(self.model, network=_draw_network(self.model.network), preset=None))
+        return tuple(a and b for a, b in zip(own, other.zero_outputs, strict=True))
 
     def exact(self, given: Numbers) -> Model:
         """The model with one set of numbers, (numbers,), which are exact but for the delay of a rod: a root."""
-        numbers = self.numbers(given[None])
+        numbers, damping = self.numbers(given[None]), self.model.damping
+        if "damping" in numbers:
+            ratios = tuple(map(rational, numbers["damping"][0].tolist()))
+            damping = Damping(ratios, damping.modes if damping else None)
         values = {
             label: rational(value)
             for field in self.fields
@@ -122,53 +102,9 @@ class ModeParameters:
             self.model,
             network=replace(network, bars=bars),
             loads=loads,
-            damping=self.damping(given[None])[0],
+            damping=damping,
             preset=None,
         )
-
-    def _columns(self, numbers: Mapping[str, Numbers]) -> Network:
-        """The cut network with columns of numbers."""
-        cut, sets = self.like.cut, len(next(iter(numbers.values())))
-        labels = {
-            label: numbers[field.name][:, k : k + 1] for field in self.fields for k, label in enumerate(field.labels)
-        }
-        base = stack_networks([cut.network])
-        whole: Columns = np.ones((sets, 1))
-        bars = []
-        for k, bar in enumerate(self.model.network.bars):
-            stiffness = labels.get(f"stiffness_bar_{k}", nearest(bar.impedance / bar.delay))
-            mass = labels.get(f"rod_mass_bar_{k}", nearest(bar.impedance * bar.delay))
-            last = cut.firsts[k] + len(cut.places[k])
-            for number in range(cut.firsts[k], last + 1):
-                piece = cut.network.bars[number]
-                delay = whole * nearest(piece.length / bar.length) * np.sqrt(mass / stiffness)
-                length = whole * nearest(piece.length)
-                impedance = whole * np.sqrt(mass * stiffness)
-                bars.append(replace(base.bars[number], length=length, speed=length / delay, impedance=impedance))
-        points = (
-            replace(
-                point,
-                mass=whole * labels.get(f"mass_point_{k}", point.mass),
-                stiffness=whole * labels.get(f"stiffness_point_{k}", point.stiffness),
-            )
-            for k, point in enumerate(base.points)
-        )
-        links = (
-            replace(link, stiffness=whole * labels.get(f"stiffness_link_{k}", link.stiffness))
-            for k, link in enumerate(base.links)
-        )
-        return Network(tuple(points), tuple(bars), tuple(links))
-
-    @staticmethod
-    def _output(network: Network, output: ModalOutput, quantity: str, factor: fmpq) -> ModalOutput:
-        """An output with columns of weights."""
-        points = {point: double(weight) for point, weight in output.points.items()}
-        if output.slope is None:
-            return replace(output, points=points)
-        end = output.slope[1]
-        bar = network.bars[end.bar]
-        weight = double(factor) * (bar.impedance if quantity == "force" else 1 / bar.speed)
-        return replace(output, slope=(weight, end))
 
 
 def mode_parameters(
@@ -236,3 +172,13 @@ def _rod(bar: Bar, stiffness: fmpq | None, mass: fmpq | None) -> Bar:
     m = bar.impedance * bar.delay if mass is None else mass
     delay, impedance = (rational(float(np.sqrt(nearest(square)))) for square in (m / k, m * k))
     return replace(bar, speed=bar.length / delay, impedance=impedance)
+
+
+def _draw_network(network: Network) -> Network:
+    """A network of the same pattern with other numbers, which do not fit one another."""
+    factors = (fmpq(10 * k * k + 3, 7 * k + 1) for k in count(1))
+    return Network(
+        tuple(replace(p, mass=p.mass * next(factors), stiffness=p.stiffness * next(factors)) for p in network.points),
+        tuple(replace(b, impedance=b.impedance * next(factors), speed=b.speed * next(factors)) for b in network.bars),
+        tuple(replace(link, stiffness=link.stiffness * next(factors)) for link in network.links),
+    )
