@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from flint import ctx
 
-from tests.support.cornered import damped_chain, rubbing_masses, seeded, sliding_chain, touching_chain
+from tests.support.cornered import breaking_chain, damped_chain, rubbing_masses, seeded, sliding_chain, touching_chain
 from tests.support.judging import BITS, CLOSE, wrong_events, wrong_values
 from tests.support.piecewise import PiecewiseChain
 from tests.support.series import Unclear
@@ -40,6 +40,9 @@ SLIDING = (0, 12, 41, 42, 45, 51, 74, 104)
 
 # friction beside springs that yield, engage, and other friction
 RUBBING = (4, 38, 49, 51)
+
+# a mass that breaks away at once, at a front, turning round; masses on a belt and beside rods
+BREAKING = (3, 9, 11, 33, 38)
 
 
 def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None, first: str = "-1") -> list[str]:
@@ -106,6 +109,27 @@ def test_what_rubs_on_another_part_slips_and_sticks_as_it_should(seed: int) -> N
 @pytest.mark.parametrize("seed", RUBBING)
 def test_friction_beside_springs_slips_and_sticks_as_it_should(seed: int) -> None:
     assert wrong(rubbing_masses(seed)) == []
+
+
+@pytest.mark.parametrize("seed", BREAKING)
+def test_friction_that_bears_more_at_rest_breaks_away_as_it_should(seed: int) -> None:
+    assert wrong(breaking_chain(seed), first="0") == []
+
+
+def test_a_limit_at_rest_that_is_slightly_off_is_seen() -> None:
+    table = breaking_chain(BREAKING[0])
+    parts = [
+        {**part, "breakaway": str(Fraction(part["breakaway"]) + Fraction(1, 10**16))} if "breakaway" in part else part
+        for part in table["system"]["parts"]
+    ]
+    assert wrong(table, table | {"system": {"type": "chain", "parts": parts}}, first="0")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", range(0, 100, 20))
+def test_drawn_friction_with_two_limits_does_as_it_should(start: int) -> None:
+    for seed in range(start, start + 20):
+        assert wrong(breaking_chain(seed), first="0") == [], seed
 
 
 @pytest.mark.slow

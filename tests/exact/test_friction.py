@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import random
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from flint import arb, fmpq
+from flint import arb, ctx, fmpq
 
 import wavesym
 from wavesym.errors import WavesymError
@@ -274,3 +275,66 @@ def test_a_mass_on_a_belt_goes_with_it_until_its_spring_is_as_strong() -> None:
     assert (sticks.kind, slips.kind) == ("sticks", "slips")
     assert sticks.double == pytest.approx(np.arcsin(0.8), rel=1e-15)  # (1/4) sin t = 1/5
     assert slips.double == pytest.approx(np.arcsin(0.8) + 0.75, rel=1e-15)  # from (1/4) (1 - 3/5) on to 1/4
+
+
+def breaking(parts: list[object], until: int, load: list[object] | None = None) -> wavesym.Result:
+    output = {"until": until, "velocity": ["m"], "displacement": ["m"]}
+    system = {"type": "chain", "parts": parts}
+    return wavesym.run(wavesym.Scene(name="breaking", system=system, load=load or [], output=output))
+
+
+@pytest.mark.parametrize("flipped", [False, True])
+def test_a_mass_on_a_belt_sticks_and_slips_for_ever(flipped: bool) -> None:
+    """Its cycle in closed form: it sticks while the spring gets longer by 2 D, D = (R_s - R_k)/K, and slips for
+    (2/w) (pi - atan(D w/V))."""
+    speed = {"velocity": "-1/5" if flipped else "1/5"}
+    rubs, belt = {"friction": "1/4", "breakaway": "3/5"}, {"motion": "velocity", **speed}
+    parts = ["fixed", {"spring": 4}, {"mass": 1, "name": "m", **speed}, rubs, belt]
+    events = breaking(parts[::-1] if flipped else parts, 13).events
+    assert [event.kind for event in events] == ["slips", "sticks"] * 3 + ["slips"]
+    with ctx.workprec(300):
+        stick = arb(fmpq(7, 8))
+        for before, after in pairwise(events):
+            known = after.tau - before.tau
+            assert known.overlaps(arb.pi() - stick.atan() if after.kind == "sticks" else stick)
+            assert known.rad() < arb(2) ** -200
+
+
+@pytest.mark.parametrize(
+    ("velocity", "load", "expected", "last"),
+    [
+        (0, {"times": [0], "ramps": [1]}, [("slips", "2")], 5),  # v' = tau - 1/2 from 2 to 4
+        (1, {"times": [0, 3], "steps": ["-3/2", "-1"]}, [("sticks", "1/2"), ("slips", "3")], -2),
+        (1, {"times": [0], "steps": ["-5/2"]}, [("slips", "1/3")], "-22/3"),
+    ],
+)
+def test_a_block_breaks_away_at_its_limit_at_rest_and_turns_only_beyond_it(
+    velocity: int, load: dict[str, object], expected: list[tuple[str, str]], last: object
+) -> None:
+    """Rational instants are exact. One limit of 1/2 would not hold the second block at all."""
+    block = {"mass": 1, "name": "m", "velocity": velocity, "friction": "1/2", "breakaway": 2}
+    result = breaking([block], 4, [{"at": "m", **load}])
+    assert_events(result, [(kind, arb(fmpq(*Fraction(tau).as_integer_ratio()))) for kind, tau in expected])
+    assert result["velocity@m"][-1] == pytest.approx(float(Fraction(str(last))), rel=1e-15)
+
+
+def test_a_limit_at_rest_that_is_that_of_sliding_changes_nothing() -> None:
+    parts = ["fixed", {"spring": 1}, {"mass": 1, "velocity": 10, "name": "m", "friction": 1}]
+    one, same = breaking(parts, 30), breaking([*parts[:2], parts[2] | {"breakaway": 1}], 30)
+    assert [event.double for event in one.events] == [event.double for event in same.events]
+    assert np.array_equal(one["displacement@m"], same["displacement@m"])
+
+
+@pytest.mark.parametrize(
+    ("held", "message"),
+    [
+        ("{ joint = true, friction = 1, breakaway = 2 }", "more than one thing"),
+        ("{ mass = 1, friction = 1, breakaway = 2 }, { spring = 1, yield = 1 }, { mass = 1 }", "more than one thing"),
+        ("{ mass = 1 }, { friction = 1, breakaway = 2 }, { mass = 1 }", "more than one thing"),
+        ("{ mass = 1, friction = 2, breakaway = 1 }", "less than friction"),
+        ("{ mass = 1, breakaway = 1 }", "write friction = R"),
+    ],
+)
+def test_refused_limits_at_rest(tmp_path, held, message):
+    with pytest.raises(WavesymError, match=message):
+        scene(tmp_path, RODS.format(held=held))

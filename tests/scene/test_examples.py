@@ -166,3 +166,12 @@ def test_a_driven_pile_gives_its_energy_to_the_soil() -> None:
     assert [link.law for link in soil] == ["spring", "spring"]
     assert {link.between for link in soil} == {("toe", "12000 mm+"), ("ground", "shaft")}
     assert 0 < sum(link.dissipated.value for link in soil) < 16_000
+
+
+def test_a_bit_breaks_away_when_it_is_wound_up_and_turns_as_far_as_the_table() -> None:
+    """It slips at 8 kN m, by a front (tau odd, as the table begins at 0) or between them, and never turns back."""
+    scene = Scene.from_toml(CORNERS / "drill_string.toml")
+    events = [event for event in wavesym.run(scene).events if event.kind == "slips"]
+    assert sum(event.double % 2 == 1 for event in events) == 5
+    assert len(events) == 6
+    assert wavesym.summary(scene)["velocity@bit"].min.value == 0

@@ -183,7 +183,7 @@ def laws(table: Mapping[str, Any]) -> list[tuple[str, Law]]:
     """The laws that have corners of a part, each with the name of what has it."""
     found: list[tuple[str, Law]] = []
     if table.get("friction"):
-        found.append(("friction", Rubbing("sticks", exact(table["friction"]))))
+        found.append(("friction", Rubbing("sticks", exact(table["friction"]), exact(table.get("breakaway", 0)))))
     spring, dashpot, gap = exact(table.get("spring", 0)), exact(table.get("dashpot", 0)), table.get("gap", 0)
     if "yield" in table:
         limits = table["yield"] if isinstance(table["yield"], list) else [table["yield"]] * 2

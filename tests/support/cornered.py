@@ -63,6 +63,32 @@ def seeded(seed: int, kinds: Sequence[str] = LAWS) -> dict[str, Any]:
     return _scene(choose, parts, choose([3, "7/2", "2.000000001"]))
 
 
+def breaking_chain(seed: int) -> dict[str, Any]:
+    """One with friction that bears more at rest, of masses on the ground, between rods and springs; or on a belt."""
+    choose = Random(seed).choice
+    if choose([0, 0, 1]):
+        belt = {"motion": "velocity", "name": "n0", "velocity": choose([1, "1/4", "-0.3"])}
+        parts: list[Any] = [belt, _breaking(choose), _mass(choose, 1) | {"dashpot": 0}]
+    else:
+        parts = [
+            choose(["fixed", _mass(choose, 0), {"motion": "velocity", "name": "n0", "velocity": choose([1, "1/4"])}])
+        ]
+        parts += [choose([_rod(choose, 0), {"spring": choose(SPRINGS)}])]
+        parts.append(_mass(choose, 1) | {"dashpot": choose([0, "1/5"])} | _breaking(choose))
+    for number in range(2, choose([2, 3, 4])):
+        parts += [_rod(choose, 0), _mass(choose, number) | {"dashpot": 0} | choose([{}, _breaking(choose)])]
+    parts += choose([[], [{"spring": choose(SPRINGS)}, "fixed"], [_rod(choose, 0)], [_rod(choose, 0), "fixed"]])
+    return _scene(choose, parts, choose([4, 6, "7.000000001"]))
+
+
+def _breaking(choose: Choose) -> dict[str, Any]:
+    limit = choose(LIMITS[1:-1])
+    return {
+        "friction": limit,
+        "breakaway": str(Fraction(str(limit)) * Fraction(choose(["1", "1.001", "3/2", "2", "4"]))),
+    }
+
+
 def touching_chain(seed: int) -> dict[str, Any]:
     """One with contacts in the joints of its springs: a rod strikes what stands on springs, and is struck."""
     choose = Random(seed).choice

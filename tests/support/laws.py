@@ -82,9 +82,13 @@ class Touching(Law):
 
 @dataclass
 class Rubbing(Law):
-    """Coulomb friction: sticks while that takes no more than a limit, else slides with it against the rate."""
+    """Coulomb friction: sticks while that takes no more than a limit, else slides with it against the rate.
+
+    Where it has `more`, it sticks while that takes no more than this.
+    """
 
     limit: fmpq
+    more: fmpq = field(default_factory=fmpq)
 
     def branches(self, stretch: arb, rate: arb | None) -> Iterator[Branch]:
         if rate is None or is_zero(rate):
@@ -95,7 +99,8 @@ class Rubbing(Law):
 
     def guards(self, branch: Branch, stretch: arb_poly, rate: arb_poly, pull: arb_poly) -> list[arb_poly]:
         if branch.held:
-            return [arb(self.limit) - pull, pull + arb(self.limit)]
+            most = arb(max(self.limit, self.more))
+            return [most - pull, pull + most]
         return [rate * branch.sign]
 
     def event(self, branch: Branch) -> str:

@@ -11,7 +11,7 @@ import pytest
 from flint import fmpq
 
 from tests.support.assembly import exact
-from tests.support.cornered import damped_chain, sliding_chain, touching_chain
+from tests.support.cornered import breaking_chain, damped_chain, sliding_chain, touching_chain
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
@@ -50,6 +50,13 @@ def test_drawn_chains_pass_every_check(seed: int) -> None:
         outcomes = judged(check(seen))
         assert outcomes
         assert all(outcome.passed for outcome in outcomes)
+
+
+@pytest.mark.parametrize("seed", [9, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (11, 23, 38))])
+def test_friction_that_bears_more_at_rest_passes_every_check(seed: int) -> None:
+    seen = known(breaking_chain(seed))
+    for check in CHECKS:
+        assert all(outcome.passed for outcome in judged(check(seen)))
 
 
 @pytest.mark.parametrize("seed", [16, 42])
@@ -119,6 +126,16 @@ FALSE = [
 @pytest.mark.parametrize(("table", "key"), FALSE)
 def test_another_law_is_seen_by_both_integrators(table: dict[str, Any], key: str, check: Any) -> None:
     assert not all(outcome.passed for outcome in check(known(*changed(table, key))))
+
+
+@pytest.mark.parametrize("check", [integrations.midpoints, integrations.differences])
+def test_another_limit_at_rest_is_seen_by_both_integrators(check: Any) -> None:
+    parts = [{"motion": "velocity", "velocity": "1/4"}, {"rod": 1}, {"mass": 1, "name": "m", "velocity": 0}]
+    parts[2] |= {"friction": "1/2", "breakaway": "0.99"}
+    scene = {"name": "wound", "system": {"type": "chain", "parts": parts}}
+    table, other = changed(scene | {"output": {"until": 8, "tolerance": 1e-9, "velocity": ["m"]}}, "breakaway")
+    assert all(outcome.passed for outcome in check(known(table)))
+    assert not all(outcome.passed for outcome in check(known(table, other)))
 
 
 def test_an_event_that_is_told_late_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:

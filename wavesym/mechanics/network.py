@@ -102,7 +102,8 @@ class Link:
 
     A `contact` has neither: it pushes and never pulls, and is open while its two sides are apart, at tau = 0 by `gap`.
     Where it has `friction` R it has neither, too: its sides stick while it takes no more than R to hold them, else it
-    takes R against their sliding (Coulomb). With a `side` its spring only pulls (1) or only pushes (-1), where it is
+    takes R against their sliding (Coulomb); where `breakaway` is not 0, it holds them while it takes no more than that,
+    which is larger. With a `side` its spring only pulls (1) or only pushes (-1), where it is
     longer, or shorter, than at tau = 0 by more than `gap`. With `limits` its spring yields: the largest pull and push.
     `preload` is what a spring pulls at tau = 0, where no gap says it. `place` is what a scene calls it.
     """
@@ -119,6 +120,7 @@ class Link:
     side: int = 0
     limits: tuple[fmpq, fmpq] | None = None
     preload: fmpq = _ZERO
+    breakaway: fmpq = _ZERO
 
     @property
     def has_corner(self) -> bool:

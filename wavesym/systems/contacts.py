@@ -64,6 +64,14 @@ def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], writte
                     *written[link.right],
                     "friction",
                 )
+        for link in rubbing:
+            if link.breakaway != 0 and (light or len(corners) > 1 or not _has_motion(points, link)):
+                raise refusal(
+                    "of what is no mass alone on the ground or on a motion: without mass, or beside another law with a "
+                    "corner, more than one thing could happen as it breaks away; write a mass, with rods to other laws",
+                    *written[link.right],
+                    "breakaway",
+                )
         for number in _joining_two(rubbing, [point.motion is not None for point in points]):
             raise refusal(
                 "of parts that other friction, or what moves as is given, may hold as well, so that nothing says what "
@@ -79,6 +87,11 @@ def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], writte
                     *written[link.right],
                     "friction",
                 )
+
+
+def _has_motion(points: Sequence[Point], link: Link) -> bool:
+    """Whether one side of a link moves as is given."""
+    return any(points[end].motion is not None for end in (link.left, link.right))
 
 
 def _damps_massless(points: Sequence[Point], links: Iterable[Link], number: int) -> bool:

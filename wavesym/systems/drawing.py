@@ -224,7 +224,8 @@ class _Pen:
         elif part.spring or part.dashpot:
             self.links.append(strained)
         if part.friction:
-            self.links.append(Link(left, right, ratio=rational(ratio), friction=rational(part.friction)))
+            friction, breakaway = rational(part.friction), rational(part.larger_at_rest)
+            self.links.append(Link(left, right, ratio=rational(ratio), friction=friction, breakaway=breakaway))
         if number in self.places:
             self.places |= dict.fromkeys(range(number, len(self.links)), self.places[number])
 

@@ -89,6 +89,7 @@ class SpringLaw(SceneTable):
     spring: NotNegative = Fraction(0)
     dashpot: NotNegative = Fraction(0)
     friction: NotNegative = Field(Fraction(0), description="what holds it, at most, and acts against its sliding")
+    breakaway: NotNegative = Field(Fraction(0), description="what holds it at rest, where that is more than friction")
     only: Annotated[Any, PlainValidator(read_choice("is not a side", "push", "pull"))] = Field(
         None, description='"push" or "pull": the spring does nothing else'
     )
@@ -99,6 +100,14 @@ class SpringLaw(SceneTable):
         None, alias="yield", description="the largest pull and push, or [pull, push]"
     )
     preload: Exact = Field(Fraction(0), description="what the spring pulls at tau = 0; what it pushes is negative")
+
+    @model_validator(mode="after")
+    def _check_breakaway(self) -> SpringLaw:
+        if self.breakaway and not self.friction:
+            raise refusal("a limit of friction at rest, and there is none; write friction = R too", "breakaway")
+        if 0 < self.breakaway < self.friction:
+            raise refusal("less than friction, which would hold nothing back; write as much or more", "breakaway")
+        return self
 
     @model_validator(mode="after")
     def _check_law(self) -> SpringLaw:
@@ -134,6 +143,11 @@ class SpringLaw(SceneTable):
             pull, push = (pull, Fraction(0)) if self.only == "pull" else (Fraction(0), push)
         if not -push <= self.preload <= pull:
             raise refusal(f"{self.preload} is beyond what the spring can pull, or push; write less of it", "preload")
+
+    @property
+    def larger_at_rest(self) -> Fraction:
+        """What friction bears at rest, where that is more than when it slides; else 0."""
+        return self.breakaway if self.breakaway > self.friction else Fraction(0)
 
     @property
     def has_law(self) -> bool:

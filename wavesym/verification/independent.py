@@ -282,13 +282,21 @@ def _span(part: RodPart | LinkPart | ContactPart) -> Span:
     if isinstance(part, ContactPart):
         return (Link(0, 0, contact=True, gap=rational(part.contact)),)
     held = _springs(part, part.dashpot) if part.spring or part.dashpot else ()
-    held += (Link(0, 0, friction=rational(part.friction)),) if part.friction else ()
+    held += _friction(part)
     if isinstance(part, LinkPart):
         return held
     rod, speed, impedance, velocity, strain = map(
         rational, (part.rod, part.speed, part.impedance, part.velocity, part.strain)
     )
     return (Bar(0, 0, rod, speed, impedance, velocity=velocity, strain=strain), *held)
+
+
+def _friction(part: SpringLaw) -> tuple[Link, ...]:
+    """What rubs beside a part, or at a node."""
+    if part.friction == 0:
+        return ()
+    more = part.breakaway if part.breakaway != part.friction else 0
+    return (Link(0, 0, friction=rational(part.friction), breakaway=rational(more)),)
 
 
 def _springs(part: SpringLaw, dashpot: Fraction) -> tuple[Link, ...]:
@@ -310,9 +318,10 @@ def _point(part: Any, beside: Sequence[Any]) -> Node:
         velocity = part.velocity if part.velocity is not None else rods[0].velocity if rods else 0
         spring = 0 if part.has_law else part.spring
         mass, dashpot, stiffness = map(rational, (getattr(part, "mass", 0), part.dashpot, spring))
-        rubbing = (Link(0, 0, friction=rational(part.friction)),) if part.friction else ()
         sprung = _springs(part, Fraction(0)) if part.has_law else ()
-        return Node(Point(mass, dashpot, stiffness, rational(velocity), name=part.name or ""), (*rubbing, *sprung))
+        return Node(
+            Point(mass, dashpot, stiffness, rational(velocity), name=part.name or ""), (*_friction(part), *sprung)
+        )
     if part == "fixed":
         return Node(Point(fmpq(0), motion="fixed"))
     absorbing = Point(fmpq(0), damping=rational(rods[0].impedance), absorbing=True) if part == "absorbing" else _FREE

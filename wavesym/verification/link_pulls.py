@@ -56,6 +56,7 @@ class _Friction:
     inertia: float
     speed: float = 0.0
     trial: float = 0.0
+    _fastest: float = 0.0
 
     def mean(self, rate: float, _: float, compliance: float, __: float) -> float:
         """Its mean pull in a step, where it would go at a mean `rate` without: less by `compliance` times the pull.
@@ -63,16 +64,17 @@ class _Friction:
         What comes to rest and goes back is pulled one way first, and the other way for the rest of the step.
         """
         most, before = self.law.friction, abs(self.speed)
+        self._fastest = max(self._fastest, before)
         way = 1.0 if self.speed > 0 else -1.0
         held = (rate - self.inertia * self.speed) / compliance  # what keeps it at rest
-        if before == 0:
+        if before == 0 or (self.branch == 0 and before <= _SIGN * self._fastest):
             self.trial = held
             return self.law.limit(held)
         after = 2 * (way * rate - compliance * most) - before
-        self.trial = 2 * most * way
+        self.trial = 2 * self.law.rest * way
         if after >= 0:
             return most * way
-        if abs(held) <= most:
+        if abs(held) <= self.law.rest:
             self.trial = held
             return (rate - self.speed / 2) / compliance
         self.trial = -self.trial

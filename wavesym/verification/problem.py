@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
-from math import inf
+from math import copysign, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -50,14 +50,15 @@ class LinkLaw:
     """Friction, or a spring with a corner, between two points: its pull depends on how much longer it gets.
 
     That is `row` @ displacements; it pulls on the points by `row` transposed. `corner` is its number among the links
-    with corners. Friction takes `friction` either way. A spring has a `stiffness`; with a `side` it acts where it is
-    longer (1) or shorter (-1) by more than `gap`, else it yields at the largest `pull` and `push`, and pulls with its
-    `preload` at first.
+    with corners. Friction takes `friction` either way, at rest up to `rest`. A spring has a `stiffness`; with a `side`
+    it acts where it is longer (1) or shorter (-1) by more than `gap`, else it yields at the largest `pull` and `push`,
+    and pulls with its `preload` at first.
     """
 
     corner: int
     row: Array
     friction: float
+    rest: float
     stiffness: float
     side: int
     gap: float
@@ -70,19 +71,23 @@ class LinkLaw:
         """That of a link that is no contact."""
         link = network.links[network.corners[corner]]
         pull, push = map(nearest, link.limits or (fmpq(0), fmpq(0)))
-        friction, stiffness, gap, preload = map(nearest, (link.friction, link.stiffness, link.gap, link.preload))
-        return cls(corner, opening(network, link), friction, stiffness, link.side, gap, pull, push, preload)
+        rest = max(link.friction, link.breakaway)
+        of_friction = nearest(link.friction), nearest(rest)
+        stiffness, gap, preload = map(nearest, (link.stiffness, link.gap, link.preload))
+        return cls(corner, opening(network, link), *of_friction, stiffness, link.side, gap, pull, push, preload)
 
     @property
     def limits(self) -> tuple[float, float]:
         """Between which its pull is."""
         if self.side:
             return (0.0, inf) if self.side > 0 else (-inf, 0.0)
-        return (-self.friction, self.friction) if self.friction else (-self.push, self.pull)
+        return (-self.rest, self.rest) if self.friction else (-self.push, self.pull)
 
     def limit(self, pull: float) -> float:
-        """What it pulls where it would pull so much."""
+        """What it pulls where it would pull so much; friction, from rest."""
         least, most = self.limits
+        if self.friction and not least <= pull <= most:
+            return copysign(self.friction, pull)
         return min(max(pull, least), most)
 
     @property

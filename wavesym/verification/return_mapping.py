@@ -7,7 +7,6 @@ Nothing is known of events. Fronts stay as sharp as they are, and outputs are re
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -38,7 +37,7 @@ class DifferenceGrid:
         problem, h = self.problem, float(self.step)
         grid = Grid(problem, np.array([int(delay / self.step) for delay in problem.delays]), h)
         steps = int(instants[-1]) + 1
-        motion = fields(grid, point_steps(problem, h, steps), _ReturnMapping(problem.laws).settle)
+        motion = fields(grid, point_steps(problem, h, steps), _ReturnMapping(problem).settle)
         stencils = [grid.stencil(reading) for reading in problem.readings]
         kept = np.unique(np.concatenate([places for places, _ in stencils]))
         history, largest, rows = np.zeros((steps + 1, len(kept))), 0.0, []
@@ -64,19 +63,28 @@ class DifferenceGrid:
 class _ReturnMapping:
     """What links pull, step by step: that of a spring which yields goes on from its pull a step before."""
 
-    def __init__(self, laws: Sequence[LinkLaw]) -> None:
-        self._laws = laws
+    def __init__(self, problem: CornerProblem) -> None:
+        self._laws = laws = problem.laws
+        self._ways = [float(np.sign(law.row @ problem.velocity)) for law in laws]
         self._longer, self._pulls = np.zeros(len(laws)), np.array([law.preload for law in laws])
 
     def settle(self, after: Array, influence: Array, now: Array, before: Array) -> Array:
         """Displacements with what each link pulls, within its limits."""
         for number, law in enumerate(self._laws):
             if law.friction:
-                trial = float(law.row @ (after - before) / (law.row @ influence @ law.row))
+                held = float(law.row @ (after - before) / (law.row @ influence @ law.row))
+                pull = self._rub(number, law, held)
             else:
-                trial = self._trial(number, law, float(law.row @ now))
-            after -= influence @ law.row * law.limit(trial)
+                pull = law.limit(self._trial(number, law, float(law.row @ now)))
+            after -= influence @ law.row * pull
         return after
+
+    def _rub(self, number: int, law: LinkLaw, held: float) -> float:
+        """What friction pulls where so much would hold it: it slides on the same way, or comes to rest at first."""
+        way = self._ways[number]
+        on = way != 0 and way * held > law.friction
+        self._ways[number] = way if on else 0.0 if abs(held) <= law.rest else float(np.sign(held))
+        return way * law.friction if on else law.limit(held)
 
     def _trial(self, number: int, law: LinkLaw, longer: float) -> float:
         """What a spring would pull without limits."""

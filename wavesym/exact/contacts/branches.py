@@ -15,21 +15,19 @@ from typing import NamedTuple
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
+from wavesym.exact.contacts.crossing import sign_after
+from wavesym.exact.contacts.guards import (
+    BranchEnd,
+    begins_bearable,
+    begins_to_grow,
+    is_not_negative,
+    lasts_until,
+    spread,
+    value_range,
+)
 from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, add_terms
 from wavesym.numbers.doubles import middle
-
-
-class BranchEnd(NamedTuple):
-    """How long a branch certainly lasts; and how far off its end may be, in time, unless that is exact.
-
-    Or, how long it is taken to last, which is beyond its end by less than `late`.
-    """
-
-    length: fmpq
-    spread: fmpq | None
-    late: fmpq = fmpq(0)
 
 
 class Branch(NamedTuple):
@@ -134,30 +132,30 @@ class Contact(Corner):
     def begins(self, moved: JointStretch) -> bool:
         """Whether its force is not negative, or its gap grows, just after the start."""
         if self.link in moved.closed:
-            return _begins_bearable(moved.pushes[self.link])
-        return self.wide or _begins_to_grow(moved.rates[self.link])
+            return begins_bearable(moved.pushes[self.link])
+        return self.wide or begins_to_grow(moved.rates[self.link])
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long its force, or its gap, is certainly not negative."""
         if self.link in moved.closed:
-            return _positive(moved.pushes[self.link], low, moved.length, resolution)
+            return lasts_until(moved.pushes[self.link], low, moved.length, resolution)
         rate = moved.rates[self.link]
         if self.exact is not None and rate.exact is not None:
             gap = Enclosure.from_polynomial(rate.exact.integral() + self.exact)
-            return _positive(gap, low, moved.length, resolution)
+            return lasts_until(gap, low, moved.length, resolution)
         if not self.wide and low == 0:  # it opens: as long as it grows it is open
-            grows = _positive(rate, low, moved.length, resolution)
+            grows = lasts_until(rate, low, moved.length, resolution)
             if grows is None or grows.length == 0:
                 return grows
             low = grows.length
         error = (rate.error * arb(moved.length)).upper()
-        return _positive(Enclosure(rate.polynomial.integral() + self.gap, error), low, moved.length, resolution)
+        return lasts_until(Enclosure(rate.polynomial.integral() + self.gap, error), low, moved.length, resolution)
 
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether its branch is certainly right on all of a short stretch."""
         if self.link in moved.closed:
-            return _is_not_negative(moved.pushes[self.link], length)
-        return bool(self.gap + arb(length) * _range(moved.rates[self.link], length) > 0)
+            return is_not_negative(moved.pushes[self.link], length)
+        return bool(self.gap + arb(length) * value_range(moved.rates[self.link], length) > 0)
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Go to the end of a stretch on which its branch was right, or of a short one on which it was left open."""
@@ -178,8 +176,8 @@ class Contact(Corner):
             self.gap, self.exact = _gap_within(gap), None
 
     def _advance_vague(self, moved: JointStretch, length: fmpq) -> None:
-        h, rate = arb(length), _range(moved.rates[self.link], length)
-        if rate < 0 and _range(moved.pushes[self.link], length) > 0 and self.gap + h * rate < 0:
+        h, rate = arb(length), value_range(moved.rates[self.link], length)
+        if rate < 0 and value_range(moved.pushes[self.link], length) > 0 and self.gap + h * rate < 0:
             self.gap, self.exact = arb(0), fmpq(0)
         else:
             self.gap, self.exact = _gap_within(self.gap + h * rate.union(arb(0))), None
@@ -231,25 +229,29 @@ class Friction(Corner):
             return (1,) if self.rate > 0 else (-1,)
         return (1, -1)
 
+    def meet(self, rate: arb) -> None:
+        """Know how fast it slides on what moves as is given, which may jump."""
+        self.rate = rate
+
     def begins(self, moved: JointStretch) -> bool:
         """Whether its force is within its limits, or it goes the way it slides, just after the start."""
         if self.link in moved.closed:
-            return all(map(_begins_bearable, self._margins(moved)))
+            return all(map(begins_bearable, self._margins(moved)))
         forward = self._forward(moved)
         if self.inert and self.closed and forward.begins is None:
             return sign_after(_middles(forward), fmpq(0)) > 0
-        return _begins_to_grow(forward)
+        return begins_to_grow(forward)
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long these are certainly not negative; what is inert sticks until its force is beyond its limits."""
         if self.link not in moved.closed:
             forward = self._forward(moved)
             if not self.inert or forward.begins is not None:
-                return _positive(forward, low, moved.length, resolution)
-            end = _positive(_without_start(forward), low, moved.length, resolution)
-            return end and BranchEnd(end.length, _spread(forward, end.length))
+                return lasts_until(forward, low, moved.length, resolution)
+            end = lasts_until(_without_start(forward), low, moved.length, resolution)
+            return end and BranchEnd(end.length, spread(forward, end.length))
         guards = self._margins(moved)
-        ends = [end for guard in guards if (end := _positive(guard, low, moved.length, resolution)) is not None]
+        ends = [end for guard in guards if (end := lasts_until(guard, low, moved.length, resolution)) is not None]
         end = min(ends, key=lambda end: end.length, default=None)
         if end is None or not self.inert or (end.spread is None and self.link in moved.known):
             return end
@@ -260,8 +262,8 @@ class Friction(Corner):
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether they are on all of a short stretch."""
         if self.link in moved.closed:
-            return self.inert or all(_is_not_negative(margin, length) for margin in self._margins(moved))
-        return bool(_range(self._forward(moved), length) > 0)
+            return self.inert or all(is_not_negative(margin, length) for margin in self._margins(moved))
+        return bool(value_range(self._forward(moved), length) > 0)
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Know how fast it slides at the end of a stretch."""
@@ -303,76 +305,6 @@ def _without_start(known: Enclosure) -> Enclosure:
     return Enclosure(arb_poly(powers[1:] if powers and powers[0] == 0 else powers), arb(0))
 
 
-def _begins_bearable(force: Enclosure) -> bool:
-    """Whether it is certainly not negative just after the start."""
-    if force.least is not None and sign_after(force.least, fmpq(0)) >= 0:
-        return True
-    return all(
-        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
-        for each in force.choices or (force,)
-    )
-
-
-def _begins_to_grow(rate: Enclosure) -> bool:
-    """Whether it is certainly positive just after the start."""
-    return all(
-        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
-        for each in rate.choices or (rate,)
-    )
-
-
 def _gap_within(gap: arb) -> arb:
     """A gap, which is not negative, whatever its ball says."""
     return gap if gap >= 0 else arb(0).union(gap.upper().max(arb(0)))
-
-
-def _positive(known: Enclosure, low: fmpq, high: fmpq, resolution: fmpq) -> BranchEnd | None:
-    """Up to where a function that starts well is certainly not negative; None: all the way."""
-    if known.exact is None:
-        if known.least is not None and first_fall(known.least, low, high) is None:
-            return None
-        if known.choices and all(_positive(each, low, high, resolution) is None for each in known.choices):
-            return None
-        if low == 0 and known.onset is not None:
-            low = known.onset.positive_until(high)
-            if low == high:
-                return None
-        end = positive_until(known.polynomial, known.error, low, high, resolution)
-        return None if end is None else BranchEnd(end, _spread(known, end))
-    if known.evaluate_on(arb(low).union(arb(high))) > 0:
-        return None
-    fall = first_fall(known.exact, low, high)
-    if not isinstance(fall, tuple):
-        return None if fall is None else BranchEnd(fall, None)
-    before, after = fall
-    while after - before > resolution:
-        half = (before + after) / 2
-        before, after = (half, after) if known.exact(half) > 0 else (before, half)
-    return BranchEnd(before, fmpq(0))
-
-
-def _begins_positive(known: Enclosure) -> bool:
-    return known.evaluate(fmpq(0)) > 0 or (known.onset is not None and known.onset.sign() > 0)
-
-
-def _spread(known: Enclosure, x: fmpq) -> fmpq:
-    """How far off the place is where a function comes to 0; 0 where that is not known."""
-    slope = abs(known.polynomial.derivative()(arb(x))).lower()
-    if not slope > 0:
-        return fmpq(0)
-    return middle(2 * (known.error + known.polynomial(arb(x)).rad()) / slope)
-
-
-def _range(known: Enclosure, length: fmpq) -> arb:
-    """All values on a stretch."""
-    return known.evaluate_on(arb(0).union(arb(length)))
-
-
-def _is_not_negative(known: Enclosure, length: fmpq) -> bool:
-    """Whether a force is certainly not negative on a stretch."""
-    if known.least is not None and first_fall(known.least, fmpq(0), length) is None:
-        return True
-    return all(
-        _range(each, length) > 0 if each.exact is None else first_fall(each.exact, fmpq(0), length) is None
-        for each in known.choices or (known,)
-    )

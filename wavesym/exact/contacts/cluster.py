@@ -27,13 +27,19 @@ Sliding = frozenset[tuple[int, int]]
 class Touch:
     """A contact between two points of a joint, told by their places in it: closed, right moves `ratio` times left.
 
-    Where it has `friction` it takes that much against sliding.
+    Where it has `friction` it takes that much against sliding, and at rest up to `breakaway`, where that is not 0.
     """
 
     left: int
     right: int
     ratio: fmpq
     friction: fmpq
+    breakaway: fmpq
+
+    @property
+    def sides(self) -> tuple[int, int]:
+        """Its two points."""
+        return self.left, self.right
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,12 @@ from itertools import product
 
 from flint import arb, ctx, fmpq
 
-from wavesym.exact.contacts.branches import Branch, BranchEnd, Contact, Corner, Friction
+from wavesym.exact.contacts.branches import Branch, Contact, Corner, Friction
+from wavesym.exact.contacts.breakaway import Breakaway
 from wavesym.exact.contacts.cluster import Closed, Sliding, subsets
 from wavesym.exact.contacts.cost import Cost
 from wavesym.exact.contacts.course import Course, Doubt
+from wavesym.exact.contacts.guards import BranchEnd
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, SwingError
 from wavesym.exact.contacts.spring_branches import OneSided, Yielding
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
@@ -118,7 +120,10 @@ class Search:
         joint = self.waves.joints[number]
         rate = arb(points[link.right].velocity - link.ratio * points[link.left].velocity)
         on_motion = joint.rate_on_motion(n, fmpq(0))
-        return Friction.begin(n, link.friction, joint.is_inert(n), rate if on_motion is None else on_motion)
+        rate = rate if on_motion is None else on_motion
+        if link.breakaway != 0:
+            return Breakaway.begin(n, (link.friction, link.breakaway), joint.lightness(n), rate)
+        return Friction.begin(n, link.friction, joint.is_inert(n), rate)
 
     def steps(self) -> Iterator[None]:
         """Joints are moved in order of time."""
@@ -221,8 +226,10 @@ class Search:
         """Know how fast masses slide on what moves as is given, which may jump."""
         joint = self.waves.joints[course.number]
         for contact in course.contacts:
-            if isinstance(contact, Friction) and (rate := joint.rate_on_motion(contact.link, start)) is not None:
-                contact.rate = rate
+            if isinstance(contact, Friction | Breakaway):
+                rate = joint.rate_on_motion(contact.link, start)
+                if rate is not None:
+                    contact.meet(rate)
 
     def _decide(self, course: Course, start: fmpq, limit: fmpq) -> tuple[JointStretch, BranchEnd | None] | None:
         """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""

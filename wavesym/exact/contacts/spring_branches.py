@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.contacts.branches import Branch, BranchEnd, Corner
+from wavesym.exact.contacts.branches import Branch, Corner
 from wavesym.exact.contacts.crossing import TINY, certain_fall, certain_rise, sign_after
+from wavesym.exact.contacts.guards import BranchEnd
 from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
 from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.joints.enclosure import Enclosure

@@ -40,7 +40,7 @@ class SteadyJoint(ABC):
         place = {point: k for k, point in enumerate(joint.points)}
         self.law = JointLaw.assemble(network, joint)
         self.touches = {
-            n: Touch(place[link.left], place[link.right], link.ratio, link.friction)
+            n: Touch(place[link.left], place[link.right], link.ratio, link.friction, link.breakaway)
             for n, link in enumerate(network.links)
             if link.has_corner and not link.is_spring_with_corner and link.left in place
         }
@@ -237,26 +237,55 @@ class SteadyJoint(ABC):
             self._energy = self._energy.max(motion.energy(motion.velocity, motion.displacement))
         for k, (group, ratio) in zip(points, law.moves, strict=True):
             result.velocities[k] = scale_terms(q[group], ratio)
+        certain = {k for n in cluster.pushes for k in self.touches[n].sides if self.touches[n].breakaway != 0}
         for k in self._held_masses(cluster):
-            if (unknown := result.state.get(k, self._state[k]).unknown) != 0:
+            if k not in certain and (unknown := result.state.get(k, self._state[k]).unknown) != 0:
                 slow = (2 * unknown / arb(self.law.mass[k])).sqrt().upper()
                 result.velocities[k] = [*result.velocities[k], (_ONE, Enclosure(arb_poly(), slow))]
-        for n, push in cluster.pushes.items():
-            pull = self._pull(cluster, push, result.velocities, forces)
-            if n in cluster.inertia:
-                given = prescribed[cluster.group(self.touches[n].right)].derivative()
-                pull.append((cluster.inertia[n], Enclosure.from_polynomial(given)))
-            if places is not None:
-                pull += [
-                    (factor * cluster.joint_law.stiffness[k][j], Enclosure.from_polynomial(places[j]))
-                    for k, factor in push
-                    for j in points
-                ]
-            result.pushes[n] = add_terms(pull)
-            if motion is not None:
-                result.pushes[n] = self._add_springs(cluster, push, motion, result.pushes[n])
+        result.pushes |= self._holding_forces(cluster, result, forces, acting, motion or places)
         self.springs.strain(cluster, result, self._state, places if motion is None else motion)
         self._lose_excess(cluster, result)
+
+    def _holding_forces(
+        self,
+        cluster: Cluster,
+        result: JointStretch,
+        forces: Sequence[Terms],
+        acting: Sequence[fmpq_poly],
+        places: JointMotion | Mapping[int, fmpq_poly] | None,
+    ) -> dict[int, Enclosure]:
+        """The forces of closed contacts; and what would hold friction with a larger limit at rest, beyond `forces`."""
+        found = {}
+        for n, push in cluster.pushes.items():
+            given = acting[cluster.leader(cluster.group(self.touches[n].right))].derivative()
+            pull = [*self._pull(cluster, push, result.velocities, forces)]
+            pull.append((cluster.inertia.get(n, fmpq(0)), Enclosure.from_polynomial(given)))
+            found[n] = self._add_springs(cluster, push, places, pull)
+        for n, touch in self.touches.items():
+            if touch.breakaway == 0 or n in cluster.pushes:
+                continue
+            k, factor, other, ratio = self._free_side(n)
+            if k in cluster.points:
+                pull = self._pull(cluster, [(k, factor)], result.velocities, forces)
+                given = acting[other].derivative()
+                pull.append((factor * ratio * self.law.mass[k], Enclosure.from_polynomial(given)))
+                found[n] = self._add_springs(cluster, [(k, factor)], places, pull)
+        return found
+
+    def _free_side(self, n: int) -> tuple[int, fmpq, int, fmpq]:
+        """The mass that rubs on what moves as is given, its part in the force on the right side; and what it rubs on.
+
+        The last number says how fast it moves with that.
+        """
+        touch = self.touches[n]
+        if self.law.motions[touch.right] is None:
+            return touch.right, _ONE, touch.left, touch.ratio
+        return touch.left, -1 / touch.ratio, touch.right, 1 / touch.ratio
+
+    def lightness(self, n: int) -> fmpq:
+        """How fast the rate changes at which such a mass slides, by a force of 1."""
+        k, factor, _, _ = self._free_side(n)
+        return 1 / (factor**2 * self.law.mass[k])
 
     def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
         """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it."""
@@ -265,7 +294,7 @@ class SteadyJoint(ABC):
             for _ in {touch.left, touch.right} & set(cluster.stuck):
                 ends = (_excess(result.pushes[n], tau, touch.friction) for tau in (fmpq(0), result.length))
                 excess = max(ends)
-                if touch.friction == 0 or not excess > 0:
+                if touch.friction == 0 or touch.breakaway != 0 or not excess > 0:
                     continue
                 lightness = sum(1 / self.law.mass[j] for j in (touch.left, touch.right) if self.law.mass[j] != 0)
                 more = (excess * arb(result.length)) ** 2 * arb(lightness) / 2
@@ -371,11 +400,22 @@ class SteadyJoint(ABC):
         return terms
 
     def _add_springs(
-        self, cluster: Cluster, push: Sequence[tuple[int, fmpq]], motion: JointMotion, force: Enclosure
+        self,
+        cluster: Cluster,
+        push: Sequence[tuple[int, fmpq]],
+        places: JointMotion | Mapping[int, fmpq_poly] | None,
+        pull: Terms,
     ) -> Enclosure:
-        """With what springs do."""
-        springs = [(factor, self._spring(cluster, motion, k)) for k, factor in push if self._elastic(k)]
-        return add_terms([(_ONE, force), *springs])
+        """With what springs do, at these places."""
+        if isinstance(places, JointMotion):
+            springs = [(factor, self._spring(cluster, places, k)) for k, factor in push if self._elastic(k)]
+            return add_terms([(_ONE, add_terms(pull)), *springs])
+        exact = [
+            (factor * cluster.joint_law.stiffness[k][j], Enclosure.from_polynomial(place))
+            for k, factor in push
+            for j, place in (places or {}).items()
+        ]
+        return add_terms([*pull, *exact])
 
     def _spring(self, cluster: Cluster, motion: JointMotion, k: int) -> Enclosure:
         """What springs pull at a point on a stretch."""

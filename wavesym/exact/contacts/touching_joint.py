@@ -41,7 +41,7 @@ class TouchingJoint(SteadyJoint):
         closed = frozenset(n for n in result.closed & self.touches.keys() if self.touches[n].left in points)
         span = arb(0).union(arb(result.length))
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
-        bounds = {n: arb(self.touches[n].friction) for n in vague}
+        bounds = {n: arb(max(self.touches[n].friction, self.touches[n].breakaway)) for n in vague}
         pressing = [n for n in vague if self.touches[n].friction == 0]
         for _ in range(_ROUNDS):
             motion = self._balls(cluster, prescribed)
@@ -65,6 +65,9 @@ class TouchingJoint(SteadyJoint):
         self._bound_sends(cluster, result, closed, vague, arriving, forces)
         result.rates |= found.rates
         result.pushes |= found.pushes
+        result.pushes |= {
+            n: force for n, force in self._holding_forces(cluster, result, forces, acting, motion).items() if n in vague
+        }
         if not cluster.stateless:
             result.state |= self._state_after(cluster, motion)
         self.springs.strain(cluster, result, self._state, motion)

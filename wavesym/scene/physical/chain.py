@@ -134,6 +134,7 @@ def _part(value: object, kind: Kind) -> object:
 _MEASURES = {
     "contact": "displacement",
     "friction": "force",
+    "breakaway": "force",
     "gap": "displacement",
     "yield": "force",
     "preload": "force",
@@ -163,6 +164,7 @@ class _Pen:
             "dashpot": first.stiffness * seconds,
             "contact": self.displacement,
             "friction": self.force,
+            "breakaway": self.force,
             "gap": self.displacement,
             "yield": self.force,
             "preload": self.force,

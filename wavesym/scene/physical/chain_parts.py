@@ -33,6 +33,7 @@ class RodKeys(SceneTable):
     strain: Any = None
     spring: Any = None
     friction: Any = None
+    breakaway: Any = None
     dashpot: Any = None
     only: Any = Field(None, description='"push" or "pull"')
     gap: Any = Field(None, description="how far it gets shorter or longer before it acts, or two such numbers")

@@ -1,0 +1,176 @@
+"""Friction that bears more at rest than when it slides: from R_s on it breaks away, and then takes R_k.
+
+Two such motions can part, so that every decision has to be certain: it is kept which branches the true motion may be on
+(sticking, 0, or sliding one way, 1 or -1). N is what would hold it, the force on its right side: sticking, it breaks
+away the one way where N < -R_s, the other way where N > R_s. Its rate r then has s r' = w (A - R_k), with A = -s N what
+drives it the way s that it slides, and w one over its mass: it goes on until r comes to 0, and sticks unless N is
+beyond R_s there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from flint import arb, fmpq
+
+from wavesym.exact.contacts.branches import Branch, Corner
+from wavesym.exact.contacts.crossing import certain_rise
+from wavesym.exact.contacts.guards import (
+    BranchEnd,
+    begins_bearable,
+    begins_to_grow,
+    is_not_negative,
+    lasts_until,
+    value_range,
+)
+from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, add_terms
+
+_STUCK = frozenset({0})
+
+
+@dataclass
+class Breakaway(Corner):
+    """What rubs so, as time goes on: how fast its right side goes less its left one, and what it may do."""
+
+    link: int
+    limit: fmpq
+    most: fmpq
+    lightness: fmpq
+    rate: arb
+    possible: frozenset[int]
+    _decided: Branch
+    _breaks: int = field(default=0)  # the way that it breaks away at once, as its last trial of sticking shows
+
+    @classmethod
+    def begin(cls, link: int, limits: tuple[fmpq, fmpq], lightness: fmpq, rate: arb) -> Breakaway:
+        """At the start, with its limits sliding and at rest: what is at rest sticks."""
+        sign = int(rate > 0) - int(rate < 0)
+        return cls(link, *limits, lightness, rate, frozenset({sign}), Branch(sign == 0, sign))
+
+    @property
+    def closed(self) -> bool:  # type: ignore[override]
+        """Whether it certainly sticks."""
+        return self.possible == _STUCK
+
+    @property
+    def sign(self) -> int:  # type: ignore[override]
+        """Which way it certainly slides."""
+        return 0 if self.is_unclear else next(iter(self.possible))
+
+    @property
+    def may_close(self) -> bool:
+        """It sticks."""
+        return self.closed
+
+    @property
+    def is_unclear(self) -> bool:
+        """It may be on more than one branch."""
+        return len(self.possible) > 1
+
+    @property
+    def ways(self) -> tuple[int, ...]:
+        """That in which it slides; both from rest."""
+        return (1, -1) if self.closed else tuple(sorted(self.possible - _STUCK))
+
+    def meet(self, rate: arb) -> None:
+        """Know how fast it slides on what moves as is given, which may jump."""
+        if rate.overlaps(self.rate):
+            return
+        self.rate = rate
+        sign = int(rate > 0) - int(rate < 0)
+        self.possible = frozenset({sign}) if sign or rate.is_zero() else frozenset({-1, 0, 1})
+
+    def begins(self, moved: JointStretch) -> bool:
+        """Whether N is within its limits, or it certainly slides, just after the start."""
+        if self.link in moved.closed:
+            margins = {way: self._margin(moved, way) for way in (1, -1)}
+            falls = {way: add_terms([(fmpq(-1), margin)]) for way, margin in margins.items()}
+            self._breaks = next((way for way, fall in falls.items() if begins_to_grow(fall)), 0)
+            return all(map(begins_bearable, margins.values()))
+        sign = sliding_sign(self.link, moved.sliding)
+        if self.closed:
+            return sign == self._breaks
+        return bool(sign * self.rate > 0) or begins_to_grow(self._thrust(moved, sign))
+
+    def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
+        """Until when N is certainly within its limits, or it certainly goes the way it slides."""
+        if self.link in moved.closed:
+            ends = [lasts_until(self._margin(moved, way), low, moved.length, resolution) for way in (1, -1)]
+            return min((end for end in ends if end is not None), key=lambda end: end.length, default=None)
+        sign = sliding_sign(self.link, moved.sliding)
+        forward = add_terms([(fmpq(sign), moved.rates[self.link])])
+        if low == 0 and not sign * self.rate > 0:  # it has just broken away, and gets faster until that is seen
+            risen = certain_rise(forward, moved.length, resolution)
+            if risen is None or not value_range(self._thrust(moved, sign), risen) >= 0:
+                return BranchEnd(fmpq(0), fmpq(0))
+            low = risen
+        return lasts_until(forward, low, moved.length, resolution)
+
+    def lasts(self, moved: JointStretch, length: fmpq) -> bool:
+        """Whether it is on its branch on all of a short stretch."""
+        if self.link in moved.closed:
+            return all(is_not_negative(self._margin(moved, way), length) for way in (1, -1))
+        sign = sliding_sign(self.link, moved.sliding)
+        forward = add_terms([(fmpq(sign), moved.rates[self.link])])
+        return value_range(forward, length) > 0 or value_range(self._thrust(moved, sign), length) > 0
+
+    def advance(self, moved: JointStretch, length: fmpq) -> None:
+        """Go to the end of a stretch: where it was left open, on all branches that it can have come to."""
+        if self.link in moved.closed:
+            self.rate = arb(0)
+            return
+        rate = moved.rates[self.link]
+        after = rate.evaluate(length) if rate.exact is None else arb(rate.exact(length))
+        if self.link in moved.vague:
+            self.possible = self._reached(moved.pushes[self.link], length, after)
+        elif after.is_zero():
+            self.possible = _STUCK
+        self.rate = after
+
+    @property
+    def branch(self) -> Branch:
+        """It sticks, or slides one way."""
+        return self._decided
+
+    def take(self, moved: JointStretch) -> None:
+        """Stick, or slide one way."""
+        closed, sign = self.link in moved.closed, sliding_sign(self.link, moved.sliding)
+        self.possible, self._decided = frozenset({sign}), Branch(closed, sign)
+
+    def _reached(self, holding: Enclosure, length: fmpq, after: arb) -> frozenset[int]:
+        """The branches that it can be on at the end of a short stretch, whatever it did on it."""
+        least, most = arb(self.limit), arb(self.most)
+        drive, last = value_range(holding, length), holding.evaluate(length)
+        drives, h = {way: -way * drive for way in (1, -1)}, arb(length)
+        rests = {way for way in self.possible - _STUCK if self._certainly_stops(way, drives[way], h)}
+        reached, coming = set(self.possible), set(self.possible)
+        while coming:
+            way = coming.pop()
+            if way and (drives[way] > least or (way in self.possible and self._certainly_goes_on(way, drives[way], h))):
+                continue
+            found = {other for other in (1, -1) if not drives[other] < most}
+            if way and not abs(drive) > most:
+                found.add(0)
+            for other in found - {way}:
+                rests.discard(other)
+                if other not in reached:
+                    reached.add(other)
+                    coming.add(other)
+        gone = rests | ({0} if abs(last) > most else set())
+        gone |= {way for way in (1, -1) if way * after < 0} | (set() if after.contains(0) else {0})
+        return frozenset(reached - gone)
+
+    def _certainly_stops(self, way: int, drive: arb, h: arb) -> bool:
+        return bool(way * self.rate + h * self.lightness * (drive - self.limit) < 0)
+
+    def _certainly_goes_on(self, way: int, drive: arb, h: arb) -> bool:
+        return bool(way * self.rate + h * self.lightness * (drive - self.limit).min(arb(0)) > 0)
+
+    def _margin(self, moved: JointStretch, way: int) -> Enclosure:
+        """What is left of its limit at rest before it breaks away one way."""
+        return add_terms([(self.most, UNIT), (fmpq(way), moved.pushes[self.link])])
+
+    def _thrust(self, moved: JointStretch, sign: int) -> Enclosure:
+        """What drives it the way it slides, beyond its friction: its mass times its acceleration."""
+        return add_terms([(fmpq(-sign), moved.pushes[self.link])])

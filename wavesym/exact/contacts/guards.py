@@ -1,0 +1,95 @@
+"""Guards of branches, as functions of time on a stretch: whether they begin well, and until when they last.
+
+A guard is known as a polynomial within an error, sometimes exactly; what is said here of its sign is certain.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from flint import arb, fmpq
+
+from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
+from wavesym.exact.joints.enclosure import Enclosure
+from wavesym.numbers.doubles import middle
+
+
+class BranchEnd(NamedTuple):
+    """How long a branch certainly lasts; and how far off its end may be, in time, unless that is exact.
+
+    Or, how long it is taken to last, which is beyond its end by less than `late`.
+    """
+
+    length: fmpq
+    spread: fmpq | None
+    late: fmpq = fmpq(0)
+
+
+def begins_bearable(force: Enclosure) -> bool:
+    """Whether it is certainly not negative just after the start."""
+    if force.least is not None and sign_after(force.least, fmpq(0)) >= 0:
+        return True
+    return all(
+        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
+        for each in force.choices or (force,)
+    )
+
+
+def begins_to_grow(rate: Enclosure) -> bool:
+    """Whether it is certainly positive just after the start."""
+    return all(
+        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
+        for each in rate.choices or (rate,)
+    )
+
+
+def lasts_until(known: Enclosure, low: fmpq, high: fmpq, resolution: fmpq) -> BranchEnd | None:
+    """Up to where a function that starts well is certainly not negative; None: all the way."""
+    if known.exact is None:
+        if known.least is not None and first_fall(known.least, low, high) is None:
+            return None
+        if known.choices and all(lasts_until(each, low, high, resolution) is None for each in known.choices):
+            return None
+        if low == 0 and known.onset is not None:
+            low = known.onset.positive_until(high)
+            if low == high:
+                return None
+        end = positive_until(known.polynomial, known.error, low, high, resolution)
+        return None if end is None else BranchEnd(end, spread(known, end))
+    if known.evaluate_on(arb(low).union(arb(high))) > 0:
+        return None
+    fall = first_fall(known.exact, low, high)
+    if not isinstance(fall, tuple):
+        return None if fall is None else BranchEnd(fall, None)
+    before, after = fall
+    while after - before > resolution:
+        half = (before + after) / 2
+        before, after = (half, after) if known.exact(half) > 0 else (before, half)
+    return BranchEnd(before, fmpq(0))
+
+
+def _begins_positive(known: Enclosure) -> bool:
+    return known.evaluate(fmpq(0)) > 0 or (known.onset is not None and known.onset.sign() > 0)
+
+
+def spread(known: Enclosure, x: fmpq) -> fmpq:
+    """How far off the place is where a function comes to 0; 0 where that is not known."""
+    slope = abs(known.polynomial.derivative()(arb(x))).lower()
+    if not slope > 0:
+        return fmpq(0)
+    return middle(2 * (known.error + known.polynomial(arb(x)).rad()) / slope)
+
+
+def value_range(known: Enclosure, length: fmpq) -> arb:
+    """All values on a stretch."""
+    return known.evaluate_on(arb(0).union(arb(length)))
+
+
+def is_not_negative(known: Enclosure, length: fmpq) -> bool:
+    """Whether a force is certainly not negative on a stretch."""
+    if known.least is not None and first_fall(known.least, fmpq(0), length) is None:
+        return True
+    return all(
+        value_range(each, length) > 0 if each.exact is None else first_fall(each.exact, fmpq(0), length) is None
+        for each in known.choices or (known,)
+    )
