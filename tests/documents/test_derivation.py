@@ -9,6 +9,7 @@ import pytest
 
 from tests.support.patience import first_always
 from tests.support.scenes import NAMED
+from wavesym.cli import main
 from wavesym.documents.derivation.document import derivation, scene_derivation
 from wavesym.errors import WavesymError
 from wavesym.mechanics.symbolic import symbolic
@@ -150,6 +151,21 @@ def test_latex_compiles(source, tmp_path):
     command = ["pdflatex", "-halt-on-error", "-interaction=batchmode", "derivation.tex"]
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
     assert "Overfull" not in (tmp_path / "derivation.log").read_text(errors="replace")
+
+
+@pytest.mark.parametrize("arguments", [["drive", "--m", "1"], ["stepped_shaft"], ["drive", "--m", "1", "--walks"]])
+def test_a_fragment_is_the_document_without_a_preamble(arguments, capsys):
+    def written(*options):
+        assert main(["derive", *arguments, "--format", "latex", *options]) == 0
+        return capsys.readouterr().out
+
+    whole, part = written(), written("--fragment")
+    needs, _, body = part.partition("\n")
+    assert needs == r"% made by wavesym; needs \usepackage{amsmath}"
+    assert whole.partition("\\begin{document}\n")[2] == f"{body.rstrip()}\n\\end{{document}}\n"
+    assert "\\newcommand" not in body
+    assert main(["derive", *arguments, "--fragment"]) == 2
+    assert "--fragment: text has no fragments; write --format latex" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

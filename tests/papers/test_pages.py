@@ -52,7 +52,11 @@ class Elements(HTMLParser):
 @pytest.mark.parametrize("format", PAGES)
 def test_every_page_has_every_record_every_reason_and_every_survivor(format: str) -> None:
     page = PAGES[format](findings())
-    words = {"html": lambda: Elements(page).words, "latex": lambda: read_back(page)}.get(format, lambda: page)()
+    words = {
+        "html": lambda: Elements(page).words,
+        "latex": lambda: read_back(page),
+        "fragment": lambda: read_back(page),
+    }.get(format, lambda: page)()
     assert all(entry.id in words for entry in ENTRIES)
     assert all(change in words and because in words for change, because in ENTRIES[5].equivalent)
     if format != "json":
@@ -96,7 +100,11 @@ def test_every_page_shows_the_words_that_are_printed_and_what_is_read_otherwise(
     )
     whole = Findings(PAPER, judged, True)
     page = PAGES[format](Findings(PAPER, judged) if format == "text" else whole)  # by name, in full
-    words = {"html": lambda: Elements(page).words, "latex": lambda: read_back(page)}.get(format, lambda: page)()
+    words = {
+        "html": lambda: Elements(page).words,
+        "latex": lambda: read_back(page),
+        "fragment": lambda: read_back(page),
+    }.get(format, lambda: page)()
     edited = ("n++n", "n+n", "the sign stands twice", "a comma")
     assert all(said in words for said in ("Suma jest dwa razy dana.", "Suma jest trzy razy dana.", *edited))
     assert "nothing" in words or format == "json"
@@ -276,11 +284,26 @@ emph texttt textbf textsf ttfamily small footnotesize displaystyle ensuremath ma
 textbackslash textasciitilde textasciicircum textquotedbl textless textgreater textbar textquotesingle textasciigrave
 textendash textemdash ldots quotedblbase l L k surd times langle rangle leq geq approx neq pm cdot
 bar dots frac sum kappa alpha
+providecommand toprule midrule bottomrule label phantomsection
 """
 
 
 def test_latex_has_no_command_that_nobody_defines() -> None:
     assert set(macros(as_latex(findings(reproduce=True)))) <= set(KNOWN.split())
+
+
+def test_a_fragment_is_the_document_without_a_preamble() -> None:
+    found = findings(reproduce=True)
+    whole, part = as_latex(found), FORMATS["fragment"](found)
+    needs, _, body = part.partition("\n")
+    assert body.strip() in whole
+    assert not {"documentclass", "usepackage", "title"} & set(macros(body))
+    for package in ("amsmath", "booktabs", "longtable", "textcomp", "xcolor", "hyperref"):
+        assert package in needs
+        assert package in whole.partition(r"\begin{document}")[0]
+    labels = re.findall(r"\\label\{errata:([^}]*)\}", body)
+    assert len(labels) == len(set(labels))
+    assert {record.id.strip("(").replace(")", "_") for record in records() if record.verdict != "holds"} <= set(labels)
 
 
 @pytest.mark.parametrize(

@@ -159,7 +159,7 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
         source: "collision", "drive", "building" (both bases), or a scene; of a general chain it is the law of each kind
             of node.
         m: how many elastic elements; then every line is written out. A scene has its own.
-        format: "text", "latex" or "json".
+        format: "text", "latex", "json", or "fragment": LaTeX to be \\input.
 
     Returns:
         The text, which has SymPy objects as `equations`.
@@ -192,7 +192,7 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
 
 
 def walks(source: str | Scene, m: int | None, intervals: int, format: str = "text") -> str:
-    """The walk polynomials of `derive`'s systems with m elastic elements, or of a scene, as text, latex or json.
+    """The walk polynomials of `derive`'s systems with m elastic elements, or a scene: text, latex, fragment or json.
 
     WavesymError for an m that the system does not have; CostError where the polynomials would be absurd.
     """

@@ -73,7 +73,7 @@ def verify_published(
     """A verdict on every formula of the paper, or on some.
 
     Args:
-        format: "text", "json", "markdown", "html" or "latex".
+        format: "text", "json", "markdown", "html", "latex", or "fragment": LaTeX to be \\input.
         names: ids of formulas, tables or sections; empty for all.
         reproduce: whether each counterexample comes with a scene that shows it.
         watch: goes through the records as they are judged.

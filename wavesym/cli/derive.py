@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.shell_completion import CompletionItem
 
-from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, format_option, refuse_out
+from wavesym.cli.parameters import (
+    OUT,
+    SCENE,
+    ParameterType,
+    deliver,
+    format_option,
+    fragment_option,
+    refuse_out,
+    written_format,
+)
 from wavesym.cli.progress import progress
 from wavesym.errors import SceneError
 
@@ -52,11 +61,18 @@ def system_names() -> tuple[str, ...]:
 @click.argument("source", type=_Source(), metavar="SYSTEM|SCENE")
 @click.option("--m", type=int, metavar="M", help="Write every line out for M elastic elements; a scene has its own.")
 @format_option("text", "latex", "json")
+@fragment_option
 @click.option("--walks", is_flag=True, help="Walk polynomials instead, which say why powers are as high as they are.")
 @click.option("--intervals", type=click.IntRange(1), help="With --walks: how many of every function.  [default: 4]")
 @OUT
 def derive(
-    source: str | Scene, m: int | None, format: str, walks: bool, intervals: int | None, out: Path | None
+    source: str | Scene,
+    m: int | None,
+    format: str,
+    fragment: bool,
+    walks: bool,
+    intervals: int | None,
+    out: Path | None,
 ) -> None:
     """Derive the equations and their coefficients.
 
@@ -77,10 +93,11 @@ def derive(
         raise click.UsageError("--walks: walks are those of one chain; with the name of a system write --m M too")
     if intervals is not None and not walks:
         raise click.UsageError("--intervals: of walks only; write --walks too")
+    written = written_format(format, fragment)
     refuse_out(out)
     try:
         with progress(f"derive {source if isinstance(source, str) else source.name}"):
-            text = api.walks(source, m, intervals or WALKED, format) if walks else api.derive(source, m, format)
+            text = api.walks(source, m, intervals or WALKED, written) if walks else api.derive(source, m, written)
     except ValueError as error:
         if not isinstance(source, str):
             raise

@@ -178,6 +178,19 @@ def format_option(*names: str, help: str = "How it is written.") -> Callable[[Co
     return click.option("--format", type=click.Choice(names), default=names[0], show_default=True, help=help)
 
 
+def fragment_option(command: Command) -> Command:
+    """The option `--fragment` of a command that writes LaTeX."""
+    help = "LaTeX without a preamble, for a document that there is."
+    return click.option("--fragment", is_flag=True, help=help)(command)
+
+
+def written_format(format: str, fragment: bool) -> str:
+    """The format that is written: of LaTeX a "fragment", where that is meant. click.UsageError for other fragments."""
+    if fragment and format != "latex":
+        raise click.UsageError(f"--fragment: {format} has no fragments; write --format latex")
+    return "fragment" if fragment else format
+
+
 PICTURES = (".svg", ".png", ".pdf")
 
 _DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, format_option, put, refuse_scene
+from wavesym.cli.parameters import PATH, SCENE, format_option, fragment_option, put, refuse_scene, written_format
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Rational functions of kappa_i, r_i = J_i/J_(i+1), u_i = v_(i-1) - v_(i+1); equal parameters are one symbol.",
 )
-@click.option("--fragment", is_flag=True, help="LaTeX without a preamble, for a document that there is.")
+@fragment_option
 @click.option("-o", "out", type=PATH, metavar="FILE", help="Where the table goes.  [default: standard output]")
 def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, fragment: bool, out: Path | None) -> None:
     """Print the exact coefficients of every wave function.
@@ -40,9 +40,7 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, fra
     from wavesym.documents.tables import table_lines
     from wavesym.writing import write_whole
 
-    if fragment and format != "latex":
-        raise click.UsageError(f"--fragment: {format} has no fragments; write --format latex")
-    written = "fragment" if fragment else format
+    written = written_format(format, fragment)
     if out is not None:
         refuse_scene(out)
     equations: list[str] = []

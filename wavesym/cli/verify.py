@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import NAMES, OUT, SceneParameter, blame_each, deliver, refuse_unwritable
+from wavesym.cli.parameters import (
+    NAMES,
+    OUT,
+    SceneParameter,
+    blame_each,
+    deliver,
+    fragment_option,
+    refuse_unwritable,
+    written_format,
+)
 from wavesym.cli.progress import progress
 from wavesym.programs.request import EVALUATORS, PRECISIONS
 
@@ -35,6 +44,7 @@ class _SceneOrId(SceneParameter):
 )
 @click.option("--derived", is_flag=True, help="The derivation proved, and its tables by another route, instead.")
 @click.option("--format", type=click.Choice(FORMATS), help="With --published.  [default: text]")
+@fragment_option
 @click.option("--reproduce", is_flag=True, help="With --published: a scene that shows each counterexample.")
 @click.option("--only", metavar="VERDICT", help="With --published: records of this verdict, after counts of all.")
 @click.option("--evaluator", type=click.Choice(EVALUATORS), help="This program alone.  [default: all programs]")
@@ -49,6 +59,7 @@ def verify(
     published: bool,
     derived: bool,
     format: str | None,
+    fragment: bool,
     reproduce: bool,
     only: str | None,
     evaluator: str | None,
@@ -70,14 +81,16 @@ def verify(
     """
     if published + derived + (bool(asked) and not published) > 1:
         raise click.UsageError("SCENE, --published and --derived exclude each other; write one of them")
-    for option in ("--format" if format else "", "--reproduce" if reproduce else "", "--only" if only else ""):
-        if option and not published:
+    paper_options = {"--format": format, "--fragment": fragment, "--reproduce": reproduce, "--only": only}
+    for option, value in paper_options.items():
+        if value and not published:
             raise click.UsageError(f"{option}: of the paper only; write --published too")
     options = {"evaluator": evaluator, "precision": precision, "runtime": runtime, "stream": stream or None}
     for option in (name for name, value in options.items() if value is not None and (published or derived)):
         raise click.UsageError(
             f"--{option}: of scenes only; leave it out, or --{'published' if published else 'derived'}"
         )
+    written = written_format(format or "text", fragment)
     if out is not None:
         refuse_unwritable(out)
     with progress("verify") as line:
@@ -87,7 +100,7 @@ def verify(
         if published:
             names = [name for name in asked if isinstance(name, str)]
             text, passed = api.verify_published(
-                format or "text", names, reproduce, lambda entries: line.each(entries, attrgetter("id")), only or ""
+                written, names, reproduce, lambda entries: line.each(entries, attrgetter("id")), only or ""
             )
         elif derived:
             text, passed = api.verify_derivation(lambda systems: line.each(systems, attrgetter("name")))

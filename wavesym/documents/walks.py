@@ -11,6 +11,7 @@ from flint import fmpq
 
 from wavesym.derivation.table import Function, Rules
 from wavesym.derivation.walks import Letters, Unit, departures, function_walks, letters, units, walks
+from wavesym.documents.derivation.document import template
 from wavesym.errors import CostError
 from wavesym.mechanics.node import Quantity
 from wavesym.mechanics.symbolic import SymbolicChain
@@ -62,11 +63,11 @@ def walk_polynomials(chains: Iterable[SymbolicChain], intervals: int, format: st
 
     CostError where they would have more than MOST_TERMS terms.
     """
-    write = _latex if format == "latex" else str
+    write = _latex if format in ("latex", "fragment") else str
     made = tuple(_walks(symbols, intervals, write) for symbols in chains)
     if format == "json":
         return json.dumps([asdict(walks) for walks in made], indent=2) + "\n"
-    return render("latex/walks.tex.j2" if format == "latex" else "text/walks.txt.j2", WalksDocument(made))
+    return render(template("walks", format), WalksDocument(made))
 
 
 def _walks(symbols: SymbolicChain, intervals: int, write: Callable[[str], str]) -> Walks:

@@ -24,7 +24,7 @@ class DerivationDocument:
 
 
 def derivation(name: str, m: int | None, format: str) -> str:
-    """The derivation of a system as "text", "latex" or "json"."""
+    """The derivation of a system as "text", "latex", "fragment" (LaTeX to be \\input) or "json"."""
     return _write(statements(name, m, _notation(format)), format)
 
 
@@ -38,16 +38,20 @@ def network_derivation(model: Model, format: str) -> str:
     made = network_statement(model.name, model.network, _notation(format))
     if format == "json":
         return json.dumps(asdict(made), indent=2) + "\n"
-    return render({"latex": "latex/network.tex.j2", "text": "text/network.txt.j2"}[format], made)
+    return render(template("network", format), made)
 
 
 def _notation(format: str) -> Text:
-    return Latex() if format == "latex" else Text()
+    return Latex() if format in ("latex", "fragment") else Text()
 
 
 def _write(made: tuple[Statement, ...], format: str) -> str:
     if format == "json":
         return json.dumps([asdict(statement) for statement in made], indent=2) + "\n"
-    return render(
-        {"latex": "latex/derivation.tex.j2", "text": "text/derivation.txt.j2"}[format], DerivationDocument(made)
-    )
+    return render(template("derivation", format), DerivationDocument(made))
+
+
+def template(name: str, format: str) -> str:
+    """The template of a document as "text", "latex", or as a "fragment" of LaTeX."""
+    endings = {"latex": "latex/{}.tex.j2", "fragment": "latex/{}_fragment.tex.j2", "text": "text/{}.txt.j2"}
+    return endings[format].format(name)

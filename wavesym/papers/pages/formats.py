@@ -250,6 +250,11 @@ def as_latex(findings: Findings) -> str:
     return render("papers/errata.tex.j2", _LatexContext(document(findings, "latex"), LATEX.line, tex))
 
 
+def as_fragment(findings: Findings) -> str:
+    """The same without a preamble, to be \\input; records have labels."""
+    return render("papers/errata_fragment.tex.j2", _LatexContext(document(findings, "latex"), LATEX.line, tex))
+
+
 CHARACTERS: Mapping[str, str] = {
     "\\": r"\textbackslash{}",
     "~": r"\textasciitilde{}",
@@ -325,4 +330,5 @@ FORMATS: Mapping[str, Callable[[Findings], str]] = {
     "markdown": markdown,
     "html": html,
     "latex": as_latex,
+    "fragment": as_fragment,
 }
