@@ -153,7 +153,7 @@ def test_fronts_too_dense_to_be_seen_are_not_drawn_one_by_one(monkeypatch: pytes
     monkeypatch.setattr(made_of, "MOST_FRONTS", 3)
     made = histories(lower(THIRDS))
     assert all(len(history.stretches) == 1 for history in made.outputs)
-    assert [line for line in notes(made) if "fronts lie closer" in line]
+    assert [line for line in notes(made) if "more fronts than the picture has columns" in line]
 
 
 RAMP = np.array([(0.0, 0.0), (1.0, 1.0)])

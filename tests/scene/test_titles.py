@@ -16,6 +16,7 @@ from wavesym.pictures.loads import load_histories
 from wavesym.programs.request import Request
 from wavesym.scene import lower
 from wavesym.scene.explicit_text import explicit_text
+from wavesym.scene.first_scene import first_text
 from wavesym.targets.fmu.variables import variables
 
 FORCE = {"at": 0, "name": "Base shear"}
@@ -146,3 +147,10 @@ def test_names_are_in_what_is_written_out(tmp_path: Path) -> None:
 def test_what_is_no_name_of_a_load_gets_one_line(name: object) -> None:
     with pytest.raises(SceneError, match=r"load\[0\]\.name: .* is not a name for people; write a line"):
         Scene(**{**ROOM, "load": [{**GUST, "name": name}]})
+
+
+def test_loads_are_drawn_in_the_units_that_they_are_written_in() -> None:
+    """A drive counts moments in units of its own, by the disc that they turn."""
+    drive = Scene.from_toml(first_text("drive"))
+    (moment,) = load_histories(lower(drive))
+    assert (moment.output.unit, *moment.points[:, 1]) == ("kN*m", 2, 2, 1, 1)

@@ -84,7 +84,7 @@ def notes(histories: Histories, most: int = MOST_PANELS) -> list[str]:
     if still := [history.name for history in histories.outputs if history.zero]:
         lines.append(f"0 throughout: {', '.join(still)}")
     if histories.dense:
-        lines.append("fronts lie closer than the picture resolves: they are not drawn one by one")
+        lines.append("there are more fronts than the picture has columns, so that a jump may be drawn as a steep line")
     return lines
 
 

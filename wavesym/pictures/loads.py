@@ -13,28 +13,26 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.doubles import nearest
 from wavesym.pictures.histories import History, Points
-from wavesym.scene.physical.scale import Scale
 
 Acting = Sequence[tuple[AppliedLoad, int]]
 """Loads on one node, each with the power of tau that it grows with: 0 for a step, 1 for a ramp."""
 
 
-def load_histories(model: Model, scale: Scale | None = None) -> tuple[History, ...]:
-    """The loads of a model, one for each node that is loaded; none for a chain that its own start moves.
+def load_histories(model: Model) -> tuple[History, ...]:
+    """The loads of a model, one for each node that is loaded, in the units that its scene has for them.
 
-    Of a physical scene in the units of its `scale`.
+    None for a chain that its own start moves.
     """
     found = []
     for point in model.network.points:
         powers = {unit.source: _power(unit, point) for unit in point.loads}
         if acting := [(load, powers[load.source]) for load in model.loads if load.source in powers]:
-            kind, name = _load_name(model, point, scale)
-            factor = fmpq(1) if scale is None else rational(scale.factor(kind, 1))
-            probe = Probe(name, "load", 1, fmpq(0), factor=factor, unit=scale.unit(kind) if scale else "")
-            physical_loads = [(replace(load, weight=factor * load.weight), power) for load, power in acting]
-            found.append(History(probe, tuple(stretches(physical_loads, model.until))))
+            factor, unit = model.inputs.get(acting[0][0].source, (fmpq(1), ""))
+            probe = Probe(_load_name(model, point), "load", 1, fmpq(0), factor=factor, unit=unit)
+            in_units = [(replace(load, weight=factor * load.weight), power) for load, power in acting]
+            found.append(History(probe, tuple(stretches(in_units, model.until))))
     return tuple(found)
 
 
@@ -64,18 +62,16 @@ def _power(unit: UnitLoad, point: Point) -> int:
     return len(unit.coefficients) - min(len(other.coefficients) for other in point.loads)
 
 
-def _load_name(model: Model, point: Point, scale: Scale | None) -> tuple[str, str]:
-    """What kind of quantity acts on a point, and what its scene calls that."""
-    kind, usual = _usual_name(model, point, scale)
+def _load_name(model: Model, point: Point) -> str:
+    """What its scene calls what acts on a point, else what kind of quantity that is."""
     titles = dict.fromkeys(title for unit in point.loads if (title := model.labels.titles.get(unit.source)))
-    return kind, " + ".join(titles) or usual
+    return " + ".join(titles) or _usual_name(model, point)
 
 
-def _usual_name(model: Model, point: Point, scale: Scale | None) -> tuple[str, str]:
+def _usual_name(model: Model, point: Point) -> str:
     if model.labels.system["type"] == "building":
-        return "acceleration", "acceleration of the base"
+        return "acceleration of the base"
     if any(unit.number is not None for unit in point.loads):
-        return "force", " + ".join(sorted({unit.source.partition(":")[0] for unit in point.loads}))
-    kind = point.motion or "force"
-    called = "moment" if scale and (kind, scale.kind) == ("force", "torsional") else kind
-    return kind, f"{called} {'of' if point.motion else 'at'} {point.name or f'x = {point.place}'}"
+        return " + ".join(sorted({unit.source.partition(":")[0] for unit in point.loads}))
+    force = "moment" if model.labels.kind == "torsional" else "force"
+    return f"{point.motion or force} {'of' if point.motion else 'at'} {point.name or f'x = {point.place}'}"

@@ -37,6 +37,6 @@ def draw(scene: Scene, model: Model, kind: str) -> tuple[Figure, list[str]]:
     if kind == "envelope":
         return envelope.draw(model, line_histories(scene, model)), []
     if kind == "map":
-        return heatmap.draw(model, line_histories(scene, model), load_histories(model, scene.scale)), []
+        return heatmap.draw(model, line_histories(scene, model), load_histories(model)), []
     made = histories(with_titles(model))
-    return panels.draw(made, load_histories(model, scene.scale)), notes(made)
+    return panels.draw(made, load_histories(model)), notes(made)

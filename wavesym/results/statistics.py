@@ -137,13 +137,14 @@ def headings(clock: str, behind: str = "") -> tuple[str, ...]:
     return tuple(found)
 
 
-def cells(output: OutputSummary, jumps: str) -> tuple[str, ...]:
+def cells(output: OutputSummary, jumps: str, digits: int = 7) -> tuple[str, ...]:
     """An output's numbers as people read them; `jumps` stands behind the instant of a value that is not reached."""
     found = []
     for each in STATISTICS:
         if each.value is not None:
-            found.append(number_text(each.value(output)))
+            found.append(number_text(each.value(output), digits=digits))
         if each.when is not None:
             at = each.when(output)
-            found.append("never" if at is None else number_text(at.in_scene_time) + jumps * (not each.reached(output)))
+            time = "never" if at is None else number_text(at.in_scene_time, digits=digits)
+            found.append(time + jumps * (not each.reached(output)))
     return tuple(found)

@@ -92,7 +92,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     summary, searched = _summary(model, with_titles(model.watching(drifts(scene))).probes)
     drawn_by = searched or _program_of_all(drawn, chain_outputs(scene, model))
     made = histories(drawn, most, drawn_by)
-    loads = load_histories(model, scene.scale)[:_LOADS]
+    loads = load_histories(model)[:_LOADS]
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
     lines, periods = scene.system.lines, longest_periods(model)
@@ -115,7 +115,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         spectrum=load_spectrum(model, loads, periods, scale),
         motion=motion(model, found, scale),
         histories=(),
-        notes=(*_missing_outputs(model, drawn), *notes(made)),
+        notes=tuple(f"{note[:1].upper()}{note[1:]}" for note in (*_missing_outputs(model, drawn), *notes(made))),
         until=repr(until * scale.per_tau),
         time=scale.unit,
         columns=most,

@@ -77,7 +77,10 @@ def headline(
     if scene.system.type == "building" and loads:
         peak = float(np.max(np.abs(loads[0].points[:, 1])))
         yield Figure("Peak ground acceleration", _value(peak, loads[0].output.unit), _in_g(scene, peak))
-    if periods:
+    if periods and model.clock and scene.system.type != "building":
+        hertz = ", ".join(f"{1 / period:.3g}" for period in periods)
+        yield Figure("Natural frequencies", f"{hertz} Hz", f"periods {', '.join(f'{each:.3g}' for each in periods)} s")
+    elif periods:
         unit = " s" if model.clock else ""
         values = ", ".join(f"{period:.3g}" for period in periods)
         yield Figure("Period" + "s" * (len(periods) > 1), f"{values}{unit}", "" if unit else "in tau")

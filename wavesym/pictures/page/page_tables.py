@@ -14,6 +14,7 @@ from wavesym.results.presentation import number_text
 from wavesym.results.statistics import OutputSummary, cells, headings
 from wavesym.results.summary import Summary
 
+_DIGITS = 4  # people read no more; `summary` has them
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
 _CALLED = {
     "massless": "masses on springs that weigh nothing",
@@ -40,7 +41,7 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
     rows = (
         (
             f"{each.label}, {each.unit}" if each.unit else each.label,
-            *cells(each, "\u2212"),
+            *cells(each, "\u2212", _DIGITS),
         )
         for each in found.outputs
     )
@@ -51,7 +52,7 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
         _drift(found.largest_drift, scale),
         *(f"{str(link)[:1].upper()}{str(link)[1:]}" for link in found.links or ()),
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
-        f"How: {found.how}; {found.certain}",
+        f"How: {found.how}; {found.certain}. Four figures are shown; the command summary writes more",
     ]
     return PageTable(head, tuple(rows), tuple(filter(None, notes)))
 
@@ -59,8 +60,8 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
 def _drift(found: OutputSummary | None, scale: Timescale) -> str:
     if found is None:
         return ""
-    value = number_text(found.largest.value, found.unit)
-    when = f"{scale.symbol} = {number_text(found.largest.at.in_scene_time, scale.unit)}"
+    value = number_text(found.largest.value, found.unit, _DIGITS)
+    when = f"{scale.symbol} = {number_text(found.largest.at.in_scene_time, scale.unit, _DIGITS)}"
     return f"Largest drift of a rod: {found.label}, {value} at {when}"
 
 

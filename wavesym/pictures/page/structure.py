@@ -8,6 +8,8 @@ from __future__ import annotations
 from base64 import b64encode
 from dataclasses import dataclass, field
 
+from flint import fmpq
+
 from wavesym.mechanics.length import LengthUnit, place_text
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
@@ -193,6 +195,10 @@ class _Pen:
         above, high = self.positions[stations[0].points[0]]
         x = max(_LEFT, min(above, WIDTH - _RIGHT - signs - unit * float(stations[-1].x)))
         x = max(x, above + _ASIDE) if x == above else x  # beside what may lead to the ground there
+        ratio = next((self.network.bars[each.right].ratios[0] for each in stations if each.right is not None), fmpq(1))
+        if ratio != 1:  # the wheel that meshes with the node's; the node has its inertia
+            self.parts += [box(x - 4, y - 18, 8, 36, "mass"), text(x - 9, y - 8, f"\u00d7 {nearest(ratio):.4g}", "end")]
+            y -= 18
         turns = [(above + 5, high + 16), (above + 5, high + 24), (above + _ASIDE, high + 24), (above + _ASIDE, y - 46)]
         self.parts.append(polyline([*turns, (x, y - 46), (x, y)], "hang"))
         return x
