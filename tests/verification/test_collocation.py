@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from scipy.special import eval_laguerre
 
 from tests.support.drawn import scenes
-from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.gauge import Gauge
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 from wavesym.verification import integrations
@@ -27,7 +27,7 @@ ORACLE = Path(__file__).parents[2].parent / "shared" / "oracles" / "rigid_mass_o
 
 def at(quantity, x, side=0):
     rod = max(1, ceil(Fraction(x)) + (side > 0))
-    return Probe(f"{quantity}@{x}", quantity, rod, rational(Fraction(x)) - (rod - 1))
+    return Gauge(quantity, rod, rational(Fraction(x)) - (rod - 1))
 
 
 def scene(system, load=(), until=8, **outputs):

@@ -57,8 +57,10 @@ def test_collocation_finds_when_a_bar_bounces() -> None:
     assert [change.kind for change in found.changes] == ["closes", "opens"] * 2
     assert [change.tau for change in found.changes] == pytest.approx(BOUNCES, abs=1e-12)
     fallen = 5 - 5 * np.array([0.5, 2, 3]) ** 2
-    (probe,) = bouncing().probes
-    assert (found.evaluate(probe, [0.5, 2.0, 3.0]) + fallen).tolist() == pytest.approx([3.75, 5 / 3, 40 / 9], abs=1e-12)
+    (reading,) = problem_of(bouncing()).readings
+    assert (found.evaluate(reading, [0.5, 2.0, 3.0]) + fallen).tolist() == pytest.approx(
+        [3.75, 5 / 3, 40 / 9], abs=1e-12
+    )
 
 
 def test_the_midpoint_rule_finds_when_a_bar_bounces() -> None:

@@ -22,7 +22,6 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.network_problem import gridded_problem
 from wavesym.methods.problem import Array, Evaluate, Method, Problem
 from wavesym.methods.quadrature import gauss, lagrange
-from wavesym.numbers.doubles import fraction
 from wavesym.running.native import FAST, address, library
 
 _SOURCE = Path(__file__).with_suffix(".c")
@@ -151,24 +150,12 @@ def _tables(order: int, problem: Problem, resolution: float) -> tuple[dict[str, 
 
 
 def _terms(problem: Problem) -> list[tuple[int, int, bool, float, float]]:
-    """(output, wave, whether its integral, sign, lag): dU/dtau is the sum of the two waves in a bar.
-
-    Waves are those that ends send, then the velocities of points. dU/dx is left less right, over the speed.
-    """
+    """(output, wave, whether its integral, sign, lag); waves are numbered as in `Problem.waves`."""
     terms: list[tuple[int, int, bool, float, float]] = []
     for output, reading in enumerate(problem.readings):
-        integral, bar = reading.quantity == "displacement", reading.rod - 1
-        if reading.point is not None:
-            terms.append((output, problem.ends.size + reading.point, integral, 1.0, 0.0))
-            continue
-        place, delay = float(fraction(reading.place)), float(problem.delays[bar])
-        slope = 1 / float(problem.speed[bar]) if reading.quantity == "strain" else 1.0
-        right = -slope if reading.quantity == "strain" else 1.0
-        both = (
-            (output, 2 * bar, integral, right, place * delay),
-            (output, 2 * bar + 1, integral, slope, (1 - place) * delay),
-        )
-        terms += sorted(both, key=lambda term: term[-1], reverse=True)
+        waves = sorted(problem.waves(reading), key=lambda wave: wave.late, reverse=True)
+        integral = reading.quantity == "displacement"
+        terms += [(output, end, integral, weight, float(late)) for end, weight, late in waves]
     return terms
 
 

@@ -15,7 +15,6 @@ from scipy.signal import czt
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.network_problem import undamped_problem
 from wavesym.methods.problem import Array, Evaluate, Method, Problem
-from wavesym.numbers.doubles import fraction
 
 _PERIODS = 2.0  # T, in horizons
 _DAMPED = 34.0  # 2 c T: what comes back from beyond 2 T is e^-34 of it
@@ -66,18 +65,12 @@ def _block(problem: Problem, s: Complex) -> Complex:
 
 def _reading(problem: Problem, reading: Gauge, s: Complex, solved: Complex) -> Complex:
     """The transform of a reading."""
-    if reading.point is not None:
-        velocity = solved[2 * len(problem.delay) + reading.point]
-        return np.asarray(velocity / s if reading.quantity == "displacement" else velocity)
-    bar, place = reading.rod - 1, float(fraction(reading.place))
-    arriving = []
-    for side, way in ((0, place), (1, 1 - place)):
-        delay = np.exp(-s * way * problem.delay[bar])
-        arriving.append(solved[2 * bar + side] * delay + problem.start_waves[bar, side] * (1 - delay) / s)
-    right, left = arriving
-    if reading.quantity == "strain":
-        return np.asarray((left - right) / problem.speed[bar])
-    return np.asarray((left + right) / (s if reading.quantity == "displacement" else 1))
+    total = np.zeros(len(s), dtype=np.complex128)
+    for end, weight, late in problem.waves(reading):
+        delay = np.exp(-s * float(late))
+        held = problem.start_waves.ravel()[end] * (1 - delay) / s if reading.point is None else 0.0
+        total += weight * (solved[end] * delay + held)
+    return total / s if reading.quantity == "displacement" else total
 
 
 def _solve(problem: Problem, resolution: float) -> Evaluate:

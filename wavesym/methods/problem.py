@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
+from typing import NamedTuple
 
 import numpy as np
 from flint import fmpq
@@ -27,7 +28,7 @@ from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import nearest, not_below, rational
+from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]
@@ -44,6 +45,14 @@ class LoadEvent:
     time: Fraction
     point: int
     coefficients: tuple[float, float, float]
+
+
+class ReadWave(NamedTuple):
+    """So many times the wave, as a velocity, that an end sent `late` before; beyond the ends it is that of a point."""
+
+    end: int
+    weight: float
+    late: Fraction
 
 
 @dataclass(frozen=True)
@@ -103,10 +112,38 @@ class Problem:
         turned = self.speed * self.start_strain
         return np.stack([self.start_velocity - turned, self.start_velocity + turned], axis=1) / 2
 
-    def held_waves(self, bar: int, side: int, sent: Array) -> Array:
+    def held_waves(self, end: int, sent: Array) -> Array:
         """What a bar holds at tau = 0 of the waves that were sent from an end at instants before."""
-        slope = self.start_slope[bar]
-        return np.asarray(self.start_waves[bar, side] + slope * (sent + self.delay[bar] / 2))
+        bar, side = divmod(end, 2)
+        return np.asarray(self.start_waves[bar, side] + self.start_slope[bar] * (sent + self.delay[bar] / 2))
+
+    def waves(self, reading: Gauge) -> tuple[ReadWave, ...]:
+        """The waves that a strain, velocity, displacement or acceleration is read from: two on a bar, one at a point.
+
+        A displacement is the sum of their integrals, an acceleration that of their derivatives.
+        """
+        if reading.point is not None:
+            return (ReadWave(self.ends.size + reading.point, 1.0, Fraction(0)),)
+        bar, place = reading.rod - 1, fraction(reading.place)
+        over = 1 / float(self.speed[bar]) if reading.quantity == "strain" else 1.0
+        return tuple(
+            ReadWave(2 * bar + side, weight * over, part * self.delays[bar])
+            for side, (weight, part) in enumerate(zip(reading.weights, (place, 1 - place), strict=True))
+        )
+
+    def held_part(self, end: int, taus: Array, late: float, order: int) -> Array:
+        """What of a wave that comes so `late` is from before tau = 0: (taus,).
+
+        Its value or derivative (`order` 0, 1) as if nothing else had been sent, or its integral from 0 on (-1).
+        """
+        if end >= self.ends.size:  # of a point
+            return np.zeros(len(taus))
+        if order > 0:
+            return np.full(len(taus), self.start_slope[end // 2])
+        if order == 0:
+            return self.held_waves(end, taus - late)
+        held = np.minimum(taus, late)  # of this length it has come
+        return held * self.held_waves(end, held / 2 - late)
 
     def strain_at(self, bar: int, place: float) -> float:
         """What a bar, at a part of its length, has of the strain of its waves at tau = 0."""

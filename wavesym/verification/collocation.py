@@ -25,7 +25,6 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
-from wavesym.mechanics.quantities import order_of
 from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import gauss
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
@@ -55,9 +54,9 @@ class UndecidedError(ArithmeticError):
 
 @dataclass
 class Motion:
-    """A motion for 0 <= tau <= `until`: `waves[panel][side, bar]` is sent into a bar, known at Gauss's points.
+    """A motion for 0 <= tau <= `until`: `waves[panel][end]` is sent from an end of a bar, known at Gauss's points.
 
-    After the bars come the velocities of points (on side 0). A panel begins at one of `starts`; `vague` are those that
+    After the ends come the velocities of points. A panel begins at one of `starts`; `vague` are those that
     a contact's opening or closing causes, which are known to rounding only.
     """
 
@@ -85,12 +84,9 @@ class Motion:
         """
         if not all(0 <= tau <= self.until for tau in taus):
             raise ValueError(f"tau outside [0, {self.until}]")
-        order = order_of(reading.quantity)
-        parts = [self._sent_wave(side, number, taus, late, order) for side, number, late in self._read(reading)]
-        if len(parts) == 1:
-            return parts[0]
-        right, left = parts
-        return (left - right) / self.problem.speed[reading.rod - 1] if reading.quantity == "strain" else left + right
+        waves = self.problem.waves(reading)
+        parts = [weight * self._sent_wave(end, taus, late, reading.order) for end, weight, late in waves]
+        return np.asarray(np.sum(parts, axis=0))
 
     def outputs(self, taus: Array) -> Array:
         """The outputs at doubles tau in [0, until], right-hand limits: (outputs, taus)."""
@@ -106,7 +102,7 @@ class Motion:
     def distance(self, reading: Gauge, taus: Array) -> Array:
         """How far instants (n,) are from where a reading may jump or bend at a time that is not known exactly: (n,)."""
         vague = np.array([-np.inf, *self.vague, np.inf])
-        seen = taus - np.array([[float(late)] for _, _, late in self._read(reading)])
+        seen = taus - np.array([[float(wave.late)] for wave in self.problem.waves(reading)])
         after = np.searchsorted(vague, seen)
         return np.asarray(np.min(np.minimum(seen - vague[after - 1], vague[after] - seen), axis=0))
 
@@ -116,27 +112,20 @@ class Motion:
         if reading.quantity == "displacement":
             largest *= max(self.until, 1.0)
         if reading.quantity == "acceleration":  # Markov's inequality, on each panel
-            panels = np.max(np.abs(self._coefficients), axis=(1, 2, 3)) / self._widths
+            panels = np.max(np.abs(self._coefficients), axis=(1, 2)) / self._widths
             largest = 2 * self.points**2 * float(np.max(panels))
         relative = _ROUNDINGS * self.points * len(self.starts) * float(UNIT_ROUNDOFF)
         return max(relative, 10 * SAME if len(self.problem.gaps) else 0.0) * largest
 
-    def _read(self, reading: Gauge) -> list[tuple[int, int, Fraction]]:
-        """The waves that a reading is made of: side and bar that they are sent from, and how late they come."""
-        if reading.point is not None:
-            return [(0, len(self.problem.delays) + reading.point, Fraction(0))]
-        bar, place = reading.rod - 1, Fraction(int(reading.place.p), int(reading.place.q))
-        return [(side, bar, part * self.problem.delays[bar]) for side, part in enumerate((place, 1 - place))]
-
     @cached_property
     def _coefficients(self) -> Array:
-        """The waves as Legendre's series: (panels, 2, bars + points, points of a panel)."""
+        """The waves as Legendre's series: (panels, ends + points, points of a panel)."""
         return np.array(self.waves) @ gauss(self.points).series.T
 
     @cached_property
     def _sums(self) -> Array:
         """The integrals of the waves from tau = 0 to the start of each panel."""
-        totals = np.cumsum(self._coefficients[..., 0] * self._widths[:, np.newaxis, np.newaxis], axis=0)
+        totals = np.cumsum(self._coefficients[..., 0] * self._widths[:, np.newaxis], axis=0)
         return np.concatenate([np.zeros_like(totals[:1]), totals])
 
     @cached_property
@@ -147,7 +136,7 @@ class Motion:
     def _widths(self) -> Array:
         return np.array([float(width) for width in self.widths])
 
-    def _sent_wave(self, side: int, number: int, taus: Sequence[float], late: Fraction, order: int) -> Array:
+    def _sent_wave(self, end: int, taus: Sequence[float], late: Fraction, order: int) -> Array:
         """A wave that was sent so long before, its derivative (`order` 1) or its integral since then (-1).
 
         Which panel that is, is decided exactly.
@@ -159,23 +148,19 @@ class Motion:
         near = (np.abs(times - beside[panel]) < close) | (np.abs(beside[panel + 1] - times) < close)
         for k in np.flatnonzero(near).tolist():
             panel[k] = bisect_right(self.starts, Fraction(taus[k]) - late) - 1
-        bars = len(self.problem.delays)
-        slope = self.problem.start_slope[number] if number < bars else 0.0
-        before: Array = self.problem.held_waves(number, side, times) if number < bars else np.zeros(len(times))
+        held = self.problem.held_part(end, np.array(taus, dtype=float), float(late), order)
         x = np.clip(2 * (times - self._starts[panel]) / self._widths[panel] - 1, -1, 1)
-        series = self._coefficients[panel, side, number]
+        series = self._coefficients[panel, end]
         if order > 0:
             steeper = 2 * legendre.legder(series, axis=1) / self._widths[panel, np.newaxis]
-            return np.where(panel < 0, slope, np.sum(legendre.legvander(x, self.points - 2) * steeper, axis=1))
+            return np.where(panel < 0, held, np.sum(legendre.legvander(x, self.points - 2) * steeper, axis=1))
         if order == 0:
-            return np.where(panel < 0, before, np.sum(legendre.legvander(x, self.points - 1) * series, axis=1))
+            return np.where(panel < 0, held, np.sum(legendre.legvander(x, self.points - 1) * series, axis=1))
         since = legendre.legvander(x, self.points)
         orders = np.arange(1, self.points)
         terms = np.column_stack([x + 1, (since[:, 2:] - since[:, : self.points - 1]) / (2 * orders + 1)])
-        moved = self._sums[panel, side, number] + self._widths[panel] / 2 * np.sum(terms * series, axis=1)
-        sent = np.minimum(times, 0.0) + float(late)  # of this length what was held has come
-        middle: Array = self.problem.held_waves(number, side, sent / 2 - float(late)) if number < bars else before
-        return np.asarray(np.where(panel < 0, 0.0, moved) + sent * middle)
+        moved = self._sums[panel, end] + self._widths[panel] / 2 * np.sum(terms * series, axis=1)
+        return np.asarray(np.where(panel < 0, 0.0, moved) + held)
 
 
 def integrate(problem: CornerProblem, until: float, points: int, most: int = 100_000) -> Motion:
@@ -273,20 +258,19 @@ class _Integration:
 
     def _wave(self, end: int, now: Fraction, width: Fraction, times: Array) -> Array:
         """The wave that arrives at an end of a bar: (times,)."""
-        found, (bar, side) = self._found, divmod(end, 2)
-        sent = now - self._problem.delays[bar]
+        found, late, end = self._found, self._problem.delays[end // 2], end ^ 1
+        sent, times = now - late, times - float(late)
         if (sent, width) in self._panels:
-            return np.asarray(found.waves[self._panels[sent, width]][1 - side, bar])
-        values = self._problem.held_waves(bar, 1 - side, times - float(self._problem.delays[bar]))
+            return np.asarray(found.waves[self._panels[sent, width]][end])
+        values = self._problem.held_waves(end, times)
         if sent + width > 0:
-            times = times - float(self._problem.delays[bar])
             first = max(bisect_right(found.starts, sent) - 1, 0)
             last = bisect_right(found.starts, sent + width)
             for panel in range(first, last):
                 start = float(found.starts[panel])
                 inside = times >= start
                 local = np.minimum((times[inside] - start) / float(found.widths[panel]), 1.0)
-                values[inside] = self._rule.interpolation(local) @ found.waves[panel][1 - side, bar]
+                values[inside] = self._rule.interpolation(local) @ found.waves[panel][end]
         return values
 
     def _store(self, now: Fraction, width: Fraction) -> None:
@@ -296,13 +280,10 @@ class _Integration:
             found.changes.append(Change(self._problem.contacts[contact], happens, float(now)))
         self._open = self._states
         sent = problem.end_ratios[:, np.newaxis] * velocities[problem.end_points] - self._arriving
-        bars = len(problem.delays)
-        waves = np.zeros((2, bars + problem.points, found.points))
-        waves[0, :bars], waves[1, :bars], waves[0, bars:] = sent[0::2], sent[1::2], velocities
         self._panels[now, width] = len(found.starts)
         found.starts.append(now)
         found.widths.append(width)
-        found.waves.append(waves)
+        found.waves.append(np.concatenate([sent, velocities]))
         self._u += float(width) * velocities @ self._rule.weights
         self._q = velocities @ self._rule.interpolation(np.ones(1))[0]
 

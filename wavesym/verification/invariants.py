@@ -268,7 +268,7 @@ class _Books:
             left = np.maximum(delay - self._struck, 0.0)  # of this length there is still what was there at the start
             # Simpson's rule, which is exact for squares of what is linear
             waves = [
-                problem.held_waves(bar, side, -part * left) ** power for side in (0, 1) for part in (0.0, 0.5, 1.0)
+                problem.held_waves(2 * bar + side, -part * left) ** power for side in (0, 1) for part in (0.0, 0.5, 1.0)
             ]
             held = np.tile([1.0, 4.0, 1.0], 2) / 6 @ np.array(waves)
             part = came.integrals(inside) + left * held

@@ -179,7 +179,7 @@ def _offset(problem: CornerProblem, reading: Gauge) -> Fraction:
 
 
 class _Motion:
-    """What is sent from the ends of bars, and how points move, step by step."""
+    """What is sent from the ends of bars, with the velocities of points behind that, step by step."""
 
     def __init__(self, grid: MidpointGrid, steps: int) -> None:
         problem = self._problem = grid.problem
@@ -189,9 +189,8 @@ class _Motion:
         self._lags = np.repeat(np.array([int(delay / grid.step) for delay in problem.delays], dtype=int), 2)
         self._late, self._slopes = np.repeat(problem.delay, 2), np.repeat(problem.start_slope, 2)
         self._beyond = np.arange(2 * len(problem.delays)) ^ 1
-        self._sent = np.zeros((steps, 2 * len(problem.delays)))
-        self._v, self._u = np.zeros((steps, problem.points)), np.zeros((steps + 1, problem.points))
-        self._q = problem.velocity.copy()
+        self._sent = np.zeros((steps, 2 * len(problem.delays) + problem.points))
+        self._u, self._q = np.zeros(problem.points), problem.velocity.copy()
         self._loads = problem.load_means(times[:-1], times[1:])
         self._begun = problem.loads(times[:-1])
         self._impedance = np.repeat(problem.impedance, 2)
@@ -205,7 +204,7 @@ class _Motion:
 
     def advance(self, step: int) -> None:
         """One step."""
-        problem, h, u = self._problem, self._h, self._u[step]
+        problem, h, u = self._problem, self._h, self._u
         came = np.where(
             step < self._lags,
             problem.start_waves.ravel()[self._beyond] + self._slopes * ((step + 0.5) * h - self._late / 2),
@@ -217,42 +216,28 @@ class _Motion:
         acting[prescribed] = self._loads[step, prescribed]
         self._q[prescribed] = self._begun[prescribed, step]  # it may jump there
         v = self._links.settle(self._inverse @ acting, self._q, u, step)
-        self._v[step], self._u[step + 1], self._q = v, u + h * v, 2 * v - self._q
-        self._sent[step] = problem.incidence.T @ v - came
+        self._u, self._q = u + h * v, 2 * v - self._q
+        self._sent[step] = np.append(problem.incidence.T @ v - came, v)
 
     def evaluate(self, reading: Gauge, taus: Array) -> Array:
         """A strain, a velocity, a displacement or an acceleration at instants."""
-        if reading.point is not None:
-            known = {-1: self._u, 0: self._v, 1: np.diff(self._v, axis=0) / self._h}[reading.order]
-            return np.interp(taus, self._times(reading.order), known[:, reading.point])
-        bar, place = reading.rod - 1, float(reading.place)
-        right, left = (
-            self._wave(2 * bar + side, taus, float(part * self._problem.delay[bar]), reading.order)
-            for side, part in enumerate((place, 1 - place))
-        )
-        return (left - right) / self._problem.speed[bar] if reading.quantity == "strain" else left + right
+        waves = self._problem.waves(reading)
+        parts = [weight * self._wave(end, taus, float(late), reading.order) for end, weight, late in waves]
+        return np.asarray(np.sum(parts, axis=0))
 
     def roundoff(self, reading: Gauge) -> float:
         """What rounding may have added to a reading: it adds up over steps, and no point amplifies it."""
-        largest = max(float(np.max(np.abs(each), initial=0.0)) for each in (self._sent, self._v))
+        largest = float(np.max(np.abs(self._sent), initial=0.0))
         scale = {-1: float(self._ends[-1]), 0: 1.0, 1: 2 / self._h}[reading.order]
         slow = float(self._problem.speed[reading.rod - 1]) if reading.quantity == "strain" else 1.0
-        return _ROUNDINGS * float(UNIT_ROUNDOFF) * len(self._v) * largest * scale / slow
-
-    def _times(self, order: int) -> Array:
-        """When displacements, velocities and accelerations are known."""
-        return {-1: self._ends, 0: self._middles, 1: self._ends[1:-1]}[order]
+        return _ROUNDINGS * float(UNIT_ROUNDOFF) * len(self._sent) * largest * scale / slow
 
     def _wave(self, end: int, taus: Array, late: float, order: int) -> Array:
         """What was sent from an end so long ago, its derivative (`order` 1), or its integral from tau = 0 (-1)."""
-        since, last = taus - late, np.minimum(taus, late)  # of the length `last` what was held has come
-        bar, side = divmod(end, 2)
+        times = {-1: self._ends, 0: self._middles, 1: self._ends[1:-1]}[order]
         known = {-1: self._sums, 0: self._sent, 1: np.diff(self._sent, axis=0) / self._h}[order]
-        found = np.interp(since, self._times(order), known[:, end])
-        if order < 0:
-            return np.asarray(last * self._problem.held_waves(bar, side, last / 2 - late) + found)
-        held = self._problem.held_waves(bar, side, since) if order == 0 else self._problem.start_slope[bar]
-        return np.where(since < 0, held, found)
+        found, held = np.interp(taus - late, times, known[:, end]), self._problem.held_part(end, taus, late, order)
+        return held + found if order < 0 else np.where(taus < late, held, found)
 
     @cached_property
     def _sums(self) -> Array:
