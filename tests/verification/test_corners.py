@@ -33,6 +33,13 @@ SEEDS = (1,)
 LONGER = (38, 8, 10, 72, 170, 288)
 
 
+@pytest.fixture(autouse=True)
+def fewer_steps(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without --run-slow grids are halved two times less: errors are four times as large, and so is what is allowed."""
+    if not request.config.getoption("--run-slow"):
+        monkeypatch.setattr(integrations, "MOST_MOVED", integrations.MOST_MOVED / 4)
+
+
 def known(table: dict[str, Any], claimed: dict[str, Any] | None = None) -> ReferenceOutputs:
     """What programs say of a scene, or of another one that is `claimed` to be it."""
     scene = Scene(**table)

@@ -24,10 +24,10 @@ class StreamModel:
     without a C compiler.
     """
 
-    def __init__(self, program: Program, flags: Sequence[str] = FAST) -> None:
+    def __init__(self, program: Program, flags: Sequence[str] = ()) -> None:
         name = program.provenance.model.name
         files = sources(program, "c")
-        loaded = library(files[f"{name}.c"], tuple(flags), (f"{name}.h", files[f"{name}.h"]))
+        loaded = library(files[f"{name}.c"], tuple(flags or FAST), (f"{name}.h", files[f"{name}.h"]))
         real, where = ctypes.c_double if program.real.bytes == 8 else ctypes.c_float, ctypes.c_void_p
         begin = "build" if program.laws else "init"
         self._begin, self._step, self._lost = (getattr(loaded, f"{name}_{word}") for word in (begin, "step", "lost"))

@@ -110,7 +110,7 @@ class LinkPulls:
             return free
         for link in self._laws:
             if isinstance(link, _Friction):
-                link.speed = float(link.law.row @ q) if self._problem.sliding_mass(link.law) else 0.0
+                link.speed = float(link.law.row @ q) if link.inertia else 0.0
         rates, longer = self._rows @ free, self._rows @ u
         for _ in range(_ROUNDS):
             before = self._pulls.copy()
