@@ -104,6 +104,8 @@ def page(
             f"## {case['scene']}: {case['area']}\n\n",
             f"{case['what'][0].upper()}{case['what'][1:]}. Source: {case['source']}.\n\n",
         ]
+        if "inferred" in case:
+            body.append(f"Inferred: {case['inferred']}.\n\n")
         body += ["| printed | ours | verdict |\n", "|---|---|---|\n"]
         reasons = []
         for numbers in case["numbers"]:
@@ -113,7 +115,9 @@ def page(
             if "why" in numbers:
                 reasons.append(f"Why they differ: {numbers['why']}.\n")
         body += ["\n", *reasons, *(["\n"] if reasons else [])]
-    yield f"{total} numbers of {len(cases())} cases: {same} are the same, {total - same} differ.\n\n"
+    inferred = sum("inferred" in case for case in cases())
+    yield f"{total} numbers of {len(cases())} cases: {same} are the same, {total - same} differ. Some data of {inferred}\n"
+    yield "cases are inferred from results, which prove less then; these say so.\n\n"
     yield "".join(body).rstrip("\n") + "\n"
 
 
