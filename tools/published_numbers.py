@@ -116,8 +116,8 @@ def page(
                 reasons.append(f"Why they differ: {numbers['why']}.\n")
         body += ["\n", *reasons, *(["\n"] if reasons else [])]
     inferred = sum("inferred" in case for case in cases())
-    yield f"{total} numbers of {len(cases())} cases: {same} are the same, {total - same} differ. Some data of {inferred}\n"
-    yield "cases are inferred from results, which prove less then; these say so.\n\n"
+    yield f"{total} numbers of {len(cases())} cases: {same} are the same, {total - same} differ.\n"
+    yield f"Some data of {inferred} cases are inferred from results, which prove less then; these say so.\n\n"
     yield "".join(body).rstrip("\n") + "\n"
 
 

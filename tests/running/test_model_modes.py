@@ -232,6 +232,34 @@ def test_what_modes_cannot_give_is_refused_in_one_line(sprung):
         wavesym.model(stepped, ["mass"])
 
 
+@pytest.mark.parametrize(
+    ("between", "remedy"),
+    [({"spring": 3, "dashpot": "1/10"}, "take a sweep"), ({"rod": 1}, "take mass, dashpot, spring, impedance or load")],
+    ids=["without rods", "with rods"],
+)
+def test_dashpots_beside_numbers_of_modes_say_who_takes_them(between, remedy):
+    parts = ["fixed", between, {"mass": 1, "name": "m"}, {"spring": 1, "dashpot": 1}, {"mass": 1}]
+    load = [{"at": "m", "times": [0, 1], "ramps": [1, -1]}]
+    scene = wavesym.Scene(
+        name="tuned", system={"type": "chain", "parts": parts}, load=load, output={"until": 4, "displacement": ["m"]}
+    )
+    with pytest.raises(UnservedError, match=remedy):
+        wavesym.model(scene, ["stiffness"])
+    if "rod" in between:  # and these do
+        own, other = wavesym.model(scene, ["dashpot"]).values([3.0], dashpot=[[1.0], [2.0]])[:, 0, 0]
+        assert own == pytest.approx(wavesym.run(scene, [3.0])["displacement@m"][0], rel=1e-6)
+        assert abs(other - own) > 1e-6
+
+
+def test_without_a_rod_modes_take_what_is_asked_for():
+    """A march has no rod to march along: a mass alone was refused."""
+    undamped = SPRUNG.with_({"system.damping": 0})
+    found = wavesym.model(undamped, ["mass"]).values([1.5], mass=[[2, 2, 2, 2], [2, 2, 2, 3]])
+    exact = wavesym.run(undamped.with_({"output.tolerance": "1e-9"}), [1.5])
+    assert found[0, :, 0] == pytest.approx([exact[name][0] for name in exact], rel=1e-5)
+    assert np.abs(found[1] - found[0]).min() > 0
+
+
 def test_marches_do_not_take_numbers_of_modes():
     """What is damped, and what changes a delay; the message says who does."""
     with pytest.raises(UnservedError, match=r"system.damping: supported by modes only"):

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from wavesym.errors import UnservedError, WavesymError
-from wavesym.programs.request import OF_MODES, Request
+from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, sources
 
@@ -225,7 +225,7 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     if isinstance(runtime, str):
         raise WavesymError(f'runtime: "{runtime}" is not a list of names; write ["{runtime}"]')
     lowered, loads = lower(scene), _varied_loads(scene, runtime)
-    if lowered.damping is None and OF_MODES.keys().isdisjoint(runtime):
+    if not Request(runtime=tuple(runtime)).is_of_mode_sets(lowered):
         return compiled_model(sets_program(lowered, runtime, loads))
     from wavesym.running.mode_sets import ModalSets
 

@@ -118,7 +118,8 @@ class Request:
 
     def is_of_mode_sets(self, model: Model) -> bool:
         """Whether parameters at run time are numbers of modes: where modes are requested, are damped, or alone can."""
-        return self.evaluator == "modes" or model.damping is not None or not OF_MODES.keys().isdisjoint(self.runtime)
+        alone = model.damping is not None or not model.network.bars or not OF_MODES.keys().isdisjoint(self.runtime)
+        return self.evaluator == "modes" or alone
 
     def refuse_unknown(self) -> None:
         """WavesymError for a word that is none of those there are, and for what is of parameters at run time alone."""

@@ -18,8 +18,8 @@ from wavesym.verification.outcome import ProgramValues
 
 
 def mode_set_names(model: Model) -> tuple[str, ...]:
-    """All numbers that may be given of a damped model; none of another one, which marches serve."""
-    if model.damping is None:
+    """All numbers that may be given of a damped model, or one without rods; none of another one: marches serve it."""
+    if model.damping is None and model.network.bars:
         return ()
     try:
         return (*names_of(model), *(["load"] if model.loads else []))

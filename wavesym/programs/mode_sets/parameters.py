@@ -19,6 +19,7 @@ from itertools import count
 import numpy as np
 from flint import fmpq
 
+from wavesym.errors import UnservedError
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
@@ -114,6 +115,7 @@ def mode_parameters(
 
     UnservedError for what modes do not serve, WavesymError for a name that the scene does not have.
     """
+    _refuse_dashpots(model.network)
     known = {name: numbers for name, numbers in _numbers(model) if numbers}
     refuse_others("runtime", names, [*known, *(["load"] if model.loads else [])])
     fields = [
@@ -125,6 +127,20 @@ def mode_parameters(
         fields.append(field_of("load", [(about, load.weight, unit_of_load(model, load)) for about, load in amplitudes]))
         return ModeParameters(model, tuple(fields), tuple(load for _, load in amplitudes))
     return ModeParameters(model, tuple(fields), ())
+
+
+def _refuse_dashpots(network: Network) -> None:
+    """UnservedError for dashpots, which say who takes their numbers."""
+    points = [point for point in network.points if point.damping != 0 and point.motion is None]
+    points += [network.points[link.left] for link in network.links if link.damping != 0]
+    if points:
+        remedy = "take mass, dashpot, spring, impedance or load, of a march, or a sweep, which computes each case alone"
+        if not network.bars:
+            remedy = "take a sweep, which computes each case alone"
+        raise UnservedError(
+            f"runtime: numbers of modes beside the dashpot or absorbing end at {points[0].name or points[0].place} are "
+            f"not supported ({remedy})"
+        )
 
 
 def names_of(model: Model) -> tuple[str, ...]:
