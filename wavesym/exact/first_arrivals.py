@@ -14,6 +14,7 @@ from flint import fmpq
 from wavesym.exact.arrivals import arrivals
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.ball import Segment
+from wavesym.mechanics.gauge import positions
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
@@ -57,10 +58,7 @@ def light_arrivals(model: Model) -> list[fmpq | None]:
             starts[joint] = min([starts[joint], *times] if joint in starts else times)
     found: list[fmpq | None] = []
     for probe in model.probes:
-        readings = [reading for _, reading in model.sums[probe]]
-        places = [(reading.rod - 1, reading.place) for reading in readings if reading.point is None]
-        points = [reading.point for reading in readings if reading.point is not None]
-        distances = network.distances(places, points)
+        distances = network.distances(*positions([reading for _, reading in model.sums[probe]]))
         times = [time + distances[joint] for joint, time in starts.items() if joint in distances]
         found.append(min((time for time in times if time <= last), default=None))
     return found

@@ -11,7 +11,7 @@ What touches a mass pushes it with all that acts on what touches, as that has no
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -91,30 +91,35 @@ Sum = tuple[ReadingTerm, ...]
 
 def readings(network: Network, probe: Probe) -> Sum:
     """What an output is the sum of, its factor included."""
+    if probe.quantity == "acceleration" and (probe.point is not None or probe.place in (0, 1)):
+        point, ratio = probe.point, _ONE
+        if point is None:
+            end = End(probe.rod - 1, int(probe.place))
+            point, ratio = network.point_at(end), network.bars[end.bar].ratios[end.side]
+        if network.points[point].mass != 0:
+            return _summed(probe, _times(ratio / network.points[point].mass, _forces_on(network, point)))
+    return motion_readings(network, probe)
+
+
+def motion_readings(network: Network, probe: Probe) -> Sum:
+    """The same of motion alone: an acceleration is what it is, not the forces that cause it."""
+    return _summed(probe, _parts(network, probe))
+
+
+def _summed(probe: Probe, parts: Iterable[ReadingTerm]) -> Sum:
     weights: dict[Gauge, fmpq] = {}
-    for weight, reading in _parts(network, probe):
+    for weight, reading in parts:
         weights[reading] = weights.get(reading, _ZERO) + probe.factor * weight
     return tuple(ReadingTerm(weight, reading) for reading, weight in weights.items() if weight != 0)
 
 
 def _parts(network: Network, probe: Probe) -> Iterator[ReadingTerm]:
-    here = Gauge(probe.quantity, probe.rod, probe.place, probe.point)
-    if probe.quantity in ("strain", "force"):
-        bar = network.bars[probe.rod - 1]
-        stiffness = bar.impedance * bar.speed if probe.quantity == "force" else _ONE
-        yield ReadingTerm(stiffness, Gauge("strain", probe.rod, probe.place))
-        yield ReadingTerm(stiffness * bar.weight_strain(probe.place), Gauge("constant", 0, _ZERO))
-        return
     match probe.quantity:
-        case "acceleration":
-            point, ratio = probe.point, _ONE
-            if point is None:
-                end = End(probe.rod - 1, int(probe.place))
-                point, ratio = network.point_at(end), network.bars[end.bar].ratios[end.side]
-            if network.points[point].mass != 0 and (probe.point is not None or probe.place in (0, 1)):
-                yield from _times(ratio / network.points[point].mass, _forces_on(network, point))
-            else:
-                yield ReadingTerm(_ONE, here)
+        case "strain" | "force":
+            bar = network.bars[probe.rod - 1]
+            stiffness = bar.impedance * bar.speed if probe.quantity == "force" else _ONE
+            yield ReadingTerm(stiffness, Gauge("strain", probe.rod, probe.place))
+            yield ReadingTerm(stiffness * bar.weight_strain(probe.place), Gauge("constant", 0, _ZERO))
         case "drift":
             yield ReadingTerm(_ONE, Gauge("displacement", probe.rod, _ONE))
             yield ReadingTerm(-_ONE, Gauge("displacement", probe.rod, _ZERO))
@@ -122,7 +127,15 @@ def _parts(network: Network, probe: Probe) -> Iterator[ReadingTerm]:
             yield ReadingTerm(_ONE, Gauge("displacement", probe.rod, probe.place, probe.point))
             yield ReadingTerm(-_ONE, gauge_at("displacement", network, ground(network)))
         case _:
-            yield ReadingTerm(_ONE, here)
+            yield ReadingTerm(_ONE, Gauge(probe.quantity, probe.rod, probe.place, probe.point))
+
+
+def positions(reads: Sequence[Gauge]) -> tuple[list[tuple[int, fmpq]], list[int]]:
+    """Where they are: places of bars, and points, as `Network.distances` takes them."""
+    return (
+        [(each.rod - 1, each.place) for each in reads if each.rod],
+        [each.point for each in reads if each.point is not None],
+    )
 
 
 def ground(network: Network) -> int:

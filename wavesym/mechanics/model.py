@@ -11,7 +11,7 @@ from flint import fmpq
 from wavesym.errors import UnservedError
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
-from wavesym.mechanics.gauge import Gauge, Sum, readings
+from wavesym.mechanics.gauge import Gauge, Sum, positions, readings
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
@@ -147,9 +147,8 @@ class Model:
 
     def _arrival_times(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
         network = self.network
-        places = [(reading.rod - 1, reading.place) for reading in self.gauges if reading.point is None]
-        points = [reading.point for reading in self.gauges if reading.point is not None] + list(more)
-        distances = network.distances(places, points)
+        places, points = positions(self.gauges)
+        distances = network.distances(places, [*points, *more])
         bars = [network.bars[bar] for bar, _ in places]
         beside = {network.joint_of[point] for bar in bars for point in (bar.left, bar.right)}
         return {
@@ -164,13 +163,11 @@ class Model:
 
         A body that a wave first meets at `until` has not answered by then; a node without mass has.
         """
-        places = [(reading.rod - 1, reading.place) for reading in self.gauges if reading.point is None]
-        points = [reading.point for reading in self.gauges if reading.point is not None]
         network = self.network
 
         @cache
         def distances() -> dict[int, fmpq]:
-            return network.distances(places, points)
+            return network.distances(*positions(self.gauges))
 
         def matters(point: int) -> bool:
             distance = distances().get(network.joint_of[point])

@@ -348,15 +348,11 @@ def _heard(
 ) -> Iterator[OutputTerm]:
     for weight, reading in terms:
         summed = reading.order < 0
-        if reading.point is not None:
-            tracks = load_of if reading.quantity == "load" else point_of
-            if reading.point in tracks:
-                yield OutputTerm(tracks[reading.point], weight, _ZERO, summed)
-            continue
-        bar = network.bars[reading.rod - 1]
-        right, left = (weight * sign / (bar.speed if reading.quantity == "strain" else 1) for sign in reading.weights)
-        yield OutputTerm(track_of[End(reading.rod - 1, 0)], right, reading.place * bar.delay, summed)
-        yield OutputTerm(track_of[End(reading.rod - 1, 1)], left, (1 - reading.place) * bar.delay, summed)
+        if reading.point is None:
+            for end, factor, delay in reading.waves(network):
+                yield OutputTerm(track_of[end], weight * factor, delay, summed)
+        elif (track := (load_of if reading.quantity == "load" else point_of).get(reading.point)) is not None:
+            yield OutputTerm(track, weight, _ZERO, summed)
 
 
 def power_of_two(numbers: Iterable[fmpq]) -> fmpq:

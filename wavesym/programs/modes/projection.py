@@ -15,7 +15,7 @@ from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Shape, Statics
 from wavesym.exact.modes.stiffness import Quantity
-from wavesym.mechanics.gauge import ground
+from wavesym.mechanics.gauge import motion_readings
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Network, Point
 from wavesym.mechanics.probe import Probe
@@ -112,35 +112,18 @@ def places(model: Model) -> tuple[tuple[int, fmpq], ...]:
 
 def modal_output(network: Network, pieces: Cut, probe: Probe) -> ModalOutput:
     """What an output is, its factor included, on the network that is cut in pieces."""
-    factor = probe.factor
-    match probe.quantity:
-        case "strain" | "force":
-            bar = network.bars[probe.rod - 1]
-            weight = bar.impedance if probe.quantity == "force" else 1 / bar.speed
-            return ModalOutput(0, {}, (factor * weight, pieces.end(probe.rod - 1, probe.place)))
-        case "drift":
-            ends = End(pieces.firsts[probe.rod - 1], 0), pieces.end(probe.rod - 1, fmpq(1))
-            return ModalOutput(0, _sum(_moving(pieces, ends[1], factor), _moving(pieces, ends[0], -factor)))
-    if probe.point is not None:
-        points = {probe.point: factor}
-    else:
-        points = _moving(pieces, pieces.end(probe.rod - 1, probe.place), factor)
-    if probe.quantity == "relative":
-        points = _sum(points, {ground(network): -factor})
+    order, points = 0, dict[int, fmpq]()
+    for weight, reading in motion_readings(network, probe):
+        order, point = reading.order + 1, reading.point
+        if point is None:
+            end = pieces.end(reading.rod - 1, reading.place)
+            if reading.quantity == "strain":
+                return ModalOutput(0, {}, (weight / network.bars[reading.rod - 1].speed, end))
+            point, weight = pieces.network.point_at(end), weight * pieces.network.bars[end.bar].ratios[end.side]
+        points[point] = points.get(point, fmpq(0)) + weight
+    points = {point: weight for point, weight in points.items() if weight != 0}
     massive = all(pieces.network.points[point].mass != 0 for point in points)
-    return ModalOutput({"velocity": 1, "acceleration": 2}.get(probe.quantity, 0), points, massive=massive)
-
-
-def _moving(pieces: Cut, end: End, weight: fmpq) -> dict[int, fmpq]:
-    return {pieces.network.point_at(end): weight * pieces.network.bars[end.bar].ratios[end.side]}
-
-
-def _sum(*parts: Mapping[int, fmpq]) -> dict[int, fmpq]:
-    total: dict[int, fmpq] = {}
-    for part in parts:
-        for point, weight in part.items():
-            total[point] = total.get(point, fmpq(0)) + weight
-    return {point: weight for point, weight in total.items() if weight != 0}
+    return ModalOutput(order, points, massive=massive)
 
 
 _BITS = 256

@@ -14,11 +14,10 @@ from math import gcd, lcm
 
 from flint import fmpq, fmpq_mat, fmpz_mod, fmpz_mod_ctx
 
+from wavesym.exact.first_arrivals import light_arrivals
 from wavesym.exact.modes.cuts import cut
 from wavesym.exact.modes.stiffness import Stiffness
-from wavesym.mechanics.gauge import ground
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.projection import Driver, ModalOutput, modal_output, places
@@ -29,40 +28,15 @@ _I = _FIELD(3) ** ((2**127 - 40) // 4)
 
 
 def zero_outputs(model: Model, drivers: Sequence[Driver], loads: LinearLoads) -> tuple[bool, ...]:
-    """Whether each output is: at a free end, where no load has come to before the end of the horizon, or cancelled.
+    """Whether each output is: where no load has come to before the end of the horizon, or cancelled.
 
     Damped modes move the whole chain at once. Without any load outputs are 0 of themselves.
     """
-    response = _Response(model)
-    shares = _histories(loads)
-    starts = [(each.point, _start(loads, j)) for j, each in enumerate(drivers)]
-    acting = [(point, time) for point, time in starts if time is not None]
-    return tuple(_is_zero(model, probe, acting) or response.cancels(probe, drivers, shares) for probe in model.probes)
-
-
-def _is_zero(model: Model, probe: Probe, acting: Sequence[tuple[int, fmpq]]) -> bool:
-    network, bar = model.network, probe.rod - 1
-    strained = probe.quantity in ("strain", "force")
-    if strained and probe.place in (0, 1) and network.is_free(End(bar, int(probe.place))):
-        return True
-    places = [] if probe.point is not None else [(bar, probe.place)]
-    points = [] if probe.point is None else [probe.point]
-    if probe.quantity == "drift":
-        places = [(bar, fmpq(0)), (bar, fmpq(1))]
-    if probe.quantity == "relative":
-        points.append(ground(network))
-    if model.is_damped:
-        return False
-    away = network.distances(places, points)
-    return bool(acting) and not any(time + away[network.joint_of[point]] < model.until for point, time in acting)
-
-
-def _start(loads: LinearLoads, j: int) -> fmpq | None:
-    """When a load begins to rise; None where it never does."""
-    for k, row in enumerate(loads.samples):
-        if row[j] != 0:
-            return loads.times[k - 1]
-    return loads.times[-1] if loads.slopes[j] != 0 else None
+    response, histories = _Response(model), _histories(loads)
+    return tuple(
+        (not model.is_damped and (first is None or first >= model.until)) or response.cancels(probe, drivers, histories)
+        for probe, first in zip(model.probes, light_arrivals(model), strict=True)
+    )
 
 
 def _histories(loads: LinearLoads) -> list[list[fmpq]]:
