@@ -21,8 +21,8 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.request import POSITIVE, Request
 from wavesym.programs.runtime.network import NAMES as FIELDS
-from wavesym.programs.stream.parameters import QUICKER, free_stream
-from wavesym.programs.stream.plan import inputs_of
+from wavesym.programs.stream.parameters import QUICKER
+from wavesym.programs.stream.plan import inputs_of, stream_plan
 from wavesym.programs.stream.tables import StreamTables
 from wavesym.running.native import address
 from wavesym.running.stream import StreamModel
@@ -128,8 +128,8 @@ def test_with_parameters_nothing_is_said_to_be_bounded(program):
 def test_the_tables_are_those_of_balls_but_for_rounding(gears, program):
     """What C computes of the scene's own parameters, beside what is computed in balls and rounded once."""
     model = replace(lower(DRIVEN), endless=True)
-    free = free_stream(model, NAMES, inputs_of(model, load_sources(DRIVEN)), DOUBLE)
-    right = StreamTables(free.plan(None), int(program.constants["degree"]), DOUBLE).tables()
+    plan = stream_plan(model, inputs_of(model, load_sources(DRIVEN)), DOUBLE, quicker=QUICKER)
+    right = StreamTables(plan, int(program.constants["degree"]), DOUBLE).tables()
     begin = sum(len(functions) + 1 for functions in program.laws.functions.values())
     matrix = gears.start().state.view(float)[begin : begin + int(program.constants["answers"])]
     for n, (first, end) in enumerate(pairwise(program.tables["answer"])):

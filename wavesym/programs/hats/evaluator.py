@@ -179,9 +179,8 @@ def _superposed(record: RecordLoad, march: March, hat: Verdict) -> Numbers:
     total, spread = float(samples.sum()), float(np.sqrt(count * np.square(samples).sum()))
     spacing, span = nearest(record.spacing), plan.cycle[1]
     late = ShiftedHats.NEAR * march.tau_max + 4 * _UNIT * (spacing + span)
-    shortest = min(nearest(panel.length) for panel in plan.panels)
     # what the error of a hat changes by so much later, in parts of itself
-    bent = 2 * min(2.0, late * 2 * hat.smooth**2 / shortest)
+    bent = 2 * min(2.0, late * 2 * hat.smooth**2 / plan.shortest)
     errors, heights, slopes = (np.array(each) for each in (hat.errors, hat.heights, hat.slopes))
     levels = np.log2(4 * count)
     added = _UNIT * (total * (count + 2) + spread * (24 * levels + 16)) * heights

@@ -112,8 +112,7 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     outputs, step = len(plan.outputs), nearest(plan.step)
     truncated, rounded, summed = 0.0, losses.begun, 0.0
     largest, reading, sums, held, height, slope = (np.zeros(outputs) for _ in range(6))
-    shortest = min(nearest(panel.length) for panel in plan.panels)
-    one, bent = np.ones(degree + 1), 2 / shortest * np.arange(degree + 1.0) ** 2
+    one, bent = np.ones(degree + 1), 2 / plan.shortest * np.arange(degree + 1.0) ** 2
     for block in _march_blocks(scheme, plan.windows):
         lost, inexact = losses.of_block(block)
         truncated += lost
@@ -188,8 +187,7 @@ def _march_blocks(scheme: MarchScheme, windows: int) -> Iterator[WindowBlock]:
 
 def largest_wave(smooth: Tail, plan: MarchPlan, energy: float) -> float:
     """The largest value of what is in L2 at most `energy`, and a polynomial up to a tail."""
-    shortest = min(nearest(panel.length) for panel in plan.panels)
-    return (smooth.degree + 1) / sqrt(2) * (sqrt(2 / shortest) * energy + sqrt(2) * smooth.size) + smooth.size
+    return (smooth.degree + 1) / sqrt(2) * (sqrt(2 / plan.shortest) * energy + sqrt(2) * smooth.size) + smooth.size
 
 
 def size_of(plan: MarchPlan, track: int) -> float:
@@ -215,7 +213,7 @@ def size_of(plan: MarchPlan, track: int) -> float:
 
 def smoothness(plan: MarchPlan, degree: int) -> Tail:
     """How near to polynomials of some degree, and no lower one, true waves are where the norm of energy is 1."""
-    rate = max((joint.space.norm for joint in plan.joints), default=0.0)
+    rate = plan.norm
     jumps = list(_jumps(plan, rate)) if rate else [0.0] * 3
     if not any(jumps):
         return Tail(max(degree, 3), 0.0)  # without a state waves are as the loads

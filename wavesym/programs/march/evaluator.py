@@ -159,23 +159,14 @@ def _made(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
 
 
 def first_degree(plan: MarchPlan, real: Real) -> int:
-    """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved.
-
-    A stiff spring adds those of a body on it. Blocks cost its square.
-    """
+    """Enough for the oscillations of a front; a stiff spring adds those of a body on it. Blocks cost its square."""
     if not any(joint.space.states for joint in plan.joints):
         return _LEAST_DEGREE
-    longest = max(nearest(panel.length) for panel in plan.panels)
     bodies = [-nearest(p.space.rates[n, n]) for p in plan.joints for n in range(p.space.states)]
     slow = sum(rate for rate in bodies if rate > 0) / len(bodies)
-    turning = max(joint.space.turning for joint in plan.joints)
-    detail = math.sqrt(2 * slow * longest * plan.crossings) + min(turning * longest / 2, 1e6)
+    detail = plan.oscillations(slow) + min(plan.turning * plan.longest / 2, 1e6)
     spare = 8 if any(joint.space.law == BLOCK for joint in plan.joints) else 12
     return math.ceil(detail) + (spare if real is DOUBLE else spare // 2)
-
-
-def _fastest(plan: MarchPlan) -> float:
-    return max(joint.space.norm for joint in plan.joints)
 
 
 def _multiplications(plan: MarchPlan, degree: int) -> int:
@@ -208,13 +199,13 @@ def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float
     _refuse_rings(plan, _LEAST_DEGREE, real)  # it is not the joints then
     if degree > HIGHEST_DEGREE:
         raise CostError(
-            f"output.until: rates to {_fastest(plan):g} need polynomials of degree {degree:g} to tau = "
+            f"output.until: rates to {plan.norm:g} need polynomials of degree {degree:g} to tau = "
             f"{plan.tau_max:g}, the limit in a march is {HIGHEST_DEGREE} (a shorter horizon, or heavier bodies, "
             "helps)"
         )
     if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:
         raise CostError(
-            f"system.parts: joints as fast as {_fastest(plan):.3g} on a step of {plan.step} need polynomials of "
+            f"system.parts: joints as fast as {plan.norm:.3g} on a step of {plan.step} need polynomials of "
             f"degree {degree:g} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, the limit in a "
             f"march is {_MOST_BYTES:.1e} (softer springs, heavier bodies, or lengths with a smaller common "
             "measure, help)"

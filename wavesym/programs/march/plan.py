@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import pairwise
-from math import gcd, lcm
+from math import gcd, lcm, sqrt
 from typing import Any
 
 from flint import fmpq, fmpq_poly
@@ -162,17 +162,41 @@ class MarchPlan:
         shortest = min(track.steps for track in self.tracks if track.steps)
         return -(-self.windows // shortest)
 
+    @cached_property
+    def shortest(self) -> float:
+        """The length of the shortest panel."""
+        return min(nearest(panel.length) for panel in self.panels)
+
+    @cached_property
+    def longest(self) -> float:
+        """That of the longest."""
+        return max(nearest(panel.length) for panel in self.panels)
+
+    @property
+    def norm(self) -> float:
+        """How fast anything in a joint is, at most."""
+        return max((joint.space.norm for joint in self.joints), default=0.0)
+
+    @property
+    def turning(self) -> float:
+        """About how fast bodies swing on their springs."""
+        return max(joint.space.turning for joint in self.joints)
+
+    def oscillations(self, rate: float) -> float:
+        """Those on a panel of a front that has met bodies of some rate: like a Laguerre function's, sqrt(2 rate n)."""
+        return sqrt(2 * rate * self.longest * self.crossings)
+
+    def alter_joints(self, change: Callable[[int, JointSpace], JointSpace]) -> MarchPlan:
+        """The same with other laws; `change` takes the number of a joint and its laws."""
+        joints = (replace(joint, space=change(number, joint.space)) for number, joint in enumerate(self.joints))
+        return replace(self, joints=tuple(joints))
+
     def scale(self, factor: fmpq) -> MarchPlan:
         """The same with all that moves it `factor` times as large; every motion is, then."""
-
-        def louder(joint: MarchedJoint) -> MarchedJoint:
-            begun = tuple(factor * value for value in joint.space.begun)
-            return replace(joint, space=replace(joint.space, begun=begun))
-
+        same = self.alter_joints(lambda _, space: replace(space, begun=tuple(factor * value for value in space.begun)))
         return replace(
-            self,
+            same,
             tracks=tuple(replace(track, held=factor * track.held) for track in self.tracks),
-            joints=tuple(map(louder, self.joints)),
             events=tuple(event.times(factor) for event in self.events),
         )
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import ceil, log10, sqrt
+from math import ceil, log10
 from typing import NamedTuple
 
 import numpy as np
@@ -18,8 +18,8 @@ from flint import fmpq
 from wavesym.errors import CostError
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.march.plan import MarchedJoint, MarchPlan, march_plan
-from wavesym.programs.march.space import BLOCK, BODY
+from wavesym.programs.march.plan import MarchPlan, march_plan
+from wavesym.programs.march.space import BLOCK, BODY, JointSpace
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.runtime.plan import RuntimePlan
 from wavesym.programs.schemes.march import MarchScheme
@@ -88,21 +88,12 @@ def _initial_state(plan: MarchPlan, *, anew: bool) -> Iterator[MarchPlan]:
     """As the scene begins, and, where that is given `anew`, with bodies that do not move together."""
     yield plan
     if anew:
-        yield replace(plan, joints=tuple(_differing(number, joint) for number, joint in enumerate(plan.joints)))
-
-
-def _differing(number: int, joint: MarchedJoint) -> MarchedJoint:
-    space = joint.space
-    return replace(joint, space=replace(space, begun=tuple(value - 1 - number for value in space.begun)))
+        yield plan.alter_joints(lambda n, space: replace(space, begun=tuple(value - 1 - n for value in space.begun)))
 
 
 def _front(plan: MarchPlan, rate: fmpq) -> float:
-    """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved. A
-    stiff spring adds those of a body on it.
-    """
-    longest = max(nearest(panel.length) for panel in plan.panels)
-    along, turning = nearest(rate) * longest, max(joint.space.turning for joint in plan.joints)
-    return sqrt(2 * along * plan.crossings) + along / 8 + 2 * turning * longest
+    """The oscillations of a front that are to be resolved. A stiff spring adds those of a body on it."""
+    return plan.oscillations(nearest(rate)) + nearest(rate) * plan.longest / 8 + 2 * plan.turning * plan.longest
 
 
 def _light(made: RuntimePlan, largest: fmpq) -> list[MarchPlan]:
@@ -119,14 +110,12 @@ def _light(made: RuntimePlan, largest: fmpq) -> list[MarchPlan]:
 def _quick(plan: MarchPlan, rate: fmpq, *, uneven: bool) -> MarchPlan:
     """With bodies whose rates are no less than `rate`."""
 
-    def quick(number: int, joint: MarchedJoint) -> MarchedJoint:
-        space = joint.space
+    def quick(number: int, space: JointSpace) -> JointSpace:
         if space.law != BODY:
-            return joint
-        times = max(rate / space.rate, fmpq(1)) * (1 - fmpq(number % 3, 10) * uneven)
-        return replace(joint, space=replace(space, rates=times * space.rates, pushed=times * space.pushed))
+            return space
+        return space.speed_up(max(rate / space.rate, fmpq(1)) * (1 - fmpq(number % 3, 10) * uneven))
 
-    return replace(plan, joints=tuple(quick(number, joint) for number, joint in enumerate(plan.joints)))
+    return plan.alter_joints(quick)
 
 
 def _enough(plan: MarchPlan, degree: int, share: float, light: str = "") -> int:

@@ -57,11 +57,8 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
     names = request.runtime or (model.parameters.usual if request.target else ())
     free = free_stream(model, names, inputs, real) if names else None
     simulated = bool(request.target)
-    plan = (
-        free.plan(request.step, simulated=simulated)
-        if free
-        else stream_plan(model, inputs, real, request.step, simulated=simulated)
-    )
+    quicker = free.quicker if free else _ONE
+    plan = stream_plan(model, inputs, real, request.step, simulated=simulated, quicker=quicker)
     tolerance = max(model.tolerance, _ROUNDINGS * real.roundoff)
     degree, verdict = _enough(plan, model, real)
     for output, error in zip(plan.march.outputs, verdict.bounds, strict=True):

@@ -6,10 +6,8 @@ what outputs weigh are rational functions of the parameters; these stand in plac
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
 
 from flint import fmpq
 
@@ -19,14 +17,13 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.march.plan import HELPS, MarchedJoint, MarchOutput, MarchPlan
-from wavesym.programs.march.space import JointRows
+from wavesym.programs.march.plan import HELPS, MarchPlan
 from wavesym.programs.march.tables import matrix_size
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places
 from wavesym.programs.runtime.network import RuntimeField, free_network
 from wavesym.programs.runtime.plan import free_march
-from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, breakpoints, paneled, steps_of
+from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, steps_of
 from wavesym.programs.stream.tables import StreamTables, slip_size
 
 QUICKER = fmpq(10)
@@ -57,8 +54,6 @@ _SPARE = 4  # one jump loses so much less than the tolerance
 class FreeStream:
     """`march` and `acting` have functions of the parameters, whose numbers in the scene are those of `fields`."""
 
-    model: Model
-    inputs: tuple[Input, ...]
     fields: tuple[RuntimeField, ...]
     march: MarchPlan
     acting: tuple[InputForce, ...]
@@ -67,42 +62,6 @@ class FreeStream:
     def quicker(self) -> fmpq:
         """How many times as fast as those of the scene joints may be."""
         return QUICKER if any(field.positive for field in self.fields) else _ONE
-
-    def plan(self, spacing: fmpq | None, *, simulated: bool = False) -> StreamPlan:
-        """With the numbers of the scene, as any other stream."""
-        march = replace(
-            self.march,
-            model=replace(self.model, loads=steps_of(self.inputs)),
-            tracks=tuple(
-                replace(track, held=self._number(track.held), impedance=self._number(track.impedance))
-                for track in self.march.tracks
-            ),
-            joints=tuple(map(self._joint, self.march.joints)),
-            outputs=tuple(
-                MarchOutput(output.name, tuple(replace(one, gain=self._number(one.gain)) for one in output.heard))
-                for output in self.march.outputs
-            ),
-        )
-        acting = (
-            InputForce(self._number(force.base), tuple(map(self._number, force.gains)), force.summed)
-            for force in self.acting
-        )
-        panels = paneled(march, spacing, self.quicker)
-        room = breakpoints(self.model, panels, spacing, simulated=simulated)
-        return StreamPlan(panels, self.inputs, tuple(acting), room)
-
-    @cached_property
-    def _values(self) -> Mapping[str, fmpq]:
-        return {label: value for field in self.fields for label, value in zip(field.labels, field.values, strict=True)}
-
-    def _number(self, function: Any) -> fmpq:
-        return function.evaluate(self._values) if isinstance(function, Ratio) else function
-
-    def _joint(self, joint: MarchedJoint) -> MarchedJoint:
-        rows = joint.space
-        if not isinstance(rows, JointRows):  # a load that is read
-            return joint
-        return replace(joint, space=rows.evaluate(self._number))
 
 
 def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], real: Real) -> FreeStream:
@@ -119,7 +78,7 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
         raise UnservedError("--runtime: velocity, but a motion prescribes that of an end; leave velocity out")
     march = free_march(model, free, steps_of(inputs), real, HELPS)
     acting = acting_inputs(network, march.pushed, inputs, free.factors.load)
-    return FreeStream(model, tuple(inputs), free.fields, march, tuple(acting))
+    return FreeStream(free.fields, march, tuple(acting))
 
 
 def refuse_stiff(plan: StreamPlan) -> None:

@@ -117,12 +117,7 @@ class StreamPlan:
 
     def quicker(self, times: fmpq) -> StreamPlan:
         """The same with joints that are so many times as fast."""
-
-        def quick(joint: MarchedJoint) -> MarchedJoint:
-            space = joint.space
-            return replace(joint, space=replace(space, rates=times * space.rates, pushed=times * space.pushed))
-
-        return replace(self, march=replace(self.march, joints=tuple(map(quick, self.march.joints))))
+        return replace(self, march=self.march.alter_joints(lambda _, space: space.speed_up(times)))
 
     def late(self, delay: fmpq) -> tuple[int, fmpq]:
         """A delay as whole panels and a rest."""
@@ -146,7 +141,13 @@ def steps_of(inputs: Sequence[Input]) -> tuple[AppliedLoad, ...]:
 
 
 def stream_plan(
-    model: Model, inputs: Sequence[Input], real: Real, spacing: fmpq | None = None, *, simulated: bool = False
+    model: Model,
+    inputs: Sequence[Input],
+    real: Real,
+    spacing: fmpq | None = None,
+    *,
+    simulated: bool = False,
+    quicker: fmpq = _ONE,
 ) -> StreamPlan:
     """The plan of a model in `real` numbers, for calls at any time or `spacing` apart.
 
@@ -156,24 +157,20 @@ def stream_plan(
         real: The numbers of the program.
         spacing: The time between two calls in tau, None where it may be any.
         simulated: Whether memory is that of a simulator.
+        quicker: How many times as fast as they are joints may be.
 
     Raises:
         UnservedError: The model has contacts or damped modes.
     """
     march = march_plan(replace(model, loads=steps_of(inputs)), real)
     acting = acting_inputs(model.network, march.pushed, inputs)
-    panels = paneled(march, spacing)
-    return StreamPlan(panels, tuple(inputs), tuple(acting), breakpoints(model, panels, spacing, simulated=simulated))
-
-
-def paneled(march: MarchPlan, spacing: fmpq | None, quicker: fmpq = _ONE) -> MarchPlan:
-    """On the panels of a stream, for joints that may be `quicker` than they are."""
     count = _panels(march, spacing, quicker)
     length = march.step / count
-    return replace(march, panels=tuple(Panel(k * length, length) for k in range(count)))
+    march = replace(march, panels=tuple(Panel(k * length, length) for k in range(count)))
+    return StreamPlan(march, tuple(inputs), tuple(acting), _breakpoints(model, march, spacing, simulated=simulated))
 
 
-def breakpoints(model: Model, march: MarchPlan, spacing: fmpq | None, *, simulated: bool) -> int:
+def _breakpoints(model: Model, march: MarchPlan, spacing: fmpq | None, *, simulated: bool) -> int:
     """For how many instants inside of panels there is to be room, up to `MOST_BREAKPOINTS`.
 
     Those at which multiples of the `spacing` lie, or the times of the model's own loads, up to the horizon; where
@@ -217,8 +214,7 @@ def _loaded(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
 
 def _panels(march: MarchPlan, spacing: fmpq | None, quicker: fmpq) -> int:
     """How many are a step of the march."""
-    step, joints = march.step, march.joints
-    fastest = nearest(quicker) * max(joint.space.norm for joint in joints)
+    step, fastest = march.step, nearest(quicker) * march.norm
     few = 1 if spacing is None else int((step / spacing).p)
     most = max(int((step / FINEST).floor()), 8)
     if few > most:

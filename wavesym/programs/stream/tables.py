@@ -166,7 +166,7 @@ class StreamTables:
     @property
     def _growth(self) -> float:
         """How steep errors that are smooth can become in a window, where the root of their energy is 1."""
-        rate = max(joint.space.norm for joint in self._joints)
+        rate = self._plan.march.norm
         return rate * (sqrt(2 * rate * nearest(self._plan.march.step)) + 2)
 
     @property
