@@ -18,8 +18,8 @@ from wavesym.programs.march.plan import march_plan
 from wavesym.programs.march.responses import BodyOperator, _norm, block_response, body_operator, body_roundings
 from wavesym.programs.march.space import BODY
 from wavesym.programs.march.tables import MarchTables
+from wavesym.programs.schemes.march import Marching, RunningLoads
 from wavesym.programs.schemes.march_joints import Bodies
-from wavesym.programs.schemes.march_windows import Marching, RunningLoads
 from wavesym.scene import Scene, lower
 
 STEPS = pytest.mark.parametrize(

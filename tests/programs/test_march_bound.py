@@ -38,7 +38,7 @@ from wavesym.programs.march.plan import MarchPlan, largest_number, march_plan, p
 from wavesym.programs.march.responses import block_response
 from wavesym.programs.march.space import JointSpace, joint_space
 from wavesym.programs.march.tail import Tail
-from wavesym.programs.schemes.march_windows import _series
+from wavesym.programs.schemes.march import _series
 from wavesym.scene import Scene, lower
 
 Q = fmpq

@@ -18,7 +18,7 @@ from wavesym.programs.runtime.degree import LEAST, degrees
 from wavesym.programs.runtime.making import runtime_program
 from wavesym.programs.runtime.network import free_network
 from wavesym.programs.runtime.plan import as_one_load, runtime_plan
-from wavesym.programs.schemes.march_windows import Marching
+from wavesym.programs.schemes.march import Marching
 from wavesym.scene import lower
 
 # found among 600 drawn scenes: only windows far from the start miss anything at degree 27

@@ -16,8 +16,7 @@ from wavesym.programs.march.bound import judge
 from wavesym.programs.march.evaluator import March
 from wavesym.programs.march.plan import MarchPlan, march_plan
 from wavesym.programs.march.tables import MarchTables
-from wavesym.programs.schemes.march import MarchScheme
-from wavesym.programs.schemes.march_windows import Marching, WindowBlock
+from wavesym.programs.schemes.march import Marching, MarchScheme, WindowBlock
 
 Array = NDArray[np.float64]
 

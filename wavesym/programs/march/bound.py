@@ -40,8 +40,7 @@ from wavesym.programs.march.losses import Losses
 from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, largest_number, power_of_two
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.march.tail import Tail, tail_of
-from wavesym.programs.schemes.march import MarchScheme
-from wavesym.programs.schemes.march_windows import Marching, WindowBlock
+from wavesym.programs.schemes.march import Marching, MarchScheme, WindowBlock
 
 Array = NDArray[np.float64]
 

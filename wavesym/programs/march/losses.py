@@ -12,9 +12,8 @@ from wavesym.numbers.doubles import nearest
 from wavesym.programs.march.plan import MarchPlan, Panel
 from wavesym.programs.march.responses import NEGLIGIBLE, body_roundings
 from wavesym.programs.march.tables import MarchTables
-from wavesym.programs.schemes.march import MarchScheme
+from wavesym.programs.schemes.march import MarchScheme, RunningLoads, WindowBlock
 from wavesym.programs.schemes.march_joints import Blocks, Bodies, JointGroup, Scatterers
-from wavesym.programs.schemes.march_windows import RunningLoads, WindowBlock
 
 Array = NDArray[np.float64]
 

@@ -22,9 +22,8 @@ from wavesym.programs.march.plan import MarchPlan, march_plan
 from wavesym.programs.march.space import BLOCK, BODY, JointSpace
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.runtime.plan import RuntimePlan
-from wavesym.programs.schemes.march import MarchScheme
+from wavesym.programs.schemes.march import Marching, MarchScheme
 from wavesym.programs.schemes.march_joints import Bodies
-from wavesym.programs.schemes.march_windows import Marching
 
 LIGHTER = 10
 """Unless it is said how light bodies may be, they may be so many times as light as those of the scene."""

@@ -10,8 +10,7 @@ from __future__ import annotations
 from wavesym.programs.schemes.closed import ClosedScheme
 from wavesym.programs.schemes.hats import HatScheme
 from wavesym.programs.schemes.march import MarchScheme
-from wavesym.programs.schemes.march_joints import JointGroup
-from wavesym.programs.schemes.march_windows import Marching
+from wavesym.programs.schemes.march_joints import MarchNumbers
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.programs.schemes.pieces import PiecesScheme
 
@@ -26,7 +25,7 @@ SCHEMES: dict[str, type[Scheme]] = {
 }
 
 PARTS: dict[str, tuple[type, ...]] = {
-    "march": (JointGroup, Marching),
-    "hats": (JointGroup, Marching, MarchScheme),
+    "march": (MarchNumbers,),
+    "hats": (MarchNumbers, MarchScheme),
 }
 """A class of each other file that a scheme is made of, in order."""

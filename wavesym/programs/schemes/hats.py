@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wavesym.programs.schemes.march import MarchScheme
-from wavesym.programs.schemes.march_windows import Marching, WindowBlock
+from wavesym.programs.schemes.march import Marching, MarchScheme, WindowBlock
 
 
 class HatScheme:
