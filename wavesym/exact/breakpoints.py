@@ -13,7 +13,7 @@ multiple of the common measure of all delays, so that most of those that come ba
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import cache, cached_property, partial, reduce
+from functools import cache, cached_property, partial
 from itertools import chain, pairwise, zip_longest
 from typing import TYPE_CHECKING
 
@@ -25,6 +25,7 @@ from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.joints.joint_law import SWING, JointLaw
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import common_measure
 
 if TYPE_CHECKING:
     from wavesym.exact.contacts.schedule import Schedule
@@ -167,7 +168,7 @@ class Breakpoints:
     def _cut_distance(self) -> fmpq:
         """How far cuts are apart, of a network with springs."""
         shortest = min(self._bearable.values())
-        measure = reduce(fmpq.gcd, self._delays, fmpq(0)) or shortest
+        measure = common_measure(self._delays) or shortest
         return measure / (measure / shortest).ceil() if measure > shortest else (shortest / measure).floor() * measure
 
     def _too_stiff(self, count: str) -> CostError:

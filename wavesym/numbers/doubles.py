@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from fractions import Fraction
+from functools import reduce
 
 from flint import arb, fmpq
 
@@ -22,6 +24,11 @@ def rational(value: float | Fraction | fmpq) -> fmpq:
 def fraction(value: fmpq | Fraction) -> Fraction:
     """An exact number as Python's own."""
     return Fraction(int(value.numerator), int(value.denominator))
+
+
+def common_measure(values: Iterable[fmpq]) -> fmpq:
+    """The largest number that all are multiples of; 0 of none."""
+    return reduce(fmpq.gcd, values, fmpq(0))
 
 
 def nearest(value: fmpq) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
@@ -13,7 +12,7 @@ from wavesym.lab.atlas.attempts import EVALUATORS, attempt, skipped_attempt, tru
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import AIM, LEGEND, atlas_scene, chain, drive, with_tolerance
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.doubles import common_measure, nearest, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
@@ -250,6 +249,4 @@ def most_breakpoints(model: Model) -> int:
 
 def common_steps(model: Model) -> float:
     """How many steps a grid has on which every wave takes a whole number of them through every rod."""
-    delays = [bar.delay for bar in model.network.bars]
-    common = math.lcm(*(int(delay.q) for delay in delays))
-    return float(model.until * common / math.gcd(*(int(delay * common) for delay in delays)))
+    return float(model.until / common_measure(bar.delay for bar in model.network.bars))

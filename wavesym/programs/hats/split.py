@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
 from itertools import pairwise
 
 from flint import fmpq
@@ -12,7 +11,7 @@ from flint import fmpq
 from wavesym.errors import SpacingError
 from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import common_measure, rational
 from wavesym.programs.march.plan import readable
 
 _MOST = 100_000  # samples of a record
@@ -82,7 +81,7 @@ def _record(step: str, ramp: str, loads: Sequence[AppliedLoad], until: fmpq) -> 
     """A record that does not jump, and what it differs by: at each jump that, which goes back to 0 within a spacing."""
     times = sorted({load.time for load in loads})
     begin = times[0]
-    spacing = reduce(fmpq.gcd, (after - before for before, after in pairwise(times)))
+    spacing = common_measure(after - before for before, after in pairwise(times))
     if (count := int(((until - begin) / spacing).floor()) + 2) > _MOST:
         raise SpacingError(
             f"load: {step.removesuffix(':step')} has {count} samples on the horizon at a spacing of "

@@ -11,9 +11,9 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property, reduce
+from functools import cached_property
 from itertools import pairwise
-from math import gcd, lcm, sqrt
+from math import sqrt
 from typing import Any
 
 from flint import fmpq, fmpq_poly
@@ -26,7 +26,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Joint, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.time_derivative import with_derivatives
-from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.numbers.doubles import common_measure, fraction, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.space import SHOWN, JointSpace, Port, joint_space
 
@@ -277,8 +277,7 @@ def march_plan(
 
 def _step(delays: list[fmpq]) -> fmpq:
     """Their greatest common measure."""
-    below = lcm(*(int(delay.q) for delay in delays))
-    step = fmpq(gcd(*(int(delay * below) for delay in delays)), below)
+    step = common_measure(delays)
     if step * FINEST < (shortest := min(delays)):
         raise CostError(
             f"system.parts: delays {_few(delays)} have the common measure {step}, {float(shortest / step):.3g} to the "
@@ -312,21 +311,16 @@ def _panels(times: list[fmpq], step: fmpq, helps: str) -> tuple[Panel, ...]:
     cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
-            f"load: times at a spacing of {readable(common(times))} leave {len(cuts) - 1} different remainders of "
-            f"the step {readable(step)}, the limit in a march is {MOST_PANELS} "
+            f"load: times at a spacing of {readable(common_measure(times))} leave {len(cuts) - 1} different "
+            f"remainders of the step {readable(step)}, the limit in a march is {MOST_PANELS} "
             f"({suitable_spacing(times, step)}, {helps}, helps)"
         )
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
 
 
-def common(times: Iterable[fmpq]) -> fmpq:
-    """What all times are multiples of."""
-    return reduce(fmpq.gcd, times, _ZERO)
-
-
 def suitable_spacing(times: Iterable[fmpq], step: fmpq = _ONE) -> str:
     """The spacing nearest to that of some times whose multiples have few enough remainders of a step."""
-    parts = fraction(common(times) / step).limit_denominator(MOST_PANELS)
+    parts = fraction(common_measure(times) / step).limit_denominator(MOST_PANELS)
     return f"a spacing of {readable(step * rational(parts or Fraction(1, MOST_PANELS)))}"
 
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import gcd, lcm
 
 import numpy as np
 from flint import fmpq
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.loads import AppliedLoad
-from wavesym.numbers.doubles import nearest
+from wavesym.numbers.doubles import common_measure, nearest
 
 Numbers = NDArray[np.float64]
 
@@ -68,8 +67,7 @@ class LinearLoads:
         gaps = [lengths[k] for k in set(kind if self.times[1:] and any(self.samples[1]) else kind[1:])]
         if not gaps:
             return sampled or until / _STEPS_OF_ONE
-        over = lcm(*(int(gap.q) for gap in gaps))
-        common = fmpq(gcd(*(int(gap * over) for gap in gaps)), over)
+        common = common_measure(gaps)
         return sampled if sampled and (common / sampled).q == 1 else common
 
 
@@ -242,7 +240,5 @@ def _in_steps(times: list[fmpq]) -> tuple[int, ...] | None:
     if len(times) < 2:
         return None
     since = [time - times[0] for time in times]
-    over = lcm(*{int(gap.q) for gap in since})
-    if int(since[-1] * over) >= _LONGEST * (common := gcd(*(int(gap * over) for gap in since))):
-        return None
-    return tuple(int(gap * over) // common for gap in since)
+    common = common_measure(since)
+    return None if since[-1] >= _LONGEST * common else tuple(int(gap / common) for gap in since)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from math import gcd, lcm
 
 from flint import fmpq, fmpq_mat, fmpz_mod, fmpz_mod_ctx
 
@@ -19,6 +18,7 @@ from wavesym.exact.modes.cuts import cut
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import common_measure
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.projection import Driver, ModalOutput, modal_output, places
 
@@ -69,8 +69,7 @@ class _Response:
     def _circular(self) -> dict[fmpq, tuple[fmpz_mod, fmpz_mod]]:
         """sin and cos of w times each delay."""
         delays = {bar.delay for bar in self._cut.network.bars}
-        over = lcm(*(int(delay.q) for delay in delays))
-        measure = fmpq(gcd(*(int(delay * over) for delay in delays)), over)
+        measure = common_measure(delays)
         made = {}
         for delay in delays:
             forth = _E ** int(delay / measure)
