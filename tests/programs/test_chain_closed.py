@@ -21,7 +21,7 @@ from wavesym.exact.tables.signal import Arrival, Signal, signals
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.choice import attempt, choose
-from wavesym.programs.closed import ClosedForm, closed_form
+from wavesym.programs.closed_form import ClosedForm, closed_form
 from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import Scene, lower
 

@@ -14,7 +14,7 @@ from tests.support.generated import assemble, files
 from wavesym.errors import ToleranceError
 from wavesym.exact.tables.ball import segments, values
 from wavesym.exact.tables.signal import signals
-from wavesym.programs.closed import closed_form
+from wavesym.programs.closed_form import closed_form
 from wavesym.running.compilation import import_text
 from wavesym.scene import lower
 

@@ -13,7 +13,7 @@ from tests.support.counted import Counted
 from wavesym.exact.tables.signal import Arrival, Signal
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE, Real
-from wavesym.programs.closed import _largest, _segment_errors, _underflows, closed_form
+from wavesym.programs.closed_form import _largest, _segment_errors, _underflows, closed_form
 
 CLOSE = arb(fmpq(1002, 1000))  # the proof's second order, and a little
 # in which nothing is rounded, but what is small underflows

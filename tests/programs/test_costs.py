@@ -151,7 +151,7 @@ def test_at_least_so_many_pieces_as_foretold_are_made(scene, per_unit):
     whole = int(made._motion.until.floor())
     per_window = made._least(per_unit) // whole
     with ctx.workprec(128):
-        count = sum(len(grid.powers) * len(grid.outputs) for grid in made.fitted(per_unit).grids)
+        count = sum(len(grid.powers) * len(grid.outputs) for grid in made.fit_pieces(per_unit).grids)
     assert made._least(per_unit) <= count
     assert count <= made._least(per_unit) + per_window + 2 * len(scene.outputs)
 
@@ -163,9 +163,9 @@ def test_tables_beyond_the_limit_are_refused_before_a_fit(monkeypatch):
     with pytest.raises(
         pieces._TooLarge, match=r"^output.until: pieces would take at least .*\(a shorter horizon, fewer"
     ):
-        made.fitted(2, size - 1)
+        made.fit_pieces(2, size - 1)
     with pytest.raises(Begun):
-        made.fitted(2, size)
+        made.fit_pieces(2, size)
 
 
 def test_a_fit_stops_at_the_limit(monkeypatch):
@@ -180,7 +180,7 @@ def test_a_fit_stops_at_the_limit(monkeypatch):
 
     monkeypatch.setattr(pieces._Fits, "_output", counted)
     with pytest.raises(pieces._TooLarge):
-        made.fitted(2, 8 * made._least(2))
+        made.fit_pieces(2, 8 * made._least(2))
     assert len(outputs) == 1
 
 
@@ -197,12 +197,12 @@ def test_pieces_that_others_have_too_are_made_once(monkeypatch):
     segments, shortened = motion.Motion.segments, pieces._shortened
     monkeypatch.setattr(motion.Motion, "segments", lambda *given: asked.append(given) or segments(*given))
     monkeypatch.setattr(pieces, "_shortened", lambda *given: moved.append(given) or shortened(*given))
-    first = made.fitted(4)
+    first = made.fit_pieces(4)
     before = len(moved)
-    again = made.fitted(2)
+    again = made.fit_pieces(2)
     assert len(asked) == 2
     assert len(moved) - before < made._least(2) / 4
-    assert first != again == fits(scene).fitted(2)
+    assert first != again == fits(scene).fit_pieces(2)
 
 
 def test_one_value_that_needs_many_bits_does_not_cost_the_others(monkeypatch):

@@ -20,7 +20,7 @@ from wavesym.exact.tables.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice, pieces
-from wavesym.programs.closed import closed_form
+from wavesym.programs.closed_form import closed_form
 from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import lower
 

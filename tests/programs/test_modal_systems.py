@@ -22,7 +22,7 @@ from wavesym.programs.modes.loads import Roughness, roughness
 from wavesym.programs.modes.modal_system import scheme_tables
 from wavesym.programs.modes.rounding import rounding_errors
 from wavesym.programs.modes.truncation import ModalModes
-from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.scene import Scene, lower
 

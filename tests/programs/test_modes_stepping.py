@@ -181,10 +181,10 @@ def test_many_records_at_once_are_what_each_is_alone():
         taus[-1] = alone_end = float(loads.times[-1])
         assert alone_end == pytest.approx(149 * 3 / 7)
         np.testing.assert_allclose(made[number].T, alone.evaluate(taus), rtol=0, atol=size)
-        known = response.inside(samples[:, :, None], known_of_all, np.full(7, number), at)
+        known = response.step_states(samples[:, :, None], known_of_all, np.full(7, number), at)
         between = alone.evaluate(at * 3 / 7 + s)
         for output in range(len(between)):
-            found = response.at(known, s, np.full(7, output))
+            found = response.value_at(known, s, np.full(7, output))
             np.testing.assert_allclose(found, between[output], rtol=0, atol=size)
             each = np.einsum("ck,ck->c", known, response.reads(s)[:, :, output])
             np.testing.assert_allclose(each, between[output], rtol=0, atol=size)

@@ -254,7 +254,7 @@ def test_values_at_places_in_panels_are_those_of_the_program():
     scene = Scene.from_toml("building_m2").with_({"system.base": "ground", "load": load, "output.tolerance": "1e-3"})
     model = replace(lower(scene), damping=Damping((fmpq(1, 20),)))
     program = make(model, Request("modes"))
-    taus, values = Panels.from_program(program).sampled(0.3)
+    taus, values = Panels.from_program(program).sample(0.3)
     assert np.diff(taus).min() > 0
     assert np.diff(taus).max() <= 0.3
     assert (taus[0], taus[-1]) == (0, program.tau_max)

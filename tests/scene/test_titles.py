@@ -116,7 +116,7 @@ def test_a_load_is_called_by_its_name(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "Wind gust" in page.read_text(encoding="utf-8")
     wavesym.generate(scene, tmp_path / "out")
     assert "Wind gust: 1 roof:step at 0" in (tmp_path / "out" / "room.h").read_text()
-    seen = {each.name: each.about for each in variables(api.program(scene, Request.checked(target="fmu2")))}
+    seen = {each.name: each.about for each in variables(api.program(scene, Request.from_options(target="fmu2")))}
     assert seen["load@roof"].startswith("Wind gust, from the start of a step on")
     assert seen["force@0"] == "Base shear: force at 0"
     assert wavesym.frf(scene, [0.5], "Wind gust").load == wavesym.frf(scene, [0.5], "roof").load == "Wind gust"

@@ -196,7 +196,7 @@ def runtime_of(scene):
 def program_files(scene, **options):
     from wavesym.api.programs import program
 
-    return files(program(scene, Request.checked(**{"runtime": runtime_of(scene), **options}), tested=True))
+    return files(program(scene, Request.from_options(**{"runtime": runtime_of(scene), **options}), tested=True))
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -256,7 +256,7 @@ def test_a_stream_of_the_scenes_loads_gives_its_histories(scene):
     """Samples in the units that the header names."""
     from wavesym.api.programs import program
 
-    request = Request.checked(runtime=names_of(lower(scene)), stream=True)
+    request = Request.from_options(runtime=names_of(lower(scene)), stream=True)
     streamed = program(scene, request)
     texts = files(streamed)
     header = f"{scene.name}.h"

@@ -254,7 +254,7 @@ def test_built_in_scenes_test_themselves_in_c_and_cpp(name, precision, tmp_path)
     """With every compiler there is, without a warning; the command in the header makes the same files again."""
     scene, options = wavesym.Scene.from_toml(name), {"stream": True, "runtime": BUILT_IN[name], "precision": precision}
     wavesym.generate(scene, tmp_path, **options)
-    request = Request.checked(**{**options, "runtime": tuple(BUILT_IN[name])})
+    request = Request.from_options(**{**options, "runtime": tuple(BUILT_IN[name])})
     assert api.check(scene, tmp_path, request) == ""
     assert f"--stream --runtime {','.join(BUILT_IN[name])}" in (tmp_path / f"{name}.h").read_text()
     assert selftest(tmp_path, name) == 0

@@ -125,7 +125,7 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    request = Request.checked(
+    request = Request.from_options(
         evaluator=evaluator,
         precision=precision,
         optimize=optimize,

@@ -48,7 +48,9 @@ def verify(
 
     each = [scenes] if isinstance(scenes, Scene) else scenes
     kinds = [evaluator] if evaluator else ["auto"] if runtime or stream else KINDS
-    requests = [Request.checked(evaluator=kind, precision=precision, runtime=runtime, stream=stream) for kind in kinds]
+    requests = [
+        Request.from_options(evaluator=kind, precision=precision, runtime=runtime, stream=stream) for kind in kinds
+    ]
     some = any((evaluator, precision, runtime, stream))
     return verify_scenes(((scene, lower(scene)) for scene in each), requests if some else None)
 

@@ -119,7 +119,7 @@ def generate(
         raise click.UsageError(
             f"--check: binaries of --target {target} differ by compiler and cannot be compared; leave --target out"
         )
-    request = Request.checked(**options)
+    request = Request.from_options(**options)
     if only_check:
         with progress(f"check {scene.name}"):
             difference = api.check(scene, directory, request, scene_argument())

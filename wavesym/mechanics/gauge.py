@@ -97,16 +97,16 @@ def readings(network: Network, probe: Probe) -> Sum:
             end = End(probe.rod - 1, int(probe.place))
             point, ratio = network.point_at(end), network.bars[end.bar].ratios[end.side]
         if network.points[point].mass != 0:
-            return _summed(probe, _times(ratio / network.points[point].mass, _forces_on(network, point)))
+            return _merge_terms(probe, _times(ratio / network.points[point].mass, _forces_on(network, point)))
     return motion_readings(network, probe)
 
 
 def motion_readings(network: Network, probe: Probe) -> Sum:
     """The same of motion alone: an acceleration is what it is, not the forces that cause it."""
-    return _summed(probe, _parts(network, probe))
+    return _merge_terms(probe, _parts(network, probe))
 
 
-def _summed(probe: Probe, parts: Iterable[ReadingTerm]) -> Sum:
+def _merge_terms(probe: Probe, parts: Iterable[ReadingTerm]) -> Sum:
     weights: dict[Gauge, fmpq] = {}
     for weight, reading in parts:
         weights[reading] = weights.get(reading, _ZERO) + probe.factor * weight

@@ -12,10 +12,10 @@ from wavesym.exact.tables.signal import refuse_many, signals
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, REALS, Real
-from wavesym.programs.closed import ClosedForm, closed_form
+from wavesym.programs.closed_form import ClosedForm, closed_form
 from wavesym.programs.piece_grid import Pieces
 from wavesym.programs.pieces import pieces
-from wavesym.programs.request import unmet
+from wavesym.programs.request import unmet_tolerance
 
 if TYPE_CHECKING:
     from wavesym.programs.hats.evaluator import HatMarch
@@ -152,39 +152,39 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
     found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
     # where modes are for something else altogether that is no news, but of a record that nothing serves
     silent = found or not model.spacing
-    refused = [one for one in tried if one.refusal and not (silent and one.kind == "modes" and _unserved(one))]
+    refused = [one for one in tried if one.refusal and not (silent and one.kind == "modes" and _is_unserved(one))]
     if not found:
         if len(tried) == 1 and tried[0].error:
             raise tried[0].error
-        raise unmet(model.tolerance, {one.kind: one.refusal for one in refused}, min(one.bound for one in tried))
+        raise unmet_tolerance(model.tolerance, {one.kind: one.refusal for one in refused}, min(one.bound for one in tried))
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
     dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]
     return Choice(name, chosen, "; ".join([*(one.why for one in refused), *dearer, chosen.summary]))
 
 
-def _unserved(one: Attempt) -> bool:
+def _is_unserved(one: Attempt) -> bool:
     return isinstance(one.error, UnservedError)
 
 
-def _closed(model: Model, real: Real, asked: bool, *_: object) -> ClosedForm:
+def _make_closed(model: Model, real: Real, asked: bool, *_: object) -> ClosedForm:
     refuse_many(model, 1e5 if asked else _WORTH_TRYING)
     merged = signals(model, inf if asked else _WORTH_TRYING, real)
     return closed_form(merged, model.horizon(real), real)
 
 
-def _pieces(model: Model, real: Real, asked: bool, optimize: str, served: bool) -> Pieces:
+def _make_pieces(model: Model, real: Real, asked: bool, optimize: str, served: bool) -> Pieces:
     return pieces(model, real, model.tolerance, optimize, _OF_MANY if served else inf)
 
 
 # modes and marches are loaded where they are tried: most scenes have pieces
-def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
+def _make_modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
     from wavesym.programs.modes.evaluator import modes
 
     return modes(model, real)
 
 
-def _march(model: Model, real: Real, asked: bool, *_: object) -> March | HatMarch:
+def _make_march(model: Model, real: Real, asked: bool, *_: object) -> March | HatMarch:
     from wavesym.programs.hats.evaluator import hat_march
     from wavesym.programs.march.evaluator import march
 
@@ -203,4 +203,4 @@ def _march(model: Model, real: Real, asked: bool, *_: object) -> March | HatMarc
 
 
 Maker: TypeAlias = "Callable[[Model, Real, bool, str, bool], Made]"
-MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "modes": _modes, "march": _march}
+MAKERS: dict[str, Maker] = {"closed": _make_closed, "pieces": _make_pieces, "modes": _make_modes, "march": _make_march}

@@ -46,5 +46,5 @@ def _finish(model: Model, form: Made, provenance: Provenance, tested: bool) -> P
         from wavesym.programs.modes.evaluator import ModesEvaluator  # there already, as the form is one
 
         assert isinstance(form, ModesEvaluator)
-        return replace(made, reference=form.streamed())
+        return replace(made, reference=form.stream_values())
     return replace(made, reference=reference_values(model, form.real, form.check_points))

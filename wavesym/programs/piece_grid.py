@@ -11,7 +11,7 @@ from flint import fmpq
 
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
+from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance
 
 # The numbers from 0 on that C has for the widest vectors (templates/c/pieces/pieces.c).
 _OFFSETS = 16
@@ -40,7 +40,7 @@ class PieceGrid:
 
 
 @dataclass(frozen=True)
-class Pieces(Bounded):
+class Pieces(BoundedOutputs):
     """Polynomial pieces for the outputs of a scene on [0, tau_max]."""
 
     outputs: tuple[ProgramOutput, ...]
@@ -69,9 +69,9 @@ class Pieces(Bounded):
     @cached_property
     def cost(self) -> float:
         """About how long three calls of `sample` take, of few samples, more and many."""
-        return sum(self._sampled(samples) for samples in _CALLS)
+        return sum(self._sampling_cost(samples) for samples in _CALLS)
 
-    def _sampled(self, samples: int) -> float:
+    def _sampling_cost(self, samples: int) -> float:
         total = 0.0
         for grid in self.grids:
             for (start, end), polynomials in zip(pairwise(grid.starts), grid.powers, strict=True):

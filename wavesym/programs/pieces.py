@@ -79,7 +79,7 @@ def pieces(
     for shorter in _SHORTER:
         missed = rational(found.error_bound) > tolerance > real.roundoff / 8
         if shorter > found.per_unit and missed and fits.differ(shorter, found.per_unit):
-            found = fits.fitted(shorter)
+            found = fits.fit_pieces(shorter)
     if found.bytes > MOST_BYTES:
         raise _too_large(found.bytes, MOST_BYTES)
     return found
@@ -103,14 +103,14 @@ def _fastest(fits: _Fits, tolerance: fmpq) -> Pieces:
     for per_unit in shorter:
         if fits.differ(per_unit, longest):
             with suppress(_TooLarge):
-                found = fits.fitted(per_unit, _FAST_BYTES)
+                found = fits.fit_pieces(per_unit, _FAST_BYTES)
                 if best and not _better(found, best, tolerance):
                     return best
                 if found.bytes <= _FAST_BYTES:
                     best = found
     if best and rational(best.error_bound) > tolerance:
         return best
-    found = fits.fitted(longest)
+    found = fits.fit_pieces(longest)
     return found if not best or _better(found, best, tolerance) else best
 
 
@@ -123,11 +123,11 @@ def _smallest(fits: _Fits, tolerance: fmpq) -> Pieces:
     tried = []
     for per_unit in _USUAL:
         with suppress(_TooLarge):
-            tried.append(fits.fitted(per_unit))
+            tried.append(fits.fit_pieces(per_unit))
     good = [found for found in tried if rational(found.error_bound) <= tolerance]
     if good:
         return min(good, key=lambda found: found.bytes)
-    return tried[0] if tried else fits.fitted(_USUAL[-1])
+    return tried[0] if tried else fits.fit_pieces(_USUAL[-1])
 
 
 class _Fits:
@@ -167,7 +167,7 @@ class _Fits:
         """The outputs that are 0 throughout though waves arrive, which no number of bits tells."""
         return {k for k, nothing in enumerate(identically_zero(self._model, rational(self._tau_max))) if nothing}
 
-    def fitted(self, per_unit: int, most: int = MOST_BYTES) -> Pieces:
+    def fit_pieces(self, per_unit: int, most: int = MOST_BYTES) -> Pieces:
         """Pieces, about `per_unit` of them in a unit of tau. CostError where they would take more than `most` bytes."""
         if self._least(per_unit) * self._real.bytes > most:
             raise _too_large(self._least(per_unit) * self._real.bytes, most)
@@ -265,7 +265,7 @@ class _Fits:
         scale = max(map(cuts.size, range(len(local)), local))
         if not scale > 0:
             return None
-        allowed, enough = self._allowed(scale)
+        allowed, enough = self._allowed_errors(scale)
         worst = arb(0)
         powers = []
         for coefficients, half in zip(chebyshev.coefficients(local, bits), cuts.halves, strict=True):
@@ -278,7 +278,7 @@ class _Fits:
             powers.append(tuple(map(self._real.nearest_middle, local_powers)))
         return (bound(worst / scale), float(scale)), powers
 
-    def _allowed(self, scale: arb) -> tuple[arb, arb]:
+    def _allowed_errors(self, scale: arb) -> tuple[arb, arb]:
         """The error that is allowed where the largest value is `scale`, and what of it balls may take."""
         allowed = self._tolerance * scale
         return allowed, allowed.max(arb(self._real.roundoff) * scale) / 1000
@@ -291,7 +291,7 @@ class _Fits:
             (polynomial,) = segment.families.values()
             largest = largest.max(abs(polynomial(arb(0).union(arb(end - segment.start)))).upper())
         (last,) = chebyshev.coefficients(list(course.on_pieces(cuts, len(cuts.middles) - 1)), bits)
-        return not sum((c.rad() for c in last), arb(0)) < self._allowed(largest)[1]
+        return not sum((c.rad() for c in last), arb(0)) < self._allowed_errors(largest)[1]
 
 
 def _nothing(cuts: _Cuts) -> tuple[tuple[float, float], list[tuple[float, ...]]]:
@@ -321,11 +321,11 @@ class _Course:
                 segment = self.segments[place]
                 (polynomial,) = segment.families.values()
                 moved = polynomial(arb_poly([arb(rational(centre) - segment.start), arb(half)]))
-                self._on[key] = _shortened(moved, self._negligible)
+                self._on[key] = _shorten(moved, self._negligible)
             yield self._on[key]
 
 
-def _shortened(polynomial: arb_poly, negligible: arb) -> arb_poly:
+def _shorten(polynomial: arb_poly, negligible: arb) -> arb_poly:
     """A polynomial on [-1, 1] without its highest powers, as far as they are negligible in all."""
     powers = polynomial.coeffs()
     rest = arb(0)

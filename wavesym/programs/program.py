@@ -33,7 +33,7 @@ class ProgramOutput:
     largest: float
 
 
-class Bounded:
+class BoundedOutputs:
     """What has outputs, each with a bound of its error."""
 
     outputs: tuple[ProgramOutput, ...]
@@ -98,7 +98,7 @@ class SteppedValues:
 
 
 @dataclass(frozen=True)
-class Program(Bounded):
+class Program(BoundedOutputs):
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
     `kernel` names what runs its tables, in C and in NumPy: "closed", "pieces", "march", "hats" (one hat of each record,

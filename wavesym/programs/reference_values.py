@@ -25,7 +25,7 @@ def reference_values(model: Model, real: Real, check_points: Sequence[float]) ->
     """
     reference = Reference(beginning(model), real)
     most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(model.probes)))
-    taus = _thinned([tau for tau in check_points if tau <= reference.tau_max], most)
+    taus = _thin_out([tau for tau in check_points if tau <= reference.tau_max], most)
     return ReferenceValues(tuple(taus), tuple(map(tuple, reference.values(taus))))
 
 
@@ -34,7 +34,7 @@ def leap(k: int, j: int) -> fmpq:
     return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)
 
 
-def _thinned(points: Sequence[float], most: int) -> Sequence[float]:
+def _thin_out(points: Sequence[float], most: int) -> Sequence[float]:
     """No more points than a self-test should carry, spread evenly over those there are."""
     step = -(-len(points) // most)
     return [*points[::step], points[-1]] if step > 1 else points

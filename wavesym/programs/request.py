@@ -63,7 +63,7 @@ class Request:
     package: bool = False
 
     @classmethod
-    def checked(
+    def from_options(
         cls,
         *,
         step: Fraction | None = None,
@@ -198,7 +198,7 @@ def _one_of(names: Sequence[str]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def unmet(tolerance: fmpq, refusals: Mapping[str, str], bound: float) -> ToleranceError:
+def unmet_tolerance(tolerance: fmpq, refusals: Mapping[str, str], bound: float) -> ToleranceError:
     """The error that says that a tolerance cannot be met, which can, and why each kind of program is refused.
 
     Args:

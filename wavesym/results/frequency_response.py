@@ -19,7 +19,7 @@ from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import midpoint, nearest, upper_double
-from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.optional import require_packages
 from wavesym.results.presentation import csv_line, output_number

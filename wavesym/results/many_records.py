@@ -183,7 +183,7 @@ def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) ->
         for begin in range(0, len(later_instants), _RECORDS):
             at = later_instants[begin : begin + _RECORDS]
             record, steps = (each.ravel() for each in np.meshgrid(rows, step[at]))
-            inside = response.inside(samples, known, record, steps).reshape(len(at), len(rows), -1)
+            inside = response.step_states(samples, known, record, steps).reshape(len(at), len(rows), -1)
             made[first : first + _RECORDS, :, at] = (inside @ response.reads(later[at])).transpose(1, 2, 0)
     return made
 
@@ -209,7 +209,7 @@ def _extremes(response: RecordResponse, model: Model, begin: float, samples: Num
     crossing = nearest(model.network.shortest)
     points = max(_PER_STEP, ceil(response.spacing / (crossing / _PER_CROSSING))) + 1
     places, row = np.unique(record * n + step, return_inverse=True)
-    inside = response.inside(samples, known, *np.divmod(places, n))
+    inside = response.step_states(samples, known, *np.divmod(places, n))
     group = (record * outputs + output) * 2 + side
     best, when = tops(response, SuspectSteps(group, step, output, 2.0 * side - 1.0, length, inside[row]), points)
     values, taus = np.zeros((records, outputs, 2)), np.full((records, outputs, 2), begin)

@@ -22,7 +22,7 @@ from wavesym.exact.modes.statics import Statics
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
 from wavesym.programs.modes.projection import Driver, modal_output, share
-from wavesym.programs.modes.undamped import UndampedModes, damping_ratios
+from wavesym.programs.modes.undamped_modes import UndampedModes, damping_ratios
 from wavesym.results.transfer import ORDERS, HarmonicLoad, drive
 
 _I = acb(0, 1)

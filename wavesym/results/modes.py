@@ -24,7 +24,7 @@ from wavesym.exact.modes.shape import Mode
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import midpoint, nearest, upper_double
-from wavesym.programs.modes.undamped import damping_ratios
+from wavesym.programs.modes.undamped_modes import damping_ratios
 from wavesym.results.optional import require_packages
 from wavesym.results.participation import Participation, effective_mass, participations
 from wavesym.results.presentation import align_columns, csv_line, html_table, number_text

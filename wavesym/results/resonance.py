@@ -19,7 +19,7 @@ from wavesym.errors import CostError, WavesymError
 from wavesym.exact.modes.harmonic import Quantity
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, upper_double
-from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.presentation import csv_line
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular

@@ -38,7 +38,7 @@ def describe_step(model: Model, step: float) -> str:
 def sample_program(model: Model, program: Program, step: float) -> tuple[Numbers, Numbers]:
     """Instants no more than `step` apart, in order, with both sides of jumps, and the values of a program there."""
     if program.has_equal_steps and program.real is DOUBLE:
-        return Panels.from_program(program).sampled(step)
+        return Panels.from_program(program).sample(step)
     fronts = jumps(program.under_jumps(model))
     taus = np.unique([*program.instants(step), *fronts, *map(just_before, fronts)])
     return taus, program.evaluate(taus)

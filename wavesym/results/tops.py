@@ -49,10 +49,10 @@ def tops(response: RecordResponse, steps: SuspectSteps, points: int) -> tuple[Nu
     finer = apart / _NEARER
     middle = np.clip((near + shift) * apart, finer, length - finer)
     thrice = np.concatenate([middle + k * finer for k in (-1, 0, 1)])
-    trio = np.tile(sign, 3) * response.at(np.tile(inside, (3, 1)), thrice, np.tile(output, 3))
+    trio = np.tile(sign, 3) * response.value_at(np.tile(inside, (3, 1)), thrice, np.tile(output, 3))
     trio = trio.reshape(3, -1)
     last = middle + _vertex(*trio) * finer
-    for at, found in ((middle, trio[1]), (last, sign * response.at(inside, last, output))):
+    for at, found in ((middle, trio[1]), (last, sign * response.value_at(inside, last, output))):
         better = found > value
         value, s = np.where(better, found, value), np.where(better, at, s)
     return sign * value, steps.step[row] * response.spacing + s

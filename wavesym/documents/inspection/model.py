@@ -14,7 +14,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.node import Node, UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
-from wavesym.programs.modes.undamped import damping_ratios
+from wavesym.programs.modes.undamped_modes import damping_ratios
 
 _MODES = 12  # and those that damping is said of
 _RIGID = 1  # modes without strain at most

@@ -12,7 +12,7 @@ from wavesym.exact.contacts.events import contact_ends, events
 from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import MAKERS, Attempt, Made, attempt, attempts, best
-from wavesym.programs.closed import ClosedForm
+from wavesym.programs.closed_form import ClosedForm
 from wavesym.programs.hats.evaluator import HatMarch
 from wavesym.programs.march.evaluator import March
 from wavesym.programs.modes.evaluator import ModesEvaluator

@@ -17,7 +17,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.choice import MAKERS
-from wavesym.programs.closed import ClosedForm
+from wavesym.programs.closed_form import ClosedForm
 from wavesym.programs.making import program
 from wavesym.scene import Scene, lower
 

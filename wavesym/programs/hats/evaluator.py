@@ -21,7 +21,7 @@ from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.hats.split import RecordLoad, split, still
 from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judge_march
-from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
+from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
 
@@ -33,7 +33,7 @@ _MARGIN = 1.01  # what is of second order in the roundoff
 
 
 @dataclass(frozen=True)
-class HatMarch(Bounded):
+class HatMarch(BoundedOutputs):
     """`marches` of the rest, where there is `rest` (1, else 0), and of one hat of each of the `records`.
 
     `refusal` says why the loads are not marched as they are.
@@ -157,7 +157,7 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     hats = [judge_march(still(model, record)) for record in parts.records]
     made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records, refusal)
     parted = [np.array([verdict.errors, verdict.heights]) for _, verdict in rest]
-    parted += [_superposed(record, *hat) for record, hat in zip(parts.records, hats, strict=True)]
+    parted += [_superpose(record, *hat) for record, hat in zip(parts.records, hats, strict=True)]
     errors, heights = sum(parted, np.zeros((2, len(model.probes))))
     errors = _MARGIN * (errors + len(parted) * _UNIT * heights)
     spacing = nearest(min(record.spacing for record in parts.records))
@@ -172,7 +172,7 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     )
 
 
-def _superposed(record: RecordLoad, march: March, hat: Verdict) -> Numbers:
+def _superpose(record: RecordLoad, march: March, hat: Verdict) -> Numbers:
     """Of what hats add up to the largest error and what values do not exceed: (2, outputs)."""
     samples = np.abs([nearest(value) for value in record.samples])
     count, plan = len(samples), march.plan

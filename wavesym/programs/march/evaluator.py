@@ -21,7 +21,7 @@ from wavesym.programs.march.bound import Verdict, judge
 from wavesym.programs.march.plan import HIGHEST_DEGREE, MarchPlan, least_numbers, march_plan
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
 from wavesym.programs.march.tables import MarchTables, state_bytes, table_bytes
-from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
+from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance
 
 _MOST_BYTES = 1 << 22  # of tables, and of the state, which programs keep on the stack
 _MOST_WORK = 2e10  # multiplications of trying all degrees, half a minute or so
@@ -31,7 +31,7 @@ _LEAST_DEGREE = 4
 
 
 @dataclass(frozen=True)
-class March(Bounded):
+class March(BoundedOutputs):
     """A march over [0, tau_max] with polynomials of `degree` in `real` numbers."""
 
     plan: MarchPlan
@@ -124,13 +124,13 @@ def judge_march(model: Model, real: Real = DOUBLE, degree: int | None = None) ->
     if any(0 < abs(value) < real.least for value in least_numbers(plan)) or plan.cycle[1] * real.roundoff > 1:
         raise OverflowError(f"a number of the tables is beyond {real.name} precision")
     if degree is not None:
-        return _made(plan, max(degree, _LEAST_DEGREE), real)
+        return _march_of_degree(plan, max(degree, _LEAST_DEGREE), real)
     degree = first_degree(plan, real)
     before = math.inf
     spent = 0.0
     while True:
         spent = refuse_long(plan, degree, spent, real)
-        made, verdict = _made(plan, degree, real)
+        made, verdict = _march_of_degree(plan, degree, real)
         if verdict.truncated <= verdict.rounded or _SETTLED * before <= made.error_bound < math.inf:
             return made, verdict
         before = made.error_bound
@@ -149,7 +149,7 @@ def judge_degree(plan: MarchPlan, degree: int, real: Real, what: str = "march") 
         raise CostError(f"system.parts: to solve the joints of a {what}, {error} (softer springs help)") from None
 
 
-def _made(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
+def _march_of_degree(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
     verdict = judge_degree(plan, degree, real)
     outputs = tuple(
         ProgramOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)

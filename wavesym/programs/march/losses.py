@@ -137,8 +137,8 @@ class Losses:
         given = _block_matrix(group.collect @ a + loaded, x)
         sizes = _block_matrix(np.abs(group.collect) @ np.abs(a) + largest, np.abs(x))
         turned = self._norms[number] * self._lengths[panel]
-        missed = self._truncated(self._missed[number, panel], turned, given, sizes)
-        wrong, ends = self._answered(group, panel, sizes)
+        missed = self._truncation_losses(self._missed[number, panel], turned, given, sizes)
+        wrong, ends = self._response_errors(group, panel, sizes)
         wrong = np.abs(group.spread) @ wrong + 3 * self._unit * (np.abs(sent) + np.abs(a)) + 4 * self._smallest
         return _square(wrong), np.sum(wrong, axis=-1), ends, missed
 
@@ -164,7 +164,7 @@ class Losses:
         small = count * (1 + np.sum(size, axis=0)) + np.sum(sizes, axis=-1, keepdims=True)
         return np.asarray(self._unit * count * (sizes @ size) + self._smallest * small)
 
-    def _answered(self, group: Blocks, panel: int, sizes: Array) -> tuple[Array, Array]:
+    def _response_errors(self, group: Blocks, panel: int, sizes: Array) -> tuple[Array, Array]:
         """How wrong velocities (windows, joints, points, k) and states at the end may be."""
         columns, states = group.columns[panel], group.states.shape[1]
         wrong = self._products(columns, sizes)
@@ -172,7 +172,7 @@ class Losses:
         ends = wrong[..., -states:] + 2 * self._unit * after
         return wrong[..., :-states].reshape(*sizes.shape[:2], -1, group.size), ends
 
-    def _truncated(self, missed: Array, turned: float, given: Array, sizes: Array) -> Array:
+    def _truncation_losses(self, missed: Array, turned: float, given: Array, sizes: Array) -> Array:
         """The squares of what is lost by truncation, (windows,)."""
         eps = np.linalg.norm(np.abs(given @ missed.T) + self._products(missed.T, sizes), axis=-1)
         return np.asarray(np.sum((eps * block_loss(turned)) ** 2, axis=1))

@@ -267,7 +267,7 @@ def march_plan(
         len(loads.numbers),
         tuple(loads.events(panels, step)),
         tuple(
-            MarchOutput(probe.name, tuple(_heard(model.network, terms, track_of, point_of, load_of)))
+            MarchOutput(probe.name, tuple(_output_terms(model.network, terms, track_of, point_of, load_of)))
             for probe, terms in model.sums.items()
         ),
         tau_max,
@@ -338,7 +338,7 @@ class _Loads:
         self.changes: list[tuple[fmpq, int, fmpq_poly]] = []
         for number in points:
             point = model.network.points[number]
-            units = {unit.source: fmpq_poly(list(moved_by(point, unit))) for unit in point.loads}
+            units = {unit.source: fmpq_poly(list(unit_action(point, unit))) for unit in point.loads}
             for load in model.loads_until(until):
                 if load.source in units:
                     self.changes.append((load.time, number, load.weight * units[load.source]))
@@ -355,13 +355,13 @@ class _Loads:
         return load_events(gains, (panel.start for panel in panels), step)
 
 
-def moved_by(point: Point, unit: UnitLoad) -> tuple[Any, ...]:
+def unit_action(point: Point, unit: UnitLoad) -> tuple[Any, ...]:
     """The force that a unit load makes of itself at a point, or the velocity that it prescribes, by powers of tau."""
     action = point.action(unit)
     return action if point.motion else tuple(joint_rule().load * each for each in action)
 
 
-def _heard(
+def _output_terms(
     network: Network, terms: Sum, track_of: dict[End, int], point_of: dict[int, int], load_of: dict[int, int]
 ) -> Iterator[OutputTerm]:
     for weight, reading in terms:

@@ -248,9 +248,9 @@ def joint_rows(network: Network, joint: Joint) -> JointRows:
     rates, pushed = _zeros(states, states), _zeros(states, size)
     for n, k in enumerate(heavy):
         for j in range(states):
-            rates[n][j] = -(pulls[k][j] + _along(law.damping[k], shown, j)) / law.mass[k]
+            rates[n][j] = -(pulls[k][j] + _row_product(law.damping[k], shown, j)) / law.mass[k]
         for j in range(size):
-            rest = _along(law.damping[k], passed, j)
+            rest = _row_product(law.damping[k], passed, j)
             pushed[n][j] = ((j == k) - rest) / law.mass[k]
     for n, (_, row) in enumerate(springs, len(heavy)):
         for j in range(states):
@@ -273,7 +273,7 @@ def _zeros(rows: int, columns: int) -> Rows:
     return [[_ZERO] * columns for _ in range(rows)]
 
 
-def _along(row: tuple[Any, ...], matrix: Rows, column: int) -> Any:
+def _row_product(row: tuple[Any, ...], matrix: Rows, column: int) -> Any:
     return sum((value * matrix[b][column] for b, value in enumerate(row)), _ZERO)
 
 

@@ -51,5 +51,5 @@ def sampled_amplitudes(parameters: ModeParameters, *, streamed: bool = False) ->
     for column, amplitude in zip(samples.T, every, strict=True):
         acting = linear_loads(amplitude.changes, like.sources, like.model.until, like.model.describe_step)
         loads.append(next(j for j, pair in enumerate(like.sources) if amplitude.source in pair))
-        column[:] = acting.sampled(step, count)[:, loads[-1]]
+        column[:] = acting.sample(step, count)[:, loads[-1]]
     return SampledAmplitudes(step, samples, tuple(loads), tuple(map(sampled_roughness, samples.T)))

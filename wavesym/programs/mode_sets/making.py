@@ -21,7 +21,7 @@ from wavesym.programs.flat import firsts
 from wavesym.programs.mode_sets.loads import SampledAmplitudes, sampled_amplitudes
 from wavesym.programs.mode_sets.parameters import ModeParameters, mode_parameters
 from wavesym.programs.modes.evaluator import modes
-from wavesym.programs.modes.modal_system import LANES, padded
+from wavesym.programs.modes.modal_system import LANES, padded_count
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.laws import RuntimeLaws
@@ -181,7 +181,7 @@ class ModeSetsTables:
             "loads": loads,
             "amplitudes": self.amplitudes.samples.shape[1],
             "group": LANES,
-            "filled": padded(outputs),
+            "filled": padded_count(outputs),
             "bars": len(network.bars),
             "rows": len(stiffness.points),
             "places": len(network.points),

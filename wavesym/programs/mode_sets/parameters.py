@@ -27,8 +27,8 @@ from wavesym.mechanics.network import Bar, Network
 from wavesym.mechanics.parameters import ModelParameter, PartParameters, describe_part
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.modes.loads import Numbers
-from wavesym.programs.modes.truncation import truncated
-from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.programs.modes.truncation import truncate
+from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.programs.request import refuse_others
 from wavesym.programs.runtime.network import PLAIN, ParameterUnit, RuntimeField, field_of, unit_of_load
 
@@ -54,7 +54,7 @@ class ModeParameters:
 
         UnservedError, ToleranceError as for `modal_system`.
         """
-        return min(int(_MORE * truncated(self.like).count) + 1, self.like.most)
+        return min(int(_MORE * truncate(self.like).count) + 1, self.like.most)
 
     def numbers(self, given: Numbers) -> dict[str, Numbers]:
         """The numbers of each field without units, (sets, numbers)."""

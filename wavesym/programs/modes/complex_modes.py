@@ -85,7 +85,7 @@ class ComplexModes(ModalModel[ComplexProjection]):
         network.refuse_corners()
         refuse_absorbing(network)
         found = self.spectrum.first(count)  # only then it is known how bars are cut
-        for probe in self.accelerated():
+        for probe in self.massless_accelerations():
             raise UnservedError(
                 f"output.acceleration: {probe.name}: modes with dashpots support no place without mass (pieces "
                 "and `run` do)"

@@ -59,7 +59,7 @@ class ModeEnergies:
         """How often each counts."""
         return np.where(self.rates.imag != 0, 2.0, 1.0)
 
-    def after(self, first: int) -> ModeEnergies:
+    def later_modes(self, first: int) -> ModeEnergies:
         """All but the first ones."""
         later = slice(first, None)
         return ModeEnergies(
@@ -126,7 +126,7 @@ class BallResponse:
     known: Sequence[Sequence[acb]]
     least: int
 
-    def rounded(self, first: int) -> PortResponse:
+    def to_doubles(self, first: int) -> PortResponse:
         """In doubles, without the first modes."""
         return PortResponse(
             np.array([complex(b) for b in self.shares[first:]], complex),
@@ -149,19 +149,19 @@ class Dissipation:
     def residual_norms(self, ports: Sequence[SlowPort], shares: Sequence[Sequence[acb]]) -> Numbers:
         """What is left of ports once the first 0, 1, 2, ... modes are taken: (ports, POWERS, modes + 1)."""
         responses = [self._response(port, row) for port, row in zip(ports, shares, strict=True)]
-        energies = self._rounded()
-        made = residual_norms(energies, [response.rounded(0) for response in responses])
+        energies = self._energies_in_doubles()
+        made = residual_norms(energies, [response.to_doubles(0) for response in responses])
         slow = min(_SLOW, len(self.rates))
-        deflated = [response.rounded(slow) for response in self._without(responses, slow)]
-        made[:, :, slow:] = np.minimum(made[:, :, slow:], residual_norms(energies.after(slow), deflated))
+        deflated = [response.to_doubles(slow) for response in self._remove_modes(responses, slow)]
+        made[:, :, slow:] = np.minimum(made[:, :, slow:], residual_norms(energies.later_modes(slow), deflated))
         return made
 
     def _energy(self, rate: acb, fast: Sequence[acb]) -> arb:
         if not rate.real < 0:
             return 2 * abs(rate) ** 2  # that of a mass of 1
-        return arb(-self._dissipated(fast, fast).real / rate.real)
+        return arb(-self._dissipation(fast, fast).real / rate.real)
 
-    def _dissipated(self, one: Sequence[Quantity], other: Sequence[Quantity]) -> Quantity:
+    def _dissipation(self, one: Sequence[Quantity], other: Sequence[Quantity]) -> Quantity:
         """What dashpots take of two states."""
         return sum((c * a * b.conjugate() for c, a, b in zip(self._sizes, one, other, strict=True)), acb(0))
 
@@ -172,7 +172,7 @@ class Dissipation:
         rate, fast = self.rates[k], self._fast[k]
         if conjugate:
             rate, fast = rate.conjugate(), [v.conjugate() for v in fast]
-        return acb(-2 * self._dissipated(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
+        return acb(-2 * self._dissipation(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
 
     def _response(self, port: SlowPort, shares: Sequence[acb]) -> BallResponse:
         moved = [[acb(_sum(dashpot, [q[k] for q in port.moved])) for dashpot in self._dashpots] for k in range(TERMS)]
@@ -186,24 +186,24 @@ class Dissipation:
         energies = []
         for q in range(POWERS):
             if port.order:
-                energy = port.reads[2 * q + 2] - 2 * self._dissipated(moved[0], moved[2 * q + 1]).real
+                energy = port.reads[2 * q + 2] - 2 * self._dissipation(moved[0], moved[2 * q + 1]).real
             else:
                 energy = -port.reads[2 * q - 2] if q else port.impulse_energy
             for j in range(q - 1, -1, -1):
-                energy = -2 * self._dissipated(fast(q + j + 1), fast(q - j)).real - energy
+                energy = -2 * self._dissipation(fast(q + j + 1), fast(q - j)).real - energy
             energies.append(energy)
         known = [(rate * b).conjugate() for rate, b in zip(self.rates, shares, strict=True)]
         if port.order:
-            known = [h + 2 * self._dissipated(moved[0], e) for h, e in zip(known, self._extended, strict=True)]
+            known = [h + 2 * self._dissipation(moved[0], e) for h, e in zip(known, self._extended, strict=True)]
         rows = [known]
         for q in range(1, POWERS):
             acting = fast(q)
             pairs = zip(known, self._fast, self.rates, strict=True)
-            known = [-(h + 2 * self._dissipated(acting, v)) / rate.conjugate() for h, v, rate in pairs]
+            known = [-(h + 2 * self._dissipation(acting, v)) / rate.conjugate() for h, v, rate in pairs]
             rows.append(known)
         return BallResponse(shares, energies, rows, port.least)
 
-    def _without(self, responses: Sequence[BallResponse], slow: int) -> list[BallResponse]:
+    def _remove_modes(self, responses: Sequence[BallResponse], slow: int) -> list[BallResponse]:
         """What ports start but for their parts in the first modes."""
         if not slow:
             return list(responses)
@@ -231,7 +231,7 @@ class Dissipation:
             made.append(BallResponse(each.shares, energies, rows, each.least))
         return made
 
-    def _rounded(self) -> ModeEnergies:
+    def _energies_in_doubles(self) -> ModeEnergies:
         rates = np.array([complex(rate) for rate in self.rates], complex)
         return ModeEnergies(
             rates=rates,

@@ -14,11 +14,11 @@ from wavesym.numbers.doubles import midpoint, nearest, rational, relative
 from wavesym.numbers.reals import Real
 from wavesym.programs.modes.complex_modes import ComplexModes
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.modal_system import ModalSystem, Stepper, padded, scheme_tables, stream_tables
+from wavesym.programs.modes.modal_system import ModalSystem, Stepper, padded_count, scheme_tables, stream_tables
 from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
-from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncated
-from wavesym.programs.modes.undamped import UndampedModes
-from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance, StreamedValues
+from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncate
+from wavesym.programs.modes.undamped_modes import UndampedModes
+from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance, StreamedValues
 from wavesym.programs.reference_values import leap
 from wavesym.programs.schemes.modes import ModesScheme
 
@@ -27,7 +27,7 @@ _ULPS = 8  # by which a step may differ from the spacing
 
 
 @dataclass(frozen=True)
-class ModesEvaluator(Bounded):
+class ModesEvaluator(BoundedOutputs):
     """A modal system under loads, stepped exactly in `real` numbers; a stream takes steps of `spacing`.
 
     `sources` are the names of the loads; a stream takes them in units of their own, one of which is `inputs` and its
@@ -81,7 +81,7 @@ class ModesEvaluator(Bounded):
         off = _ULPS * 2 * nearest(self.real.roundoff)
         return {
             "loads": len(self.sources),
-            "modes": padded(len(self.system.frequency)),
+            "modes": padded_count(len(self.system.frequency)),
             "spacing": self.real.nearest(self.spacing),
             "shortest": self.real.nearest(rational(spacing * (1 - off))),
             "longest": self.real.nearest(rational(spacing * (1 + off))),
@@ -90,8 +90,10 @@ class ModesEvaluator(Bounded):
     @property
     def bytes(self) -> int:
         """The size of the tables of a stream."""
-        rows = sum(padded(int(np.count_nonzero(w.any(axis=1)))) for w in (self.system.moved, self.system.moving))
-        numbers = padded(len(self.system.frequency)) * (4 + 4 * len(self.sources) + rows) + self.system.direct.size
+        rows = sum(padded_count(int(np.count_nonzero(w.any(axis=1)))) for w in (self.system.moved, self.system.moving))
+        numbers = (
+            padded_count(len(self.system.frequency)) * (4 + 4 * len(self.sources) + rows) + self.system.direct.size
+        )
         return self.real.bytes * numbers
 
     @property
@@ -131,7 +133,7 @@ class ModesEvaluator(Bounded):
             step="spacing",
         )
 
-    def streamed(self) -> StreamedValues:
+    def stream_values(self) -> StreamedValues:
         """For the self-test: loads up to the largest of the scene's that leap, and what comes of them."""
         largest = self.loads.largest or fmpq(1)
         given = [
@@ -163,7 +165,7 @@ def modal_model(model: Model) -> ModalModel[Any]:
 
 def modal_system(model: Model) -> ModalModes:
     """The first modes of a model, as many as leave out at most half of its tolerance: see `truncated`."""
-    return truncated(modal_model(model))
+    return truncate(modal_model(model))
 
 
 def modes(model: Model, real: Real) -> ModesEvaluator:

@@ -53,7 +53,7 @@ class LinearLoads:
         """The largest absolute value at one of the times."""
         return max((abs(value) for row in self.samples for value in row), default=fmpq(0))
 
-    def sampled(self, step: fmpq, count: int) -> Numbers:
+    def sample(self, step: fmpq, count: int) -> Numbers:
         """Loads at multiples of a step that all times are: (count, loads)."""
         at, times = np.arange(count), np.array([nearest(time / step) for time in self.times])
         values = np.array([[nearest(value) for value in row] for row in self.samples])

@@ -110,7 +110,7 @@ class LowFrequency:
             made[delay] = arb_series(cosh) * over, over
         return made
 
-    def _under(self, forces: Mapping[int, Series]) -> list[Series]:
+    def _motion_under(self, forces: Mapping[int, Series]) -> list[Series]:
         """How far points move under forces on them."""
         stiffness, zero = self._stiffness, arb_series([0])
         moved = [zero] * len(self._network.points)
@@ -145,11 +145,11 @@ class LowFrequency:
             sign = arb(-weight if end.side else weight)
             forces = {there: shared * (sign * arb(bar.ratios[1 - end.side]))}
             forces[here] = forces.get(here, arb_series([0])) - pulled * (sign * arb(bar.ratios[end.side]))
-            moved = self._under(forces)
+            moved = self._motion_under(forces)
             reads = self.read(output, moved) - pulled * (arb(weight * weight) / arb(bar.impedance))
             return SlowPort(moved, reads, 0, 2, zero)
         free = {point: weight for point, weight in output.points.items() if network.points[point].motion is None}
-        moved = self._under({point: one * arb(weight) for point, weight in free.items()})
+        moved = self._motion_under({point: one * arb(weight) for point, weight in free.items()})
         reads = sum((moved[point] * arb(weight) for point, weight in free.items()), arb_series([0]))
         return SlowPort(moved, reads, 0, *self._impulse_energy(free))
 
@@ -157,7 +157,7 @@ class LowFrequency:
         """The port that a load is."""
         network, gain, one = self._network, arb(driver.gain), arb_series([1])
         if network.points[driver.point].motion is None:
-            moved = self._under({driver.point: one * gain})
+            moved = self._motion_under({driver.point: one * gain})
             return SlowPort(moved, moved[driver.point] * gain, 0, *self._impulse_energy({driver.point: driver.gain}))
         held, forces = self._stiffness.prescribed_column(
             driver.point,
@@ -166,7 +166,7 @@ class LowFrequency:
             lambda bar: self._bars[bar.delay][1],
             self._s,
         )
-        moved = [q * gain for q in self._under(forces)]
+        moved = [q * gain for q in self._motion_under(forces)]
         pull = sum((forces[point] * moved[point] for point in forces if network.points[point].motion is None), one * 0)
         moved[driver.point] = one * gain
         return SlowPort(moved, (held * gain - pull) * gain, 2, 0, arb(0))

@@ -166,21 +166,21 @@ def stream_tables(stepper: Stepper, real: Real) -> Tables:
     next; so those that velocities count in. What loads and their integrals count is `load_weight`.
     """
     system = stepper.system
-    modes, filled = len(system.frequency), padded(len(system.frequency))
+    modes, filled = len(system.frequency), padded_count(len(system.frequency))
     made: Tables = {}
     for name, values in stepper.tables().items():
         rows = [values[first : first + modes] for first in range(0, len(values), modes)]
         made[name] = tuple(x for row in rows for x in [*map(real.nearest, row), *[0.0] * (filled - modes)])
     for name, weights in (("moved", system.moved), ("moving", system.moving)):
         used = np.flatnonzero(weights.any(axis=1))
-        lanes = np.zeros((padded(len(used)), filled))
+        lanes = np.zeros((padded_count(len(used)), filled))
         lanes[: len(used), :modes] = weights[used]
         made[f"{name}_row"] = tuple(used.tolist())
         made[f"{name}_weight"] = _as(real, lanes.reshape(-1, LANES, filled).transpose(0, 2, 1))
     return made | {"load_weight": _as(real, system.direct)}
 
 
-def padded(count: int) -> int:
+def padded_count(count: int) -> int:
     """The next multiple of LANES."""
     return -(-count // LANES) * LANES
 

@@ -202,7 +202,7 @@ def project(
                 [[each.value(s) * g for g, (_, s) in zip(gains, shapes, strict=True)] for each in outputs], len(drivers)
             ),
             powers=(np.array([each.power for each in outputs]), np.array([1 if s is None else 0 for s, _ in shapes])),
-            totals=(_above([each.total(statics) for each in outputs]), _above(share_totals)),
+            totals=(_round_up([each.total(statics) for each in outputs]), _round_up(share_totals)),
         )
 
 
@@ -246,6 +246,6 @@ def _array(rows: list[list[arb]], columns: int) -> Numbers:
     return np.array([[float(value) for value in row] for row in rows]).reshape(len(rows), columns)
 
 
-def _above(values: Sequence[arb]) -> Numbers:
+def _round_up(values: Sequence[arb]) -> Numbers:
     """Doubles that are not below."""
     return np.asarray(np.nextafter([float(value.upper()) for value in values], np.inf), np.float64)

@@ -36,7 +36,7 @@ class Panels(ModesScheme):
         """Those of a program in double precision."""
         return cls(program.tables, program.constants, program.tau_max, np.float64)
 
-    def sampled(self, step: float) -> tuple[Numbers, Numbers]:
+    def sample(self, step: float) -> tuple[Numbers, Numbers]:
         """Instants no more than `step` apart, each panel in an even number of equal parts, and the outputs there."""
         starts = self._time[self._time < self._tau_max]
         last = len(starts) - 1
@@ -73,14 +73,14 @@ class Panels(ModesScheme):
 
     def turns(self, s: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
         """What modes do in the times s: see `ModesScheme`."""
-        return self._turned(s)
+        return self._mode_functions(s)
 
     def reads(self, s: NDArray[np.float64]) -> NDArray[np.float64]:
         """What outputs take of displacements, velocities, and of each load's slope, value and integrals, s later.
 
         (times, 2 modes + 4 loads, outputs).
         """
-        p11, p12, p21, p22, one, two = (each[:, :, None] for each in self._turned(s))
+        p11, p12, p21, p22, one, two = (each[:, :, None] for each in self._mode_functions(s))
         moved, moving, push = self._moved, self._moving, self._push
         rows = [p11 * moved + p21 * moving, p12 * moved + p22 * moving]
         for k, (pushed, speed) in enumerate(((two, one), (one, p12))):
@@ -238,7 +238,7 @@ class RecordResponse:
             first, second = reads[-2 * loads :].reshape(2, loads, -1)
             values[:, :, :, part] += (once @ first + twice @ second).transpose(0, 1, 3, 2)
 
-    def inside(self, samples: Numbers, known: Numbers, record: Places, step: Places) -> Numbers:
+    def step_states(self, samples: Numbers, known: Numbers, record: Places, step: Places) -> Numbers:
         """What is known where a `step` of a `record` begins: (cases, 2 modes + 4 loads), to be multiplied with `reads`.
 
         `known` is that of the samples.
@@ -263,7 +263,7 @@ class RecordResponse:
         """What outputs take of `inside`, the times s after the start of a step: (times, 2 modes + 4 loads, outputs)."""
         return self._panels.reads(s)
 
-    def at(self, known: Numbers, s: Numbers, output: Places) -> Numbers:
+    def value_at(self, known: Numbers, s: Numbers, output: Places) -> Numbers:
         """One `output` of each row of `inside`, s after the start of its step: (cases,)."""
         modes, loads, system = self._modes, self.system.pushes.shape[1], self.system
         y, v = known[:, :modes], known[:, modes : 2 * modes]

@@ -44,7 +44,7 @@ def rounding_errors(
     reach = 1 / np.maximum(w, 1 / tau_max) if tau_max > 0 else np.zeros(len(w))
     size = _size(scheme, reach) + 4 * np.minimum(reach, lengths.max()) * force
     swift = (1 + 2 * system.damping) * w
-    wrong = _summed(system, lengths, swift, tau_max)
+    wrong = _sum_over_panels(system, lengths, swift, tau_max)
     made = unit * (_STEP * wrong * size + 4 * tau_max * (swift * size + force))
     weight = np.abs(system.moved) * reach + np.abs(system.moving)
     errors = weight @ (2 * made + unit * (len(w) + 20) * size)
@@ -53,7 +53,7 @@ def rounding_errors(
     return RoundingErrors(_MORE * errors, np.maximum(at_times - _MORE * errors, 0.0))
 
 
-def _summed(system: ModalSystem, lengths: Numbers, swift: Numbers, tau_max: float) -> Numbers:
+def _sum_over_panels(system: ModalSystem, lengths: Numbers, swift: Numbers, tau_max: float) -> Numbers:
     """The sum over panels of 1 + (1 + 2 damping) w s, each as far as it is not damped away until it counts."""
     w, count = system.frequency, len(lengths) + 1
     whole = count + swift * tau_max

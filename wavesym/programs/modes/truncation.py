@@ -123,7 +123,7 @@ class ModalModel(ABC, Generic[K]):
     def system(self, known: K, count: int) -> ModalSystem:
         """The system of the first `count` modes."""
 
-    def accelerated(self) -> Iterator[Probe]:
+    def massless_accelerations(self) -> Iterator[Probe]:
         """The accelerations of what has no mass."""
         for probe, output in zip(self.model.probes, self.outputs, strict=True):
             if output.order == 2 and not output.massive:
@@ -191,7 +191,7 @@ class ModalModes:
         return _relative(self.errors, self.largest)
 
 
-def truncated(chain: ModalModel[K]) -> ModalModes:
+def truncate(chain: ModalModel[K]) -> ModalModes:
     """The first modes of a model, as many as leave out at most half of its tolerance.
 
     Raises:
@@ -222,7 +222,7 @@ def truncated(chain: ModalModel[K]) -> ModalModes:
             left = _relative(errors, about).max() * (count / chain.most) ** max(power, _FAST)
             hopeless = left > _FAR * tolerance
         if count == chain.most or hopeless:
-            raise _unmet(chain, errors, largest, (chain.most / count) ** power)
+            raise _tolerance_error(chain, errors, largest, (chain.most / count) ** power)
         count = min(ceil(count * min(max(1.05 * more, 1.2), 8.0)), chain.most)
     # of these as few as will do
     low, high = min(chain.least, count) - 1, count
@@ -242,7 +242,7 @@ def truncated(chain: ModalModel[K]) -> ModalModes:
     )
 
 
-def _unmet(chain: ModalModel[K], errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
+def _tolerance_error(chain: ModalModel[K], errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
     model = chain.model
     bounds = _relative(errors, largest)
     worst = int(np.argmax(bounds))

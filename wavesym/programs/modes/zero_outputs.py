@@ -58,7 +58,7 @@ class _Response:
     def cancels(self, probe: Probe, drivers: Sequence[Driver], histories: Sequence[Sequence[fmpq]]) -> bool:
         """Whether what the loads do to an output adds up to 0."""
         output = modal_output(self._network, self._cut, probe)
-        done = [self._read(output, self._moved(driver)) for driver in drivers]
+        done = [self._read(output, self._motion(driver)) for driver in drivers]
         zero = _FIELD(0)
         return all(
             sum((_modular(part) * each for part, each in zip(history, done, strict=True)), zero) == 0
@@ -77,16 +77,16 @@ class _Response:
             made[delay] = ((back - forth) / (2 * _I), (back + forth) / 2)
         return made
 
-    def _moved(self, driver: Driver) -> list[fmpz_mod]:
+    def _motion(self, driver: Driver) -> list[fmpz_mod]:
         """How far points move under a load."""
         key = driver.point, driver.gain
-        return self._known.get(key) or self._known.setdefault(key, self._solved(driver))
+        return self._known.get(key) or self._known.setdefault(key, self._solve(driver))
 
     @cached_property
     def _known(self) -> dict[tuple[int, fmpq], list[fmpz_mod]]:
         return {}
 
-    def _solved(self, driver: Driver) -> list[fmpz_mod]:
+    def _solve(self, driver: Driver) -> list[fmpz_mod]:
         network, zero = self._cut.network, _FIELD(0)
         moved, forces = [zero] * len(network.points), [zero] * len(network.points)
         if network.points[driver.point].motion is None:

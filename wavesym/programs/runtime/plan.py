@@ -27,7 +27,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.march.plan import MarchPlan, OutputTerm, Stretch, load_events, march_plan, moved_by
+from wavesym.programs.march.plan import MarchPlan, OutputTerm, Stretch, load_events, march_plan, unit_action
 from wavesym.programs.march.space import joint_rows
 from wavesym.programs.runtime.laws import Function
 from wavesym.programs.runtime.network import FreeNetwork, drawn_number
@@ -177,12 +177,12 @@ def _events(
 
 def _unit_loads(own: Point, free: Point) -> tuple[dict[str, fmpq_poly], Function]:
     """Polynomials in time for each source, and the function that all of them are multiplied by."""
-    powers = {unit.source: fmpq_poly(list(moved_by(own, unit))) for unit in own.loads}
-    first = moved_by(free, free.loads[0])
+    powers = {unit.source: fmpq_poly(list(unit_action(own, unit))) for unit in own.loads}
+    first = unit_action(free, free.loads[0])
     size = next(coefficient for coefficient in first if coefficient != 0)
     if not isinstance(size, Ratio):
         return powers, fmpq(1)
-    known = next(coefficient for coefficient in moved_by(own, own.loads[0]) if coefficient != 0)
+    known = next(coefficient for coefficient in unit_action(own, own.loads[0]) if coefficient != 0)
     return {source: power / known for source, power in powers.items()}, size
 
 

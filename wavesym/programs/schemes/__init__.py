@@ -7,7 +7,7 @@ np.float64 or np.float32.
 
 from __future__ import annotations
 
-from wavesym.programs.schemes.closed import ClosedScheme
+from wavesym.programs.schemes.closed_form import ClosedScheme
 from wavesym.programs.schemes.hats import HatScheme
 from wavesym.programs.schemes.march import MarchScheme
 from wavesym.programs.schemes.march_joints import MarchNumbers

@@ -127,12 +127,12 @@ class ShiftedHats:
         """All outputs, or some, at tau: (outputs, tau.size)."""
         chosen = range(self._march.outputs) if outputs is None else outputs
         out = np.zeros((len(chosen), tau.size))
-        latest, phase = self._placed(tau)
+        latest, phase = self._locate_hats(tau)
         order = np.argsort(phase, kind="stable")
         order = order[latest[order] >= 0]
         if not order.size:
             return out
-        groups = np.split(order, self._apart(phase[order]))
+        groups = np.split(order, self._phase_edges(phase[order]))
         alone = np.array([group[0] for group in groups if len(group) == 1], int)
         if alone.size:
             out[:, alone] = self._single(latest[alone], phase[alone], chosen)
@@ -143,10 +143,10 @@ class ShiftedHats:
             last = np.array([latest[group].max() for group in some])
             responses = self._responses(last, phase[[group[0] for group in some]], chosen)
             for group, response in zip(some, responses, strict=True):
-                out[:, group] = self._convolved(response)[:, latest[group]]
+                out[:, group] = self._convolve(response)[:, latest[group]]
         return out
 
-    def _placed(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.float64]]:
+    def _locate_hats(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.float64]]:
         """Of each tau the number of the hat that began last, and how long ago."""
         since, lost = _difference(tau, self._begin[0])
         lost = lost - self._begin[1]
@@ -164,7 +164,7 @@ class ShiftedHats:
         phase, more = _difference(since, number * self._high)
         return np.asarray(phase + ((lost + more) - number * self._low))
 
-    def _apart(self, phase: NDArray[np.float64]) -> list[int]:
+    def _phase_edges(self, phase: NDArray[np.float64]) -> list[int]:
         """Where, in order, a phase begins that differs from the one before by more than rounding makes of one."""
         found = []
         first = 0
@@ -234,7 +234,7 @@ class ShiftedHats:
             made[q, :, m] = values.T
         return made
 
-    def _convolved(self, response: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _convolve(self, response: NDArray[np.float64]) -> NDArray[np.float64]:
         """sum over i of sample[i] response[:, n - i]: (outputs, n)."""
         count = response.shape[1]
         size = 1 << (2 * count - 1).bit_length()

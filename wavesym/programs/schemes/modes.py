@@ -77,10 +77,10 @@ class ModesScheme:
         inside = slice(np.searchsorted(sorted_taus, 0.0), np.searchsorted(sorted_taus, self._tau_max, side="right"))
         out = np.full((self._direct.shape[2], flat.size), np.nan, self._real)
         if inside.stop > inside.start:
-            out[:, order[inside]] = self._sorted(sorted_taus[inside])
+            out[:, order[inside]] = self._evaluate_sorted(sorted_taus[inside])
         return out.reshape(len(out), *taus.shape)
 
-    def _sorted(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _evaluate_sorted(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """The outputs at sorted tau in range: (outputs, tau.size)."""
         out = np.empty((self._direct.shape[2], tau.size), self._real)
         panel = np.searchsorted(self._time, tau, side="right") - 1
@@ -103,7 +103,7 @@ class ModesScheme:
         w = s[:, None]
         ramp, start = slope @ self._push, load @ self._push
         times, which = np.unique(s, return_inverse=True)
-        turned = self._turned(s if len(times) == len(s) else times)
+        turned = self._mode_functions(s if len(times) == len(s) else times)
         p11, p12, p21, p22, one, two = turned if len(times) == len(s) else (each[which] for each in turned)
         y, v = states[:, 0], states[:, 1]
         out = (p11 * y + p12 * v + (one * start + two * ramp)) @ self._moved
@@ -121,17 +121,17 @@ class ModesScheme:
         """
         while len(self._marks) <= block:
             first = (len(self._marks) - 1) * self.BLOCK
-            self._marks.append(self._stepped(self._marks[-1], first, first + self.BLOCK)[-1])
-        return self._stepped(self._marks[block], block * self.BLOCK, last)
+            self._marks.append(self._step_states(self._marks[-1], first, first + self.BLOCK)[-1])
+        return self._step_states(self._marks[block], block * self.BLOCK, last)
 
-    def _stepped(self, state: NDArray[np.float64], first: int, last: int) -> NDArray[np.float64]:
+    def _step_states(self, state: NDArray[np.float64], first: int, last: int) -> NDArray[np.float64]:
         """States at the starts of the panels first ... last, from that of the first: (panels, 2, modes)."""
         states = np.empty((last - first + 1, *state.shape), self._real)
         states[0] = state
         kinds, kind = np.unique(self._kind[first:last], return_inverse=True)
         if not len(kinds):
             return states
-        p11, p12, p21, p22, one, two = self._turned(self._length[kinds])
+        p11, p12, p21, p22, one, two = self._mode_functions(self._length[kinds])
         same, crossed = np.stack([p11, p22], 1), np.stack([p12, p21], 1)
         ramp, start = (self.load[part, first:last] @ self._push for part in (0, 1))
         pushed = np.stack([one[kind] * start + two[kind] * ramp, p12[kind] * start + one[kind] * ramp], 1)
@@ -144,7 +144,7 @@ class ModesScheme:
             after += pushed[k]
         return states
 
-    def _turned(self, s: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    def _mode_functions(self, s: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
         """What modes do in the times s, each of shape (s.size, modes), in the type of the values.
 
         The matrix p11, p12, p21, p22 of displacement and velocity, and the displacement that a force of 1, and one that

@@ -54,7 +54,7 @@ def kinks(degree: int) -> tuple[tuple[float, float], ...]:
         root of the integral of its square. Both are looked for at places that are zeros of a Chebyshev polynomial
         between each two points, the first at such instants on both sides of each: it is a polynomial of the place
         and of how far
-        along a side one is, and so is the square of the second, so that `_between` says how much larger it may be
+        along a side one is, and so is the square of the second, so that `_grid_factor` says how much larger it may be
         elsewhere.
     """
     at, back = np.array(points(degree)), np.array(transform(degree))
@@ -74,12 +74,14 @@ def kinks(degree: int) -> tuple[tuple[float, float], ...]:
             errors[1] -= _bent(after, places[:, None], order)
             square = np.sum(lengths * (errors**2 @ weights), axis=0)
             most[order] = np.maximum(most[order], (np.max(np.abs(errors)), np.sqrt(np.max(square))))
-    margins = _between(degree + ORDERS, count) ** 2, np.sqrt(_between(2 * (degree + ORDERS), count))
+    margins = _grid_factor(degree + ORDERS, count) ** 2, np.sqrt(_grid_factor(2 * (degree + ORDERS), count))
     # the same on every machine
-    return tuple((_rounded(1.001 * margins[0] * one), _rounded(1.001 * margins[1] * two)) for one, two in most)
+    return tuple(
+        (_three_digits(1.001 * margins[0] * one), _three_digits(1.001 * margins[1] * two)) for one, two in most
+    )
 
 
-def _rounded(value: float) -> float:
+def _three_digits(value: float) -> float:
     return float(f"{value:.3g}")
 
 
@@ -95,7 +97,7 @@ def _bent(u: Array, place: Array, order: int) -> Array:
     return np.where(u >= place, (u - place) ** order / (1, 1, 2)[order], 0.0)
 
 
-def _between(degree: int, count: int) -> float:
+def _grid_factor(degree: int, count: int) -> float:
     """How many times as large as at the zeros of T_count a polynomial of a lower degree may be, at most.
 
     Source: Ehlich and Zeller, Schwankung von Polynomen zwischen Gitterpunkten, Math. Zeitschrift 86 (1964).

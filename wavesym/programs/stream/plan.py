@@ -25,7 +25,7 @@ from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import RAMPS
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, Panel, march_plan, moved_by
+from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, Panel, march_plan, unit_action
 
 LONGEST = fmpq(1, 8)
 SHORTEST = fmpq(1, 64)
@@ -87,7 +87,7 @@ class StreamPlan:
     @property
     def loaded(self) -> tuple[int, ...]:
         """The joints on which something acts, by number."""
-        return _loaded(self.march.joints)
+        return _loaded_joints(self.march.joints)
 
     @property
     def direct(self) -> tuple[tuple[int, ...], ...]:
@@ -104,7 +104,8 @@ class StreamPlan:
             tuple(
                 j
                 for j in range(len(self.inputs))
-                if sum((one.gain * passing[one.track][j] for one in output.heard if _at_once(one, passing)), _ZERO) != 0
+                if sum((one.gain * passing[one.track][j] for one in output.heard if _acts_at_once(one, passing)), _ZERO)
+                != 0
             )
             for output in self.march.outputs
         )
@@ -194,7 +195,7 @@ def acting_inputs(
     """What inputs do to the points that are pushed, `kept` times as much as their sizes say; numbers or functions."""
     for number in pushed:
         point = network.points[number]
-        units = {unit.source: moved_by(point, unit) for unit in point.loads}
+        units = {unit.source: unit_action(point, unit) for unit in point.loads}
         responses = [units.get(given.source, ()) for given in inputs]
         summed = any(coefficient != 0 for response in responses for coefficient in response[1:])
         gains = (
@@ -204,11 +205,11 @@ def acting_inputs(
         yield InputForce(point.velocity if point.motion is not None else _ZERO, tuple(gains), summed)
 
 
-def _at_once(one: OutputTerm, passing: Container[int]) -> bool:
+def _acts_at_once(one: OutputTerm, passing: Container[int]) -> bool:
     return one.track in passing and one.delay == 0 and not one.summed
 
 
-def _loaded(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
+def _loaded_joints(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
     return tuple(n for n, joint in enumerate(joints) if any(force >= 0 for force in joint.forces))
 
 

@@ -54,23 +54,23 @@ class StreamTables:
             "entries": self._entries,
             "first_entry": firsts(self._entries),
             "held": self._real.table(track.held for track in march.tracks),
-            "root_impedance": self._rounded(root for root, _ in weights),
-            "state_gain": self._rounded(gain for _, gain in weights),
+            "root_impedance": self._round(root for root, _ in weights),
+            "state_gain": self._round(gain for _, gain in weights),
             **joints,
             "answer": joints["answer"][: len(self._joints)],
             "moves_with": tuple(point for space in spaces for point in space.moves_with),
             "first_stretch": firsts(space.states * space.points for space in spaces),
             "lengthening": self._real.table(value for space in spaces for value in space.lengthening.entries()),
             "first_slip": firsts(map(len, slips)),
-            "slip": self._rounded(value for slip in slips for value in slip),
+            "slip": self._round(value for slip in slips for value in slip),
             "loaded": plan.loaded,
             "base": self._real.table(force.base for force in plan.acting),
             "strength": self._real.table(gain for force in plan.acting for gain in force.gains),
             "integrated": tuple(int(force.summed) for force in plan.acting),
             "instant": self._real.table(panel / 2 * (1 + rational(u)) for u in points(self._degree)),
-            "transform": self._rounded(value for row in transform(self._degree) for value in row),
+            "transform": self._round(value for row in transform(self._degree) for value in row),
             "kink": tuple(
-                self._above(value * half ** (order + power))
+                self._round_up(value * half ** (order + power))
                 for order, errors in enumerate(kinks(self._degree))
                 for value, power in zip(errors, (0.0, 0.5), strict=True)
             ),
@@ -103,11 +103,11 @@ class StreamTables:
             "scale": real.nearest(2 / plan.panel),
             "step_length": real.nearest(plan.march.step),
             "tolerance": real.nearest(rational(tolerance)),
-            "share": self._above(tolerance * self._share),
-            "rough": self._above((sqrt(2) - 1) / sqrt(length)),
-            "steep": self._above((sqrt(2) - 1) / length),
-            "growth": self._above(self._growth),
-            "root_panel": self._above(sqrt(length)),
+            "share": self._round_up(tolerance * self._share),
+            "rough": self._round_up((sqrt(2) - 1) / sqrt(length)),
+            "steep": self._round_up((sqrt(2) - 1) / length),
+            "growth": self._round_up(self._growth),
+            "root_panel": self._round_up(sqrt(length)),
             "least": real.nearest(real.roundoff / 8),
             "nearest": real.nearest(plan.panel / 2 ** (2 * exponent if real is DOUBLE else 20)),
             "rounding": real.nearest(2 * real.roundoff),
@@ -227,10 +227,10 @@ class StreamTables:
         energy += sum((weight for weight, mass in zip(space.weights, masses, strict=True) if mass), fmpq(0)) / 2
         return float(lost) / sqrt(nearest(energy)) if lost else 0.0
 
-    def _rounded(self, values: Iterable[float]) -> tuple[float, ...]:
+    def _round(self, values: Iterable[float]) -> tuple[float, ...]:
         return tuple(self._real.nearest(rational(value)) for value in values)
 
-    def _above(self, value: float) -> float:
+    def _round_up(self, value: float) -> float:
         """A number that is a little larger, the same one on every machine."""
         return self._real.nearest(rational(float(f"{value * (1 + 1e-4):.5g}")))
 

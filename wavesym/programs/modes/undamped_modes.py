@@ -160,7 +160,7 @@ class UndampedModes(ModalModel[Projection]):
         self.refuse()
         found = self.spectrum.first(count)  # only then it is known how bars are cut
         pushed = [each for each in self.drivers if self.cut.network.points[each.point].motion is None]
-        for probe in self.accelerated():
+        for probe in self.massless_accelerations():
             if pushed:
                 raise UnservedError(
                     f"output.acceleration: {probe.name}: modes support no place without mass under a force (write "

@@ -32,7 +32,7 @@ from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.program import Bounded, Program, ProgramOutput, Provenance
+from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
@@ -66,7 +66,7 @@ class ClosedOutput(ProgramOutput):
 
 
 @dataclass(frozen=True)
-class ClosedForm(Bounded):
+class ClosedForm(BoundedOutputs):
     """The closed form of a scene's outputs on [0, tau_max]."""
 
     outputs: tuple[ClosedOutput, ...]
