@@ -92,7 +92,7 @@ def test_all_else_is_kept():
 
 
 def test_a_sample_is_the_same_whatever_changes_elsewhere():
-    found = places(["closed.py"])
+    found = places(["closed_form.py"])
     drawn = sample(found, 20, 1)
     assert len({mutant.names for mutant in drawn}) == 20
     assert sample(found[::-1], 20, 1) == drawn
@@ -128,6 +128,6 @@ def test_a_wrong_value_kills(tmp_path):
 
 
 def test_the_share_leaves_out_what_is_known():
-    ((mutant, *_), *_) = places(["closed.py"])
+    ((mutant, *_), *_) = places(["closed_form.py"])
     verdicts = [Verdict(mutant, fate) for fate in ["killed"] * 5 + ["hung"] * 3 + ["known"] * 4 + ["survived"] * 2]
     assert "| all | 14 | 8 | 3 | 4 | 2 | 80.0% |" in report(verdicts)

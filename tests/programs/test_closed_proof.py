@@ -34,7 +34,7 @@ NOTHING = arrival(0, 0, [0])
 
 
 def computed(arrivals: Sequence[Arrival], tau: fmpq, u: fmpq | int = 0) -> Counted:
-    """What closed.c and closed.py add up at tau; exp is within two units in the last place.
+    """What closed.c and schemes/closed_form.py add up at tau; exp is within two units in the last place.
 
     The excess is less than u w, and what it loses by underflow is nothing next to that.
     """
