@@ -33,7 +33,7 @@ NEWTONS = -1.5  # of a load of 1
 def written(made, folder):
     """The files of an evaluator, self-test included."""
     model = MODEL.watching([Probe(output.name, "displacement", 1, fmpq(0)) for output in made.outputs])
-    program = replace(made.program(Provenance(model, made.summary)), reference=made.stream_values())
+    program = replace(made.program(Provenance(model, made.summary)), reference=made.reference(model))
     for file, text in files(program, "all").items():
         (folder / file).write_text(text)
     return program

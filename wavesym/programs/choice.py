@@ -5,24 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from wavesym.errors import CostError, RangeError, SpacingError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.tables.signal import refuse_many, signals
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, REALS, Real
-from wavesym.programs.closed_form import ClosedForm, closed_form
-from wavesym.programs.piece_grid import Pieces
+from wavesym.programs.closed_form import closed_form
+from wavesym.programs.form import Form
 from wavesym.programs.pieces import pieces
 from wavesym.programs.request import unmet_tolerance
-
-if TYPE_CHECKING:
-    from wavesym.programs.hats.evaluator import HatMarch
-    from wavesym.programs.march.evaluator import March
-    from wavesym.programs.modes.evaluator import ModesEvaluator
-
-Made: TypeAlias = "ClosedForm | Pieces | ModesEvaluator | March | HatMarch"
 
 _USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless requested: they have lost their digits long before.
@@ -40,7 +33,7 @@ class Attempt:
     """
 
     kind: str
-    form: Made | None
+    form: Form | None
     refusal: str = ""
     error: WavesymError | None = None
 
@@ -61,7 +54,7 @@ class Choice(NamedTuple):
     """The name of the evaluator chosen, itself, and the reason in one line."""
 
     name: str
-    evaluator: Made
+    evaluator: Form
     reason: str
 
 
@@ -167,24 +160,24 @@ def _is_unserved(one: Attempt) -> bool:
     return isinstance(one.error, UnservedError)
 
 
-def _make_closed(model: Model, real: Real, asked: bool, *_: object) -> ClosedForm:
+def _make_closed(model: Model, real: Real, asked: bool, *_: object) -> Form:
     refuse_many(model, 1e5 if asked else _WORTH_TRYING)
     merged = signals(model, inf if asked else _WORTH_TRYING, real)
     return closed_form(merged, model.horizon(real), real)
 
 
-def _make_pieces(model: Model, real: Real, asked: bool, optimize: str, served: bool) -> Pieces:
+def _make_pieces(model: Model, real: Real, asked: bool, optimize: str, served: bool) -> Form:
     return pieces(model, real, model.tolerance, optimize, _OF_MANY if served else inf)
 
 
 # modes and marches are loaded where they are tried: most scenes have pieces
-def _make_modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
+def _make_modes(model: Model, real: Real, *_: object) -> Form:
     from wavesym.programs.modes.evaluator import modes
 
     return modes(model, real)
 
 
-def _make_march(model: Model, real: Real, asked: bool, *_: object) -> March | HatMarch:
+def _make_march(model: Model, real: Real, asked: bool, *_: object) -> Form:
     from wavesym.programs.hats.evaluator import hat_march
     from wavesym.programs.march.evaluator import march
 
@@ -202,5 +195,5 @@ def _make_march(model: Model, real: Real, asked: bool, *_: object) -> March | Ha
         return hats
 
 
-Maker: TypeAlias = "Callable[[Model, Real, bool, str, bool], Made]"
+Maker: TypeAlias = "Callable[[Model, Real, bool, str, bool], Form]"
 MAKERS: dict[str, Maker] = {"closed": _make_closed, "pieces": _make_pieces, "modes": _make_modes, "march": _make_march}

@@ -32,7 +32,8 @@ from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance
+from wavesym.programs.form import Form
+from wavesym.programs.program import ProgramOutput
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
@@ -66,8 +67,10 @@ class ClosedOutput(ProgramOutput):
 
 
 @dataclass(frozen=True)
-class ClosedForm(BoundedOutputs):
+class ClosedForm(Form):
     """The closed form of a scene's outputs on [0, tau_max]."""
+
+    KERNEL = "closed"
 
     outputs: tuple[ClosedOutput, ...]
     tau_max: float
@@ -114,14 +117,15 @@ class ClosedForm(BoundedOutputs):
             points |= {middle, self.real.next_after(end, start)}
         return sorted(points)
 
-    def program(self, provenance: Provenance) -> Program:
+    @property
+    def tables(self) -> dict[str, tuple[float, ...]]:
         """Of output o the pulses first_pulse[o] ... in order of their start; of each its families, of these the powers.
 
         `coefficient` has the powers of a family, lowest first.
         """
         pulses = [pulse for output in self.outputs for pulse in output.pulses]
         families = [family for pulse in pulses for family in pulse.families]
-        tables: dict[str, tuple[float, ...]] = {
+        return {
             "first_pulse": firsts(len(output.pulses) for output in self.outputs),
             "start": tuple(pulse.start for pulse in pulses),
             "excess": tuple(pulse.excess for pulse in pulses),
@@ -130,7 +134,11 @@ class ClosedForm(BoundedOutputs):
             "first_power": firsts(len(family.powers) for family in families),
             "coefficient": tuple(power for family in families for power in family.powers),
         }
-        return Program("closed", self.real, self.tau_max, self.outputs, tables, {}, self.bytes, provenance)
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """None."""
+        return {}
 
 
 def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:

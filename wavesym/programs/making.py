@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from wavesym.exact.contacts.events import contact_ends, events
 from wavesym.mechanics.model import Model
-from wavesym.programs.choice import Made, choose
+from wavesym.programs.choice import choose
+from wavesym.programs.form import Form
 from wavesym.programs.program import Program, Provenance
-from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 
 _USUAL = Request()
@@ -33,18 +31,10 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked
     return _finish(model, form, provenance, tested)
 
 
-def program(model: Model, form: Made, *, tested: bool = False) -> Program:
+def program(model: Model, form: Form, *, tested: bool = False) -> Program:
     """The program of an evaluator that there is already, whatever its bound."""
     return _finish(model, form, Provenance(model, form.summary), tested)
 
 
-def _finish(model: Model, form: Made, provenance: Provenance, tested: bool) -> Program:
-    made = form.program(provenance)
-    if not tested:
-        return made
-    if made.has_equal_steps:
-        from wavesym.programs.modes.evaluator import ModesEvaluator  # there already, as the form is one
-
-        assert isinstance(form, ModesEvaluator)
-        return replace(made, reference=form.stream_values())
-    return replace(made, reference=reference_values(model, form.real, form.check_points))
+def _finish(model: Model, form: Form, provenance: Provenance, tested: bool) -> Program:
+    return form.program(provenance, reference=form.reference(model) if tested else None)

@@ -11,7 +11,8 @@ from flint import fmpq
 
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance
+from wavesym.programs.form import Form
+from wavesym.programs.program import ProgramOutput
 
 # The numbers from 0 on that C has for the widest vectors (templates/c/pieces/pieces.c).
 _OFFSETS = 16
@@ -40,8 +41,10 @@ class PieceGrid:
 
 
 @dataclass(frozen=True)
-class Pieces(BoundedOutputs):
+class Pieces(Form):
     """Polynomial pieces for the outputs of a scene on [0, tau_max]."""
+
+    KERNEL = "pieces"
 
     outputs: tuple[ProgramOutput, ...]
     tau_max: float
@@ -99,7 +102,8 @@ class Pieces(BoundedOutputs):
                 points |= {start, centre, self.real.next_after(end, 0.0)}
         return sorted(points)
 
-    def program(self, provenance: Provenance) -> Program:
+    @property
+    def tables(self) -> dict[str, tuple[float, ...]]:
         """Of grid g its outputs first_member[g] ..., and pieces; at first_piece[g] + g their starts and the last end.
 
         The polynomials of piece p of all grids start at first_power[p] in `coefficient`: highest power first, of each
@@ -108,7 +112,7 @@ class Pieces(BoundedOutputs):
         """
         grids = self.grids
         pieces = [piece for grid in grids for piece in grid.powers]
-        tables: dict[str, tuple[float, ...]] = {
+        return {
             "first_member": firsts(len(grid.outputs) for grid in grids),
             "member": tuple(k for grid in grids for k in grid.outputs),
             "first_piece": firsts(len(grid.centres) for grid in grids),
@@ -122,12 +126,15 @@ class Pieces(BoundedOutputs):
                 c for piece in pieces for power in reversed([*zip(*piece, strict=True)]) for c in power
             ),
         }
-        constants: dict[str, float] = {
-            "grids": len(grids),
-            "steps": max(grid.steps for grid in grids),
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """How many grids, how many pieces are tried at most, and the numbers up to which whole ones are exact."""
+        return {
+            "grids": len(self.grids),
+            "steps": max(grid.steps for grid in self.grids),
             "exact": self.real.nearest(1 / self.real.roundoff),
         }
-        return Program("pieces", self.real, self.tau_max, self.outputs, tables, constants, self.bytes, provenance)
 
 
 def _bytes(grid: PieceGrid, real: Real) -> int:

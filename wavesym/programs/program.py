@@ -73,15 +73,6 @@ class ReferenceValues:
 
 
 @dataclass(frozen=True)
-class StreamedValues:
-    """What a stream gives from rest: values[output][k] after loads[k], each wrong by at most errors[output]."""
-
-    loads: tuple[tuple[float, ...], ...]
-    values: tuple[tuple[float, ...], ...]
-    errors: tuple[float, ...]
-
-
-@dataclass(frozen=True)
 class SteppedRow:
     """A step of a stream: how long, the loads at its end, and the outputs there, unless they are not looked at."""
 
@@ -92,9 +83,10 @@ class SteppedRow:
 
 @dataclass(frozen=True)
 class SteppedValues:
-    """What a stream gives from its start, step by step, where steps may have any length."""
+    """What a stream gives from its start, step by step, wrong by at most `errors`, one an output, where known."""
 
     rows: tuple[SteppedRow, ...]
+    errors: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,7 +113,7 @@ class Program(BoundedOutputs):
     constants: dict[str, float]
     bytes: int
     provenance: Provenance
-    reference: ReferenceValues | StreamedValues | SteppedValues | None = None
+    reference: ReferenceValues | SteppedValues | None = None
     sources: tuple[str, ...] = ()
     proved: bool = True
     laws: RuntimeLaws | None = None

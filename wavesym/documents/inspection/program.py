@@ -11,11 +11,10 @@ from wavesym.errors import CostError, ToleranceError, WavesymError
 from wavesym.exact.contacts.events import contact_ends, events
 from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.mechanics.model import Model
-from wavesym.programs.choice import MAKERS, Attempt, Made, attempt, attempts, best
-from wavesym.programs.closed_form import ClosedForm
+from wavesym.programs.choice import MAKERS, Attempt, attempt, attempts, best
+from wavesym.programs.form import Form
 from wavesym.programs.hats.evaluator import HatMarch
 from wavesym.programs.march.evaluator import March
-from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.piece_grid import Pieces
 from wavesym.programs.program import Program, Provenance
 from wavesym.programs.request import Request
@@ -169,7 +168,7 @@ def _smaller(model: Model, usual: Attempt, precision: str) -> Iterator[dict[str,
             yield _row(small, precision, "size")
 
 
-def _dear(form: Made) -> str:
+def _dear(form: Form) -> str:
     """Why its variants are not tried; empty where they are."""
     if isinstance(form, Pieces) and form.bytes > MOST_BYTES:
         return (
@@ -181,16 +180,16 @@ def _dear(form: Made) -> str:
     return ""
 
 
-def _degrees(form: Made) -> Display | None:
+def _degrees(form: Form) -> Display | None:
     """The lowest and the highest degree of its polynomials; a closed form has none, nor have modes."""
     match form:
-        case ClosedForm() | ModesEvaluator():
-            return None
         case Pieces():
             low, high = form.degrees
             return Display([low, high], f"{low}..{high}")
         case March() | HatMarch():
             return Display([form.degree, form.degree], str(form.degree))
+        case _:
+            return None
 
 
 def _row(one: Attempt, precision: str, optimize: str) -> dict[str, Plain]:

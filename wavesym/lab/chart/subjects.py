@@ -19,7 +19,8 @@ from wavesym.methods.catalogue import METHODS
 from wavesym.methods.problem import Method, Problem
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS
-from wavesym.programs.choice import MAKERS, Made, choose
+from wavesym.programs.choice import MAKERS, choose
+from wavesym.programs.form import Form
 from wavesym.programs.making import program
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.program import Program
@@ -169,7 +170,7 @@ def other_method(method: Method, resolution: float, problem: Problem, at: Values
 
 
 class _Build(NamedTuple):
-    form: Made
+    form: Form
     program: Program
     c: dict[str, str]
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from flint import fmpq
@@ -18,10 +19,11 @@ from wavesym.errors import SpacingError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational, relative
 from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.form import Form
 from wavesym.programs.hats.split import RecordLoad, split, still
 from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judge_march
-from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
 
@@ -33,27 +35,21 @@ _MARGIN = 1.01  # what is of second order in the roundoff
 
 
 @dataclass(frozen=True)
-class HatMarch(BoundedOutputs):
+class HatMarch(Form):
     """`marches` of the rest, where there is `rest` (1, else 0), and of one hat of each of the `records`.
 
     `refusal` says why the loads are not marched as they are.
     """
 
+    KERNEL = "hats"
+
     marches: tuple[March, ...]
     rest: int
     records: tuple[RecordLoad, ...]
     refusal: str
+    tau_max: float
     outputs: tuple[ProgramOutput, ...] = ()
-
-    @property
-    def real(self) -> Real:
-        """Double precision: instants between samples need all of it."""
-        return DOUBLE
-
-    @property
-    def tau_max(self) -> float:
-        """The last tau."""
-        return self.marches[0].tau_max
+    real: Real = DOUBLE  # instants between samples need all of it
 
     @property
     def degree(self) -> int:
@@ -114,25 +110,9 @@ class HatMarch(BoundedOutputs):
             return f"march: its error may be as large as {name} itself"
         return f"march: hats added up leave a bound of {bound:g} to tau = {self.tau_max:g} for {name}"
 
-    @property
-    def check_points(self) -> list[float]:
-        """For a self-test, of which there is none: there is no program in C."""
-        return [0.0]
-
-    def program(self, provenance: Provenance) -> Program:
-        """Its tables, flat, and why it is NumPy alone."""
-        return Program(
-            "hats",
-            self.real,
-            self.tau_max,
-            self.outputs,
-            self.tables,
-            self.constants,
-            self.bytes,
-            provenance,
-            numpy_only=self.refusal,
-            hats=True,
-        )
+    def program(self, provenance: Provenance, **more: Any) -> Program:
+        """Its program, which is NumPy alone, and why."""
+        return super().program(provenance, numpy_only=self.refusal, hats=True, **more)
 
 
 def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
@@ -155,7 +135,7 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     except SpacingError:
         return None
     hats = [judge_march(still(model, record)) for record in parts.records]
-    made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records, refusal)
+    made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records, refusal, hats[0][0].tau_max)
     parted = [np.array([verdict.errors, verdict.heights]) for _, verdict in rest]
     parted += [_superpose(record, *hat) for record, hat in zip(parts.records, hats, strict=True)]
     errors, heights = sum(parted, np.zeros((2, len(model.probes))))

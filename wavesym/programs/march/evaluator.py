@@ -17,11 +17,12 @@ from wavesym.errors import CostError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.form import Form
 from wavesym.programs.march.bound import Verdict, judge
 from wavesym.programs.march.plan import HIGHEST_DEGREE, MarchPlan, least_numbers, march_plan
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
 from wavesym.programs.march.tables import MarchTables, state_bytes, table_bytes
-from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance
+from wavesym.programs.program import ProgramOutput
 
 _MOST_BYTES = 1 << 22  # of tables, and of the state, which programs keep on the stack
 _MOST_WORK = 2e10  # multiplications of trying all degrees, half a minute or so
@@ -31,18 +32,16 @@ _LEAST_DEGREE = 4
 
 
 @dataclass(frozen=True)
-class March(BoundedOutputs):
+class March(Form):
     """A march over [0, tau_max] with polynomials of `degree` in `real` numbers."""
+
+    KERNEL = "march"
 
     plan: MarchPlan
     degree: int
     real: Real
     outputs: tuple[ProgramOutput, ...]
-
-    @property
-    def tau_max(self) -> float:
-        """The last tau."""
-        return self.plan.tau_max
+    tau_max: float
 
     @cached_property
     def tables(self) -> dict[str, tuple[float, ...]]:
@@ -94,12 +93,6 @@ class March(BoundedOutputs):
         early = [self.real.nearest(step * k / 8) for k in range(161) if step * k / 8 <= last]
         late = [self.real.nearest(last * k / 32) for k in range(33)]
         return sorted({min(tau, self.tau_max) for tau in early + late})
-
-    def program(self, provenance: Provenance) -> Program:
-        """Its tables, flat."""
-        return Program(
-            "march", self.real, self.tau_max, self.outputs, self.tables, self.constants, self.bytes, provenance
-        )
 
 
 def march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> March:
@@ -155,7 +148,7 @@ def _march_of_degree(plan: MarchPlan, degree: int, real: Real) -> tuple[March, V
         ProgramOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
         for output, error, size in zip(plan.outputs, verdict.bounds, verdict.largest, strict=True)
     )
-    return March(plan, degree, real, outputs), verdict
+    return March(plan, degree, real, outputs, plan.tau_max), verdict
 
 
 def first_degree(plan: MarchPlan, real: Real) -> int:

@@ -12,13 +12,14 @@ from flint import fmpq
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, nearest, rational, relative
 from wavesym.numbers.reals import Real
+from wavesym.programs.form import Form
 from wavesym.programs.modes.complex_modes import ComplexModes
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem, Stepper, padded_count, scheme_tables, stream_tables
 from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
-from wavesym.programs.program import BoundedOutputs, Program, ProgramOutput, Provenance, StreamedValues
+from wavesym.programs.program import Program, ProgramOutput, Provenance, SteppedRow, SteppedValues
 from wavesym.programs.reference_values import leap
 from wavesym.programs.schemes.modes import ModesScheme
 
@@ -27,12 +28,14 @@ _ULPS = 8  # by which a step may differ from the spacing
 
 
 @dataclass(frozen=True)
-class ModesEvaluator(BoundedOutputs):
+class ModesEvaluator(Form):
     """A modal system under loads, stepped exactly in `real` numbers; a stream takes steps of `spacing`.
 
     `sources` are the names of the loads; a stream takes them in units of their own, one of which is `inputs` and its
     name. What is said of an error is `proved`, or an estimate.
     """
+
+    KERNEL = "modes"
 
     system: ModalSystem
     loads: LinearLoads
@@ -112,29 +115,13 @@ class ModesEvaluator(BoundedOutputs):
         said = "a bound" if self.proved else "an estimated error"
         return f"modes: {len(self.system.frequency)} modes leave {said} of {self.worst.bound:g} for {self.worst.name}"
 
-    @property
-    def check_points(self) -> list[float]:
-        """None: a self-test of a stream compares what is `streamed`."""
-        return []
+    def program(self, provenance: Provenance, **more: Any) -> Program:
+        """Its program, in NumPy and as a stream."""
+        sources = self.labelled_sources
+        return super().program(provenance, sources=sources, proved=self.proved, step="spacing", **more)
 
-    def program(self, provenance: Provenance) -> Program:
-        """Its tables, flat, in NumPy and as a stream."""
-        return Program(
-            "modes",
-            self.real,
-            self.tau_max,
-            self.outputs,
-            self.tables,
-            self.constants,
-            self.bytes,
-            provenance,
-            sources=self.labelled_sources,
-            proved=self.proved,
-            step="spacing",
-        )
-
-    def stream_values(self) -> StreamedValues:
-        """For the self-test: loads up to the largest of the scene's that leap, and what comes of them."""
+    def reference(self, model: Model) -> SteppedValues:
+        """For the self-test of a stream: loads up to the largest of the scene's that leap, and what comes of them."""
         largest = self.loads.largest or fmpq(1)
         given = [
             tuple(self.real.nearest(size * largest * leap(k, j)) for j, (size, _) in enumerate(self.inputs))
@@ -146,10 +133,10 @@ class ModesEvaluator(BoundedOutputs):
         times = tuple(self.spacing * k for k in range(_CHECKED + 1))
         loads = LinearLoads(times, (rest, *plain), rest)
         same = replace(self, loads=loads, tau_max=self.real.not_below(times[-1]))
-        values = self._stepper.outputs(exact)
-        return StreamedValues(
-            tuple(given),
-            tuple(tuple(map(midpoint, row)) for row in values),
+        values = zip(*(map(midpoint, row) for row in self._stepper.outputs(exact)), strict=True)
+        step = self.real.nearest(self.spacing)
+        return SteppedValues(
+            tuple(SteppedRow(step, row, after) for row, after in zip(given, values, strict=True)),
             tuple(same.rounding.errors.tolist()),
         )
 

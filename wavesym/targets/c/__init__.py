@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import Any
 
 from wavesym.errors import UnservedError
-from wavesym.programs.program import Program, ReferenceValues, SteppedValues, StreamedValues
+from wavesym.programs.program import Program, ReferenceValues, SteppedValues
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest, stepped_selftest
 from wavesym.targets.description import Description
@@ -40,7 +40,7 @@ class CTarget:
         match program.reference:
             case ReferenceValues():
                 made[f"{name}_selftest.c"] = selftest(description, program, program.reference)
-            case StreamedValues() | SteppedValues():
+            case SteppedValues():
                 made[f"{name}_selftest.c"] = stepped_selftest(description, program, program.reference)
         return made
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 
@@ -10,7 +9,7 @@ from flint import arb
 
 from wavesym.numbers.doubles import bound
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.program import Program, ReferenceValues, SteppedValues, StreamedValues
+from wavesym.programs.program import Program, ReferenceValues, SteppedValues
 from wavesym.rendering import render
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_literals
@@ -73,37 +72,34 @@ def selftest(scene: Description, program: Program, reference: ReferenceValues) -
     return render("c/selftest.c.j2", context)
 
 
-def stepped_selftest(scene: Description, program: Program, reference: StreamedValues | SteppedValues) -> str:
+def stepped_selftest(scene: Description, program: Program, reference: SteppedValues) -> str:
     """The program that holds a stream against reference values."""
-    lengths: Sequence[float] = ()
-    rows: Sequence[tuple[Sequence[float], Sequence[float]]]  # the loads of each step, and the outputs after it, or none
-    if isinstance(reference, StreamedValues):
-        rows = list(zip(reference.loads, zip(*reference.values, strict=True), strict=True))
+    rows, equal = reference.rows, program.has_equal_steps
+    sizes = [
+        max(map(abs, column), default=0.0) for column in zip(*(row.values for row in rows if row.values), strict=True)
+    ]
+    if reference.errors:
         # the reference is rounded once; two digits are the same on every machine
-        errors = zip(reference.errors, reference.values, strict=True)
-        allowed = [bound(arb(error + 2.0**-52 * max(map(abs, row)))) for error, row in errors]
+        pairs = zip(reference.errors, sizes, strict=True)
+        allowed = [bound(arb(error + 2.0**-52 * size)) for error, size in pairs]
     else:
-        lengths = [row.dtau for row in reference.rows]
-        rows = [(row.loads, row.values) for row in reference.rows]
-        found = zip(*(values for _, values in rows if values), strict=True)
-        sizes = [max(map(abs, column), default=0.0) for column in found]
         least = 2 * program.constants["tolerance"]
         allowed = [
             max(_LENIENT * output.bound, least) * max(size, output.largest)
             for output, size in zip(program.outputs, sizes, strict=True)
         ]
-    places = accumulate((len(values) for _, values in rows), initial=0)
+    places = accumulate((len(row.values) for row in rows), initial=0)
     context = CSteppedSelfTest(
         scene=scene,
         count=str(len(rows)),
         tables={
-            "dtau": c_literals(lengths, program.real),
-            "loads": c_literals((load for loads, _ in rows for load in loads), program.real),
-            "looked": c_literals((at if values else -1 for (_, values), at in zip(rows, places, strict=False)), DOUBLE),
-            "expected": c_literals((value for _, values in rows for value in values), DOUBLE),
+            "dtau": c_literals(() if equal else [row.dtau for row in rows], program.real),
+            "loads": c_literals((load for row in rows for load in row.loads), program.real),
+            "looked": c_literals((at if row.values else -1 for row, at in zip(rows, places, strict=False)), DOUBLE),
+            "expected": c_literals((value for row in rows for value in row.values), DOUBLE),
             "allowed": c_literals(allowed, DOUBLE),
         },
         built=program.laws is not None,
-        equal=not lengths,
+        equal=equal,
     )
     return render("c/stepped_selftest.c.j2", context)
