@@ -8,9 +8,10 @@ from functools import cached_property
 from itertools import accumulate
 
 import numpy as np
-from flint import acb, arb, ctx, fmpq, fmpq_mat
+from flint import acb, arb, ctx, fmpq_mat
 
 from wavesym.errors import UnservedError
+from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.damped_modes import DampedSpectrum
 from wavesym.exact.modes.shape import Mode
@@ -20,7 +21,7 @@ from wavesym.programs.modes.dissipation import Complex, Dissipation, complexes, 
 from wavesym.programs.modes.loads import Numbers, Roughness
 from wavesym.programs.modes.low_frequency import LowFrequency, dashpots, series
 from wavesym.programs.modes.modal_system import ModalSystem
-from wavesym.programs.modes.projection import Driver, ModalOutput, places, share
+from wavesym.programs.modes.projection import Driver, ModalOutput, share
 from wavesym.programs.modes.truncation import ModalModel
 
 _BITS = 320
@@ -60,23 +61,9 @@ class ComplexProjection:
 class ComplexModes(ModalModel[ComplexProjection]):
     """Its modes, and the truncation error of those that are left out (dissipation.py)."""
 
+    SPECTRUM = DampedSpectrum
     MOST = 1000
     WORK = 20_000
-
-    @property
-    def least(self) -> int:
-        """As many modes as are taken at least."""
-        return 1
-
-    @cached_property
-    def spectrum(self) -> DampedSpectrum:
-        """Its modes."""
-        return DampedSpectrum(self.model.network, places(self.model))
-
-    @property
-    def cut(self) -> Cut:
-        """The network with points wherever outputs are."""
-        return self.spectrum.cut
 
     def project(self, count: int) -> ComplexProjection:
         """The first modes. UnservedError for what modes do not serve."""
@@ -123,15 +110,10 @@ class ComplexModes(ModalModel[ComplexProjection]):
         every = np.append(np.arange(len(rates)), mixed)
         pushes = np.append(pushed.real, pushed.imag[:, mixed], axis=1)
         read = np.append(read, 1j * read[:, mixed], axis=1)
-        w, nonzero = np.abs(rates[every]), ~np.array(self.zero_outputs)
-        return ModalSystem(
-            w,
-            np.clip(-rates[every].real / w, 0.0, 1.0),
-            pushes.T.copy(),
-            -np.real(read * rates[every].conj()) * nonzero[:, None],
-            np.real(read) * nonzero[:, None],
-            direct * nonzero[:, None, None],
-        )
+        w = np.abs(rates[every])
+        damping = np.clip(-rates[every].real / w, 0.0, 1.0)
+        moved, moving = -np.real(read * rates[every].conj()), np.real(read)
+        return ModalSystem(w, damping, pushes.T.copy(), moved, moving, direct).drop_outputs(self.zero_outputs)
 
 
 def refuse_absorbing(network: Network) -> None:
@@ -141,24 +123,16 @@ def refuse_absorbing(network: Network) -> None:
     dashpots C; nothing is sent back where Z - C takes something to 0.
     """
     for joint in network.joints:
-        light = [p for p in joint.points if network.points[p].motion is None and network.points[p].mass == 0]
-        place = {point: k for k, point in enumerate(light)}
-        rows = [[fmpq(0)] * len(light) for _ in light]
-        for end, point in joint.ends:
-            if point in place:
-                rows[place[point]][place[point]] += (
-                    network.bars[end.bar].impedance * network.bars[end.bar].ratios[end.side] ** 2
-                )
-        for point, k in place.items():
-            rows[k][k] -= network.points[point].damping
-        for link in network.links:
-            if link.damping != 0:
-                weights = {place[p]: n for p, n in ((link.left, link.ratio), (link.right, fmpq(-1))) if p in place}
-                for a, n in weights.items():
-                    for b, m in weights.items():
-                        rows[a][b] -= n * m * link.damping
+        law = JointLaw.assemble(network, joint)
+        light = {k: row for row, k in enumerate(law.light)}
+        rows = [[-law.damping[a][b] for b in light] for a in light]  # Z + C
+        for each in joint_ends(network, joint):
+            if each.place in light:
+                impedance = network.bars[each.end.bar].impedance * each.ratio**2
+                rows[light[each.place]][light[each.place]] += 2 * impedance
         if light and fmpq_mat(rows).det() == 0:
-            at = network.points[light[0]].name or network.points[light[0]].place
+            first = network.points[joint.points[law.light[0]]]
+            at = first.name or first.place
             raise UnservedError(
                 f"system: dashpots as large as the impedance at {at} return nothing, which modes do not support "
                 "(write larger or smaller ones, or take pieces or march)"

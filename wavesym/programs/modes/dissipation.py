@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from flint import acb, acb_mat, arb
@@ -80,13 +81,22 @@ class ModeEnergies:
 
 @dataclass(frozen=True)
 class PortResponse:
-    """What a port starts: its shares in modes; |A^-q B|^2 for each q from the `least` on, and <A^-q B, X> of all modes,
-    (POWERS, modes)."""
+    """What a port starts, in balls or in doubles: its shares in modes; |A^-q B|^2 for each q from the `least` on, and
+    <A^-q B, X> of all modes, (POWERS, modes)."""
 
-    shares: Complex
-    energies: Numbers
-    known: Complex
+    shares: Any
+    energies: Any
+    known: Any
     least: int
+
+    def to_doubles(self, first: int) -> PortResponse:
+        """Balls rounded, without the first modes."""
+        return PortResponse(
+            np.array([complex(b) for b in self.shares[first:]], complex),
+            np.array([max(float(each.upper()) * _ABOVE, 0.0) for each in self.energies]),
+            np.array([[complex(h) for h in row[first:]] for row in self.known], complex),
+            self.least,
+        )
 
 
 def residual_norms(energies: ModeEnergies, ports: Sequence[PortResponse]) -> Numbers:
@@ -115,25 +125,6 @@ def residual_norms(energies: ModeEnergies, ports: Sequence[PortResponse]) -> Num
 _STILL = 2.0**-80  # of a frequency: what dies away more slowly does not in doubles
 _SLOW = 32  # modes that are taken away in balls
 _ABOVE = 1 + 2.0**-50
-
-
-@dataclass(frozen=True)
-class BallResponse:
-    """What a port starts: its shares in modes, |A^-q B|^2 for each q, and <A^-q B, X> of all modes."""
-
-    shares: Sequence[acb]
-    energies: Sequence[arb]
-    known: Sequence[Sequence[acb]]
-    least: int
-
-    def to_doubles(self, first: int) -> PortResponse:
-        """In doubles, without the first modes."""
-        return PortResponse(
-            np.array([complex(b) for b in self.shares[first:]], complex),
-            np.array([max(float(each.upper()) * _ABOVE, 0.0) for each in self.energies]),
-            np.array([[complex(h) for h in row[first:]] for row in self.known], complex),
-            self.least,
-        )
 
 
 class Dissipation:
@@ -174,7 +165,7 @@ class Dissipation:
             rate, fast = rate.conjugate(), [v.conjugate() for v in fast]
         return acb(-2 * self._dissipation(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
 
-    def _response(self, port: SlowPort, shares: Sequence[acb]) -> BallResponse:
+    def _response(self, port: SlowPort, shares: Sequence[acb]) -> PortResponse:
         moved = [[acb(_sum(dashpot, [q[k] for q in port.moved])) for dashpot in self._dashpots] for k in range(TERMS)]
         zero = [acb(0)] * len(self._dashpots)
 
@@ -201,9 +192,9 @@ class Dissipation:
             pairs = zip(known, self._fast, self.rates, strict=True)
             known = [-(h + 2 * self._dissipation(acting, v)) / rate.conjugate() for h, v, rate in pairs]
             rows.append(known)
-        return BallResponse(shares, energies, rows, port.least)
+        return PortResponse(shares, energies, rows, port.least)
 
-    def _remove_modes(self, responses: Sequence[BallResponse], slow: int) -> list[BallResponse]:
+    def _remove_modes(self, responses: Sequence[PortResponse], slow: int) -> list[PortResponse]:
         """What ports start but for their parts in the first modes."""
         if not slow:
             return list(responses)
@@ -228,7 +219,7 @@ class Dissipation:
                 energies.append(each.energies[q] - taken)
                 rows.append(row)
                 column += 1
-            made.append(BallResponse(each.shares, energies, rows, each.least))
+            made.append(PortResponse(each.shares, energies, rows, each.least))
         return made
 
     def _energies_in_doubles(self) -> ModeEnergies:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -31,6 +31,12 @@ class ModalSystem:
     moved: Numbers
     moving: Numbers
     direct: Numbers
+
+    def drop_outputs(self, zero: Sequence[bool]) -> ModalSystem:
+        """The same with some outputs that are 0."""
+        kept = ~np.array(zero)[:, None]
+        moved, moving, direct = self.moved * kept, self.moving * kept, self.direct * kept[:, :, None]
+        return replace(self, moved=moved, moving=moving, direct=direct)
 
 
 _BITS = 400  # of which cancellation takes at most 3 times those of frequency * spacing

@@ -14,6 +14,8 @@ from flint import fmpq
 
 from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.modes.cuts import Cut
+from wavesym.exact.modes.damped_modes import DampedSpectrum
+from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
@@ -21,7 +23,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.loads import LinearLoads, Numbers, Roughness, linear_loads, roughness
 from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
-from wavesym.programs.modes.projection import Driver, ModalOutput, drivers_of, modal_output
+from wavesym.programs.modes.projection import Driver, ModalOutput, drivers_of, modal_output, places
 from wavesym.programs.modes.rounding import rounding_errors
 from wavesym.programs.modes.zero_outputs import zero_outputs
 from wavesym.programs.request import unmet
@@ -45,6 +47,7 @@ class ModalModel(ABC, Generic[K]):
 
     model: Model
 
+    SPECTRUM: ClassVar[type[Spectrum | DampedSpectrum]]
     MOST: ClassVar[int] = 4000
     WORK: ClassVar[int] = 100_000
     FIRST: ClassVar[int] = 6  # modes for a bar, for a start
@@ -76,9 +79,9 @@ class ModalModel(ABC, Generic[K]):
         return zero_outputs(self.model, self.drivers, self.loads)
 
     @property
-    @abstractmethod
     def least(self) -> int:
         """As many modes as are taken at least."""
+        return 1
 
     @cached_property
     def all_modes(self) -> int | None:
@@ -97,10 +100,15 @@ class ModalModel(ABC, Generic[K]):
             return self.all_modes
         return max(min(self.MOST, self.WORK // len(self.model.network.bars)), self.fewest)
 
+    @cached_property
+    def spectrum(self) -> Spectrum | DampedSpectrum:
+        """Its modes."""
+        return self.SPECTRUM(self.model.network, places(self.model))
+
     @property
-    @abstractmethod
     def cut(self) -> Cut:
         """The network with points wherever outputs are."""
+        return self.spectrum.cut
 
     @cached_property
     def outputs(self) -> list[ModalOutput]:

@@ -30,13 +30,12 @@ from typing import NamedTuple
 import numpy as np
 
 from wavesym.errors import UnservedError
-from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.loads import Numbers, Roughness
 from wavesym.programs.modes.modal_system import ModalSystem
-from wavesym.programs.modes.projection import Projection, places, project
+from wavesym.programs.modes.projection import Projection, project
 from wavesym.programs.modes.truncation import ModalModel
 
 
@@ -140,14 +139,7 @@ class TruncatedModes:
 class UndampedModes(ModalModel[Projection]):
     """Its modes, and the truncation error of those that are left out."""
 
-    @cached_property
-    def spectrum(self) -> Spectrum:
-        return Spectrum(self.model.network, places(self.model))
-
-    @property
-    def cut(self) -> Cut:
-        """The network with points wherever outputs are."""
-        return self.spectrum.cut
+    SPECTRUM = Spectrum
 
     @cached_property
     def least(self) -> int:
@@ -213,12 +205,4 @@ class UndampedModes(ModalModel[Projection]):
             direct[:, :, 0] += np.where(orders == 0, rest, 0.0)
         moved = np.where(orders == 0, values, np.where(orders == 2, -w * w * values, 0.0))
         moving = np.where(orders == 1, values, np.where(orders == 2, -2 * damping * w * values, 0.0))
-        nonzero = ~np.array(self.zero_outputs)
-        return ModalSystem(
-            w,
-            damping,
-            pushes.T.copy(),
-            moved * nonzero[:, None],
-            moving * nonzero[:, None],
-            direct * nonzero[:, None, None],
-        )
+        return ModalSystem(w, damping, pushes.T.copy(), moved, moving, direct).drop_outputs(self.zero_outputs)
