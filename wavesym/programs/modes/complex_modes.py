@@ -152,7 +152,7 @@ def project_complex(
     beside = np.zeros((len(outputs), len(loads), len(found) + 1))
     for o, output in enumerate(outputs):
         for j, port in enumerate(loads):
-            read = low.read(output, port.moved)
+            read = low.response.read(output, port.moved)
             static = [arb(0)] * (2 - port.order) + [read[k] for k in range(port.order + 1)]
             slow[o, j] = [float(each) for each in static]
             parts = zip(losing.rates, values[o], shares[j], strict=True)

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
 
 from flint import arb, arb_series, ctx, fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.stiffness import Stiffness
-from wavesym.mechanics.network import End, Network
+from wavesym.mechanics.network import Network
+from wavesym.programs.modes.harmonic_response import HarmonicResponse
 from wavesym.programs.modes.projection import Driver, ModalOutput
 
 TERMS = 10
@@ -71,68 +71,15 @@ class LowFrequency:
     """A network under loads that change slowly. UnservedError where dashpots alone, or nothing, hold it."""
 
     def __init__(self, stiffness: Stiffness) -> None:
-        self._stiffness = stiffness
         self._network = stiffness.network
-        self._law = stiffness.law(arb)
-        self._s = arb_series([0, 1])
-        for pivot in stiffness.pivots(*self._matrix):
+        self._bars = {bar.delay: _bar_series(bar.delay) for bar in self._network.bars}
+        self.response = HarmonicResponse(stiffness, arb, arb_series([0, 1]), self._bars)
+        for pivot in self.response.eliminated[0]:
             if not pivot[0] > 0:
                 raise UnservedError(
                     "system: dashpots alone, or nothing, hold the chain, which modes with dashpots do not "
                     "support (write an end or a spring that holds it, or take pieces or march)"
                 )
-
-    @property
-    def _matrix(self) -> tuple[list[Series], list[Series]]:
-        delays = self._law.delays
-        square, one = -self._s * self._s, arb_series([1])
-        pulled = [self._bars[delay][0] for delay in self._delays]
-        shared = [-self._bars[delay][1] for delay in self._delays]
-        assert len(pulled) == len(delays)
-        diagonal, up = self._law.assemble(square, pulled, shared, self._s)
-        return [one * k for k in diagonal], [one * k for k in up]
-
-    @cached_property
-    def _delays(self) -> list[fmpq]:
-        return sorted({bar.delay for bar in self._network.bars})
-
-    @cached_property
-    def _bars(self) -> dict[fmpq, tuple[Series, Series]]:
-        """s coth(s T) and s/sinh(s T) of each delay."""
-        made = {}
-        for delay in self._delays:
-            term, sinh, cosh = fmpq(1), list[fmpq](), list[fmpq]()
-            for k in range(TERMS):
-                (sinh if k % 2 else cosh).append(term)  # of sinh(s T)/s the powers of s are one lower
-                (cosh if k % 2 else sinh).append(fmpq(0))
-                term = term * delay / (k + 1)
-            over = 1 / arb_series([*sinh[1:], term if TERMS % 2 else fmpq(0)])
-            made[delay] = arb_series(cosh) * over, over
-        return made
-
-    def _motion_under(self, forces: Mapping[int, Series]) -> list[Series]:
-        """How far points move under forces on them."""
-        stiffness, zero = self._stiffness, arb_series([0])
-        moved = [zero] * len(self._network.points)
-        given = [forces.get(point, zero) for point in stiffness.points]
-        for point, q in zip(stiffness.points, stiffness.solve(*self._matrix, given), strict=True):
-            moved[point] = q
-        return moved
-
-    def slope(self, moved: Sequence[Series], end: End) -> Series:
-        """The strain times the bar's speed at its end."""
-        bar = self._network.bars[end.bar]
-        ends = [moved[point] * arb(ratio) for point, ratio in zip((bar.left, bar.right), bar.ratios, strict=True)]
-        pulled, shared = self._bars[bar.delay]
-        slope = shared * ends[1 - end.side] - pulled * ends[end.side]
-        return -slope if end.side else slope
-
-    def read(self, output: ModalOutput, moved: Sequence[Series]) -> Series:
-        """An output of how far points move, but for its derivatives."""
-        if output.slope:
-            weight, end = output.slope
-            return self.slope(moved, end) * arb(weight)
-        return sum((moved[point] * arb(weight) for point, weight in output.points.items()), arb_series([0]))
 
     def output(self, output: ModalOutput) -> SlowPort:
         """The port that an output is."""
@@ -145,11 +92,11 @@ class LowFrequency:
             sign = arb(-weight if end.side else weight)
             forces = {there: shared * (sign * arb(bar.ratios[1 - end.side]))}
             forces[here] = forces.get(here, arb_series([0])) - pulled * (sign * arb(bar.ratios[end.side]))
-            moved = self._motion_under(forces)
-            reads = self.read(output, moved) - pulled * (arb(weight * weight) / arb(bar.impedance))
+            moved = self.response.move(forces)
+            reads = self.response.read(output, moved) - pulled * (arb(weight * weight) / arb(bar.impedance))
             return SlowPort(moved, reads, 0, 2, zero)
         free = {point: weight for point, weight in output.points.items() if network.points[point].motion is None}
-        moved = self._motion_under({point: one * arb(weight) for point, weight in free.items()})
+        moved = self.response.move({point: one * arb(weight) for point, weight in free.items()})
         reads = sum((moved[point] * arb(weight) for point, weight in free.items()), arb_series([0]))
         return SlowPort(moved, reads, 0, *self._impulse_energy(free))
 
@@ -157,19 +104,9 @@ class LowFrequency:
         """The port that a load is."""
         network, gain, one = self._network, arb(driver.gain), arb_series([1])
         if network.points[driver.point].motion is None:
-            moved = self._motion_under({driver.point: one * gain})
+            moved = self.response.move({driver.point: one * gain})
             return SlowPort(moved, moved[driver.point] * gain, 0, *self._impulse_energy({driver.point: driver.gain}))
-        held, forces = self._stiffness.prescribed_column(
-            driver.point,
-            lambda value: arb_series([value]),
-            lambda bar: self._bars[bar.delay][0],
-            lambda bar: self._bars[bar.delay][1],
-            self._s,
-        )
-        moved = [q * gain for q in self._motion_under(forces)]
-        pull = sum((forces[point] * moved[point] for point in forces if network.points[point].motion is None), one * 0)
-        moved[driver.point] = one * gain
-        return SlowPort(moved, (held * gain - pull) * gain, 2, 0, arb(0))
+        return SlowPort(*self.response.prescribe(driver.point, gain), 2, 0, arb(0))
 
     def _impulse_energy(self, weights: Mapping[int, fmpq]) -> tuple[int, arb]:
         """Of a force the first power whose energy is finite, and that of its impulse: where there are masses, both."""
@@ -177,3 +114,14 @@ class LowFrequency:
         if not all(mass > 0 for mass in masses.values()):
             return 1, arb(0)
         return 0, arb(sum((weight * weight / masses[point] for point, weight in weights.items()), fmpq(0)))
+
+
+def _bar_series(delay: fmpq) -> tuple[Series, Series]:
+    """s coth(s T) and s/sinh(s T) of a delay."""
+    term, sinh, cosh = fmpq(1), list[fmpq](), list[fmpq]()
+    for k in range(TERMS):
+        (sinh if k % 2 else cosh).append(term)  # of sinh(s T)/s the powers of s are one lower
+        (cosh if k % 2 else sinh).append(fmpq(0))
+        term = term * delay / (k + 1)
+    over = 1 / arb_series([*sinh[1:], term if TERMS % 2 else fmpq(0)])
+    return arb_series(cosh) * over, over

@@ -9,7 +9,6 @@ for 0 with a chance of less than one in 2**70.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 
 from flint import fmpq, fmpq_mat, fmpz_mod, fmpz_mod_ctx
 
@@ -19,8 +18,9 @@ from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import common_measure
+from wavesym.programs.modes.harmonic_response import HarmonicResponse
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.projection import Driver, ModalOutput, modal_output, places
+from wavesym.programs.modes.projection import Driver, modal_output, places
 
 _FIELD = fmpz_mod_ctx(2**127 - 39)
 _W, _E = _FIELD(0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357), _FIELD(0x0DD_BA11_2468_ACE0_FACE_0FF5_1DE5)
@@ -53,69 +53,36 @@ class _Response:
     def __init__(self, model: Model) -> None:
         self._network = model.network
         self._cut = cut(model.network, places(model))
-        self._stiffness = Stiffness(self._cut.network)
+        bars = self._cut.network.bars
+        measure = common_measure(bar.delay for bar in bars)
+        turns = {bar.delay: _E ** int(bar.delay / measure) for bar in bars}
+        # s coth(s h) and s/sinh(s h) with exp(-s h) = E**k
+        parts = {delay: _I * _W / (1 - turn * turn) for delay, turn in turns.items()}
+        pairs = {delay: (part * (1 + turns[delay] ** 2), 2 * part * turns[delay]) for delay, part in parts.items()}
+        self._harmonic = HarmonicResponse(Stiffness(self._cut.network), _modular, _I * _W, pairs)
+        self._known: dict[tuple[int, fmpq], list[fmpz_mod]] = {}
 
     def cancels(self, probe: Probe, drivers: Sequence[Driver], histories: Sequence[Sequence[fmpq]]) -> bool:
         """Whether what the loads do to an output adds up to 0."""
         output = modal_output(self._network, self._cut, probe)
-        done = [self._read(output, self._motion(driver)) for driver in drivers]
+        done = [self._harmonic.read(output, self._motion(driver)) for driver in drivers]
         zero = _FIELD(0)
         return all(
             sum((_modular(part) * each for part, each in zip(history, done, strict=True)), zero) == 0
             for history in histories
         )
 
-    @cached_property
-    def _circular(self) -> dict[fmpq, tuple[fmpz_mod, fmpz_mod]]:
-        """sin and cos of w times each delay."""
-        delays = {bar.delay for bar in self._cut.network.bars}
-        measure = common_measure(delays)
-        made = {}
-        for delay in delays:
-            forth = _E ** int(delay / measure)
-            back = 1 / forth
-            made[delay] = ((back - forth) / (2 * _I), (back + forth) / 2)
-        return made
-
     def _motion(self, driver: Driver) -> list[fmpz_mod]:
-        """How far points move under a load."""
-        key = driver.point, driver.gain
-        return self._known.get(key) or self._known.setdefault(key, self._solve(driver))
-
-    @cached_property
-    def _known(self) -> dict[tuple[int, fmpq], list[fmpz_mod]]:
-        return {}
-
-    def _solve(self, driver: Driver) -> list[fmpz_mod]:
-        network, zero = self._cut.network, _FIELD(0)
-        moved, forces = [zero] * len(network.points), [zero] * len(network.points)
-        if network.points[driver.point].motion is None:
-            forces[driver.point] = _modular(driver.gain)
-        else:
-            prescribed = moved[driver.point] = -_modular(driver.gain) / (_W * _W)
-            shared = {delay: _W / sine for delay, (sine, _) in self._circular.items()}
-            _, pushed = self._stiffness.prescribed_column(
-                driver.point, _modular, *2 * (lambda bar: shared[bar.delay],), _I * _W
+        """How far points move under a load: a force, or an acceleration."""
+        key, s = (driver.point, driver.gain), self._harmonic.s
+        if key not in self._known:
+            free, gain = self._cut.network.points[driver.point].motion is None, _modular(driver.gain)
+            self._known[key] = (
+                self._harmonic.move({driver.point: gain})
+                if free
+                else self._harmonic.prescribe(driver.point, gain / (s * s))[0]
             )
-            for there, across in pushed.items():
-                forces[there] += across * prescribed
-        law = self._stiffness.law(_modular)
-        pairs = [self._circular[delay] for delay in sorted(self._circular)]
-        matrix = law.matrix(_W, [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs], _I * _W)
-        found = self._stiffness.solve(*matrix, [forces[point] for point in self._stiffness.points])
-        for point, q in zip(self._stiffness.points, found, strict=True):
-            moved[point] = q
-        return moved
-
-    def _read(self, output: ModalOutput, moved: Sequence[fmpz_mod]) -> fmpz_mod:
-        """An output, but for the powers of w that its derivatives have."""
-        if output.slope is None:
-            return sum((_modular(weight) * moved[point] for point, weight in output.points.items()), _FIELD(0))
-        end = output.slope[1]
-        bar = self._cut.network.bars[end.bar]
-        sine, cosine = self._circular[bar.delay]
-        ends = [moved[point] * _modular(ratio) for point, ratio in zip((bar.left, bar.right), bar.ratios, strict=True)]
-        return (ends[1 - end.side] - ends[end.side] * cosine) / sine
+        return self._known[key]
 
 
 def _modular(value: fmpq) -> fmpz_mod:
