@@ -178,7 +178,7 @@ _NAMED_OTHERWISE = {
     "wavesym/papers/reader.py: above_alone": "a rule of the grammar",
     "wavesym/papers/reader.py: below": "a rule of the grammar",
 }
-_OTHER_ROOMS = ("wavesym/programs/mode_sets", "wavesym/exact/contacts")
+_OTHER_ROOMS = ("wavesym/exact/contacts",)
 """Rooms that are not yet named by the field's words."""
 
 

@@ -200,6 +200,6 @@ def test_closed_forms_are_made_of_small_tables_unless_asked_for(monkeypatch):
     monkeypatch.setattr(choice, "closed_form", lambda signals, tau_max, real: (signals, tau_max, real))
     double = REALS["double"]
     with pytest.raises(CostError, match=r"^load: 6.0e\+04 increments would arrive"):
-        choice._closed(lower(many), double, False, None)
-    assert choice._closed(lower(many), double, True, None) == ((lower(many), float("inf"), double), 600.0, double)
-    assert choice._closed(lower(scene()), double, False, None) == ((lower(scene()), 50_000, double), 3.0, double)
+        choice._make_closed(lower(many), double, False, None)
+    assert choice._make_closed(lower(many), double, True, None) == ((lower(many), float("inf"), double), 600.0, double)
+    assert choice._make_closed(lower(scene()), double, False, None) == ((lower(scene()), 50_000, double), 3.0, double)

@@ -192,7 +192,7 @@ def allowed(samples: Sequence[int], error: float, height: float, smooth: int) ->
     (record,) = split(model).records
     of_hat, _ = judge_march(still(model, record), degree=smooth)
     verdict = Verdict(smooth, (error,), (height,), 0.0, 0.0, smooth, (height,), (0.0,))
-    return of_hat, float(hats._superposed(replace(record, samples=tuple(map(fmpq, samples))), of_hat, verdict)[0, 0])
+    return of_hat, float(hats._superpose(replace(record, samples=tuple(map(fmpq, samples))), of_hat, verdict)[0, 0])
 
 
 def test_rounding_of_hats_that_are_added_one_by_one_is_bounded() -> None:

@@ -22,7 +22,7 @@ from wavesym.programs.choice import attempts, choose
 from wavesym.programs.making import make
 from wavesym.programs.modes import evaluator
 from wavesym.programs.modes.evaluator import modes
-from wavesym.programs.request import Request, unmet
+from wavesym.programs.request import Request, unmet_tolerance
 from wavesym.results.response import Response
 from wavesym.running.compilation import import_text
 from wavesym.running.native import library
@@ -198,7 +198,7 @@ def test_what_auto_takes():
 
 def test_a_tolerance_that_takes_too_many_modes_is_refused_with_all_that_was_tried(monkeypatch):
     def refuse(model):
-        raise unmet(model.tolerance, {"modes": "7 modes leave 0.06"}, 0.06)
+        raise unmet_tolerance(model.tolerance, {"modes": "7 modes leave 0.06"}, 0.06)
 
     monkeypatch.setattr(evaluator, "modal_system", refuse)
     monkeypatch.delitem(choice.MAKERS, "march")

@@ -36,7 +36,7 @@ def turned(frequency, damping, s):
     numbers = np.array([[frequency], [damping]], float)
     one = ModalSystem(*numbers, *np.ones((3, 1, 1)), np.zeros((1, 1, 3)))
     scheme = evaluator(one, uniform([0, 1], fmpq(1)), 2.0).scheme
-    return [float(part[0, 0]) for part in scheme._turned(np.array([s]))]
+    return [float(part[0, 0]) for part in scheme._mode_functions(np.array([s]))]
 
 
 @given(
@@ -105,8 +105,8 @@ class OneMode(ModesScheme):
 
     BLOCK = 1 << 20
 
-    def _stepped(self, state, first, last):
-        p11, p12, p21, p22, one, two = (float(part[0, 0]) for part in self._turned(self._length))
+    def _step_states(self, state, first, last):
+        p11, p12, p21, p22, one, two = (float(part[0, 0]) for part in self._mode_functions(self._length))
         ramp, start = self.load[:2, first:last, 0].astype(float)
         y, v = one * start + two * ramp, p12 * start + one * ramp
         past = [1, -p11 - p22, p11 * p22 - p12 * p21]

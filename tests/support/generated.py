@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wavesym.mechanics.model import Model
 from wavesym.programs import making
-from wavesym.programs.choice import Made
+from wavesym.programs.form import Form
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
 from wavesym.targets import files as written
@@ -17,17 +17,17 @@ def files(model: Model, language: str = "c", *request: object, **named: object) 
     )
 
 
-def program_files(model: Model, form: Made, language: str, *, tested: bool = False) -> dict[str, str]:
+def program_files(model: Model, form: Form, language: str, *, tested: bool = False) -> dict[str, str]:
     """The sources of an evaluator that there is."""
     return written.sources(making.program(model, form, tested=tested), language)
 
 
-def numpy_text(model: Model, form: Made) -> str:
+def numpy_text(model: Model, form: Form) -> str:
     """The same as the text of one Python module."""
     (text,) = program_files(model, form, "numpy").values()
     return text
 
 
-def assemble(form: Made) -> Program:
+def assemble(form: Form) -> Program:
     """The program of an evaluator, with no word of what it was made from."""
     return form.program(None)

@@ -18,7 +18,7 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.mode_sets.making import ModeSetsTables
 from wavesym.programs.mode_sets.parameters import mode_parameters, names_of
 from wavesym.programs.modes.evaluator import modes
-from wavesym.programs.modes.undamped import UndampedModes
+from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.programs.request import Request
 from wavesym.running.mode_sets import ModalSets
 from wavesym.running.native import address, library, struct_size

@@ -149,7 +149,9 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
     if not found:
         if len(tried) == 1 and tried[0].error:
             raise tried[0].error
-        raise unmet_tolerance(model.tolerance, {one.kind: one.refusal for one in refused}, min(one.bound for one in tried))
+        raise unmet_tolerance(
+            model.tolerance, {one.kind: one.refusal for one in refused}, min(one.bound for one in tried)
+        )
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
     dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]

@@ -288,7 +288,7 @@ class ModeSetsTables:
         links = [(places[link.left], places[link.right]) for link in network.links]
         return {
             "parent": tuple(-1 if row is None else row for row in self._stiffness.parents),
-            "beside": tuple(self._beside()),
+            "beside": tuple(self._next_siblings()),
             **self._bar_tables(),
             "bar_left": tuple(left for left, _ in bars),
             "bar_right": tuple(right for _, right in bars),
@@ -318,7 +318,7 @@ class ModeSetsTables:
             "parameter_sign": tuple(signs.get(name, _POSITIVE) for name, *_ in numbers),
         }
 
-    def _beside(self) -> Iterator[int]:
+    def _next_siblings(self) -> Iterator[int]:
         """Of each row the next one with the same parent, in a circle."""
         parents = self._stiffness.parents
         for row, parent in enumerate(parents):

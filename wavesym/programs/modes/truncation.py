@@ -26,7 +26,7 @@ from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
 from wavesym.programs.modes.projection import Driver, ModalOutput, drivers_of, modal_output, places
 from wavesym.programs.modes.rounding import rounding_errors
 from wavesym.programs.modes.zero_outputs import zero_outputs
-from wavesym.programs.request import unmet
+from wavesym.programs.request import unmet_tolerance
 from wavesym.programs.schemes.modes import ModesScheme
 
 
@@ -260,7 +260,7 @@ def _tolerance_error(chain: ModalModel[K], errors: Numbers, largest: Numbers, be
         what = f"leave a bound of about {bound:.2g} for {name}"
     else:
         what = f"would not tell the largest value of {name} from 0 (leaving it out may help)"
-    return unmet(model.tolerance, {"modes": f"{chain.most} modes, the most taken, {what}"}, bound)
+    return unmet_tolerance(model.tolerance, {"modes": f"{chain.most} modes, the most taken, {what}"}, bound)
 
 
 def _relative(errors: Numbers, largest: Numbers) -> Numbers:
