@@ -96,3 +96,13 @@ def test_without_xarray_it_is_an_array(model: RuntimeModel, monkeypatch: pytest.
     found = model.run([1.0], kappa=[1, 2])
     assert type(found) is np.ndarray
     assert found.shape == (2, len(model.outputs), 1)
+
+
+def test_extremes_are_labelled_and_show_themselves_in_a_line(model: RuntimeModel) -> None:
+    found = model.peaks(kappa=[0.5, 1, 2])
+    assert repr(found) == f"SetPeaks(3 sets of {len(model.outputs)} outputs: min, max, tau_min, tau_max)"
+    labelled = found.to_xarray()
+    assert labelled["max"].dims == ("kappa", "output")
+    for name in ("min", "max", "tau_min", "tau_max"):
+        np.testing.assert_array_equal(labelled[name], getattr(found, name))
+    assert labelled["max"].sel(kappa=2, output="strain@0") == found.max[2, model.outputs.index("strain@0")]

@@ -577,7 +577,13 @@ REFUSED = [
     ("collision", "load", [{"times": ["0 s"]}], "load[0]", "a collision has its velocities; leave [[load]] out"),
     ("chain", "system.parts.1.E", None, "system.parts[1].E", 'missing; write a modulus such as "210 GPa"'),
     ("chain", "system.parts.1.G", "80 GPa", "system.parts[1].G", "unknown key"),
-    ("chain", "system.parts.1.speed", "5 km/s", "system.parts[1].A", "stands beside speed; write one of them"),
+    (
+        "chain",
+        "system.parts.1.speed",
+        "5 km/s",
+        "system.parts[1].A",
+        "stands beside speed; a rod has impedance and speed, or E, A and rho: leave the other out",
+    ),
     ("chain", "system.parts.1.strain", "1 m", "system.parts[1].strain", "is not a number"),
     ("chain", "system.parts.1.velocity", 1, "system.parts[1].velocity", "a velocity"),
     (

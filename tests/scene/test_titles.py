@@ -154,3 +154,9 @@ def test_loads_are_drawn_in_the_units_that_they_are_written_in() -> None:
     drive = Scene.from_toml(first_text("drive"))
     (moment,) = load_histories(lower(drive))
     assert (moment.output.unit, *moment.points[:, 1]) == ("kN*m", 2, 2, 1, 1)
+
+
+def test_a_stream_says_what_its_loads_are_called(tmp_path: Path) -> None:
+    scene = Scene.from_toml(first_text("drive").replace("body = 1 ", 'name = "Motor torque"\nbody = 1 '))
+    wavesym.generate(scene, tmp_path, language="c", stream=True)
+    assert "DRIVE_LOAD_M1 = 0 /* M1 [kN*m]: Motor torque */" in (tmp_path / "drive.h").read_text()

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.pictures.histories import Points
 from wavesym.pictures.line_histories import Band, LineHistories
 from wavesym.pictures.timescale import Timescale
@@ -41,9 +43,9 @@ def extremes(found: LineHistories, band: Band) -> Iterator[BandExtreme]:
         yield BandExtreme(where, found.unit, spot.x, tau, value)
 
 
-def line_name(found: LineHistories, band: Band) -> str:
+def line_name(model: Model, found: LineHistories, band: Band) -> str:
     """What a quantity of a line is called."""
-    return f"{found.quantity}{band.line and ' of branch '}{band.line}"
+    return f"{QUANTITIES[found.quantity].in_words_of(model.labels.kind).phrase}{band.line and ' of branch '}{band.line}"
 
 
 def describe_extremes(found: LineHistories, band: Band, scale: Timescale) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.results.optional import require_packages
+from wavesym.results.statistics import ARRAYS
 
 Array = NDArray[np.float64]
 
@@ -52,19 +53,35 @@ class SetLabels:
             return values
         xarray = require_packages("xarray", "arrays")
 
-        varied = {name: column for name, column in self._columns() if len(np.unique(column)) > 1}
-        along = next(iter(varied)) if len(varied) == 1 else SETS
+        along, sets = self._sets()
         axes = ("time",) if tau.ndim == 1 else tuple(f"time_{k}" for k in range(tau.ndim))
         unit = {} if self.time_unit is None else {"units": self.time_unit}
         coordinates: dict[str, Any] = {
-            "output": list(self.outputs),
-            "unit": ("output", list(self.output_units)),
+            **self._outputs(),
             "time": (axes, times, unit),
             "tau": (axes, tau),
+            **sets,
         }
-        for name, column in varied.items():
-            coordinates[name] = (along, column, self._attributes(name))
         return xarray.DataArray(values, coordinates, (along, "output", *axes))
+
+    def label_extremes(self, arrays: Mapping[str, Array]) -> Any:
+        """Arrays of shape (sets, outputs), by name, as an xarray.Dataset with the coordinates of `label_values`.
+
+        Raises:
+            WavesymError: without xarray.
+        """
+        along, sets = self._sets()
+        fields = {name: ((along, "output"), values, {"long_name": ARRAYS[name]}) for name, values in arrays.items()}
+        return require_packages("xarray", "arrays").Dataset(fields, {**self._outputs(), **sets})
+
+    def _outputs(self) -> dict[str, Any]:
+        return {"output": list(self.outputs), "unit": ("output", list(self.output_units))}
+
+    def _sets(self) -> tuple[str, dict[str, Any]]:
+        """The dimension of sets, and the numbers that vary along it."""
+        varied = {name: column for name, column in self._columns() if len(np.unique(column)) > 1}
+        along = next(iter(varied)) if len(varied) == 1 else SETS
+        return along, {name: (along, column, self._attributes(name)) for name, column in varied.items()}
 
     def _columns(self) -> list[tuple[str, Array]]:
         return [

@@ -15,6 +15,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.results.horizon import check_horizon
 from wavesym.results.near_zero import is_near_zero, zero_within
+from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.running.labels import SetLabels
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ class SetChecks:
         return [_WHY[status] for status in self.status]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SetPeaks:
     """The least and the greatest value of each output, and a tau of it, of shape (sets, outputs), NaN where `checks`
     has a status that is not 0. Where an output jumps, what it comes from counts, too. What is within the estimate of
@@ -59,6 +60,15 @@ class SetPeaks:
     max: Array
     tau_max: Array
     checks: SetChecks
+    labels: SetLabels
+
+    def __repr__(self) -> str:
+        sets, outputs = self.max.shape
+        return f"SetPeaks({sets} sets of {outputs} outputs: {', '.join(RUNTIME_ARRAYS)})"
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset with the outputs and the numbers that vary as coordinates. WavesymError without xarray."""
+        return self.labels.label_extremes({name: getattr(self, name) for name in RUNTIME_ARRAYS})
 
 
 @dataclass(frozen=True)
@@ -160,13 +170,16 @@ class RuntimeModel:
         if (tau is None) is (times is None):
             raise WavesymError("times: write either times or tau, the instants")
         instants, shown = self._instants(tau, times)
-        fields = self._fields(parameters)
-        varied = {name: fields[name] for name in parameters}
-        labels = SetLabels(
-            varied, self.labels, self.units, self.outputs, tuple(p.unit for p in self._model.probes), self.time_unit
-        )
+        labels = self._labels(parameters)
         check_horizon(instants, self.tau_max, strict=strict)
         return labels.label_values(self._compute(instants, parameters), instants, shown)
+
+    def _labels(self, parameters: Mapping[str, ArrayLike]) -> SetLabels:
+        """What the sets of these parameters vary."""
+        fields = self._fields(parameters)
+        units = tuple(probe.unit for probe in self._model.probes)
+        varied = {name: fields[name] for name in parameters}
+        return SetLabels(varied, self.labels, self.units, self.outputs, units, self.time_unit)
 
     def _instants(self, tau: ArrayLike | None, times: ArrayLike | None) -> tuple[Array, Array]:
         """Instants as tau, and in the unit of results."""
@@ -210,7 +223,8 @@ class RuntimeModel:
         values, taus = found.values[..., ::2].copy(), found.values[..., 1::2].copy()
         zero_within(values, taus, found.estimate[:, None, None], self._first_zeros(given, values, taus, found.estimate))
         (least, greatest), (tau_least, tau_greatest) = np.moveaxis(values, 2, 0), np.moveaxis(taus, 2, 0)
-        return SetPeaks(least, tau_least, greatest, tau_greatest, SetChecks(found.status, found.estimate))
+        checks = SetChecks(found.status, found.estimate)
+        return SetPeaks(least, tau_least, greatest, tau_greatest, checks, self._labels(parameters))
 
     def _first_zeros(self, given: Array, values: Array, taus: Array, estimate: Array) -> Array:
         """When outputs whose extremes are within the estimate of 0 first are that near: at the start, or then."""

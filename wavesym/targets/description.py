@@ -151,7 +151,20 @@ def _units(model: Model) -> str:
 
 def _describe(probe: Probe) -> str:
     """An output as a comment names it."""
-    return f"{probe.heading}: {ascii(probe.title)[1:-1]}" if probe.title else probe.heading
+    return _with_title(probe.heading, probe.title)
+
+
+def _with_title(heading: str, title: str) -> str:
+    return f"{heading}: {ascii(title)[1:-1]}" if title else heading
+
+
+def named_loads(program: Program) -> tuple[tuple[str, str], ...]:
+    """Each load that a stream takes: as a comment names it, with its unit, and its constant."""
+    titles = program.provenance.model.labels.titles
+    keys = [source.partition(" [")[0] for source in program.sources]
+    found = (titles.get(key) or titles.get(f"{key}:step") or titles.get(f"{key}:ramp", "") for key in keys)
+    named = constants([f"load@{source.partition(' ')[0]}" for source in program.sources])
+    return tuple(zip(map(_with_title, program.sources, found), named, strict=True))
 
 
 def constants(names: Sequence[str]) -> list[str]:

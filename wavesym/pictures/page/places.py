@@ -28,7 +28,7 @@ def along_pictures(model: Model, found: Sequence[LineHistories], scale: Timescal
     upright = model.labels.system["type"] == "building"
     for k, quantity in enumerate(found):
         for j, band in enumerate(quantity.bands):
-            name = line_name(quantity, band)
+            name = line_name(model, quantity, band)
             where = "height" if upright else "chain"
             title = f"Least and greatest {name} along the {where}"
             description = describe_extremes(quantity, band, scale)
@@ -93,7 +93,7 @@ def maps(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Iter
         values = [cells(quantity, band, _COLUMNS) for band in quantity.bands]
         largest = limit(values)
         for j, (band, own) in enumerate(zip(quantity.bands, values, strict=True)):
-            name = line_name(quantity, band)
+            name = line_name(model, quantity, band)
             title = f"{name} over place and time".capitalize()
             description = describe_extremes(quantity, band, scale)
             content, height = _map(model, quantity, band, own, largest, scale)

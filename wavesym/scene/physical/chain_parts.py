@@ -53,7 +53,9 @@ class RodKeys(SceneTable):
         for key in self.material_keys():
             if getattr(self, key) is not None:
                 given = "impedance" if self.impedance is not None else "speed"
-                raise refusal(f"stands beside {given}; write one of them", key)
+                *others, last = self.dimensions
+                whole = f"impedance and speed, or {', '.join(others)} and {last}"
+                raise refusal(f"stands beside {given}; a rod has {whole}: leave the other out", key)
         impedance, speed = self._si_value("impedance", dashpot), self._si_value("speed", "velocity")
         return ElasticRod(length, impedance / speed * length, impedance * speed / length)
 

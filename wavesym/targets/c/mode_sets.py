@@ -10,7 +10,7 @@ from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import CRuntimeField, parameter_fields
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.c.tables import program_tables
-from wavesym.targets.description import Description, constants
+from wavesym.targets.description import Description, named_loads
 from wavesym.targets.literals import c_constants
 
 _BUILD = ("frequencies", "shapes", "statics", "projection", "oscillators", "estimate", "steps", "build")
@@ -56,14 +56,13 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         numbers=kernels(scene, "real.h", "vectors.h"),
         kernel=kernels(scene, *(f"mode_sets/{file}.c" for file in (*_BUILD, *reading))),
     )
-    names = [f"load@{source.partition(' ')[0]}" for source in program.sources]
     header = CModeSetsHeader(
         scene=scene,
         streamed=streamed,
         peaks=peaks,
         fields=fields,
         constants=c_constants(program.constants, program.real),
-        sources=tuple(zip(program.sources, constants(names), strict=True)),
+        sources=named_loads(program),
         model=kernel("mode_sets/model.h", scene),
         owner=f"{scene.name}_state *state" if streamed else f"{scene.name}_model *model",
     )

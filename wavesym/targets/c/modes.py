@@ -9,7 +9,7 @@ from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c import plain
 from wavesym.targets.c.kernel import kernel
-from wavesym.targets.description import Description, constants
+from wavesym.targets.description import Description, named_loads
 from wavesym.targets.literals import c_constants
 
 
@@ -31,11 +31,10 @@ def source(scene: Description, program: Program) -> str:
 
 def streaming(scene: Description, program: Program) -> str:
     """What NAME.h declares besides: the stream."""
-    names = [f"load@{source.partition(' ')[0]}" for source in program.sources]
     context = CModesStream(
         scene=scene,
         constants=c_constants(program.constants, program.real),
-        sources=tuple(zip(program.sources, constants(names), strict=True)),
+        sources=named_loads(program),
         state=kernel("modes/state.h", scene),
     )
     return render("c/modes/modes.h.j2", context)

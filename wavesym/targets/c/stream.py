@@ -10,7 +10,7 @@ from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assignments, parameter_fields, product_lines
 from wavesym.targets.c.tables import program_tables
-from wavesym.targets.description import Description, constants
+from wavesym.targets.description import Description, named_loads
 from wavesym.targets.literals import Lines, c_constants
 
 _KERNEL = tuple(f"stream/{part}.c" for part in ("waves", "panels", "breakpoints", "stream"))
@@ -81,11 +81,10 @@ def source(scene: Description, program: Program) -> str:
 
 def streaming(scene: Description, program: Program) -> str:
     """What NAME.h declares besides: the stream."""
-    names = [f"load@{source.partition(' ')[0]}" for source in program.sources]
     context = CStreamHeader(
         scene=scene,
         constants=c_constants(program.constants, program.real),
-        sources=tuple(zip(program.sources, constants(names), strict=True)),
+        sources=named_loads(program),
         direct=tuple(
             (output.name, ", ".join(program.sources[j] for j in of))
             for output, of in zip(program.outputs, program.direct, strict=True)
