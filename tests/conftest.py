@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from collections import Counter
 from collections.abc import Generator, Iterator
@@ -10,7 +11,7 @@ from functools import cache
 import pytest
 from hypothesis import Phase, is_hypothesis_test, settings
 
-from wavesym.running import mode_sets, native, sets, stream
+from wavesym.running import compilation, mode_sets, native, sets, stream
 from wavesym.running.toolchain import CompilerError, compiler
 
 settings.register_profile("wavesym", deadline=None, derandomize=True)
@@ -42,13 +43,24 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         test._hypothesis_internal_use_settings = settings(every, max_examples=quick_examples(every.max_examples))
 
 
+def pytest_collection_finish() -> None:
+    """What was imported and collected stays, so that Python need not look through it again and again for garbage."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
+
+
 @pytest.fixture(autouse=True, scope="session")
 def quick_builds(pytestconfig: pytest.Config) -> Iterator[None]:
-    """Without --run-slow, C that Python loads is compiled in a third of the time, for the same machine."""
+    """Without --run-slow, C that Python loads is compiled in a third of the time, for the same machine.
+
+    And C that is compared with exact values and bounds, which hold however it is compiled, without optimisation.
+    """
     with pytest.MonkeyPatch.context() as patch:
         if not pytestconfig.getoption("--run-slow"):
             for module in (mode_sets, sets, stream):
                 patch.setattr(module, "FAST", ("-O1", *native.FAST[1:]))
+            patch.setattr(compilation, "FLAGS", tuple(flag.replace("-O2", "-O0") for flag in compilation.FLAGS))
         yield
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from copy import deepcopy
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -46,13 +47,19 @@ def known(table: dict[str, Any], claimed: dict[str, Any] | None = None) -> Refer
     return known_outputs(lower(Scene(**(claimed or table))), independent_model(scene, lower(scene)))
 
 
+@cache
+def drawn(seed: int) -> ReferenceOutputs:
+    """What programs say of a drawn chain, which more than one test asks."""
+    return known(damped_chain(seed))
+
+
 def judged(outcomes: list[Outcome]) -> list[Outcome]:
     return [outcome for outcome in outcomes if outcome.cells and REFUSED not in outcome.cells.values()]
 
 
 @pytest.mark.parametrize("seed", [*SEEDS, *(pytest.param(seed, marks=pytest.mark.slow) for seed in LONGER)])
 def test_drawn_chains_pass_every_check(seed: int) -> None:
-    seen = known(damped_chain(seed))
+    seen = drawn(seed)
     for check in CHECKS:
         outcomes = judged(check(seen))
         assert outcomes
@@ -146,7 +153,7 @@ def test_another_limit_at_rest_is_seen_by_both_integrators(check: Any) -> None:
 
 
 def test_an_event_that_is_told_late_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen, right = known(damped_chain(1)), integrations.events
+    seen, right = drawn(1), integrations.events
 
     def late(model: Model) -> tuple[ContactEvent, ...]:
         return tuple(replace(event, tau=event.tau + 0.1) for event in right(model))

@@ -196,14 +196,14 @@ def compile_files(
     files: Mapping[str, str],
     outputs: int,
     real: type[np.floating[Any]] = np.float64,
-    flags: Sequence[str] = FLAGS,
+    flags: Sequence[str] = (),
 ) -> Iterator[CompiledLibrary]:
     """Generated C (file name -> text) with `outputs` outputs, compiled in a directory that goes when this is closed.
 
-    Numbers are of the type `real`. There need not be a self-test. CompilerError where there is no compiler, or where it
-    finds anything to warn of.
+    Numbers are of the type `real`; without `flags` the compiler gets FLAGS. There need not be a self-test.
+    CompilerError where there is no compiler, or where it finds anything to warn of.
     """
-    chosen = compiler()
+    chosen, flags = compiler(), flags or FLAGS
     (name,) = (file.removesuffix(".h") for file in files if file.endswith(".h"))
     declared = re.search(r"_output_name\[\w+\]\[(\d+)\]", files[f"{name}.h"])
     assert declared  # by every header
