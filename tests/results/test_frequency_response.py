@@ -451,6 +451,19 @@ def drill_string(parts: int) -> Scene:
     return Scene(name="drill", system=system, load=load, output={"until": 1, "velocity": ["top", "bit"]})
 
 
+@pytest.mark.parametrize("low", [1e-9, 1e-3, 0.2])
+def test_a_band_that_begins_near_0_under_an_acceleration(low: float) -> None:
+    """A ball of frequencies without 0 in it has a square with 0 in it; the ground goes by 1/w^2."""
+    parts = [{"motion": "acceleration", "name": "g"}, {"rod": 1}, {"mass": 1, "name": "top"}]
+    load = [{"at": "g", "times": [0], "steps": [1]}]
+    output = {"until": 5, "displacement": ["top"]}
+    scene = wavesym.Scene(name="s", system={"type": "chain", "parts": parts}, load=load, output=output)
+    peak = wavesym.frf(scene, [low, 0.5]).peaks()["displacement@top"]
+    largest = max(1 / (w * w * abs(np.cos(w) - w * np.sin(w))) for w in (low, 0.5))
+    assert peak.low <= largest * (1 + 1e-12)
+    assert largest * (1 - 1e-12) <= peak.high <= largest * (1 + 1e-9)
+
+
 @pytest.mark.parametrize("parts", [14, pytest.param(50, marks=pytest.mark.slow)])
 def test_peaks_of_many_parts_against_transfer_matrices(parts: int) -> None:
     """(u, force) from the free top to the bit, in doubles, at 40 000 frequencies."""

@@ -69,6 +69,20 @@ def test_sets_drawn_from_a_box_are_within_it():
     assert np.all(found.high <= 1.25 * most)
 
 
+@pytest.mark.parametrize(("low", "high"), [("1e-10", "2"), ("1e-6", "1e6"), ("1e-30", "1"), ("1", "1e30")])
+def test_a_mass_whose_ball_reaches_down_to_0_is_a_mass(low, high):
+    """|2 + i w m|: a ball of wide ranges has its radius rounded up to more than its middle."""
+    parts = ["absorbing", {"rod": 1}, {"mass": 1, "name": "a"}, {"rod": 1}, "absorbing"]
+    load = [{"at": "a", "times": [0], "steps": [1]}]
+    system = {"type": "chain", "parts": parts}
+    scene = wavesym.Scene(name="s", system=system, load=load, output={"until": 5, "velocity": ["a"]})
+    found = wavesym.frf(scene, [1.0], ranges={"system.parts[2].mass": (low, high)})
+    ends = [1 / abs(2 + 1j * float(mass)) for mass in (high, low)]
+    assert found.low[0, 0] <= ends[0]
+    assert found.low[0, 0] >= ends[0] - 0.11 * ends[1]
+    assert ends[1] * (1 - 1e-12) <= found.high[0, 0] <= 1.11 * ends[1]
+
+
 def fraction_of(text):
     above, _, below = text.partition("/")
     return float(above) / float(below or 1)
@@ -88,6 +102,8 @@ def test_a_box_of_one_set_is_its_response():
         (SHAKEN, "system.parts[3].impedance", ("1", "2"), UnservedError, "over masses, springs and dashpots only"),
         (OSCILLATOR, "system.parts[1].spring", ("0", "2"), WavesymError, "begin above 0"),
         (OSCILLATOR, "system.parts[1].spring", ("1", "two"), WavesymError, "write two numbers, in one unit"),
+        (OSCILLATOR, "system.parts[1].spring", ("1", "1/0"), WavesymError, "write two numbers, in one unit"),
+        (OSCILLATOR, "system.parts[1].spring", ("2", "1"), WavesymError, "first end is above the second"),
         (
             OSCILLATOR.with_({"system.parts[1].dashpot": "0"}),
             "system.parts[2].mass",
@@ -116,3 +132,5 @@ def test_the_command_has_two_columns_of_each_output(tmp_path):
     assert head == "omega,displacement@m.low,displacement@m.high"
     assert len(rows) == 2
     assert CliRunner().invoke(frf, [*asked, "--peaks"]).exit_code == 2
+    twice = CliRunner().invoke(frf, [*asked, *asked[-2:]])
+    assert "has a range already" in str(twice.exception)

@@ -63,7 +63,7 @@ def frf(
       wavesym frf building_m2 --to 5 --points 11
     """
     from wavesym import api
-    from wavesym.results.mode_ranges import read_range
+    from wavesym.results.mode_ranges import read_box
     from wavesym.writing import write_whole
 
     context = click.get_current_context()
@@ -77,7 +77,7 @@ def frf(
         frequencies = decimals(at) if at is not None else None
         few = 2 if peaks and not drawn else POINTS
         if ranges:
-            box = dict(map(read_range, ranges))
+            box = read_box(ranges)
             over = api.frf(scene, frequencies, load, low=low, high=high, points=points or few, ranges=box)
             text, notes = over.json() if format == "json" else "".join(over.csv()), over.notes
         else:

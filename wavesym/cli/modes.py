@@ -51,7 +51,7 @@ def modes(
       wavesym modes building_m2 --count 3
     """
     from wavesym import api
-    from wavesym.results.mode_ranges import read_range
+    from wavesym.results.mode_ranges import read_box
     from wavesym.writing import write_whole
 
     context = click.get_current_context()
@@ -65,7 +65,7 @@ def modes(
     refuse_out(out)
     with progress(f"modes {scene.name}"):
         if ranges:
-            box = api.modes(scene, count or COUNT, ranges=dict(map(read_range, ranges)))
+            box = api.modes(scene, count or COUNT, ranges=read_box(ranges))
             text = {"text": box.text, "json": box.json, "csv": box.csv}[format]()
         else:
             found = api.modes(scene, count or COUNT, below, points=points)

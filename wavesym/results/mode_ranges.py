@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import pi
 
@@ -156,10 +156,15 @@ def _angular(scene: Scene, count: int) -> list[arb]:
     return [w / per_tau for w in frequencies(model.network, count)]
 
 
-def read_range(text: str) -> tuple[str, tuple[str, str]]:
-    """PATH=A..B as a path and both ends. WavesymError."""
-    path, equals, ends = text.partition("=")
-    low, dots, high = ends.partition("..")
-    if not (path and equals and dots and low.strip() and high.strip()):
-        raise WavesymError(f"--range {text}: not a range; write PATH=A..B, as system.kappa[0]=1/10..1/5")
-    return path.strip(), (low.strip(), high.strip())
+def read_box(texts: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """Texts PATH=A..B as both ends of each path. WavesymError."""
+    box: dict[str, tuple[str, str]] = {}
+    for text in texts:
+        path, equals, ends = (part.strip() for part in text.partition("="))
+        low, dots, high = (part.strip() for part in ends.partition(".."))
+        if not (path and equals and dots and low and high):
+            raise WavesymError(f"--range {text}: not a range; write PATH=A..B, as system.kappa[0]=1/10..1/5")
+        if path in box:
+            raise WavesymError(f"--range {text}: {path} has a range already; write one of both")
+        box[path] = low, high
+    return box

@@ -92,16 +92,23 @@ class _Box:
     low: Numbers
     added: tuple[Numbers, ...]
 
-    def transfer(self, load: HarmonicLoad, part: Part) -> Transfer:
-        """That of a part of the box, its numbers balls; of a part without width they are exact."""
+    def amplitudes(self, load: HarmonicLoad, part: Part, w: arb) -> list[arb]:
+        """Those of the outputs in a part of the box, at a frequency: any where a number's ball reaches down to 0.
+
+        Of a part without width numbers are exact. A number that may be 0 is none that engines take: they ask what is 0.
+        """
         numbers = []
         for k, low in enumerate(self.low):
             number = arb(low)
             for (first, last), added in zip(part, self.added, strict=True):
                 if added[k] != 0:
                     number = number + arb(first * added[k]).union(arb(last * added[k]))
-            numbers.append(number if any(added[k] != 0 for added in self.added) else low)
-        return Transfer(replace(self.model, network=_with_numbers(self.model.network, numbers)), load)
+            varied = any(added[k] != 0 for added in self.added)
+            if varied and not number > 0:
+                return [arb("nan") for _ in self.model.probes]
+            numbers.append(number if varied else low)
+        network = _with_numbers(self.model.network, numbers)
+        return [abs(acb(each)) for each in Transfer(replace(self.model, network=network), load)(w)]
 
 
 def response_ranges(
@@ -175,11 +182,14 @@ def _middle(path: str, first: str, last: str) -> str:
     ends = [_QUANTITY.fullmatch(text) for text in (first, last)]
     try:
         (low, unit), (high, other) = (each.groups() for each in ends if each)
-        if unit == other:
-            return f"{(Fraction(low) + Fraction(high)) / 2} {unit}".strip()
-    except ValueError:
-        pass
-    raise WavesymError(f"--range {path}={first}..{last}: write two numbers, in one unit")
+        least, greatest = Fraction(low), Fraction(high)
+    except (ValueError, ZeroDivisionError):
+        unit, other = "", None
+    if unit != other:
+        raise WavesymError(f"--range {path}={first}..{last}: write two numbers, in one unit")
+    if least > greatest:
+        raise WavesymError(f"--range {path}={first}..{last}: the first end is above the second; write the lesser first")
+    return f"{(least + greatest) / 2} {unit}".strip()
 
 
 def _numbers(network: Network) -> Numbers:
@@ -211,7 +221,7 @@ def _enclose(box: _Box, load: HarmonicLoad, frequency: float) -> tuple[list[floa
         w = angular(box.model, frequency)
 
         def amplitudes(part: Part) -> list[arb]:
-            return [abs(acb(each)) for each in box.transfer(load, part)(w)]
+            return box.amplitudes(load, part, w)
 
         whole: Part = (ends,) * len(box.added)
         corners = [amplitudes(tuple((t, t) for t in corner)) for corner in product(ends, repeat=len(whole))]
@@ -267,7 +277,7 @@ def _halves(part: Part, amplitudes: Callable[[Part], list[arb]], output: int) ->
 
 
 def _lower(value: arb) -> float:
-    return max(-upper_double(-value), 0.0) if value.is_finite() else 0.0
+    return max(0.0, -upper_double(-value)) if value.is_finite() else 0.0
 
 
 def _upper(value: arb) -> float:

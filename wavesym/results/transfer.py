@@ -94,8 +94,10 @@ def drive(coefficients: tuple[fmpq, ...], rate: Quantity, order: int = 0) -> Qua
     made: Quantity = acb(0)
     for power, c in enumerate(coefficients):
         if c != 0:
-            size, left = arb(c * factorial(power)), order - power
-            made = made + (size if left == 0 else size * rate**left if left > 0 else size / rate**-left)
+            part: Quantity = acb(c * factorial(power))
+            for _ in range(abs(order - power)):  # one by one: a ball that 0 is not in may have squares that it is in
+                part = part * rate if order > power else part / rate
+            made = made + part
     return made
 
 
