@@ -111,6 +111,16 @@ def test_friction_beside_springs_slips_and_sticks_as_it_should(seed: int) -> Non
     assert wrong(rubbing_masses(seed)) == []
 
 
+@pytest.mark.parametrize("mass", ["11/5", "1/3"])
+def test_what_comes_to_rest_on_two_masses_that_stick_goes_back(mass: str) -> None:
+    """Their common velocity was rounded as they were parted from the third one, which then slid the wrong way."""
+    rods, plate = {"rod": 1}, {"mass": 1, "name": "b", "velocity": 3}
+    parts = [rods, {"mass": mass, "name": "a", "velocity": "1/2"}, {"friction": 10}, plate]
+    parts += [{"friction": "1/4"}, {"mass": 1, "name": "c", "velocity": 3}, rods]
+    output = {"until": 3, "tolerance": 1e-9, "velocity": ["a", "c"]}
+    assert wrong({"name": "three", "system": {"type": "chain", "parts": parts}, "output": output}) == []
+
+
 @pytest.mark.parametrize("seed", BREAKING)
 def test_friction_that_bears_more_at_rest_breaks_away_as_it_should(seed: int) -> None:
     assert wrong(breaking_chain(seed), first="0") == []

@@ -455,7 +455,7 @@ class SteadyJoint(ABC):
             among = [(k, arb(cluster.ratio(k)), arb(self.law.mass[k])) for k in held if cluster.group(k) == a]
             if law.motions[a] is not None:
                 velocity[a] = arb(prescribed[a](fmpq(0)))
-            else:
+            elif any(self._state[k].velocity != ratio * velocity[a] for k, ratio, _ in among):  # else none is rounded
                 momentum = sum((ratio * mass * self._state[k].velocity for k, ratio, mass in among), arb(0))
                 velocity[a] = (momentum / sum((ratio**2 * mass for _, ratio, mass in among), arb(0))).mid()
             apart = ((mass, abs(self._state[k].velocity - ratio * velocity[a]).upper()) for k, ratio, mass in among)
