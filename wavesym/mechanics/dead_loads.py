@@ -106,10 +106,15 @@ class _Balance:
     def load_link(self, link: Link) -> Link:
         """A link with the force that it has."""
         if link.side != 0:
-            return replace(link, gap=link.gap - link.side * self._longer(link))
+            return replace(link, gap=link.gap - link.side * self._strained(link))
         if link.contact or link.friction != 0:
             return link
         return replace(link, preload=self._pull(link))
+
+    def _strained(self, link: Link) -> fmpq:
+        """How much longer a spring gets that acts, and the other one of its play: that stays as wide."""
+        sides = (each for each in self._acting if each.side and (each.left, each.right) == (link.left, link.right))
+        return next((self._longer(each) for each in sides), _ZERO)
 
     def _longer(self, link: Link) -> fmpq:
         return self.displacements[link.right] - self.displacements[link.left] if link in self._acting else _ZERO
