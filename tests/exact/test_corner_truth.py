@@ -38,6 +38,9 @@ TOUCHING = (6, 18, 69, 85, 134, 186)
 # accelerated; slipping the other way at once; at an instant that is exact
 SLIDING = (0, 12, 41, 42, 45, 51, 74, 104)
 
+# a joint without mass comes to rest on a mass, with a force that is just R then
+RESTING = (7, 22, 37, 44)
+
 # friction beside springs that yield, engage, and other friction
 RUBBING = (4, 38, 49, 51)
 
@@ -101,7 +104,7 @@ def test_springs_beside_contacts_that_nothing_makes_yield_are_linear() -> None:
     assert Reference(linear).values(taus) == Reference(yielding).values(taus)
 
 
-@pytest.mark.parametrize("seed", SLIDING)
+@pytest.mark.parametrize("seed", [*SLIDING, *RESTING])
 def test_what_rubs_on_another_part_slips_and_sticks_as_it_should(seed: int) -> None:
     assert wrong(sliding_chain(seed), first="0") == []
 
@@ -145,13 +148,8 @@ def test_drawn_friction_with_two_limits_does_as_it_should(start: int) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("start", range(0, 100, 20))
 def test_drawn_friction_between_parts_does_as_it_should(start: int) -> None:
-    refused = 0
     for seed in range(start, start + 20):
-        try:
-            assert wrong(sliding_chain(seed), first="0") == [], seed
-        except (WavesymError, Unclear):
-            refused += 1
-    assert refused <= 4
+        assert wrong(sliding_chain(seed), first="0") == [], seed
 
 
 @pytest.mark.slow

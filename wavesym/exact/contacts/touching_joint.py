@@ -15,7 +15,7 @@ from itertools import product
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, subsets
-from wavesym.exact.contacts.joint_stretch import JointStretch
+from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
 from wavesym.exact.contacts.steady_joint import SteadyJoint, group_forces, prescribed_terms, rate_terms, series_terms
 from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, one_at_each_instant, scale_terms, with_bounds
 from wavesym.exact.joints.joint_law import JointLaw, scatter
@@ -23,6 +23,7 @@ from wavesym.exact.joints.joint_law import JointLaw, scatter
 _ONE = fmpq(1)
 _SLACK = fmpq(1, 2**20)
 _ROUNDS = 8  # in which a bound of the forces must hold
+_CLOSER = 4  # times: what friction takes is looked for again where it is known so much closer
 
 
 class TouchingJoint(SteadyJoint):
@@ -41,11 +42,15 @@ class TouchingJoint(SteadyJoint):
         closed = frozenset(n for n in result.closed & self.touches.keys() if self.touches[n].left in points)
         span = arb(0).union(arb(result.length))
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
-        bounds = {n: arb(max(self.touches[n].friction, self.touches[n].breakaway)) for n in vague}
+        bounds = {n: arb(0) for n in vague}
+        taken = {
+            n: arb(0, arb(max(touch.friction, touch.breakaway)).upper()) for n in vague if (touch := self.touches[n]).friction != 0
+        }
         pressing = [n for n in vague if self.touches[n].friction == 0]
-        for _ in range(_ROUNDS):
+        for tried in range(_ROUNDS):
             motion = self._balls(cluster, prescribed)
-            pushed = [add_terms(each) for each in group_forces(cluster, self._add_pushes(forces, bounds))]
+            pushes = self._add_pushes(forces, {n: bounds[n] for n in pressing}, taken)
+            pushed = [add_terms(each) for each in group_forces(cluster, pushes)]
             terms = series_terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
             q = motion.move(pushed, prescribed, result.length, terms)
             known = {cluster.leader(a): [(_ONE, q[a])] for a in law.heavy}
@@ -53,7 +58,10 @@ class TouchingJoint(SteadyJoint):
             pulls = list(forces)
             for k in points:
                 pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
-            found = self._try_every_choice(cluster, closed, vague, known, arriving, pulls, span)
+            found, takes = self._try_every_choice(cluster, closed, vague, known, arriving, pulls, span)
+            if tried < _ROUNDS // 2 and any(force.rad() * _CLOSER < taken[n].rad() for n, force in takes.items()):
+                taken |= takes
+                continue
             largest = {n: found.pushes[n].evaluate_on(span).upper().max(arb(0)) for n in pressing}
             if all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
                 break
@@ -121,19 +129,27 @@ class TouchingJoint(SteadyJoint):
         arriving: Sequence[Enclosure],
         pulls: Sequence[Terms],
         span: arb,
-    ) -> JointStretch:
-        """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points."""
+    ) -> tuple[JointStretch, dict[int, arb]]:
+        """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points.
+
+        And what friction without mass takes: no choice counts under which it would go back, or be beyond its limit.
+        """
         points = among.points
         velocities: dict[int, list[Enclosure]] = {k: [] for k in points}
         sends: dict[int, list[Enclosure]] = {n: [] for n, end in enumerate(self._ends) if end.place in points}
         rates: dict[int, list[Enclosure]] = {}
         pushes: dict[int, list[Enclosure]] = {}
+        takes: dict[int, arb] = {}
         for chosen, sliding in self._branches(vague):
             cluster = Cluster.from_law(among.joint_law, points, self.touches, closed | chosen)
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
             rubbed = self._add_friction(pulls, sliding)
             q = scatter(cluster.law, group_forces(cluster, rubbed), rigid)
             moving = {k: scale_terms(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
+            forces = {n: self._taken(n, cluster, sliding, moving, rubbed, span) for n in vague if self._rubs_alone(n)}
+            if any(force is None for force in forces.values()):
+                continue
+            takes |= {n: takes.get(n, force).union(force) for n, force in forces.items() if force is not None}
             for k in points:
                 velocities[k].append(add_terms(moving[k]))
             for n, each in sends.items():
@@ -154,7 +170,29 @@ class TouchingJoint(SteadyJoint):
         result.sends = {n: one_at_each_instant(each, span) for n, each in sends.items()}
         result.rates = {n: one_at_each_instant(each, span) for n, each in rates.items()}
         result.pushes = {n: one_at_each_instant(each, span) for n, each in pushes.items()}
-        return result
+        return result, takes
+
+    def _rubs_alone(self, n: int) -> bool:
+        """Whether what rubs has a side without mass: its joint has no other corner then."""
+        return self.touches[n].friction != 0 and not self.is_inert(n)
+
+    def _taken(
+        self,
+        n: int,
+        cluster: Cluster,
+        sliding: Sliding,
+        velocities: Mapping[int, Terms],
+        forces: Sequence[Terms],
+        span: arb,
+    ) -> arb | None:
+        """What friction takes under a choice, on its right side; None where the choice contradicts itself."""
+        limit = arb(self.touches[n].friction)
+        if sign := sliding_sign(n, sliding):
+            rate = add_terms(rate_terms(self.touches[n], velocities)).evaluate_on(span)
+            return None if sign * rate < 0 else -sign * limit
+        force = add_terms(self._pull(cluster, cluster.pushes[n], velocities, forces)).evaluate_on(span)
+        least, most = force.lower().max(-limit), force.upper().min(limit)
+        return None if least > most else least.union(most)
 
     def _branches(self, vague: Closed) -> list[tuple[Closed, Sliding]]:
         """All that vague contacts may do: be closed or open; and what rubs: stick, or slide either way.
@@ -177,14 +215,12 @@ class TouchingJoint(SteadyJoint):
             self.law.mass[k] != 0 or self.law.motions[k] is not None for k in (touch.left, touch.right)
         )
 
-    def _add_pushes(self, forces: Sequence[Terms], bounds: Mapping[int, arb]) -> list[Terms]:
-        """With contacts that push with anything between 0 and their bounds, friction either way."""
+    def _add_pushes(self, forces: Sequence[Terms], bounds: Mapping[int, arb], taken: Mapping[int, arb]) -> list[Terms]:
+        """With contacts that push with anything between 0 and their bounds, and what friction takes."""
         result = list(forces)
-        for n, bound in bounds.items():
-            half = (bound / 2).upper()
-            between = Enclosure(arb_poly([half]), half)
-            if self.touches[n].friction != 0:
-                between = Enclosure(arb_poly([0]), bound)
+        pushes = {n: arb((bound / 2).upper(), (bound / 2).upper()) for n, bound in bounds.items()}
+        for n, push in (pushes | dict(taken)).items():
+            between = Enclosure(arb_poly([push.mid()]), push.rad())
             result[self.touches[n].right] = [*result[self.touches[n].right], (_ONE, between)]
             result[self.touches[n].left] = [*result[self.touches[n].left], (-self.touches[n].ratio, between)]
         return result
