@@ -44,7 +44,9 @@ class TouchingJoint(SteadyJoint):
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
         bounds = {n: arb(0) for n in vague}
         taken = {
-            n: arb(0, arb(max(touch.friction, touch.breakaway)).upper()) for n in vague if (touch := self.touches[n]).friction != 0
+            n: arb(0, arb(max(touch.friction, touch.breakaway)).upper())
+            for n in vague
+            if (touch := self.touches[n]).friction != 0
         }
         pressing = [n for n in vague if self.touches[n].friction == 0]
         for tried in range(_ROUNDS):
@@ -146,7 +148,9 @@ class TouchingJoint(SteadyJoint):
             rubbed = self._add_friction(pulls, sliding)
             q = scatter(cluster.law, group_forces(cluster, rubbed), rigid)
             moving = {k: scale_terms(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
-            forces = {n: self._taken(n, cluster, sliding, moving, rubbed, span) for n in vague if self._rubs_alone(n)}
+            forces = {
+                n: self._friction_force(n, cluster, sliding, moving, rubbed, span) for n in vague if self._rubs_alone(n)
+            }
             if any(force is None for force in forces.values()):
                 continue
             takes |= {n: takes.get(n, force).union(force) for n, force in forces.items() if force is not None}
@@ -176,7 +180,7 @@ class TouchingJoint(SteadyJoint):
         """Whether what rubs has a side without mass: its joint has no other corner then."""
         return self.touches[n].friction != 0 and not self.is_inert(n)
 
-    def _taken(
+    def _friction_force(
         self,
         n: int,
         cluster: Cluster,
