@@ -106,12 +106,12 @@ class _Balance:
     def load_link(self, link: Link) -> Link:
         """A link with the force that it has."""
         if link.side != 0:
-            return replace(link, gap=link.gap - link.side * self._strained(link))
+            return replace(link, gap=link.gap - link.side * self._play(link))
         if link.contact or link.friction != 0:
             return link
         return replace(link, preload=self._pull(link))
 
-    def _strained(self, link: Link) -> fmpq:
+    def _play(self, link: Link) -> fmpq:
         """How much longer a spring gets that acts, and the other one of its play: that stays as wide."""
         sides = (each for each in self._acting if each.side and (each.left, each.right) == (link.left, link.right))
         return next((self._longer(each) for each in sides), _ZERO)
