@@ -105,3 +105,10 @@ def test_a_plot_is_a_figure_and_a_file(tmp_path: Path) -> None:
         DRIVE.plot(kind="map3")
     with pytest.raises(wavesym.SceneError, match="not a picture"):
         wavesym.plot(DRIVE, tmp_path / "drive.txt")
+
+
+def test_a_derivation_takes_the_name_of_a_scene():
+    """It takes that of a system, and any other name was an error of Python's."""
+    assert wavesym.derive("drive_m1") == wavesym.derive(wavesym.Scene.from_toml("drive_m1"))
+    with pytest.raises(wavesym.WavesymError, match="No such file"):
+        wavesym.derive("nothing")

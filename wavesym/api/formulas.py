@@ -156,8 +156,8 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
     """The derivation of a system, or of a scene: boundary conditions, delay equations, coefficient recurrences.
 
     Args:
-        source: "collision", "drive", "building" (both bases), or a scene; of a general chain it is the law of each kind
-            of node.
+        source: "collision", "drive", "building" (both bases), or a scene, its path or the name of a built-in one; of a
+            general chain it is the law of each kind of node.
         m: how many elastic elements; then every line is written out. A scene has its own.
         format: "text", "latex", "json", or "fragment": LaTeX to be \\input.
 
@@ -165,7 +165,7 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
         The text, which has SymPy objects as `equations`.
 
     Raises:
-        WavesymError: for an m that the system does not have.
+        WavesymError: for an m that the system does not have, and for what is neither a system nor a scene.
 
     >>> import wavesym
     >>> print(wavesym.derive("drive", 1).splitlines()[0])
@@ -176,7 +176,10 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
     from wavesym.documents.derivation.document import derivation, network_derivation, scene_derivation
     from wavesym.documents.derivation.statement import systems
     from wavesym.mechanics.symbolic import symbolic
+    from wavesym.systems import presets
 
+    if isinstance(source, str) and source not in presets():
+        source = Scene.from_toml(source)
     if isinstance(source, str):
         made = Derivation(derivation(source, m, format))
         made._systems = tuple(systems(source, m))
