@@ -4,7 +4,7 @@ data/          passages of the text, cut into records by marks. transcript.py re
 chains.py      the chains that all is tried on: exact tables, motion under loads, scenes that show it
 letters.py     the one scope: what letters mean on a chain that moves, with and without dimensions
 equations.py   the test of equations: (2.1)-(2.5), (3.1), (3.2), (4.1)-(4.8), (4.11), constants, Table 1; groups of them
-               in conditions.py and quantities.py, by equation_group.py
+               in equation_kinds.py, by equation_group.py
 tables.py      the test of tables: Tables 2 to 4, (4.9), (4.10), (4.12), with forms.py and powers.py
 coefficients.py  III.1 ... III.22, by the same exact tables
 statements.py  the test of sentences: the examples; sentences.toml has the patterns

@@ -26,18 +26,19 @@ from wavesym.papers.pielorz1979.chains import (
     loads,
     unequal_collision,
 )
-from wavesym.papers.pielorz1979.conditions import Conditions, Delays
 from wavesym.papers.pielorz1979.equation_group import EquationGroup
-from wavesym.papers.pielorz1979.letters import Motion
-from wavesym.papers.pielorz1979.quantities import (
+from wavesym.papers.pielorz1979.equation_kinds import (
+    Conditions,
     Constants,
     Definitions,
+    Delays,
     Interior,
     Loads,
     OfRods,
     Rates,
     Table1,
 )
+from wavesym.papers.pielorz1979.letters import Motion
 from wavesym.papers.pielorz1979.transcript import right_reading
 from wavesym.papers.reader import read_range
 from wavesym.papers.record import Case, Reading, Test, case

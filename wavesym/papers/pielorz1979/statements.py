@@ -30,8 +30,8 @@ from wavesym.papers.pielorz1979.chains import (
     meeting,
     uneven_building,
 )
+from wavesym.papers.pielorz1979.equation_kinds import arrival
 from wavesym.papers.pielorz1979.equations import is_complete
-from wavesym.papers.pielorz1979.quantities import arrival
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case
 from wavesym.papers.sentences import Words
