@@ -487,7 +487,7 @@ def test_what_the_model_is_comes_before_programs_are_tried(
         seen.append(capsys.readouterr().out)
         return choice.attempts(model)  # type: ignore[arg-type]
 
-    monkeypatch.setattr("wavesym.documents.inspection.summary.attempts", attempts)
+    monkeypatch.setattr("wavesym.documents.inspection.document.attempts", attempts)
     assert main(["inspect", "drive_m1", "--stage", "summary"]) == 0
     rest = capsys.readouterr().out
     assert "Outputs: a quantity at a place" in seen[0]

@@ -10,8 +10,6 @@ from wavesym.results.presentation import align_columns, number_text
 from wavesym.results.statistics import STATISTICS, OutputSummary, Statistic, cells, headings
 from wavesym.results.summary import Summary
 
-FORMATS = ("text", "json")
-
 
 def summary_text(summary: Summary, format: str) -> str:
     """A summary as "text" or "json"."""
