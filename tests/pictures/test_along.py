@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 
 import wavesym
 from wavesym.mechanics.loads import AppliedLoad
-from wavesym.pictures.envelope_values import envelope, extremes
-from wavesym.pictures.line_histories import Band, LineHistories, Spot, cells, limit, line_histories
+from wavesym.pictures.line_histories import Band, LineHistories, Spot, cells, envelope, extremes, limit, line_histories
 from wavesym.pictures.loads import load_histories, stretches
 from wavesym.pictures.page.png import SHADES, colours, encode_png
 from wavesym.pictures.reduction import reduce_vertices

@@ -60,26 +60,26 @@ def plot_with_notes(scene: Scene, path: str | PathLike[str] | None, kind: str) -
 
 def plot_modes(scene: Scene, found: Modes, path: Path) -> None:
     """Draw the shapes of modes along the chain. SceneError for a suffix that is no picture's."""
-    from wavesym.pictures.modes import draw
+    from wavesym.pictures.result_pictures import draw_modes
     from wavesym.pictures.saving import save
 
-    save(draw(found, lower(scene, loads=False), scene.system.lines), path)
+    save(draw_modes(found, lower(scene, loads=False), scene.system.lines), path)
 
 
 def plot_frf(found: FrequencyResponse, path: Path) -> None:
     """Draw amplitudes and phases over frequency. SceneError for a suffix that is no picture's."""
-    from wavesym.pictures.frequency_response import draw
+    from wavesym.pictures.result_pictures import draw_frequency_response
     from wavesym.pictures.saving import save
 
-    save(draw(found), path)
+    save(draw_frequency_response(found), path)
 
 
 def plot_spectra(found: Spectra, path: Path) -> None:
     """Draw response spectra over the period. SceneError for a suffix that is no picture's."""
+    from wavesym.pictures.result_pictures import draw_spectra
     from wavesym.pictures.saving import save
-    from wavesym.pictures.spectra import draw
 
-    save(draw(found), path)
+    save(draw_spectra(found), path)
 
 
 def refuse_no_picture(path: Path) -> None:
@@ -132,8 +132,8 @@ def record(path: Path, unit: str | None, column: str | None = None, picture: Pat
 
     found, unit, lines = record_lines(path, unit, column)
     if picture is not None:
-        from wavesym.pictures.record import draw
+        from wavesym.pictures.result_pictures import draw_record
         from wavesym.pictures.saving import save
 
-        save(draw(found, unit), picture)
+        save(draw_record(found, unit), picture)
     return lines

@@ -14,9 +14,13 @@ import numpy as np
 
 from wavesym.mechanics.length import LengthUnit, in_unit, place_text
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.pictures.histories import Histories, Points, histories
 from wavesym.pictures.reduction import columns_of, extremes_between
+from wavesym.pictures.timescale import Timescale
+from wavesym.pictures.units import unit_text
 from wavesym.programs.program import Program
+from wavesym.results.presentation import number_text
 from wavesym.scene import Scene
 from wavesym.scene.lowering import probes
 from wavesym.scene.outputs import Output, observables
@@ -202,3 +206,51 @@ def limit(parts: list[Points]) -> float:
     """The value of the strongest colour: what all but the largest few cells stay within."""
     sizes = np.abs(np.concatenate([part[~np.isnan(part)] for part in parts]))
     return float(np.quantile(sizes, _CLIPPED)) or float(np.max(sizes)) or 1.0
+
+
+# the least and the greatest
+
+
+@dataclass(frozen=True)
+class BandExtreme:
+    """The least or greatest value of a band: where and when; `place` is how one says it."""
+
+    place: str
+    unit: str
+    x: float
+    tau: float
+    value: float
+
+    def describe(self, scale: Timescale) -> str:
+        """In a line."""
+        value = number_text(self.value, unit_text(self.unit), 4)
+        return f"{value} {self.place}, {scale.format(self.tau)}"
+
+
+def extremes(found: LineHistories, band: Band) -> Iterator[BandExtreme]:
+    """The greatest and the least value."""
+    for place, instant in (
+        np.unravel_index(find(band.values), band.values.shape) for find in (np.nanargmax, np.nanargmin)
+    ):
+        spot = band.spots[place]
+        where = f"in storey {place + 1}" if found.storeys else f"at x = {spot.label}"
+        tau, value = float(found.taus[instant]), float(band.values[place, instant])
+        yield BandExtreme(where, found.unit, spot.x, tau, value)
+
+
+def line_name(model: Model, found: LineHistories, band: Band) -> str:
+    """What a quantity of a line is called."""
+    return f"{QUANTITIES[found.quantity].in_words_of(model.labels.kind).phrase}{band.line and ' of branch '}{band.line}"
+
+
+def describe_extremes(found: LineHistories, band: Band, scale: Timescale) -> str:
+    """The greatest and the least value in words."""
+    return " ".join(
+        f"{word}: {each.describe(scale)}."
+        for word, each in zip(("Greatest", "Least"), extremes(found, band), strict=True)
+    )
+
+
+def envelope(band: Band) -> tuple[Points, Points]:
+    """The least and the greatest value at each place, (places,)."""
+    return np.nanmin(band.values, axis=1), np.nanmax(band.values, axis=1)

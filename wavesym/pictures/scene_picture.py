@@ -5,12 +5,13 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from wavesym.mechanics.model import Model
-from wavesym.pictures import envelope, heatmap, panels, xt
+from wavesym.pictures import panels, xt
 from wavesym.pictures.groups import notes
 from wavesym.pictures.histories import histories
 from wavesym.pictures.line_histories import line_histories
 from wavesym.pictures.loads import load_histories
 from wavesym.pictures.naming import with_titles
+from wavesym.pictures.place_pictures import draw_envelope, draw_map
 from wavesym.scene import Scene
 
 KINDS = ("history", "xt", "envelope", "map")
@@ -35,8 +36,8 @@ def draw(scene: Scene, model: Model, kind: str) -> tuple[Figure, list[str]]:
     if kind == "xt":
         return xt.draw(model, scene.system.lines, scene.physical), []
     if kind == "envelope":
-        return envelope.draw(model, line_histories(scene, model)), []
+        return draw_envelope(model, line_histories(scene, model)), []
     if kind == "map":
-        return heatmap.draw(model, line_histories(scene, model), load_histories(model)), []
+        return draw_map(model, line_histories(scene, model), load_histories(model)), []
     made = histories(with_titles(model))
     return panels.draw(made, load_histories(model)), notes(made)

@@ -47,14 +47,6 @@ _DIGITS = 36  # that numbers below a panel may have together
 _SENSE = {"velocity": "", "force": ": pull red, push blue"}
 
 
-def description(model: Model) -> str:
-    """What is seen, for those who do not see it."""
-    return (
-        "Colours show the velocity, and below it the force, of every rod; place to the right and time upward to "
-        f"{timescale(model).format(nearest(model.until))}. Waves are bands that slope by one rod in one crossing."
-    )
-
-
 @with_style
 def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> Figure:
     """Velocity above force of all rods over the horizon, with a panel for each line.

@@ -10,7 +10,6 @@ from wavesym.pictures.page.svg import Svg, concatenate, line, text
 from wavesym.pictures.units import RAISED
 
 _NICE = (1, 2, 2.5, 5, 10)
-_LETTER = 6.5  # of the numbers, wide
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,18 @@ import numpy as np
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
-from wavesym.pictures.envelope_values import describe_extremes, envelope, extremes, line_name
 from wavesym.pictures.groups import axis_title
 from wavesym.pictures.histories import Points
-from wavesym.pictures.line_histories import Band, LineHistories, cells, limit
+from wavesym.pictures.line_histories import (
+    Band,
+    LineHistories,
+    cells,
+    describe_extremes,
+    envelope,
+    extremes,
+    limit,
+    line_name,
+)
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, labelled_spot, picture
 from wavesym.pictures.page.png import colour_image, colours

@@ -24,7 +24,6 @@ from wavesym.systems.station import Lines, Station
 WIDTH = 900.0
 _LEFT, _RIGHT, _ROW = 60.0, 60.0, 150.0
 _MASS, _LINK, _CONTACT, _END, _BARE = 18.0, 44.0, 10.0, 6.0, 2.0
-_LEAST = 14.0  # of a rod, long
 _THICK, _THIN = 24.0, 6.0  # of a rod
 _ASIDE = 30.0  # from its node a branch hangs
 _LETTER = 7.4  # of a name, wide

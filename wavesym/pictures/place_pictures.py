@@ -1,39 +1,35 @@
-"""The least and the greatest of what happens along a chain: of a building over its height, else along its lines."""
+"""What happens along a chain, drawn: the least and the greatest at each place, and place x time as colours.
+
+The latter is for horizons in which waves cross the chain too often to be drawn one by one: a cell shows the value of
+the largest size that its place has in its stretch of time, so that no peak is lost.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
-from wavesym.pictures.envelope_values import envelope, extremes
-from wavesym.pictures.groups import axis_title
-from wavesym.pictures.line_histories import Band, LineHistories
-from wavesym.pictures.style import BETWEEN, GREATEST, HALO, LEAST, draw_grid, new_figure, set_title, with_style
+from wavesym.pictures.groups import axis_title, load_panel
+from wavesym.pictures.histories import History
+from wavesym.pictures.line_histories import Band, LineHistories, cells, envelope, extremes, limit
+from wavesym.pictures.style import BETWEEN, GREATEST, HALO, LEAST, colours, draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.timescale import timescale
 
-_PANEL = 3.6  # inches
+_ENVELOPE = 3.6  # inches
 _NARROWEST = 0.25  # of the main line: where numbers still fit
 _TICKS = 11  # storeys with a number
 _ROOM = 0.6  # storeys above and below
 
 
-def description(model: Model, found: Sequence[LineHistories]) -> str:
-    """The extremes of all lines in words."""
-    scale = timescale(model)
-    return " ".join(
-        f"{word} {quantity.quantity}{band.line and ' of branch '}{band.line}: {each.describe(scale)}."
-        for quantity in found
-        for band in quantity.bands
-        for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
-    )
-
-
 @with_style
-def draw(model: Model, found: Sequence[LineHistories]) -> Figure:
+def draw_envelope(model: Model, found: Sequence[LineHistories]) -> Figure:
     """Each quantity below the other, over the height of a building, or along the lines of any other chain.
 
     Args:
@@ -41,7 +37,7 @@ def draw(model: Model, found: Sequence[LineHistories]) -> Figure:
         found: its quantities, at many places.
     """
     upright, scale = model.labels.system["type"] == "building", timescale(model)
-    figure = new_figure(_PANEL * len(found) + 0.4)
+    figure = new_figure(_ENVELOPE * len(found) + 0.4)
     set_title(figure, f"{model.name}: least and greatest to {scale.format(float(found[0].taus[-1]))}")
     lengths = [band.spots[-1].high for band in found[0].bands]
     widths = [max(length / lengths[0], _NARROWEST) for length in lengths]
@@ -113,3 +109,49 @@ def _mark(axes: Axes, point: tuple[float, float], text: str, *, above: bool) -> 
         zorder=5,
         path_effects=HALO,
     )
+
+
+_LOAD, _MAP = 1.3, 2.7  # inches
+_COLUMNS = 600  # cells
+_NAMED = 10  # storeys with a number
+
+
+@with_style
+def draw_map(model: Model, found: Sequence[LineHistories], loads: Sequence[History]) -> Figure:
+    """A map of each quantity and line, under the loads; colours end where all but the largest few cells do."""
+    scale = timescale(model)
+    until = float(found[0].taus[-1]) * scale.per_tau
+    heights = [_LOAD] * bool(loads) + [_MAP] * sum(len(quantity.bands) for quantity in found)
+    figure = new_figure(sum(heights) + 0.7)
+    set_title(figure, f"{model.name}: place over time")
+    panels = iter(figure.subplots(len(heights), 1, squeeze=False, sharex=True, height_ratios=heights)[:, 0])
+    if loads:
+        axes = next(panels)
+        for load in loads:
+            axes.plot(load.points[:, 0] * scale.per_tau, load.points[:, 1], color="black", linewidth=0.8)
+        axes.set_ylabel(load_panel(loads, _LOAD).title)
+        draw_grid(axes)
+    for quantity in found:
+        shown = [(band, cells(quantity, band, _COLUMNS)) for band in quantity.bands]
+        largest = limit([values for _, values in shown])
+        norm, shades = Normalize(-largest, largest), colours(signed=True)
+        mine = []
+        for band, values in shown:
+            mine.append(axes := next(panels))
+            edges = np.linspace(0, until, _COLUMNS + 1), [*(spot.low for spot in band.spots), band.spots[-1].high]
+            axes.pcolormesh(*edges, values, norm=norm, cmap=shades, rasterized=True)
+            _frame(axes, quantity, band)
+        bar = figure.colorbar(ScalarMappable(norm, shades), ax=mine, extend="both", fraction=0.05, pad=0.01)
+        bar.set_label(axis_title(model, quantity.quantity, quantity.unit))
+    axes.set_xlim(0, until)
+    axes.set_xlabel(scale.title)
+    return figure
+
+
+def _frame(axes: Axes, quantity: LineHistories, band: Band) -> None:
+    """The places, upward."""
+    if quantity.storeys:
+        axes.set_yticks(*zip(*band.tick_labels(_NAMED), strict=True))
+        axes.set_ylabel("storey")
+    else:
+        axes.set_ylabel(axis_text(band.line, quantity.length))
