@@ -20,6 +20,7 @@ MOST_PANELS = 6  # of a quantity
 STRIPS = 4  # that take the room of a panel
 _STRIP = 0.9  # inches
 _TURNS, _LEVELS = 40, 20
+_NOISE = 1e-12  # parts of the largest value; an extreme below it is 0 but for rounding
 _MARKED = 3  # curves of a panel whose extremes are all marked; of more only the panel's own
 _SYMBOL = {"collision": "u", "drive": "\u03b8", "building": "y"}
 
@@ -145,6 +146,6 @@ def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
         points = np.vstack([history.real for history in group])
         for k in sorted({int(np.argmax(points[:, 1])), int(np.argmin(points[:, 1]))}):
             tau, value = points[k]
-            if value:
+            if abs(value) > _NOISE * np.max(np.abs(points[:, 1])):
                 text = number_text(value, unit_text(shown[0].output.unit), 4)
                 yield Mark(f"{text} at {scale.time_text(tau)}", points[k : k + 1], "normal")
