@@ -6,10 +6,11 @@ jump act on it needs no transform: the light cone tells, but for outputs that ar
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain, pairwise
 
-from flint import fmpq
+from flint import ctx, fmpq
 
 from wavesym.exact.arrivals import arrivals
 from wavesym.exact.motion import Motion
@@ -30,7 +31,8 @@ def first_arrivals(model: Model) -> list[fmpq | None]:
     until = rational(model.horizon())
     if model.network.corners:
         motion = Motion(model, until)
-        return [_begins(motion.segments(probe, motion.first_bits), until) for probe in model.probes]
+        with ctx.workprec(motion.first_bits):
+            return [_begins(motion.walk(probe), until) for probe in model.probes]
     found: list[fmpq | None] = [None] * len(model.probes)
     shortest = model.network.shortest
     early, left = shortest, list(range(len(found)))
@@ -64,9 +66,11 @@ def light_arrivals(model: Model) -> list[fmpq | None]:
     return found
 
 
-def _begins(segments: Sequence[Segment], until: fmpq) -> fmpq | None:
-    ends, begin = [*(segment.start for segment in segments[1:]), until], fmpq(0)
-    for segment, end in zip(segments, ends, strict=True):
+def _begins(segments: Iterator[Segment], until: fmpq) -> fmpq | None:
+    begin = fmpq(0)
+    for segment, after in pairwise(chain(segments, (None,))):
+        assert segment is not None  # the last one has none after it
+        end = after.start if after else until
         if segment.start - begin > until * _MOMENT:
             begin = segment.start
         if any(segment.evaluate((end - segment.start) * fmpq(k, 3)) != 0 for k in range(4)):

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from math import e, inf, log2
+from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
@@ -17,7 +18,7 @@ from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.joints.enclosure import STILL, Enclosure, shift, weighted_sum
 from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.jumps import refuse_jumps
-from wavesym.exact.joints.network_waves import LoadPolynomial, NetworkWaves, Waves
+from wavesym.exact.joints.network_waves import LoadPolynomial, NetworkWaves, SentWave, Waves
 from wavesym.exact.tables.ball import Segment
 from wavesym.mechanics.gauge import ReadingTerm
 from wavesym.mechanics.model import Model
@@ -43,6 +44,7 @@ _WORD, _MOST_FIRST = 64, 1 << 20
 # of the largest wave: what is smaller may be 0, where contacts open and close
 NEGLIGIBLE_WAVE = arb(2) ** -200
 _LARGEST = 5 << 27  # bytes
+_ZERO = fmpq(0)
 
 
 class Motion:
@@ -198,16 +200,23 @@ class Motion:
         Where `taus` are given, only those on which one of them lies, as far as the others are not needed.
         """
         starts = self.starts(probe)
-        ends = [*starts[1:], self.until]
         wanted: Sequence[int] = range(len(starts))
         if taus is not None and not self._integrates(probe):
             wanted = sorted({bisect_right(starts, tau) - 1 for tau in taus})
-        waves = self.waves(bits)
+        vague = self._vague(starts)
         with ctx.workprec(bits):
-            begins = self._smooth_starts[self.probes.index(probe)]
-            made = _segments(waves, self._model, probe, [(starts[k], ends[k]) for k in wanted], begins)
-            vague = self._vague(starts)
-            return [replace(segment, vague=vague[k]) for k, segment in zip(wanted, made, strict=True)]
+            made = self._walk(probe, bits, starts, wanted)
+            return [replace(each, vague=True) if vague[k] else each for k, each in zip(wanted, made, strict=True)]
+
+    def walk(self, probe: Probe) -> Iterator[Segment]:
+        """The same one by one, for whoever looks at the first ones: with the `first_bits`, which the caller sets."""
+        starts = self.starts(probe)
+        return self._walk(probe, self.first_bits, starts, range(len(starts)))
+
+    def _walk(self, probe: Probe, bits: int, starts: Sequence[fmpq], wanted: Iterable[int]) -> Iterator[Segment]:
+        ends = [*starts[1:], self.until]
+        begins = self._smooth_starts[self.probes.index(probe)]
+        return _segments(self.waves(bits), self._model, probe, ((starts[k], ends[k]) for k in wanted), begins)
 
     def _vague(self, starts: Sequence[fmpq]) -> list[bool]:
         """Whether what contacts do may be left open from each of these to the next, and no double lies there.
@@ -259,7 +268,8 @@ def _segments(
     """An output on each of these stretches, which come in order; where it `begins` it is 0."""
     terms = model.sums[probe]
     plain, summed = (
-        [each for each in terms if (each.reading.order < 0) == below and each.reading.moves] for below in (False, True)
+        list(_channels(waves, (each for each in terms if (each.reading.order < 0) == below and each.reading.moves)))
+        for below in (False, True)
     )
     loads = [
         (weight, LoadPolynomial(model.network, reading.point, model.loads))
@@ -300,27 +310,41 @@ def _sum(parts: Iterable[tuple[fmpq, Enclosure]]) -> Enclosure:
     return total
 
 
-def _values(waves: Waves, terms: Iterable[ReadingTerm], start: fmpq) -> Iterator[tuple[fmpq, Enclosure]]:
-    """What sums of strains, velocities and accelerations are made of from tau = `start` on, with factors.
+class _Channel(NamedTuple):
+    """So many times a wave, `delay` later; nothing where the `end` that it is read at has nothing beside it."""
 
-    That is the left-going wave of a rod less, or plus, the right-going one.
+    weight: fmpq
+    wave: SentWave
+    delay: fmpq
+    end: End | None = None
+
+
+def _channels(waves: Waves, terms: Iterable[ReadingTerm]) -> Iterator[_Channel]:
+    """What sums of strains, velocities and accelerations are made of: the left-going wave of a rod less, or plus, the
+    right-going one.
     """
     for weight, reading in terms:
         sent, points = (waves.rates, waves.accelerations) if reading.order > 0 else (waves.sent, waves.velocities)
         if reading.point is not None:
-            yield weight, shift(*points[reading.point].locate(start))
+            yield _Channel(weight, points[reading.point].reader(), _ZERO)
             continue
-        bar = waves.network.bars[reading.rod - 1]
+        bar, end = waves.network.bars[reading.rod - 1], None
         if reading.place in (0, 1):
             end = End(reading.rod - 1, int(reading.place))
-            if reading.quantity == "strain":
-                if waves.is_bare(end, start):
+            if reading.quantity != "strain":
+                if (point := waves.network.point_at(end)) in points:  # prescribed: as exact as it is given
+                    yield _Channel(weight * bar.ratios[end.side], points[point].reader(), _ZERO)
                     continue
-            elif (point := waves.network.point_at(end)) in points:  # prescribed: as exact as it is given
-                yield weight * bar.ratios[end.side], shift(*points[point].locate(start))
-                continue
+                end = None
         for sender, factor, delay in reading.waves(waves.network):
-            yield weight * factor, shift(*sent[sender].locate(start - delay))
+            yield _Channel(weight * factor, sent[sender].reader(), delay, end)
+
+
+def _values(waves: Waves, channels: Iterable[_Channel], start: fmpq) -> Iterator[tuple[fmpq, Enclosure]]:
+    """What channels carry from tau = `start` on, with factors."""
+    for weight, wave, delay, end in channels:
+        if end is None or not waves.is_bare(end, start):
+            yield weight, shift(*wave.locate(start - delay))
 
 
 def waves_size(model: Model) -> int:

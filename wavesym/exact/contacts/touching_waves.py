@@ -52,7 +52,9 @@ class TouchingWaves(Waves):
         """
         joint = self.network.joints[number]
         for n, (end, _) in enumerate(joint.ends):
-            self._bare[end].append((start, n in moved.bare))
+            known, bare = self._bare[end], n in moved.bare
+            if not known or known[-1][1] != bare:
+                known.append((start, bare))
         begun = [self._kept(self.sent[end], start, moved.sends[n]) for n, (end, _) in enumerate(joint.ends)]
         for k, point in enumerate(joint.points):
             if point in self.velocities:

@@ -36,6 +36,10 @@ class SentWave:
     stretches: list[Enclosure] = field(default_factory=list)
     _place: int = 0
 
+    def reader(self) -> SentWave:
+        """The same wave with a place of its own, for whoever goes through it beside others."""
+        return SentWave(self.starts, self.stretches)
+
     def locate(self, tau: fmpq) -> tuple[Enclosure, fmpq]:
         """The stretch that tau is in, and how long after its start. (Mostly the one asked for last, or the next.)"""
         starts, place = self.starts, self._place
