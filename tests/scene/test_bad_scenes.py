@@ -13,6 +13,7 @@ from types import SimpleNamespace
 import pytest
 
 from wavesym.scene import Scene, SceneError
+from wavesym.scene.scene_file import parse_text
 
 COLLISION = """name = "good"
 [system]
@@ -318,7 +319,10 @@ LARGE = {
     "loads": ("[[load]]\nbody = 1\n" * 300_000, "more than 20000 tables"),
     "loads in a line": ("load = [" + "{body = 1}," * 300_000 + "]", "more than 20000 tables"),
     "values": ("[output]\nstrain = [" + "0," * 4_000_000 + "]", "more than 300000 values"),
-    "keys": ("".join(f"k{k} = 1\n" for k in range(400_000)), "more than 300000 values"),
+    "keys": ("".join(f"k{k} = 1\n" for k in range(400_000)), "more than 60000 keys"),
+    "lines of dotted keys": ("".join(f"a.b.k{k} = 1\n" for k in range(300_000)), "more than 20000 tables"),
+    "lines of quoted keys": ("".join(f"'a' . \"b\".k{k} = 1\n" for k in range(300_000)), "more than 20000 tables"),
+    "dotted keys in a line": ("a = [" + "{b.c=1}," * 300_000 + "]", "more than 20000 tables"),
     "quotes": ('"\\' * 2_000_000, "no TOML, "),
     "a long word": ("a" * 4_000_000, "no TOML, "),
 }
@@ -328,12 +332,34 @@ LARGE = {
 def test_what_would_take_long_to_parse_is_refused_before(tmp_path, text, message):
     path = tmp_path / "large.toml"
     path.write_text(text)
-    start = time.monotonic()
+    start = time.process_time()
     with pytest.raises(SceneError) as error:
         Scene.from_toml(path)
-    assert time.monotonic() - start < 10  # 24 s and more, once
+    assert time.process_time() - start < 2  # a minute, once
     assert str(error.value).startswith(f"{path}: {message}")
     assert "\n" not in str(error.value)
+
+
+WIDE = {
+    "keys": "".join(f"k{k} = 1\n" for k in range(50_000)),
+    "dotted keys": "".join(f"a.b.c.d.e.f.g.h.i.k{k} = 1\n" for k in range(15_000)),
+    "parts": "[system]\ntype = 'chain'\nparts = [" + "{rod = 1, foo = 2}," * 10_000 + "]",
+}
+
+
+@pytest.mark.parametrize("text", WIDE.values(), ids=WIDE)
+def test_as_much_as_is_parsed_is_refused_soon(text):
+    """Each of many unknown keys was compared with those that are known, and parsed anew for its line."""
+    start = time.process_time()
+    with pytest.raises(SceneError, match="unknown key"):
+        Scene.from_toml(text)
+    assert time.process_time() - start < 4  # 13 s, once; one second where nothing else runs
+
+
+def test_decimals_are_no_dotted_keys():
+    """As many tables as may be are read, and numbers in them are none."""
+    parts = ",".join("{rod = 0.5, impedance = 1.5}" for _ in range(15_000))
+    assert len(parse_text("x", f"parts = [{parts}]")["parts"]) == 15_000
 
 
 def test_strings_and_comments_are_not_counted(tmp_path):

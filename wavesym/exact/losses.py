@@ -30,19 +30,21 @@ class LinkLoss:
     dissipated: arb
 
 
-def losses(model: Model) -> tuple[LinkLoss, ...]:
+def losses(model: Model, solved: Model | None = None) -> tuple[LinkLoss, ...]:
     """Those of all links with friction or a spring that yields that can reach an output, up to the horizon.
 
+    `solved` is the same with more outputs, where what its links do is known already.
     CostError, GrazingError as in `events`.
     """
     until = rational(model.horizon())
     links = {n: model.network.links[n] for n in model.contacts(until)}
     losing = {n: link for n, link in links.items() if link.friction != 0 or link.limits is not None}
-    known = scheduled(model, until) if losing else None
+    solved = solved or model
+    known = scheduled(solved, until) if losing else None
     if known is None:
         return ()
     probes = {point: _displacement(model, point) for link in losing.values() for point in (link.left, link.right)}
-    motion = Motion(model.watching([*model.probes, *probes.values()]), until)
+    motion = Motion(solved.watching([*solved.probes, *probes.values()]), until)
     with ctx.workprec(bits := motion.first_bits):
         where = {point: Balls(motion.segments(probe, bits)) for point, probe in probes.items()}
         found = []

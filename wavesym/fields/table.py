@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic_core import PydanticCustomError
 
-from wavesym.errors import SceneError, did_you_mean
+from wavesym.errors import MOST_FAULTS, SceneError, did_you_mean
 
 # Enough to recognise a value by, short enough for a line.
 _SHOWN = 40
@@ -162,7 +162,9 @@ class SceneTable(BaseModel):
         if not isinstance(value, Mapping):
             raise refusal(f"{show(value)} is not a table; write its keys and values")
         fields = {field.alias or name: field for name, field in cls.model_fields.items()}
-        unknown = [Fault(_unknown_key(str(key), list(fields)), (str(key),)) for key in value if key not in fields]
+        others = [str(key) for key in value if key not in fields]
+        known = list(fields)
+        unknown = [Fault(_unknown_key(key, known, guess=k < MOST_FAULTS), (key,)) for k, key in enumerate(others)]
         missing = [
             Fault(f"missing; write {field.description}", (key,))
             for key, field in fields.items()
@@ -177,8 +179,8 @@ class SceneTable(BaseModel):
         return handler(value)
 
 
-def _unknown_key(key: str, known: Sequence[str]) -> str:
+def _unknown_key(key: str, known: Sequence[str], *, guess: bool) -> str:
     *others, last = known
     choice = f"{', '.join(others)} or {last}" if others else last
-    meant = did_you_mean(key[:_SHOWN], known)
+    meant = guess and did_you_mean(key[:_SHOWN], known)
     return f"unknown key; write {choice}{meant and f'. {meant}'}"

@@ -51,9 +51,10 @@ def _names(model: Model, link: Link) -> tuple[str, str]:
     return left.name or left.place, right.name or right.place
 
 
-def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
+def link_summaries(model: Model, solved: Model | None = None) -> tuple[LinkSummary, ...] | None:
     """Those of a model's links that can reach an output; None where that would cost too much.
 
+    `solved` is the same with more outputs, where what its links do is known already.
     GrazingError where no number of bits tells what a link does.
     """
     if not model.network.corners:
@@ -62,7 +63,7 @@ def link_summaries(model: Model) -> tuple[LinkSummary, ...] | None:
 
     stretch, energy = (model.inputs.get(name, _PLAIN) for name in ("displacement", "energy"))
     try:
-        found = losses(model)
+        found = losses(model, solved)
     except CostError:
         return None
     return tuple(

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes_and_averages
 from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
+from wavesym.exact.joints.fronts import has_more_fronts
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import midpoint, nearest, not_below, rational
@@ -31,6 +32,7 @@ Numbers = NDArray[np.float64]
 
 _MOST_SAMPLES = 8_000_000
 _MOST_DRIFTS = 50  # rods in which the largest is looked for, though nobody asked for them
+_MOST_FRONTS = 60_000  # for these; where contacts open and close: seconds, beside those for the outputs
 
 
 @dataclass(frozen=True, repr=False)
@@ -116,6 +118,8 @@ def summary_and_program(
     known = {probe.rod for probe in model.probes if probe.quantity == "drift"}
     others = [probe for probe in drifts if probe.rod not in known]
     models = [model.watching([*model.probes, *others]), model] if others else [model]
+    if model.network.corners and has_more_fronts(models[0], _MOST_FRONTS):
+        models, drifts, others = [model], (), []
     solved, found = _solve_extremes(models, samples)
     outputs = _outputs(solved, found)
     every = (
@@ -129,7 +133,7 @@ def summary_and_program(
         found.how,
         model.clock.unit if model.clock else None,
         _largest(every),
-        link_summaries(model),
+        link_summaries(model, solved),
     )
     return summary, found.program
 

@@ -97,7 +97,7 @@ class _Reader:
         names = []
         while True:
             name = self._token
-            names.append(tomllib.loads(f"{name} = 0").popitem()[0])
+            names.append(tomllib.loads(f"{name} = 0").popitem()[0] if name[0] in "\"'" else name)
             self._next += 1
             if not self._take("."):
                 return names

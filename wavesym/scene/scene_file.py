@@ -83,13 +83,20 @@ _STRINGS = re.compile(
 )
 _MOST_KEYS = 10  # in a dotted key
 _DEEP_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_MOST_KEYS}}}[\w-]")
-_TABLE = re.compile(r"^[ \t]*+\[|\{", re.MULTILINE)
+_TABLE = re.compile(
+    r"^[ \t]*+\[|\{|(?<![\w.-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++)++[ \t]*+=",  # a header, { and a key with dots
+    re.MULTILINE,
+)
 _MOST_TABLES = 20_000
+_MOST_ASSIGNED = 60_000  # keys of all tables: a chain of thousands of rods in units has fewer
 _MOST_VALUES = 300_000
 
 
 def _refuse_large(file: str, text: str) -> None:
-    """SceneError for what would take long to parse: deep keys, and more tables or values than a scene has."""
+    """SceneError for what would take long to parse: deep keys, and more tables, keys or values than a scene has.
+
+    A key with dots makes a table, as a header does.
+    """
     bare = _STRINGS.sub("_", text)
     if found := _DEEP_KEY.search(bare):
         line = bare.count("\n", 0, found.start()) + 1
@@ -100,6 +107,8 @@ def _refuse_large(file: str, text: str) -> None:
             f"more than {_MOST_TABLES} tables; a load that changes often is one table with `samples` or a `record`",
             file=file,
         )
+    if bare.count("=") > _MOST_ASSIGNED:
+        raise SceneError(f"more than {_MOST_ASSIGNED} keys; a scene has no more", file=file)
     if bare.count(",") + bare.count("=") > _MOST_VALUES:
         raise SceneError(f"more than {_MOST_VALUES} values; split the scene, or thin its samples", file=file)
 

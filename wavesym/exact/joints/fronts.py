@@ -6,13 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from heapq import heapify, heappop, heappush
-from itertools import count
+from itertools import count, islice
 from math import lcm
 from typing import Any, TypeVar
 
 from flint import fmpq
 
 from wavesym.mechanics.loads import AppliedLoad
+from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Network
 
 T = TypeVar("T")
@@ -73,6 +74,13 @@ def front_times(
             heappush(heap, (time + reaches[number], number, True))
         for delay, other in beside[number]:
             heappush(heap, (time + delay, other, False))
+
+
+def has_more_fronts(model: Model, most: int) -> bool:
+    """Whether fronts would meet the joints that can be felt more often than so, were all contacts closed."""
+    last = model.joints_in_reach(model.until)
+    sources = front_sources(model.network, model.loads_until(model.until), last)
+    return next(islice(front_times(model.network, sources, last), most, None), None) is not None
 
 
 def departures(

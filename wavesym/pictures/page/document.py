@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 from wavesym import __version__
-from wavesym.errors import WavesymError
+from wavesym.errors import CostError, WavesymError
+from wavesym.exact.joints.fronts import has_more_fronts
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
@@ -36,6 +37,8 @@ _OUTPUTS = 48  # that are drawn
 _VERTICES = 60_000  # of all curves together: what keeps the page small
 _COLUMNS = (300, 1200)  # of a picture of histories, at least and at most
 _LOADS = 8
+_PIECES = 2_000_000  # of all outputs along a chain with contacts: tables of more are refused, after seconds
+_FEW = 8  # outputs beside those along the chain, without which these cost hardly less
 
 
 @dataclass(frozen=True)
@@ -90,13 +93,13 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     """All of it, computed once, whose curves may be drawn with fewer columns than `most`."""
     scale, until = timescale(model), nearest(model.until)
     summary, searched = _summary(model, with_titles(model.watching(drifts(scene))).probes)
-    drawn_by = searched or _program_of_all(drawn, chain_outputs(scene, model))
+    drawn_by, refusal = (searched, None) if searched else _program_of_all(drawn, chain_outputs(scene, model))
     made = histories(drawn, most, drawn_by)
     loads = load_histories(model)[:_LOADS]
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
     lines, periods = scene.system.lines, longest_periods(model)
-    found, refused = _line_pictures(scene, model, None if searched else drawn_by)
+    found, refused = _line_pictures(scene, model, None if searched else drawn_by, refusal)
     structured = structure(model, lines)
     block = scene.title_block
     title = f"The structure of {model.name}"
@@ -149,17 +152,27 @@ def _summary(model: Model, drifts: Sequence[Probe]) -> tuple[Summary | WavesymEr
         return error, None
 
 
-def _program_of_all(drawn: Model, placed: Model) -> Program | None:
-    """One program for the curves over time and for what happens along the chain; None where there is none for both."""
+def _program_of_all(drawn: Model, placed: Model) -> tuple[Program | None, WavesymError | None]:
+    """One program for the curves over time and for what happens along the chain; or why there is none for both."""
     names = {probe.name for probe in drawn.probes}
+    every = drawn.watching([*drawn.probes, *(each for each in placed.probes if each.name not in names)])
     try:
-        return drawable(drawn.watching([*drawn.probes, *(each for each in placed.probes if each.name not in names)]))
-    except WavesymError:
-        return None
+        if drawn.network.corners and has_more_fronts(every, _PIECES // len(every.probes)):
+            raise CostError(
+                f"output.until: fronts meet rods so often that {len(every.probes)} outputs along the chain would have "
+                f"more than {_PIECES} pieces (a shorter horizon, or lengths with a larger common measure, help)"
+            )
+        return drawable(every), None
+    except WavesymError as error:
+        return None, error
 
 
-def _line_pictures(scene: Scene, model: Model, program: Program | None) -> tuple[tuple[LineHistories, ...], str]:
-    """What happens along the chain, or why that is not known."""
+def _line_pictures(
+    scene: Scene, model: Model, program: Program | None, refusal: WavesymError | None
+) -> tuple[tuple[LineHistories, ...], str]:
+    """What happens along the chain, or why that is not known; with few other outputs they were refused for that."""
+    if refusal is not None and len(model.probes) < _FEW:
+        return (), f"Not drawn: {refusal}"
     try:
         return line_histories(scene, model, program), ""
     except WavesymError as error:
