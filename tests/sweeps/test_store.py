@@ -325,6 +325,38 @@ def test_links_and_pipes_are_not_followed(folder: Path, name: str, pipe: bool) -
             run(SWEEP, folder)
 
 
+@pytest.mark.parametrize(
+    "place", ["mark", f"{NAME}/max/2.0", f"{NAME}/output/0", f"{NAME}/max/.zarray", "manifest.json"]
+)
+@pytest.mark.parametrize("other", ["pipe", "folder", "link"])
+def test_who_deletes_what_is_no_file_gets_the_sweep_back(
+    folder: Path, computed: list[int], place: str, other: str
+) -> None:
+    """Nobody is promised that the next start mends what it then refuses; only files are replaced unasked."""
+    known = numbers(folder)
+    path = folder / (place if place != "mark" else sorted((folder / "done").iterdir())[1].relative_to(folder))
+    path.unlink()
+    if other == "pipe":
+        os.mkfifo(path)
+    elif other == "folder":
+        path.mkdir()
+    else:
+        path.symlink_to(folder.parent / "nowhere")
+    with pytest.raises(DamagedError, match="delete it") as error:
+        numbers(folder)
+    assert str(path) in str(error.value)
+    assert "mends" not in str(error.value)
+    if place != "manifest.json" or other == "folder":
+        with pytest.raises(DamagedError, match="delete it"):
+            run(SWEEP, folder)
+    if other == "folder":
+        path.rmdir()
+    else:
+        path.unlink(missing_ok=True)
+    run(SWEEP, folder)
+    assert numbers(folder) == known
+
+
 @pytest.mark.parametrize("name", ["zarr.json", ".zmetadata", "sample/zarr.json", "more/.zarray"])
 def test_what_zarr_might_open_beside_the_arrays_is_refused(folder: Path, name: str) -> None:
     (folder / NAME / name).parent.mkdir(exist_ok=True)

@@ -14,7 +14,7 @@ from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.marks import FOLDER
 from wavesym.sweeps.plan import MOST, OUTPUT, SAMPLE, SCHEMA, SweepPlan
 from wavesym.sweeps.request import MOST_SAMPLES
-from wavesym.sweeps.sealed_files import DamagedError, SealedFile, Sha256, StrictTable, file_bytes
+from wavesym.sweeps.sealed_files import DamagedError, NoFileError, SealedFile, Sha256, StrictTable, file_bytes
 from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, folder_content, lay_out
 from wavesym.sweeps.values import kept_arrays
 
@@ -89,6 +89,8 @@ class Manifest(SealedFile):
         """That of a folder. WavesymError where it has none; DamagedError for one that is not as it was written."""
         try:
             found = cls.read(folder / FILE)
+        except NoFileError:
+            raise
         except DamagedError:
             what = f"damaged, or not of schema_version {SCHEMA} (wavesym sweep SWEEP -o {folder} mends what is damaged)"
             raise DamagedError(f"{folder / FILE}: {what}") from None
@@ -100,7 +102,7 @@ class Manifest(SealedFile):
 def settle(folder: Path, plan: SweepPlan, batches: Batches) -> Store:
     """The store of a sweep in its folder; what is not there or damaged, but for chunks and marks, is made.
 
-    WavesymError for a folder of another sweep.
+    WavesymError for a folder of another sweep; NoFileError where something else is in the place of a file.
     """
     try:
         there = Manifest.read(folder / FILE)
@@ -112,6 +114,8 @@ def settle(folder: Path, plan: SweepPlan, batches: Batches) -> Store:
     if not there and (folder / NAME).exists() and _sweep(folder / NAME) != plan.sha256:
         raise WavesymError(f"{folder}: has a {NAME} that is not of this sweep; write a new folder")
     manifest = _manifest(plan, batches, lay_out(folder, plan, batches))
+    if (folder / FOLDER).is_symlink() or ((folder / FOLDER).exists() and not (folder / FOLDER).is_dir()):
+        raise WavesymError(f"{folder / FOLDER}: no folder, and a sweep has one there; delete it")
     (folder / FOLDER).mkdir(exist_ok=True)
     folder_content(folder / FOLDER)
     if there != manifest:

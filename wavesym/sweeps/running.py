@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from time import monotonic
@@ -20,7 +20,7 @@ from wavesym.sweeps.manifest import settle
 from wavesym.sweeps.marks import BatchMark, FailedCase, Marks
 from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
-from wavesym.sweeps.sealed_files import DamagedError
+from wavesym.sweeps.sealed_files import DamagedError, NoFileError
 from wavesym.sweeps.status import status
 from wavesym.sweeps.store import Store, require_packages
 from wavesym.sweeps.values import BatchValues
@@ -76,13 +76,17 @@ def _remaining_batches(planned: SweepPlan, store: Store, marks: Marks, retry_fai
     left: list[Task] = []
     for batch in range(len(store.batches)):
         name = store.batches.mark(planned.sha256, batch)
-        with suppress(DamagedError):  # as if there were none
+        try:
             mark = marks.get(name, store.batches, batch)
-            if mark and not store.damaged_chunks(batch, mark.chunks):
-                if again := {*mark.left, *(failed.case for failed in mark.failed if retry_failed)}:
-                    every = store.batches.places(batch)
-                    left.append((batch, [place for place in every if planned.number(place) in again]))
-                continue
+        except NoFileError:
+            raise
+        except DamagedError:
+            mark = None  # as if there were none
+        if mark and not store.damaged_chunks(batch, mark.chunks):
+            if again := {*mark.left, *(failed.case for failed in mark.failed if retry_failed)}:
+                every = store.batches.places(batch)
+                left.append((batch, [place for place in every if planned.number(place) in again]))
+            continue
         marks.remove(name)
         left.append((batch, None))
     return left

@@ -23,6 +23,10 @@ class DamagedError(WavesymError):
     status = 1
 
 
+class NoFileError(DamagedError):
+    """Something else where a sweep has a file: a link, a pipe or a folder. Only whoever put it there removes it."""
+
+
 class StrictTable(BaseModel):
     """Data from a file: all fields and no others, of exactly these types."""
 
@@ -33,7 +37,9 @@ class SealedFile(StrictTable):
     """A file of JSON whose key `seal` is the hash of all others."""
 
     def put(self, path: Path) -> None:
-        """Write it, in its place by rename."""
+        """Write it, in its place by rename. NoFileError where a folder is there."""
+        if path.is_dir():
+            refuse_other(path)
         draft = path.with_suffix(".part")
         draft.unlink(missing_ok=True)  # it may be a link, in a folder that others have made
         fields = self.model_dump()
@@ -52,17 +58,25 @@ class SealedFile(StrictTable):
                 return cls.model_validate(fields)
         except (FileNotFoundError, NotADirectoryError):
             return None
+        except NoFileError:
+            raise
         except (ValidationError, ValueError, RecursionError):
             pass
         raise DamagedError(f"{path}: damaged")
 
 
 def file_bytes(path: Path, most: int) -> bytes:
-    """The bytes of a file. DamagedError for a link, a device or a folder, and for more than `most` bytes."""
-    status = path.lstat()
-    if not S_ISREG(status.st_mode) or status.st_size > most:
+    """The bytes of a file. NoFileError for a link, a device or a folder, DamagedError for more than `most` bytes."""
+    refuse_other(path)
+    if path.stat().st_size > most:
         raise DamagedError(f"{path}: damaged")
     return path.read_bytes()
+
+
+def refuse_other(path: Path) -> None:
+    """NoFileError where what is at a path is no file; FileNotFoundError where nothing is."""
+    if not S_ISREG(path.lstat().st_mode):
+        raise NoFileError(f"{path}: no file, and a sweep has one there; delete it, and `wavesym sweep` makes it again")
 
 
 def _seal(fields: dict[str, Any]) -> str:

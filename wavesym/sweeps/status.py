@@ -11,7 +11,7 @@ from typing import Any
 from wavesym.errors import printable
 from wavesym.sweeps.manifest import Manifest
 from wavesym.sweeps.marks import BatchMark, Marks
-from wavesym.sweeps.sealed_files import DamagedError
+from wavesym.sweeps.sealed_files import DamagedError, NoFileError
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,8 @@ def marks_of(folder: Path, manifest: Manifest) -> dict[int, BatchMark]:
         name = batches.mark(manifest.sha256, batch)
         try:
             mark = kept.get(name, batches, batch)
+        except NoFileError:
+            raise
         except DamagedError:
             wrong[batch] = kept.path(name).relative_to(folder).as_posix()
             continue

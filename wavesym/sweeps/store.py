@@ -26,7 +26,7 @@ from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.dimension import SweepAxis
 from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, SweepPlan
-from wavesym.sweeps.sealed_files import DamagedError
+from wavesym.sweeps.sealed_files import DamagedError, refuse_other
 from wavesym.sweeps.values import Numbers, kept_arrays, sizes
 
 NAME = "results.zarr"
@@ -105,13 +105,14 @@ class Store:
 
 
 def file_hash(path: Path) -> str | None:
-    """Of a file; None where there is none, "" of what is no file."""
+    """Of a file; None where there is none, "" where a file is in the place of its folder. NoFileError as there."""
     try:
+        refuse_other(path)
         with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest() if path.is_file() else ""
+            return hashlib.file_digest(file, "sha256").hexdigest()
     except FileNotFoundError:
         return None
-    except (IsADirectoryError, NotADirectoryError):
+    except NotADirectoryError:
         return ""
 
 
@@ -120,7 +121,7 @@ def folder_content(path: Path) -> set[str]:
     found = [path, *(Path(parent, each) for parent, folders, files in os.walk(path) for each in (*folders, *files))]
     for each in found:
         if not S_ISREG(mode := each.lstat().st_mode) and not S_ISDIR(mode):
-            raise DamagedError(f"{each}: neither a file nor a folder; a sweep's folder holds nothing else")
+            raise DamagedError(f"{each}: neither a file nor a folder; a sweep's folder holds nothing else: delete it")
     return {each.relative_to(path).as_posix() for each in found[1:]}
 
 
