@@ -11,7 +11,9 @@ import pytest
 
 import wavesym
 from wavesym import api
+from wavesym.errors import WavesymError
 from wavesym.exact import reference
+from wavesym.exact.contacts import schedule
 from wavesym.mechanics import chain
 from wavesym.programs import choice
 from wavesym.results import summary as summaries
@@ -76,6 +78,21 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     return counted
 
 
+@pytest.fixture
+def searches(monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """Each search for what contacts and other corners do."""
+    made: list[object] = []
+    begin = schedule.Search.__init__
+
+    def counting(self: schedule.Search, *given: Any) -> None:
+        made.append(given)
+        begin(self, *given)
+
+    monkeypatch.setattr(schedule.Search, "__init__", counting)
+    schedule.outcome.cache_clear()
+    return made
+
+
 WAYS: dict[str, tuple[Callable[[Scene, Path], object], dict[str, int]]] = {
     "run": (lambda scene, _: wavesym.run(scene, samples=9), {"exact values": 1}),
     "run as csv": (lambda scene, _: list(api.run_csv(scene, 9)), {"exact values": 1}),
@@ -105,3 +122,63 @@ def test_each_stage_is_taken_once(stages: Counter[str], way: str, tmp_path: Path
     call, engines = WAYS[way]
     call(scene, tmp_path)
     assert stages == {"lower": 1, "nodes": scene.system.m + 1, **engines}
+
+
+PILE = """
+name = "pile"
+[system]
+type = "chain"
+parts = [
+  { mass = 1, velocity = 1, name = "ram" },
+  { spring = 3, only = "push" },
+  { mass = "1/3", name = "cap" },
+  { rod = 2 },
+  { joint = true, spring = 4, yield = "1/10", name = "shaft" },
+  { rod = 9 },
+  "contact",
+  { rod = 2 },
+  { joint = true, friction = "1/20", name = "toe" },
+]
+[output]
+until = "5.3"
+displacement = ["ram"]
+"""
+"""An output that feels less than all of a chain whose contacts, springs and friction have corners."""
+
+LAYERED = """
+name = "layered"
+[system]
+type = "chain"
+parts = [
+  { rod = "0.2", velocity = 1 },
+  "contact",
+  { rod = 1 },
+  { rod = "0.0003925", impedance = "0.222" },
+  { rod = "0.0018971", impedance = "0.0306" },
+  { rod = 1 },
+]
+[output]
+until = 3
+strain = ["0.7"]
+"""
+"""Fronts between its layers make a million stretches."""
+
+
+@pytest.mark.parametrize("way", [each for each in WAYS if each not in ("inspect", "verify")])
+def test_what_corners_do_is_searched_for_once(searches: list[object], way: str, tmp_path: Path) -> None:
+    """Also for the largest drift, and for pictures of all of the chain. (`inspect` has two precisions, so two ends of
+    the horizon; `verify` knows another end, too.)"""
+    call, _ = WAYS[way]
+    call(Scene.from_toml(PILE), tmp_path)
+    assert len(searches) == 1
+
+
+@pytest.mark.parametrize(
+    "way", ["report", *(pytest.param(each, marks=pytest.mark.slow) for each in ("run", "summary", "generate", "plot"))]
+)
+def test_a_refusal_of_what_corners_do_is_searched_for_once(searches: list[object], way: str, tmp_path: Path) -> None:
+    """Each program that is tried asks what contacts do."""
+    call, _ = WAYS[way]
+    with pytest.raises(WavesymError, match="stretches"):
+        call(Scene.from_toml(LAYERED), tmp_path)
+    assert len(searches) == 1

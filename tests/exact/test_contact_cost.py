@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from heapq import heappop, heappush
 from typing import Any
 
@@ -13,12 +14,17 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.support.touching import FIXED, contact, line, q, rod
+from wavesym.api import summary
 from wavesym.errors import CostError
 from wavesym.exact.contacts import cost
 from wavesym.exact.contacts.events import events, scheduled
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.reference import Reference
+from wavesym.pictures.page import document
+from wavesym.pictures.page.document import page
 from wavesym.programs.making import make
+from wavesym.results import summary as summaries
+from wavesym.results.summary import summarise
 from wavesym.scene import Scene, lower
 
 LAYERS = ["0.0003925", "0.0018971"]
@@ -172,6 +178,39 @@ def test_a_hopkinson_specimen_in_layers_is_compiled_to_the_end_of_its_test() -> 
     program = make(lower(scene))
     assert program.evaluator == "pieces"
     assert program.error_bound < 1e-15
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("until", ["400 us", "550 us", "600 us"])
+def test_a_hopkinson_specimen_in_layers_has_a_summary_and_a_page(until: str) -> None:
+    """Once 46 s for the summary, and no page in minutes: waves were searched for each value, and much of it twice."""
+    scene = Scene(**specimen(until))
+    start = time.process_time()
+    text = page(scene)
+    assert time.process_time() - start < 120  # a third of it where nothing else runs
+    assert len(text.encode()) < 400_000
+    assert "Not drawn: output.until: fronts meet rods so often" in text
+    (found,) = summarise(lower(scene)).outputs
+    assert found.arrival is not None
+    assert found.arrival.in_scene_time == pytest.approx(98.742, abs=1e-3)  # 0.5 m at sqrt(E/rho)
+    known = lower(scene)
+    times, strains = summed_fronts(float(known.until.p) / float(known.until.q))
+    strains = strains[np.append(np.diff(times) > 1e-9, True)]  # those that arrive together are one
+    assert found.max.value == pytest.approx(np.max(strains), rel=1e-9)
+    assert found.min.value == pytest.approx(np.min(strains), rel=1e-9)
+    assert times[0] == pytest.approx(2.5)
+
+
+def test_a_page_says_that_fronts_are_too_many_to_be_drawn_along_the_chain(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And the largest drift, which nobody asked for, is not looked for then."""
+    scene = Scene(**specimen("200 us"))
+    assert summary(scene).largest_drift is not None
+    monkeypatch.setattr(document, "_PIECES", 100)
+    monkeypatch.setattr(summaries, "_MOST_FRONTS", 1)
+    text = page(scene)
+    assert "Not drawn: output.until: fronts meet rods so often that" in text
+    assert "history-0" in text
+    assert "Largest drift" not in text
 
 
 def test_without_the_count_it_goes_on_to_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:

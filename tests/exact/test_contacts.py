@@ -120,7 +120,7 @@ def test_an_event_at_the_end_of_the_horizon_counts(late):
 
 def differs():
     """Whether a fault shows: in other events, or in a bound that cannot be had."""
-    room.schedule.cache_clear()
+    room.outcome.cache_clear()
     try:
         return not agree(*TRAIN)
     except (ArithmeticError, IndexError, WavesymError):
@@ -165,7 +165,7 @@ def test_an_event_that_is_late_is_seen(monkeypatch):
 @pytest.fixture(autouse=True)
 def _afresh():
     yield
-    room.schedule.cache_clear()
+    room.outcome.cache_clear()
 
 
 # ---- what must hold of every chain

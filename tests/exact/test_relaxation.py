@@ -200,9 +200,9 @@ def test_without_leaving_out_what_is_fast_the_same_is_found(monkeypatch: pytest.
     model = lower(Scene(**cushioned(100, "1/8", "2.4", gap="1/7")))
     short = events(model)
     monkeypatch.setattr(Relaxation, "separate", lambda law: ())
-    room.schedule.cache_clear()
+    room.outcome.cache_clear()
     long = events(model)
-    room.schedule.cache_clear()
+    room.outcome.cache_clear()
     assert [(event.kind, event.digits) for event in short] == [(event.kind, event.digits) for event in long]
     assert long
 

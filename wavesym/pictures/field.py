@@ -12,7 +12,7 @@ from wavesym.exact.motion import Motion
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import middle, nearest
+from wavesym.numbers.doubles import middle, nearest, rational
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class Field:
         )
         self._network = model.network
         self.events = events(everywhere)
-        motion = Motion(everywhere, model.until)
+        motion = Motion(everywhere, rational(model.horizon()))
         self._waves = {end: _SampledWave(wave) for end, wave in _visible_waves(motion).sent.items()}
 
     def values_at(self, bar: int, part: Array, tau: Array) -> tuple[Array, Array]:

@@ -46,13 +46,26 @@ class Schedule:
     bits: int
 
 
-@lru_cache(maxsize=4)
 def schedule(network: Network, loads: tuple[AppliedLoad, ...], last: tuple[tuple[int, fmpq], ...]) -> Schedule:
     """What happens at the joints, each until its last instant.
 
     CostError where it would take minutes, GrazingError where no number of bits tells what a contact does.
     """
-    return _attempt(network, loads, last, _whole)
+    found = outcome(network, loads, last)
+    if isinstance(found, WavesymError):
+        raise found.with_traceback(None)
+    return found
+
+
+@lru_cache(maxsize=4)
+def outcome(
+    network: Network, loads: tuple[AppliedLoad, ...], last: tuple[tuple[int, fmpq], ...]
+) -> Schedule | WavesymError:
+    """The same, or why there is none: one program after another asks for it, and a refusal takes as long."""
+    try:
+        return _attempt(network, loads, last, _whole)
+    except WavesymError as error:
+        return error
 
 
 @lru_cache(maxsize=16)

@@ -8,6 +8,7 @@ from itertools import groupby
 
 from wavesym import __version__
 from wavesym.errors import CostError, WavesymError
+from wavesym.exact.contacts.events import events
 from wavesym.exact.joints.fronts import has_more_fronts
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
@@ -80,6 +81,7 @@ def page(scene: Scene) -> str:
     """The page of a scene, with the text it was read from. CostError, ToleranceError as for its histories."""
     model = with_titles(lower(scene))
     model.network.refuse_rodless("a report", "take `plot` and `summary`")
+    model = _followed_everywhere(model, chain_outputs(scene, model))
     drawn = model.watching(_fair(model))
     columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
     return fitting(
@@ -87,6 +89,18 @@ def page(scene: Scene) -> str:
         lambda report: render("html/report.html.j2", _Context(report)),
         columns,
     )
+
+
+def _followed_everywhere(model: Model, placed: Model) -> Model:
+    """The same whose contacts are followed once, as all pictures need, where that can be had."""
+    if not model.network.corners or has_more_fronts(placed, _PIECES // len(placed.probes)):
+        return model
+    everywhere = model.following(placed.probes)
+    try:
+        events(everywhere)
+    except WavesymError:
+        return model
+    return everywhere
 
 
 def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[int], Report]:
