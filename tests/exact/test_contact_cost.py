@@ -17,7 +17,7 @@ from tests.support.touching import FIXED, contact, line, q, rod
 from wavesym.api import summary
 from wavesym.errors import CostError
 from wavesym.exact.contacts import cost
-from wavesym.exact.contacts.events import events, scheduled
+from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.reference import Reference
 from wavesym.pictures.page import document
@@ -46,7 +46,7 @@ def test_a_layered_specimen_is_refused_after_a_thousand_stretches() -> None:
 @pytest.mark.parametrize(("until", "least"), [("2.1", 6000), ("2.17", 19000)])
 def test_what_comes_near_the_limit_is_served(until: str, least: int) -> None:
     model = layered(until, LAYERS)
-    known = scheduled(model, model.until)
+    known = contact_schedule(model, model.until)
     assert known is not None
     assert least < sum(map(len, known.stages.values())) <= cost.MOST_STAGES
 
@@ -161,7 +161,7 @@ def test_what_a_hopkinson_specimen_in_layers_shows_is_the_sum_of_its_fronts() ->
     model = lower(scene)
     until = float(model.until.p) / float(model.until.q)
     times, strains = summed_fronts(until)
-    known = scheduled(model, model.until)
+    known = contact_schedule(model, model.until)
     assert known is not None
     assert sum(map(len, known.stages.values())) > 25_000
     taus = [tau for tau in np.linspace(0, until, 997).tolist() if np.min(np.abs(times - tau)) > 1e-9]

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from tests.support.sprung import LawSpring, Sprung
 from wavesym.errors import SceneError
-from wavesym.exact.contacts.events import events, scheduled
+from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.contacts.springs import CornerSpring
 from wavesym.exact.first_arrivals import first_arrivals
 from wavesym.exact.reference import Reference
@@ -238,7 +238,7 @@ def test_a_toe_that_takes_no_pull_is_known_closely() -> None:
     ram = [{"mass": 4, "velocity": 1}, {"spring": 3, "only": "push"}, {"mass": "1/2"}]
     toe = [{"joint": True, "name": "a"}, {"spring": 1, "dashpot": "1/3", "yield": [0, "1/4"]}, "fixed"]
     model = chain([*ram, {"rod": 1}, {"rod": 1}, *toe], 5)
-    known = scheduled(model, fmpq(5))
+    known = contact_schedule(model, fmpq(5))
     assert known is not None
     (change, *_) = known.changes
     assert change.high - change.low < fmpq(1, 2**400)

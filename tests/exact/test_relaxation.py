@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from tests.exact.test_contact_truth import wrong
 from tests.support.cushioned import seeded
 from wavesym.exact.contacts import schedule as room
-from wavesym.exact.contacts.events import events, scheduled
+from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.joint_motion import JointMotion
@@ -179,7 +179,7 @@ def test_what_is_stiff_beside_contacts_moves_as_it_should(seed: int) -> None:
 
 def stretches(table: dict[str, Any]) -> int:
     model = lower(Scene(**table))
-    known = scheduled(model, model.until)
+    known = contact_schedule(model, model.until)
     assert known is not None
     for number, each in known.stages.items():
         assert all(one.start < other.start for one, other in pairwise(each)), number
@@ -220,7 +220,7 @@ def test_a_body_that_presses_ever_less_still_presses() -> None:
 
 def test_more_bits_are_had_from_the_stretches_that_were_found() -> None:
     model = lower(Scene(**cushioned(200, "1/100", "2")))
-    known = scheduled(model, model.until)
+    known = contact_schedule(model, model.until)
     assert known is not None
     with ctx.workprec(2 * BITS):
         anew = room.replay(model.network, known.stages, known.ends, model.loads)

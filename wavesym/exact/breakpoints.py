@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.contacts.events import scheduled
+from wavesym.exact.contacts.events import contact_schedule
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.joints.joint_law import SWING, JointLaw
 from wavesym.mechanics.gauge import Gauge, Sum
@@ -46,7 +46,7 @@ class Breakpoints:
         self._last = model.joints_in_reach(until)
         self._delays = {bar.delay for bar in self._network.bars}
         self._windowed = len(self._delays) == 1 and not self._network.corners
-        self._scheduled = partial(scheduled, model, until)
+        self._scheduled = partial(contact_schedule, model, until)
 
     @property
     def joints_in_reach(self) -> Collection[int]:

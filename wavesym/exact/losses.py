@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from wavesym.exact.contacts.events import scheduled
+from wavesym.exact.contacts.events import contact_schedule
 from wavesym.exact.contacts.joint_stretch import sliding_sign
 from wavesym.exact.contacts.touching_waves import Stage
 from wavesym.exact.motion import Motion
@@ -40,7 +40,7 @@ def losses(model: Model, solved: Model | None = None) -> tuple[LinkLoss, ...]:
     links = {n: model.network.links[n] for n in model.contacts(until)}
     losing = {n: link for n, link in links.items() if link.friction != 0 or link.limits is not None}
     solved = solved or model
-    known = scheduled(solved, until) if losing else None
+    known = contact_schedule(solved, until) if losing else None
     if known is None:
         return ()
     probes = {point: _displacement(model, point) for link in losing.values() for point in (link.left, link.right)}

@@ -123,7 +123,7 @@ class Breakaway(Corner):
         rate = moved.rates[self.link]
         after = rate.evaluate(length) if rate.exact is None else arb(rate.exact(length))
         if self.link in moved.vague:
-            self.possible = self._reached(moved.pushes[self.link], length, after)
+            self.possible = self._reachable_branches(moved.pushes[self.link], length, after)
         elif after.is_zero():
             self.possible = _STUCK
         self.rate = after
@@ -138,7 +138,7 @@ class Breakaway(Corner):
         closed, sign = self.link in moved.closed, sliding_sign(self.link, moved.sliding)
         self.possible, self._decided = frozenset({sign}), Branch(closed, sign)
 
-    def _reached(self, holding: Enclosure, length: fmpq, after: arb) -> frozenset[int]:
+    def _reachable_branches(self, holding: Enclosure, length: fmpq, after: arb) -> frozenset[int]:
         """The branches that it can be on at the end of a short stretch, whatever it did on it."""
         least, most = arb(self.limit), arb(self.most)
         drive, last = value_range(holding, length), holding.evaluate(length)

@@ -26,7 +26,7 @@ class ContactEnd(KnownInstant):
     tau: arb
 
 
-def scheduled(model: Model, until: fmpq) -> Schedule | None:
+def contact_schedule(model: Model, until: fmpq) -> Schedule | None:
     """When what is closed, until then; None for a chain without contacts. CostError, GrazingError as in `schedule`."""
     if not model.network.corners:
         return None
@@ -42,7 +42,7 @@ def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
     contact touches and no number of bits tells what follows.
     """
     until = rational(model.horizon(real))
-    known = scheduled(model, until)
+    known = contact_schedule(model, until)
     if known is None:
         return ()
     seen = model.contacts(until)

@@ -37,7 +37,7 @@ class JointSprings:
         """Go on to the end of a stretch."""
         self._state |= moved.springs
 
-    def among(self, closed: Closed) -> Closed:
+    def select(self, closed: Closed) -> Closed:
         """Of what is closed, springs."""
         return closed.intersection(self.of_link)
 

@@ -24,7 +24,7 @@ from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import middle
 
 
-class Strained(Protocol):
+class PointPlace(Protocol):
     """Where a point is, as far as it is known."""
 
     @property
@@ -75,7 +75,7 @@ class CornerSpring:
         """With how much it pulls where it yields."""
         return self.limits[0] if sign > 0 else -self.limits[1]
 
-    def between(self, points: Mapping[int, Strained]) -> tuple[fmpq, bool]:
+    def extension(self, points: Mapping[int, PointPlace]) -> tuple[fmpq, bool]:
         """How far apart its points are by their displacements, the middles of them; and whether that is exact."""
         left, right = points[self.left], points[self.right]
         if left.exact is not None and right.exact is not None:
@@ -104,11 +104,11 @@ class SpringState:
         """Known exactly."""
         return cls(arb(stretch), stretch)
 
-    def begin(self, spring: CornerSpring, points: Mapping[int, Strained]) -> SpringState:
+    def begin(self, spring: CornerSpring, points: Mapping[int, PointPlace]) -> SpringState:
         """The same, acting."""
         if self.shift is not None:
             return self
-        apart, exact = spring.between(points)
+        apart, exact = spring.extension(points)
         if self.exact is not None and exact:
             return SpringState(self.stretch, self.exact, self.exact - apart)
         return SpringState(self.stretch, None, middle(self.stretch) - apart)

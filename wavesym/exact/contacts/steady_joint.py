@@ -173,7 +173,7 @@ class SteadyJoint(ABC):
 
     def _split(self, closed: Closed, vague: Closed) -> list[Cluster]:
         if (closed, vague) not in self._clusters:
-            springs = self.springs.among(closed)
+            springs = self.springs.select(closed)
             law, touching = self._law_of(springs), closed - springs
             self._clusters[closed, vague] = [
                 replace(
@@ -209,7 +209,7 @@ class SteadyJoint(ABC):
         motion, places = None, None
         if cluster.stateless:
             q = scatter(law, pushed, prescribed_terms(law, prescribed))
-            result.state |= self._stopped(cluster, prescribed, result.length)
+            result.state |= self._sticking_state(cluster, prescribed, result.length)
         elif (exact := self._move_exactly(cluster, pushed, prescribed)) is not None:
             q = [[(_ONE, Enclosure.from_polynomial(p))] for p in exact]
             places = {
@@ -462,7 +462,7 @@ class SteadyJoint(ABC):
             lost += sum((mass * each * each / 2 for mass, each in apart), arb(0)).upper()
         return velocity, lost
 
-    def _stopped(self, cluster: Cluster, prescribed: Sequence[fmpq_poly], length: fmpq) -> dict[int, PointState]:
+    def _sticking_state(self, cluster: Cluster, prescribed: Sequence[fmpq_poly], length: fmpq) -> dict[int, PointState]:
         """What sticks, where nothing has a state: how fast it may be yet is energy not known of it."""
         if not cluster.stuck:
             return {}

@@ -55,10 +55,10 @@ class TouchingWaves(Waves):
             known, bare = self._bare[end], n in moved.bare
             if not known or known[-1][1] != bare:
                 known.append((start, bare))
-        begun = [self._kept(self.sent[end], start, moved.sends[n]) for n, (end, _) in enumerate(joint.ends)]
+        begun = [self._append(self.sent[end], start, moved.sends[n]) for n, (end, _) in enumerate(joint.ends)]
         for k, point in enumerate(joint.points):
             if point in self.velocities:
-                self._kept(self.velocities[point], start, add_terms(moved.velocities[k]))
+                self._append(self.velocities[point], start, add_terms(moved.velocities[k]))
         return begun
 
     def round_to_precision(self, ends: Mapping[int, fmpq]) -> TouchingWaves:
@@ -76,7 +76,7 @@ class TouchingWaves(Waves):
         return same
 
     @staticmethod
-    def _kept(wave: SentWave, start: fmpq, new: Enclosure) -> bool:
+    def _append(wave: SentWave, start: fmpq, new: Enclosure) -> bool:
         if wave.starts and wave.starts[-1] == start:
             wave.stretches[-1] = new
             return False
