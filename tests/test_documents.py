@@ -13,6 +13,7 @@ others      what another test reads: those of READ_ELSEWHERE
 
 from __future__ import annotations
 
+import importlib
 import io
 import os
 import re
@@ -205,10 +206,15 @@ class Reader:
         return out.getvalue() + (f"exit status {status}\n" if status else "")
 
     def program(self, text: str) -> str:
-        """What a program in Python puts out, in this process."""
-        out = io.StringIO()
-        with chdir(self.folder), redirect_stdout(out), redirect_stderr(out):
+        """What a program in Python puts out, in this process, which imports from the folder and forgets it then."""
+        out, known = io.StringIO(), set(sys.modules)
+        importlib.invalidate_caches()
+        with chdir(self.folder), redirect_stdout(out), redirect_stderr(out), pytest.MonkeyPatch.context() as patch:
+            patch.syspath_prepend(self.folder)
             exec(compile(text, "<block>", "exec"), {"__name__": "__main__"})
+        for name in set(sys.modules) - known:
+            if str(getattr(sys.modules[name], "__file__", "")).startswith(str(self.folder)):
+                del sys.modules[name]
         return out.getvalue()
 
     def process(self, command: list[str], given: str = "") -> str:
