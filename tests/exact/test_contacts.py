@@ -15,11 +15,11 @@ from tests.support.touching import FIXED, at, body, contact, line, q, rod, seen,
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.breakpoints import Breakpoints
-from wavesym.exact.contacts import branches, cost
+from wavesym.exact.contacts import cost, guards
 from wavesym.exact.contacts import schedule as room
-from wavesym.exact.contacts.branches import BranchEnd
 from wavesym.exact.contacts.cluster import Cluster
 from wavesym.exact.contacts.events import events
+from wavesym.exact.contacts.guards import BranchEnd
 from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.exact.contacts.search import Search
 from wavesym.exact.joints.enclosure import Enclosure
@@ -234,7 +234,7 @@ def test_a_gap_that_is_touched_exactly_stays_open():
 
 def test_a_contact_that_no_bits_decide_is_refused_with_the_instant(monkeypatch):
     """The same where nothing is known exactly."""
-    monkeypatch.setattr(branches, "first_fall", lambda p, low, high: (low, high) if p(high) < p(low) else None)
+    monkeypatch.setattr(guards, "first_fall", lambda p, low, high: (low, high) if p(high) < p(low) else None)
     monkeypatch.setattr(room, "_ATTEMPTS", ((384, True), (768, False)))
     model = line([body(1, velocity=1, force=-1), contact("1/2"), rod()], "3/2")
     inexact = Enclosure.from_polynomial

@@ -283,6 +283,21 @@ def breaking(parts: list[object], until: int, load: list[object] | None = None) 
     return wavesym.run(wavesym.Scene(name="breaking", system=system, load=load or [], output=output))
 
 
+@pytest.mark.slow
+def test_what_sticks_and_slips_for_long_is_followed_with_more_bits() -> None:
+    """After 80 cycles 896 bits are lost, and its instants are still those of the closed form."""
+    belt = {"motion": "velocity", "velocity": "1/4"}
+    mass = {"mass": 1, "name": "m", "velocity": "1/4"}
+    parts = ["fixed", {"spring": 1}, mass, {"friction": "1/2", "breakaway": 1}, belt]
+    slips = [event.tau for event in breaking(parts, 650).events if event.kind == "slips"]
+    with ctx.workprec(300):
+        cycle = 4 + 2 * (arb.pi() - arb(2).atan())
+        for number, tau in enumerate(slips):
+            assert tau.overlaps(4 + number * cycle)
+            assert tau.rad() < arb(2) ** -200
+    assert len(slips) == 81
+
+
 @pytest.mark.parametrize("flipped", [False, True])
 def test_a_mass_on_a_belt_sticks_and_slips_for_ever(flipped: bool) -> None:
     """Its cycle in closed form: it sticks while the spring gets longer by 2 D, D = (R_s - R_k)/K, and slips for

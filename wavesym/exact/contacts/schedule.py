@@ -20,6 +20,10 @@ from wavesym.numbers.doubles import nearest
 # the second is the first)
 _ATTEMPTS = ((448, True), (448, False), (896, False))
 
+# where more bits reach further, as friction that slips loses some each time, twice as many are tried, up to so many
+_MOST_BITS = 7168
+_FURTHER = 2**64  # longest stretches on which a branch is left open: a graze is no further with more bits
+
 # what is taken back so soon, in longest stretches on which it is left open what a contact does, is no event
 _MOMENT = 64
 
@@ -93,7 +97,9 @@ def _attempt(
 ) -> T:
     """What a search finds with as many bits as it takes."""
     tried: list[int] = []
-    for bits, relaxing in _ATTEMPTS:
+    attempts, reached = list(_ATTEMPTS), fmpq(-1)
+    while attempts:
+        bits, relaxing = attempts.pop(0)
         if bits in tried:
             continue
         with ctx.workprec(bits):
@@ -104,6 +110,9 @@ def _attempt(
                 undecided = error
         if not search.has_relaxed:
             tried.append(bits)
+        if not attempts and undecided.tau - reached > _FURTHER * search.width and bits < _MOST_BITS:
+            attempts.append((2 * bits, False))
+        reached = undecided.tau
     link = network.links[undecided.link]
     tau = f"{nearest(undecided.tau):.17g}"
     if link.friction != 0:
