@@ -211,7 +211,10 @@ class Reader:
         importlib.invalidate_caches()
         with chdir(self.folder), redirect_stdout(out), redirect_stderr(out), pytest.MonkeyPatch.context() as patch:
             patch.syspath_prepend(self.folder)
-            exec(compile(text, "<block>", "exec"), {"__name__": "__main__"})
+            try:
+                exec(compile(text, "<block>", "exec"), {"__name__": "__main__"})
+            except Exception as error:
+                raise AssertionError(f"{text}\n{out.getvalue()}{type(error).__name__}: {error}") from error
         for name in set(sys.modules) - known:
             if str(getattr(sys.modules[name], "__file__", "")).startswith(str(self.folder)):
                 del sys.modules[name]

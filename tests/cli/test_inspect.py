@@ -276,7 +276,7 @@ def test_single_precision() -> None:
     missed = by(builtin("drive_m1")["tried"], *TRIED)["closed", "single", "speed"]
     with pytest.raises(ToleranceError) as error:
         choose(lower(short("drive_m1")), "closed", "single")
-    assert str(error.value).endswith(f"closed: {missed['refusal']}")
+    assert str(error.value).endswith(f"(closed: {missed['refusal']})")
 
 
 def test_a_scene_that_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
