@@ -273,3 +273,13 @@ def _lumps(cells: int, times: Array) -> tuple[Array, Array, Array]:
         )
     moved = np.array(slack)
     return moved[:, 0], moved[:, 1], moved[:, 2]
+
+
+def test_a_blow_that_dies_away_under_weight_leaves_its_contact_closed() -> None:
+    """All falls alike, and the contact pushes with exp(-tau) until its wave is back: more bits follow it further."""
+    parts = [{"mass": 1, "velocity": 1, "name": "a"}, "contact", {"rod": 500}, {"mass": 10**9}]
+    system = {"type": "chain", "gravity": 1, "parts": parts}
+    scene = wavesym.Scene(name="blow", system=system, output={"until": 990, "velocity": ["a"]})
+    result = wavesym.run(scene, times=[10, 990])
+    assert result.events == ()
+    assert result["velocity@a"] == pytest.approx([10 + np.exp(-10), 990], rel=1e-15)
