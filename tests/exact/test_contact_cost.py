@@ -210,6 +210,7 @@ def test_a_page_says_that_fronts_are_too_many_to_be_drawn_along_the_chain(monkey
     monkeypatch.setattr(summaries, "_MOST_FRONTS", 1)
     text = page(scene)
     assert "Not drawn: output.until: fronts meet rods so often that" in text
+    assert "The largest drift would cost too much" in text
     assert "history-0" in text
     assert "Largest drift" not in text
 

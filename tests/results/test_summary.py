@@ -15,6 +15,7 @@ from flint import fmpq
 import wavesym
 from wavesym.cli import main
 from wavesym.cli.run import DEFAULT_SAMPLES
+from wavesym.documents.summary import summary_text
 from wavesym.errors import CostError
 from wavesym.exact.extremes import extremes
 from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
@@ -122,7 +123,7 @@ def test_arrivals_are_told_where_contacts_open_and_close():
 def test_what_nothing_reaches_never_arrives(capsys):
     found = wavesym.summary(Scene.from_toml("drive_m1").with_({"load": []}))
     assert all(output.arrival is None for output in found.outputs)
-    assert found.largest_drift is None
+    assert (found.largest_drift, found.drifts_cost_too_much) == (None, False)
     late = Scene.from_toml("building_m2").with_({"output.until": "1/4"})
     assert [output.arrival for output in wavesym.summary(late).outputs] == [None] * 6
 
@@ -360,3 +361,5 @@ def test_no_program_is_made_for_drifts_that_nobody_asked_for(monkeypatch: pytest
     found = wavesym.summary(Scene.from_toml("drive_m1"))
     assert found.proved
     assert found.largest_drift is None
+    assert found.drifts_cost_too_much
+    assert "the largest drift would cost too much" in summary_text(found, "text")

@@ -59,6 +59,8 @@ def _lines(summary: Summary) -> Iterable[str]:
     if (drift := summary.largest_drift) is not None:
         peak, when = drift.largest, number_text(drift.largest.at.in_scene_time)
         yield f"largest drift: {drift.label}, {number_text(peak.value, drift.unit)} at {when}"
+    if summary.drifts_cost_too_much:
+        yield "the largest drift would cost too much (drifts as outputs help)"
     yield from map(str, summary.links or ())
     if summary.links is None:
         yield "sets and what is dissipated would cost too much (a shorter horizon helps)"

@@ -42,8 +42,8 @@ class Summary:
     `bound` is that of the error of values, relative to each output's largest. Where it is `proved` that no value lies
     beyond an extreme it holds for the extremes, else only for what outputs are at these instants. `how` says how they
     were found. `largest_drift` is that of the rod, of all in the main line, whose drift is the largest; None where it
-    was not asked for, cannot be had, or no rod changes. `time_unit` is None for a scene without units. `links` are
-    those with friction and the springs that yield; None where they would cost too much.
+    was not asked for, no rod changes, or `drifts_cost_too_much`. `time_unit` is None for a scene without units. `links`
+    are those with friction and the springs that yield; None where they would cost too much.
     """
 
     name: str
@@ -53,6 +53,7 @@ class Summary:
     how: str
     time_unit: str | None
     largest_drift: OutputSummary | None = None
+    drifts_cost_too_much: bool = False
     links: tuple[LinkSummary, ...] | None = ()
 
     def __getitem__(self, name: str) -> OutputSummary:
@@ -114,6 +115,7 @@ def summary_and_program(
     where there was none. Drifts are outputs of the same solution, unless that would cost too much.
     ToleranceError, CostError where there is no such program either.
     """
+    wanted = {probe.rod for probe in drifts}
     drifts = drifts if len(drifts) <= _MOST_DRIFTS else ()
     known = {probe.rod for probe in model.probes if probe.quantity == "drift"}
     others = [probe for probe in drifts if probe.rod not in known]
@@ -125,6 +127,7 @@ def summary_and_program(
     every = (
         [*zip(solved.probes, outputs, strict=True), *_drift_groups(model, solved, others, samples)] if drifts else []
     )
+    missing = wanted - {probe.rod for probe, _ in every if probe.quantity == "drift"}
     summary = Summary(
         model.name,
         outputs[: len(model.probes)],
@@ -132,7 +135,8 @@ def summary_and_program(
         found.proved,
         found.how,
         model.clock.unit if model.clock else None,
-        _largest(every),
+        None if missing else _largest(every),
+        bool(missing),
         link_summaries(model, solved),
     )
     return summary, found.program
