@@ -30,7 +30,7 @@ from wavesym.scene.paths import steps
 from wavesym.sweeps.batches import Place
 from wavesym.sweeps.mode_lanes import ModeLanes, mode_lanes, structure_parameters
 from wavesym.sweeps.plan import SweepPlan
-from wavesym.sweeps.single import instants, of_model, output_rows, spread_out
+from wavesym.sweeps.single import extremes_and_history, instants
 from wavesym.sweeps.values import CaseValues
 
 _FEWEST = 8  # cases that are worth it
@@ -135,14 +135,8 @@ class _Structure:
             if likeness:
                 _, time, outputs = likeness[k]
                 values, taus, histories = values * outputs[:, None], taus / time, histories * outputs[:, None]
-            rows = output_rows(plan, model)
-            made: dict[str, Numbers | float] = {**of_model(plan, model), "bound": float(found.estimate[k])}
-            for side, name in enumerate(("min", "max")):
-                made[name] = spread_out(plan, rows, values[:, side])
-                made[f"tau_{name}"] = spread_out(plan, rows, taus[:, side])
-            if plan.histories:
-                made["history"] = spread_out(plan, rows, histories)
-            yield place, CaseValues(made, "modes of many structures together, errors estimated")
+            how, bound = "modes of many structures together, errors estimated", float(found.estimate[k])
+            yield place, extremes_and_history(plan, model, bound, (values, taus), histories, how)
 
     def likeness(self, other: ModeParameters) -> _Likeness | None:
         """Another case as numbers of this one; None where it is none. Both have the impedance of the first rod as unit,

@@ -26,7 +26,7 @@ from wavesym.scene.paths import replace_at_path
 from wavesym.sweeps.batches import Place
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.record_files import Unreadable
-from wavesym.sweeps.single import instants, of_model, output_rows, spread_out
+from wavesym.sweeps.single import extremes_and_history, instants
 from wavesym.sweeps.values import CaseValues, Numbers
 
 _PROBES = {False: ["0", "1"], True: ["1", "1"]}
@@ -117,16 +117,11 @@ def _share_structure(
     rough = [[each.late if late else each.early] for _, each in fit]
     many = ManyRecords(factor * samples, nearest(begin), nearest(h), rough, np.full((len(fit), 1), factor))
     found = structure.modes.extremes(many, instants(model, plan.histories) if plan.histories else ())
-    rows, of_all = output_rows(plan, model), of_model(plan, model)
+    how = f"{found.modes} modes, all records of a structure together"
     for k, (place, _) in enumerate(fit):
         if found.bounds[k] <= nearest(model.tolerance):
-            made: dict[str, Numbers | float] = {**of_all, "bound": float(found.bounds[k])}
-            for side, name in enumerate(("min", "max")):
-                made[name] = spread_out(plan, rows, found.values[k, :, side])
-                made[f"tau_{name}"] = spread_out(plan, rows, found.taus[k, :, side])
-            if plan.histories:
-                made["history"] = spread_out(plan, rows, found.histories[k])
-            yield place, CaseValues(made, f"{found.modes} modes, all records of a structure together")
+            extremes, bound = (found.values[k], found.taus[k]), float(found.bounds[k])
+            yield place, extremes_and_history(plan, model, bound, extremes, found.histories[k], how)
 
 
 @dataclass(frozen=True)

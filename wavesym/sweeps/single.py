@@ -38,6 +38,21 @@ def single(plan: SweepPlan, scene: Scene) -> CaseValues:
     return CaseValues({**made, **of_model(plan, model), "bound": max(bounds)}, ", ".join(hows))
 
 
+def extremes_and_history(
+    plan: SweepPlan, model: Model, bound: float, extremes: tuple[Numbers, Numbers], history: Numbers, how: str
+) -> CaseValues:
+    """A case that was computed beside others: `extremes` are the least and greatest value of each of the model's
+    outputs, (outputs, 2), and their tau; `history` has those at `instants`, (outputs, instants)."""
+    rows = output_rows(plan, model)
+    made: dict[str, Numbers | float] = {**of_model(plan, model), "bound": bound}
+    for side, name in enumerate(("min", "max")):
+        for prefix, values in zip(("", "tau_"), extremes, strict=True):
+            made[f"{prefix}{name}"] = spread_out(plan, rows, values[:, side])
+    if plan.histories:
+        made["history"] = spread_out(plan, rows, history)
+    return CaseValues(made, how)
+
+
 def of_model(plan: SweepPlan, model: Model) -> dict[str, float]:
     """What is kept of a case whatever it does: its horizon, and its clock."""
     if plan.time_unit is None:
