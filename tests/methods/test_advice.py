@@ -95,6 +95,8 @@ def test_contacts_that_open_need_waves():
     assert all("at 2 opens and closes" in candidate.refusal for candidate in given.candidates)
     assert json.loads(given.json())["models"]["massless"] == {"refused": given.candidates[0].refusal}
     assert "contact" in given.text()
+    assert "nothing is compared with waves, as no other model serves" in given.text()
+    assert "enough to" not in given.text()
 
 
 def test_rods_alone_have_no_masses_on_springs():

@@ -77,7 +77,8 @@ class Advice:
         return "".join(f"{line}\n" for line in self._lines())
 
     def _lines(self) -> Iterator[str]:
-        yield f"{self.scene}: enough to {self.tolerance:g} of the largest value of every output: {self.enough}"
+        enough = f"enough to {self.tolerance:g} of the largest value of every output: {self.enough}"
+        yield f"{self.scene}: {enough if self.outputs else 'nothing is compared with waves, as no other model serves'}"
         yield ""
         for each in self.candidates:
             yield f"  {each.name:10}  {each.refusal or _MEANING[each.name]}"

@@ -87,6 +87,8 @@ def advice_table(model: Model) -> PageTable:
 
 
 def _verdict(found: Advice) -> list[str]:
+    if not found.outputs:
+        return ["Nothing is compared with waves, as no simpler model serves"]
     if found.enough == WAVES:
         return [f"Waves are needed: no simpler model stays within {_TOLERANCE:.0%} of them in every output"]
     return [f"Enough to {_TOLERANCE:.0%} in every output: {_CALLED[found.enough]}"]
