@@ -174,7 +174,8 @@ def _program_of_all(drawn: Model, placed: Model) -> tuple[Program | None, Wavesy
         if drawn.network.corners and has_more_fronts(every, _PIECES // len(every.probes)):
             raise CostError(
                 f"output.until: fronts meet rods so often that {len(every.probes)} outputs along the chain would have "
-                f"more than {_PIECES} pieces (a shorter horizon, or lengths with a larger common measure, help)"
+                f"too many pieces, the limit is {_PIECES} (a shorter horizon, or lengths with a larger common measure, "
+                "help)"
             )
         return drawable(every), None
     except WavesymError as error:
