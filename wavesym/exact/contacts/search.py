@@ -122,7 +122,7 @@ class Search:
         on_motion = joint.rate_on_motion(n, fmpq(0))
         rate = rate if on_motion is None else on_motion
         if link.breakaway != 0:
-            return Breakaway.begin(n, (link.friction, link.breakaway), joint.lightness(n), rate)
+            return Breakaway.begin(n, (link.friction, link.breakaway), joint.forces.lightness(n), rate)
         return Friction.begin(n, link.friction, joint.is_inert(n), rate)
 
     def steps(self) -> Iterator[None]:

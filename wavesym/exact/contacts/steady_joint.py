@@ -16,9 +16,11 @@ from math import log2
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, connected_sets
+from wavesym.exact.contacts.cluster_states import ClusterStates
+from wavesym.exact.contacts.holding_forces import HoldingForces
 from wavesym.exact.contacts.joint_springs import JointSprings
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
-from wavesym.exact.joints.enclosure import STILL, UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
 from wavesym.exact.joints.joint_law import JointLaw, forces_on, joint_ends, outgoing_terms, scatter
 from wavesym.exact.joints.joint_motion import JointMotion
@@ -51,18 +53,18 @@ class SteadyJoint(ABC):
         self._ends = joint_ends(network, joint)
         touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
         self._bare = {n for n, end in enumerate(self._ends) if end.place in touched and self.law.mass[end.place] == 0}
-        self._state = {
-            k: PointState.from_exact(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)
-        }
         self._energy = arb(0)  # the largest that a set had
         self.has_relaxed = False
         # sets of points that have energy, mass or springs, while no contact is closed and no spring with a corner acts
         apart = connected_sets(self._law_of(frozenset()), self.touches, frozenset())
-        self._sets = [points for points in apart if any(self.law.mass[k] != 0 or self._elastic(k) for k in points)]
+        sets = [points for points in apart if any(self.law.mass[k] != 0 or self.law.is_elastic(k) for k in points)]
+        first = {k: PointState.from_exact(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
+        self._states = ClusterStates(self.law, self.springs, sets, first)
+        self.forces = HoldingForces(self.law, self.touches)
 
     def take(self, moved: JointStretch) -> None:
         """Go on to the end of a stretch."""
-        self._state |= moved.state
+        self._states.take(moved)
         self.springs.take(moved)
 
     def rate_on_motion(self, n: int, start: fmpq) -> arb | None:
@@ -76,8 +78,8 @@ class SteadyJoint(ABC):
                 return None
             velocity = arb(self._loads[k].polynomial_from(start)(fmpq(0)))
             if motion is None:
-                unknown = (2 * self._state[k].unknown / arb(self.law.mass[k])).sqrt().upper()
-                velocity = self._state[k].velocity + arb(0, unknown)
+                unknown = (2 * self._states.of_point[k].unknown / arb(self.law.mass[k])).sqrt().upper()
+                velocity = self._states.of_point[k].velocity + arb(0, unknown)
             total += arb(factor) * velocity
         return total
 
@@ -126,7 +128,7 @@ class SteadyJoint(ABC):
         """The same, where forces of springs with a corner are `unknown` by so much."""
         acting = [load.polynomial_from(start) for load in self._loads]
         forces = self._add_friction(forces_on(self._ends, arriving, acting), sliding)
-        self.springs.add_pulls(forces, closed, sliding, self._state, unknown)
+        self.springs.add_pulls(forces, closed, sliding, self._states.of_point, unknown)
         result = JointStretch(length, closed, vague, sliding, {})
         clusters = self._split(closed, vague)
         for cluster in clusters:
@@ -137,9 +139,12 @@ class SteadyJoint(ABC):
         self.springs.strain_others(result)
         for n, energy in self.springs.flows(result, unknown):
             for k in next(cluster.points for cluster in clusters if n in cluster.springs):
-                result.state[k] = result.state.get(k, self._state[k]).lose(energy)
+                result.state[k] = result.state.get(k, self._states.of_point[k]).lose(energy)
         for n, touch in self.touches.items():
-            if self._state[touch.left].exact is not None and self._state[touch.right].exact is not None:
+            if (
+                self._states.of_point[touch.left].exact is not None
+                and self._states.of_point[touch.right].exact is not None
+            ):
                 result.known.add(n)
             if n not in closed and n not in vague:
                 result.rates[n] = add_terms(rate_terms(touch, result.velocities))
@@ -209,18 +214,18 @@ class SteadyJoint(ABC):
         motion, places = None, None
         if cluster.stateless:
             q = scatter(law, pushed, prescribed_terms(law, prescribed))
-            result.state |= self._sticking_state(cluster, prescribed, result.length)
+            result.state |= self._states.sticking_state(cluster, prescribed, result.length)
         elif (exact := self._move_exactly(cluster, pushed, prescribed)) is not None:
             q = [[(_ONE, Enclosure.from_polynomial(p))] for p in exact]
             places = {
-                k: ratio * exact[group].integral() + self._state[k].place
+                k: ratio * exact[group].integral() + self._states.of_point[k].place
                 for k, (group, ratio) in zip(points, law.moves, strict=True)
             }
             for k, (group, ratio) in zip(points, law.moves, strict=True):
-                place = places[k](result.length) if self._elastic(k) else fmpq(0)
+                place = places[k](result.length) if self.law.is_elastic(k) else fmpq(0)
                 result.state[k] = PointState.from_exact(ratio * exact[group](result.length), place)
         else:
-            motion = self._balls(cluster, prescribed)
+            motion = self._states.balls(cluster, prescribed)
             waves = [add_terms(force) for force in pushed]
             longest = max(wave.polynomial.length() for wave in waves)
             if law.fastest * result.length > MOST_SWING:
@@ -229,7 +234,7 @@ class SteadyJoint(ABC):
                 rate, terms = law.fastest, series_terms(law.fastest * result.length, longest)
                 moving = motion.move(waves, prescribed, result.length, terms)
             q = [[(_ONE, each)] for each in self._add_onsets(cluster, pushed, prescribed, moving, result.length)]
-            result.state |= self._state_after(cluster, motion)
+            result.state |= self._states.state_after(cluster, motion)
             if rate > result.swing:
                 result.swing = rate
                 cut = 2 * rate * result.length > MOST_SWING
@@ -238,54 +243,13 @@ class SteadyJoint(ABC):
         for k, (group, ratio) in zip(points, law.moves, strict=True):
             result.velocities[k] = scale_terms(q[group], ratio)
         certain = {k for n in cluster.pushes for k in self.touches[n].sides if self.touches[n].breakaway != 0}
-        for k in self._held_masses(cluster):
-            if k not in certain and (unknown := result.state.get(k, self._state[k]).unknown) != 0:
+        for k in self._states.held_masses(cluster):
+            if k not in certain and (unknown := result.state.get(k, self._states.of_point[k]).unknown) != 0:
                 slow = (2 * unknown / arb(self.law.mass[k])).sqrt().upper()
                 result.velocities[k] = [*result.velocities[k], (_ONE, Enclosure(arb_poly(), slow))]
-        result.pushes |= self._holding_forces(cluster, result, forces, acting, motion or places)
-        self.springs.strain(cluster, result, self._state, places if motion is None else motion)
+        result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places)
+        self.springs.strain(cluster, result, self._states.of_point, places if motion is None else motion)
         self._lose_excess(cluster, result)
-
-    def _holding_forces(
-        self,
-        cluster: Cluster,
-        result: JointStretch,
-        forces: Sequence[Terms],
-        acting: Sequence[fmpq_poly],
-        places: JointMotion | Mapping[int, fmpq_poly] | None,
-    ) -> dict[int, Enclosure]:
-        """The forces of closed contacts; and what would hold friction with a larger limit at rest, beyond `forces`."""
-        found = {}
-        for n, push in cluster.pushes.items():
-            given = acting[cluster.leader(cluster.group(self.touches[n].right))].derivative()
-            pull = [*self._pull(cluster, push, result.velocities, forces)]
-            pull.append((cluster.inertia.get(n, fmpq(0)), Enclosure.from_polynomial(given)))
-            found[n] = self._add_springs(cluster, push, places, pull)
-        for n, touch in self.touches.items():
-            if touch.breakaway == 0 or n in cluster.pushes:
-                continue
-            k, factor, other, ratio = self._free_side(n)
-            if k in cluster.points:
-                pull = self._pull(cluster, [(k, factor)], result.velocities, forces)
-                given = acting[other].derivative()
-                pull.append((factor * ratio * self.law.mass[k], Enclosure.from_polynomial(given)))
-                found[n] = self._add_springs(cluster, [(k, factor)], places, pull)
-        return found
-
-    def _free_side(self, n: int) -> tuple[int, fmpq, int, fmpq]:
-        """The mass that rubs on what moves as is given, its part in the force on the right side; and what it rubs on.
-
-        The last number says how fast it moves with that.
-        """
-        touch = self.touches[n]
-        if self.law.motions[touch.right] is None:
-            return touch.right, _ONE, touch.left, touch.ratio
-        return touch.left, -1 / touch.ratio, touch.right, 1 / touch.ratio
-
-    def lightness(self, n: int) -> fmpq:
-        """How fast the rate changes at which such a mass slides, by a force of 1."""
-        k, factor, _, _ = self._free_side(n)
-        return 1 / (factor**2 * self.law.mass[k])
 
     def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
         """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it."""
@@ -299,7 +263,7 @@ class SteadyJoint(ABC):
                 lightness = sum(1 / self.law.mass[j] for j in (touch.left, touch.right) if self.law.mass[j] != 0)
                 more = (excess * arb(result.length)) ** 2 * arb(lightness) / 2
                 for j in cluster.points:
-                    result.state[j] = result.state.get(j, self._state[j]).lose(more)
+                    result.state[j] = result.state.get(j, self._states.of_point[j]).lose(more)
 
     def _relax(
         self,
@@ -332,26 +296,11 @@ class SteadyJoint(ABC):
             return relaxation.slow, motion.follow(q, u, waves, length)
         raise SwingError(MOST_SWING / cluster.law.fastest)
 
-    def _elastic(self, k: int) -> bool:
-        return any(c != 0 for c in self.law.stiffness[k])
-
-    def _exact_state(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
-        """The state of a cluster, where it is known exactly."""
-        known = {k: exact for k in cluster.points if (exact := self._state[k].exact) is not None}
-        if len(known) < len(cluster.points) or not self.springs.are_exact(cluster):
-            return None
-        together = all(
-            known[k][0] == cluster.ratio(k) * known[leader][0]
-            for k in cluster.stuck
-            if cluster.law.motions[cluster.group(k)] is None and (leader := cluster.leader(cluster.group(k))) in known
-        )
-        return list(known.values()) if together else None
-
     def _move_exactly(
         self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
     ) -> list[fmpq_poly] | None:
         """The velocities of groups, where all is known exactly and they are polynomials."""
-        if (known := self._exact_state(cluster)) is None:
+        if (known := self._states.exact_state(cluster)) is None:
             return None
         forces = [force for terms in pushed if (force := add_terms(terms).exact) is not None]
         if len(forces) < len(pushed):
@@ -368,7 +317,7 @@ class SteadyJoint(ABC):
         length: fmpq,
     ) -> Sequence[Enclosure]:
         """The velocities of groups, with how they begin, where that is known."""
-        if (known := self._exact_state(cluster)) is None:
+        if (known := self._states.exact_state(cluster)) is None:
             return velocities
         forces = [begins for terms in pushed if (begins := add_terms(terms).begins) is not None]
         if len(forces) < len(pushed):
@@ -383,106 +332,6 @@ class SteadyJoint(ABC):
             length,
         )
         return [replace(each, onset=onset) for each, onset in zip(velocities, begin, strict=True)]
-
-    def _pull(
-        self,
-        cluster: Cluster,
-        push: Sequence[tuple[int, fmpq]],
-        velocities: Mapping[int, Terms],
-        forces: Sequence[Terms],
-    ) -> Terms:
-        """The force of a closed contact, but for what springs do."""
-        terms: Terms = []
-        for k, factor in push:
-            terms += scale_terms(forces[k], -factor)
-            for j in cluster.points:
-                terms += scale_terms(velocities[j], factor * self.law.damping[k][j])
-        return terms
-
-    def _add_springs(
-        self,
-        cluster: Cluster,
-        push: Sequence[tuple[int, fmpq]],
-        places: JointMotion | Mapping[int, fmpq_poly] | None,
-        pull: Terms,
-    ) -> Enclosure:
-        """With what springs do, at these places."""
-        if isinstance(places, JointMotion):
-            springs = [(factor, self._spring(cluster, places, k)) for k, factor in push if self._elastic(k)]
-            return add_terms([(_ONE, add_terms(pull)), *springs])
-        exact = [
-            (factor * cluster.joint_law.stiffness[k][j], Enclosure.from_polynomial(place))
-            for k, factor in push
-            for j, place in (places or {}).items()
-        ]
-        return add_terms([*pull, *exact])
-
-    def _spring(self, cluster: Cluster, motion: JointMotion, k: int) -> Enclosure:
-        """What springs pull at a point on a stretch."""
-        if not self._elastic(k):
-            return STILL
-        polynomial, stiffness = arb_poly(), cluster.joint_law.stiffness[k]
-        for j, series in zip(cluster.points, motion.places, strict=True):
-            polynomial += arb(stiffness[j]) * arb_poly(series)
-        return Enclosure(polynomial, (arb(stiffness[k]).sqrt() * motion.spring_error).upper())
-
-    # in balls
-
-    def _balls(self, cluster: Cluster, prescribed: Sequence[fmpq_poly]) -> JointMotion:
-        """The state of a cluster; what rounding loses of one that was exact is energy not known."""
-        points = cluster.points
-        state = [self._state[k] for k in points]
-        unknown = sum((self._state[each[0]].unknown for each in self._sets if each[0] in points), arb(0))
-        velocity, lost = self._joined_velocities(cluster, prescribed)
-        displacement = [each.displacement for each in state]
-        motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], unknown, decays=True)
-        motion.round(velocity, displacement)
-        motion.lose(self.springs.energy(cluster))
-        motion.lose(lost)
-        return motion
-
-    def _held_masses(self, cluster: Cluster) -> list[int]:
-        """The points with mass in groups of which some stick: what is not known of a group may be in one of them."""
-        groups = {cluster.group(k) for k in cluster.stuck}
-        return [k for k in cluster.points if self.law.mass[k] != 0 and cluster.group(k) in groups]
-
-    def _joined_velocities(self, cluster: Cluster, prescribed: Sequence[fmpq_poly]) -> tuple[list[arb], arb]:
-        """The velocities of groups, and the energy that masses that stick, with the same momentum, lose by it."""
-        law = cluster.law
-        velocity, lost = [self._state[cluster.leader(a)].velocity for a in range(len(law.mass))], arb(0)
-        held = self._held_masses(cluster)
-        for a in {cluster.group(k) for k in cluster.stuck}:
-            among = [(k, arb(cluster.ratio(k)), arb(self.law.mass[k])) for k in held if cluster.group(k) == a]
-            if law.motions[a] is not None:
-                velocity[a] = arb(prescribed[a](fmpq(0)))
-            elif any(self._state[k].velocity != ratio * velocity[a] for k, ratio, _ in among):  # else none is rounded
-                momentum = sum((ratio * mass * self._state[k].velocity for k, ratio, mass in among), arb(0))
-                velocity[a] = (momentum / sum((ratio**2 * mass for _, ratio, mass in among), arb(0))).mid()
-            apart = ((mass, abs(self._state[k].velocity - ratio * velocity[a]).upper()) for k, ratio, mass in among)
-            lost += sum((mass * each * each / 2 for mass, each in apart), arb(0)).upper()
-        return velocity, lost
-
-    def _sticking_state(self, cluster: Cluster, prescribed: Sequence[fmpq_poly], length: fmpq) -> dict[int, PointState]:
-        """What sticks, where nothing has a state: how fast it may be yet is energy not known of it."""
-        if not cluster.stuck:
-            return {}
-        given = {k: cluster.ratio(k) * prescribed[cluster.group(k)] for k in self._held_masses(cluster)}
-        if self._exact_state(cluster) is not None:
-            return {
-                k: PointState.from_exact(p(length), self._state[k].place + p.integral()(length))
-                for k, p in given.items()
-            }
-        unknown = max(self._state[k].unknown for k in cluster.points)
-        unknown = ((unknown.sqrt() + self._joined_velocities(cluster, prescribed)[1].sqrt()) ** 2).upper()
-        return {k: PointState(arb(p(length)), self._state[k].displacement, None, unknown) for k, p in given.items()}
-
-    def _state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
-        moving = {cluster.leader(a): each for a, each in enumerate(motion.velocity)}
-        moving |= {k: (arb(cluster.ratio(k)) * motion.velocity[cluster.group(k)]).mid() for k in cluster.stuck}
-        return {
-            k: PointState(moving.get(k, arb(0)), motion.displacement[n], None, motion.unknown_energy)
-            for n, k in enumerate(cluster.points)
-        }
 
 
 def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:

@@ -50,7 +50,7 @@ class TouchingJoint(SteadyJoint):
         }
         pressing = [n for n in vague if self.touches[n].friction == 0]
         for tried in range(_ROUNDS):
-            motion = self._balls(cluster, prescribed)
+            motion = self._states.balls(cluster, prescribed)
             pushes = self._add_pushes(forces, {n: bounds[n] for n in pressing}, taken)
             pushed = [add_terms(each) for each in group_forces(cluster, pushes)]
             terms = series_terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
@@ -59,7 +59,7 @@ class TouchingJoint(SteadyJoint):
             known |= {cluster.leader(a): each for a, each in prescribed_terms(law, prescribed).items()}
             pulls = list(forces)
             for k in points:
-                pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
+                pulls[k] = [*forces[k], (fmpq(-1), self.forces.of_springs(cluster, motion, k))]
             found, takes = self._try_every_choice(cluster, closed, vague, known, arriving, pulls, span)
             if tried < _ROUNDS // 2 and any(force.rad() * _CLOSER < taken[n].rad() for n, force in takes.items()):
                 taken |= takes
@@ -76,11 +76,13 @@ class TouchingJoint(SteadyJoint):
         result.rates |= found.rates
         result.pushes |= found.pushes
         result.pushes |= {
-            n: force for n, force in self._holding_forces(cluster, result, forces, acting, motion).items() if n in vague
+            n: force
+            for n, force in self.forces.of_cluster(cluster, result, forces, acting, motion).items()
+            if n in vague
         }
         if not cluster.stateless:
-            result.state |= self._state_after(cluster, motion)
-        self.springs.strain(cluster, result, self._state, motion)
+            result.state |= self._states.state_after(cluster, motion)
+        self.springs.strain(cluster, result, self._states.of_point, motion)
 
     def _bound_sends(
         self,
@@ -160,7 +162,7 @@ class TouchingJoint(SteadyJoint):
                 each.append(self._outgoing(n, moving, arriving[n]))
             for n, touch in self.touches.items():
                 if n in cluster.pushes:
-                    force = add_terms(self._pull(cluster, cluster.pushes[n], moving, rubbed))
+                    force = add_terms(self.forces.pull(cluster, cluster.pushes[n], moving, rubbed))
                     pushes.setdefault(n, []).append(force)
                 elif touch.left in moving and touch.right in moving:
                     rates.setdefault(n, []).append(add_terms(rate_terms(touch, moving)))
@@ -194,7 +196,7 @@ class TouchingJoint(SteadyJoint):
         if sign := sliding_sign(n, sliding):
             rate = add_terms(rate_terms(self.touches[n], velocities)).evaluate_on(span)
             return None if sign * rate < 0 else -sign * limit
-        force = add_terms(self._pull(cluster, cluster.pushes[n], velocities, forces)).evaluate_on(span)
+        force = add_terms(self.forces.pull(cluster, cluster.pushes[n], velocities, forces)).evaluate_on(span)
         least, most = force.lower().max(-limit), force.upper().min(limit)
         return None if least > most else least.union(most)
 

@@ -78,6 +78,10 @@ class JointLaw:
             tuple(point.motion for point in points),
         )
 
+    def is_elastic(self, k: int) -> bool:
+        """Whether springs act on a point."""
+        return any(c != 0 for c in self.stiffness[k])
+
     def restrict(self, points: Sequence[int]) -> JointLaw:
         """The law of some points that nothing connects with the others."""
         return JointLaw(

@@ -98,7 +98,7 @@ class ModeSetsTables:
         return {point: place for place, point in enumerate([*free, *held])}
 
     @property
-    def found(self) -> int:
+    def mode_count(self) -> int:
         """How many modes there are."""
         return min(self.parameters.fewest << self.doublings, self.parameters.like.most)
 
@@ -170,14 +170,14 @@ class ModeSetsTables:
         network, stiffness = self._network, self._stiffness
         damping = model.damping
         rayleigh = damping.modes if damping and damping.modes else (0, 0)
-        found, loads, outputs = self.found, len(like.drivers), len(model.probes)
+        count, loads, outputs = self.mode_count, len(like.drivers), len(model.probes)
         spacing, tau_max = nearest(self.amplitudes.step), model.horizon()
         whole = int(tau_max / spacing + 5e-10)
         starts = self._starts
         crossing = nearest(model.network.shortest) if model.network.bars else spacing
         return {
-            "modes": found + (loads if rayleigh[0] else 0),
-            "found": found,
+            "modes": count + (loads if rayleigh[0] else 0),
+            "found": count,
             "loads": loads,
             "amplitudes": self.amplitudes.samples.shape[1],
             "group": LANES,
