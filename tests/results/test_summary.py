@@ -27,6 +27,7 @@ from wavesym.programs.modes.records import Panels
 from wavesym.programs.request import Request
 from wavesym.results import sampling, statistics, summary
 from wavesym.results.peaks import case_names
+from wavesym.results.presentation import number_text
 from wavesym.results.rows import SAMPLES, own_samples
 from wavesym.results.sampling import sampled_extremes
 from wavesym.results.summary import summarise
@@ -363,3 +364,8 @@ def test_no_program_is_made_for_drifts_that_nobody_asked_for(monkeypatch: pytest
     assert found.largest_drift is None
     assert found.drifts_cost_too_much
     assert "the largest drift would cost too much" in summary_text(found, "text")
+
+
+def test_numbers_for_people_have_no_power_of_ten_below_ten_million() -> None:
+    shown = [number_text(value, "N", 4) for value in (-11803.2, 999960.0, 9999999.0, 12345678.0, 0.00001234)]
+    assert shown == ["-11800 N", "1000000 N", "10000000 N", "1.235e+07 N", "1.234e-05 N"]

@@ -7,6 +7,8 @@ from html import escape
 
 from wavesym.errors import did_you_mean
 
+_WRITTEN_OUT = 1e7
+
 
 def output_number(name: str, outputs: Sequence[str], scene: str) -> int:
     """The number of an output. KeyError, which says which outputs the scene has, where it has none of that name."""
@@ -46,5 +48,7 @@ def csv_line(cells: Iterable[str | float | None]) -> str:
 
 
 def number_text(value: float, unit: str = "", digits: int = 7) -> str:
-    """A number as it is shown to people, with its unit where it has one."""
-    return f"{value:.{digits}g} {unit}".rstrip()
+    """A number as it is shown to people, with its unit where it has one; below ten million without a power of ten."""
+    text = f"{value:.{digits}g}"
+    text = f"{float(text):.0f}" if "e+" in text and abs(value) < _WRITTEN_OUT else text
+    return f"{text} {unit}".rstrip()
