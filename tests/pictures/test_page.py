@@ -284,7 +284,7 @@ def test_the_spectrum_of_the_load_is_what_an_oscillator_does() -> None:
 
 @pytest.mark.parametrize(
     ("value", "unit", "shown"),
-    [(-3.298e6, "N", "3.298 MN"), (1500, "N", "1.5 kN"), (2, "N", "2 N"), (2e6, "mm", "2e+06 mm")],
+    [(-3.298e6, "N", "3.298 MN"), (1500, "N", "1.5 kN"), (2, "N", "2 N"), (2e6, "mm", "2000000 mm")],
 )
 def test_large_forces_are_shown_in_larger_units(value: float, unit: str, shown: str) -> None:
     assert _value(value, unit) == shown
