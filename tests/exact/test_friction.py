@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import pairwise
 
@@ -12,6 +14,7 @@ from flint import arb, ctx, fmpq
 
 import wavesym
 from wavesym.errors import WavesymError
+from wavesym.exact.contacts.schedule import GrazingError
 
 PUSHED = """
 name = "pushed"
@@ -331,6 +334,52 @@ def test_a_block_breaks_away_at_its_limit_at_rest_and_turns_only_beyond_it(
     result = breaking([block], 4, [{"at": "m", **load}])
     assert_events(result, [(kind, arb(fmpq(*Fraction(tau).as_integer_ratio()))) for kind, tau in expected])
     assert result["velocity@m"][-1] == pytest.approx(float(Fraction(str(last))), rel=1e-15)
+
+
+def at_its_limit(more: Fraction) -> list[object]:
+    """(u + 5/4)^2 + v^2 = 169/16: it comes to rest at u = 2, where it takes 2, with a limit of 2 and some more."""
+    limit = f"{2 + more}"
+    return ["fixed", {"spring": 1}, {"mass": 1, "velocity": 3, "friction": "5/4", "breakaway": limit, "name": "m"}]
+
+
+def up_to_its_limit(more: Fraction) -> list[object]:
+    """While it sticks it takes sin(tau) of the other mass, with a limit of 1 and some more."""
+    held = {"mass": 1, "velocity": 0, "friction": "1/2", "breakaway": f"{1 + more}", "name": "m"}
+    return [held, {"spring": 1}, {"mass": 1, "velocity": 1}]
+
+
+@pytest.mark.parametrize("scene", [at_its_limit, pytest.param(up_to_its_limit, marks=pytest.mark.slow)])
+def test_what_takes_just_as_much_as_its_limit_at_rest_is_refused(scene: Callable[[Fraction], list[object]]) -> None:
+    parts = scene(Fraction(0))
+    with pytest.raises(GrazingError, match="do not show whether it sticks or slips"):
+        breaking(parts, 10)
+
+
+@pytest.mark.parametrize("digits", [12, 46])
+@pytest.mark.parametrize("scene", [at_its_limit, up_to_its_limit])
+def test_what_takes_nearly_its_limit_at_rest_is_held_below_and_slips_above_it(
+    scene: Callable[[Fraction], list[object]], digits: int
+) -> None:
+    """However near: a limit that bears less by 10^-46 lets go."""
+    for more, kinds in ((1, {at_its_limit: ["sticks"], up_to_its_limit: []}), (-1, {})):
+        parts = scene(Fraction(more, 10**digits))
+        result = breaking(parts, 10)
+        assert [event.kind for event in result.events] == kinds.get(scene, ["slips", "sticks"])
+        moves = result["displacement@m"][-1] - {at_its_limit: 2.0, up_to_its_limit: 0.0}[scene]
+        assert (abs(moves) > 0.2) == (more < 0)
+
+
+@pytest.mark.parametrize("digits", [30, 49, 90])
+def test_a_rest_known_to_be_below_the_limit_is_one_however_near(digits: int) -> None:
+    """A mass of 1 - 2 a with a velocity of 3 (1 + a) comes to rest below 2, by 4.15 a^2."""
+    a = Decimal(1).scaleb(-digits)
+    with localcontext() as context:
+        context.prec = 100
+        moving = {"mass": str(1 - 2 * a), "velocity": str(3 + 3 * a)}
+    fixed, spring, mass = at_its_limit(Fraction(0))
+    result = breaking([fixed, spring, mass | moving], 10)
+    assert [event.kind for event in result.events] == ["sticks"]
+    assert result["displacement@m"][-1] == pytest.approx(2, abs=1e-15)
 
 
 def test_a_limit_at_rest_that_is_that_of_sliding_changes_nothing() -> None:

@@ -83,6 +83,23 @@ def test_a_mass_whose_ball_reaches_down_to_0_is_a_mass(low, high):
     assert ends[1] * (1 - 1e-12) <= found.high[0, 0] <= 1.11 * ends[1]
 
 
+@pytest.mark.parametrize(
+    ("box", "low", "high"),
+    [
+        ({"system.parts[1].spring": ("1e-30", "1/2")}, 1, 2),
+        ({"system.parts[1].spring": ("3/2", "1e30")}, 1.01e-30, 2),
+        ({"system.parts[2].mass": ("1e-30", "1/2"), "system.parts[1].spring": ("1", "1e30")}, 1.01e-30, 2),
+        ({"system.parts[1].spring": (0.25, 0.5)}, 4 / 3, 2),
+    ],
+)
+def test_a_spring_whose_ball_reaches_down_to_0_is_a_spring(box, low, high):
+    """1/|k - m| at w = 1; a link that is not exactly 0 is there, and wide ranges of two numbers cost no more parts."""
+    scene = OSCILLATOR.with_({"system.parts[1].dashpot": "0", "system.parts[2].mass": "1"})
+    found = wavesym.frf(scene, [1.0], ranges=box)
+    assert low - 0.11 * high <= found.low[0, 0] <= low
+    assert high * (1 - 1e-12) <= found.high[0, 0] <= 1.11 * high
+
+
 def fraction_of(text):
     above, _, below = text.partition("/")
     return float(above) / float(below or 1)

@@ -93,26 +93,20 @@ class _Box:
     added: tuple[Numbers, ...]
 
     def amplitudes(self, load: HarmonicLoad, part: Part, w: arb) -> list[arb]:
-        """Those of the outputs in a part of the box, at a frequency: any where a number's ball reaches down to 0.
-
-        Of a part without width numbers are exact. A number that may be 0 is none that engines take: they ask what is 0.
-        """
+        """Those of the outputs in a part of the box, at a frequency; what does not vary is exact."""
         numbers = []
         for k, low in enumerate(self.low):
             number = arb(low)
             for (first, last), added in zip(part, self.added, strict=True):
                 if added[k] != 0:
                     number = number + arb(first * added[k]).union(arb(last * added[k]))
-            varied = any(added[k] != 0 for added in self.added)
-            if varied and not number > 0:
-                return [arb("nan") for _ in self.model.probes]
-            numbers.append(number if varied else low)
+            numbers.append(number if any(added[k] != 0 for added in self.added) else low)
         network = _with_numbers(self.model.network, numbers)
         return [abs(acb(each)) for each in Transfer(replace(self.model, network=network), load)(w)]
 
 
 def response_ranges(
-    scene: Scene, load: HarmonicLoad, box: Mapping[str, tuple[str, str]], frequencies: Sequence[float]
+    scene: Scene, load: HarmonicLoad, box: Mapping[str, tuple[Any, Any]], frequencies: Sequence[float]
 ) -> ResponseRanges:
     """The ranges of amplitudes over a box.
 
@@ -127,7 +121,8 @@ def response_ranges(
         CostError: where no enclosure is found, as where a natural frequency without damping lies in the box.
         WavesymError: for ranges that are none.
     """
-    found = _box(scene, box)
+    texts = {path: (str(first), str(last)) for path, (first, last) in box.items()}
+    found = _box(scene, texts)
     model = found.model
     ends = [_enclose(found, load, f) for f in frequencies]
     return ResponseRanges(
@@ -140,7 +135,7 @@ def response_ranges(
         tuple(probe.unit for probe in model.probes),
         np.array([low for low, _ in ends]).T.reshape(len(model.probes), -1),
         np.array([high for _, high in ends]).T.reshape(len(model.probes), -1),
-        dict(box),
+        texts,
     )
 
 

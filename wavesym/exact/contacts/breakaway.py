@@ -1,10 +1,12 @@
 """Friction that bears more at rest than when it slides: from R_s on it breaks away, and then takes R_k.
 
 Two such motions can part, so that every decision has to be certain: it is kept which branches the true motion may be on
-(sticking, 0, or sliding one way, 1 or -1). N is what would hold it, the force on its right side: sticking, it breaks
-away the one way where N < -R_s, the other way where N > R_s. Its rate r then has s r' = w (A - R_k), with A = -s N what
-drives it the way s that it slides, and w one over its mass: it goes on until r comes to 0, and sticks unless N is
-beyond R_s there.
+(sticking, 0, or sliding one way, 1 or -1), and none is taken while there are two. It has left rest where it would be
+held beyond R_s, had it stuck up to there: until it breaks away that is its motion.
+
+N is what would hold it, the force on its right side: sticking, it breaks away the one way where N < -R_s, the other way
+where N > R_s. Its rate r then has s r' = w (A - R_k), with A = -s N what drives it the way s that it slides, and w one
+over its mass: it goes on until r comes to 0, and sticks unless N is beyond R_s there.
 """
 
 from __future__ import annotations
@@ -30,6 +32,20 @@ _STUCK = frozenset({0})
 
 
 @dataclass
+class _Rest:
+    """A motion on which it sticks, and what is left of its limit either way; `since` its start some time has passed."""
+
+    margins: dict[int, Enclosure]
+    length: fmpq
+    since: fmpq = field(default_factory=fmpq)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it certainly has broken away by now, where that motion is known."""
+        return self.since <= self.length and any(margin.evaluate(self.since) < 0 for margin in self.margins.values())
+
+
+@dataclass
 class Breakaway(Corner):
     """What rubs so, as time goes on: how fast its right side goes less its left one, and what it may do."""
 
@@ -41,6 +57,7 @@ class Breakaway(Corner):
     possible: frozenset[int]
     _decided: Branch
     _breaks: int = field(default=0)  # the way that it breaks away at once, as its last trial of sticking shows
+    _rest: _Rest | None = field(default=None)  # the last such trial, while it may still stick
 
     @classmethod
     def begin(cls, link: int, limits: tuple[fmpq, fmpq], lightness: fmpq, rate: arb) -> Breakaway:
@@ -82,9 +99,12 @@ class Breakaway(Corner):
         self.possible = frozenset({sign}) if sign or rate.is_zero() else frozenset({-1, 0, 1})
 
     def begins(self, moved: JointStretch) -> bool:
-        """Whether N is within its limits, or it certainly slides, just after the start."""
+        """Whether N is within its limits, or it certainly slides, just after the start; not while it is unclear."""
+        if self.is_unclear:
+            return False
         if self.link in moved.closed:
-            margins = {way: self._margin(moved, way) for way in (1, -1)}
+            margins = self._margins(moved)
+            self._rest = _Rest(margins, moved.length)
             falls = {way: add_terms([(fmpq(-1), margin)]) for way, margin in margins.items()}
             self._breaks = next((way for way, fall in falls.items() if begins_to_grow(fall)), 0)
             return all(map(begins_bearable, margins.values()))
@@ -96,7 +116,9 @@ class Breakaway(Corner):
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """Until when N is certainly within its limits, or it certainly goes the way it slides."""
         if self.link in moved.closed:
-            ends = [lasts_until(self._margin(moved, way), low, moved.length, resolution) for way in (1, -1)]
+            self._rest = _Rest(self._margins(moved), moved.length)
+            margins = self._rest.margins.values()
+            ends = [lasts_until(margin, low, moved.length, resolution) for margin in margins]
             return min((end for end in ends if end is not None), key=lambda end: end.length, default=None)
         sign = sliding_sign(self.link, moved.sliding)
         forward = add_terms([(fmpq(sign), moved.rates[self.link])])
@@ -110,13 +132,17 @@ class Breakaway(Corner):
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether it is on its branch on all of a short stretch."""
         if self.link in moved.closed:
-            return all(is_not_negative(self._margin(moved, way), length) for way in (1, -1))
+            return all(is_not_negative(margin, length) for margin in self._margins(moved).values())
         sign = sliding_sign(self.link, moved.sliding)
         forward = add_terms([(fmpq(sign), moved.rates[self.link])])
         return value_range(forward, length) > 0 or value_range(self._thrust(moved, sign), length) > 0
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Go to the end of a stretch: where it was left open, on all branches that it can have come to."""
+        if self._rest is not None:
+            self._rest.since += length
+            if not moved.closed | moved.vague <= {self.link} or moved.sliding:  # other corners, or it slides
+                self._rest = None
         if self.link in moved.closed:
             self.rate = arb(0)
             return
@@ -143,6 +169,7 @@ class Breakaway(Corner):
         least, most = arb(self.limit), arb(self.most)
         drive, last = value_range(holding, length), holding.evaluate(length)
         drives, h = {way: -way * drive for way in (1, -1)}, arb(length)
+        rested, again = self._rest is None or not self._rest.is_over, False
         rests = {way for way in self.possible - _STUCK if self._certainly_stops(way, drives[way], h)}
         reached, coming = set(self.possible), set(self.possible)
         while coming:
@@ -152,12 +179,13 @@ class Breakaway(Corner):
             found = {other for other in (1, -1) if not drives[other] < most}
             if way and not abs(drive) > most:
                 found.add(0)
+                again = True
             for other in found - {way}:
                 rests.discard(other)
                 if other not in reached:
                     reached.add(other)
                     coming.add(other)
-        gone = rests | ({0} if abs(last) > most else set())
+        gone = rests | ({0} if abs(last) > most or not (rested or again) else set())
         gone |= {way for way in (1, -1) if way * after < 0} | (set() if after.contains(0) else {0})
         return frozenset(reached - gone)
 
@@ -167,9 +195,9 @@ class Breakaway(Corner):
     def _certainly_goes_on(self, way: int, drive: arb, h: arb) -> bool:
         return bool(way * self.rate + h * self.lightness * (drive - self.limit).min(arb(0)) > 0)
 
-    def _margin(self, moved: JointStretch, way: int) -> Enclosure:
-        """What is left of its limit at rest before it breaks away one way."""
-        return add_terms([(self.most, UNIT), (fmpq(way), moved.pushes[self.link])])
+    def _margins(self, moved: JointStretch) -> dict[int, Enclosure]:
+        """What is left of its limit at rest before it breaks away, either way."""
+        return {way: add_terms([(self.most, UNIT), (fmpq(way), moved.pushes[self.link])]) for way in (1, -1)}
 
     def _thrust(self, moved: JointStretch, sign: int) -> Enclosure:
         """What drives it the way it slides, beyond its friction: its mass times its acceleration."""

@@ -7,7 +7,8 @@ by A/B, and a spring and a dashpot beside the bar by k. With c = cos w T and S =
     near : far = D : B (Z + k S),   D = A S + B (Z c + k S),   N = A (Z c + k S) + B (2 Z k (c - 1) - Z^2 w^2 S)
 
 So w = 0 is no exception, and the whole tree is divided by one number alone, which is 0 at its natural frequencies.
-The arithmetic is that of w: balls, or power series of them about a frequency.
+The arithmetic is that of w: balls, or power series of them about a frequency. Masses, springs and dashpots may be
+balls, too, that reach down to 0: what is not exactly 0 is there.
 """
 
 from __future__ import annotations
@@ -254,7 +255,7 @@ class Amplitudes:
         if point.mass == point.damping == point.stiffness == 0:
             return None
         own: Quantity = arb(point.stiffness)
-        if point.mass != 0:
+        if not _is_zero(point.mass):
             own = own - self._square * point.mass
         return own if point.damping == 0 else own + self._w * (_I * point.damping)
 
@@ -288,9 +289,9 @@ class Amplitudes:
 
     def _parallel_resistance(self, branch: Branch) -> Quantity:
         """How a spring and a dashpot resist; None where there are none."""
-        if branch.damping != 0:
+        if not _is_zero(branch.damping):
             return self._w * (_I * branch.damping) + branch.stiffness
-        return arb(branch.stiffness) if branch.stiffness != 0 else None
+        return None if _is_zero(branch.stiffness) else arb(branch.stiffness)
 
     def _turns_to_ends(self, branch: Branch, place: fmpq) -> tuple[Turn, Turn]:
         """From a place of its bar to the near and to the far end."""
@@ -317,6 +318,11 @@ class Amplitudes:
         angle = self._w * delay
         sine = angle.sin() * _inverse(self._w) if isinstance(angle, acb_series) else angle.sinc() * delay
         return Turn(sine, angle.cos())
+
+
+def _is_zero(number: Quantity) -> bool:
+    """Whether a number is 0: a ball with 0 in it is neither equal to 0 nor different from it."""
+    return bool(number == 0)
 
 
 def _inverse(value: Quantity) -> Quantity:
