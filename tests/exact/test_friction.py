@@ -7,6 +7,7 @@ from collections.abc import Callable
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import pairwise
+from math import sin
 
 import numpy as np
 import pytest
@@ -348,7 +349,7 @@ def up_to_its_limit(more: Fraction) -> list[object]:
     return [held, {"spring": 1}, {"mass": 1, "velocity": 1}]
 
 
-@pytest.mark.parametrize("scene", [at_its_limit, pytest.param(up_to_its_limit, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scene", [at_its_limit, up_to_its_limit])
 def test_what_takes_just_as_much_as_its_limit_at_rest_is_refused(scene: Callable[[Fraction], list[object]]) -> None:
     parts = scene(Fraction(0))
     with pytest.raises(GrazingError, match="do not show whether it sticks or slips"):
@@ -380,6 +381,14 @@ def test_a_rest_known_to_be_below_the_limit_is_one_however_near(digits: int) -> 
     result = breaking([fixed, spring, mass | moving], 10)
     assert [event.kind for event in result.events] == ["sticks"]
     assert result["displacement@m"][-1] == pytest.approx(2, abs=1e-15)
+
+
+def test_a_velocity_that_touches_0_again_and_again_is_followed() -> None:
+    """From tau = 1 on u = tau - 1 - sin(tau - 1): it is at rest, and pulled by just its friction, after each 2 pi."""
+    parts = ["fixed", {"spring": 1}, {"mass": 1, "velocity": 0, "friction": 1, "name": "m"}]
+    result = breaking(parts, 15, [{"at": "m", "times": [0], "ramps": [1]}])
+    assert_events(result, [("slips", arb(1))])
+    assert result["displacement@m"][-1] == pytest.approx(14 - sin(14), rel=1e-15)
 
 
 def test_a_limit_at_rest_that_is_that_of_sliding_changes_nothing() -> None:

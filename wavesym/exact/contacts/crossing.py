@@ -18,6 +18,7 @@ TINY = 8
 _CLEAR = 2**10  # errors: what is farther from 0 stays so, though errors grow
 _CLOSEST = 64  # resolutions in which a function may rise
 _STEPS = 12  # of Newton's method: each doubles the bits
+_SAFE_STEPS = 64  # where halving has to bring it near first
 
 
 class _Course:
@@ -61,8 +62,31 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
             return _last(p, error, a, b, resolution)
         if b - a <= resolution:
             return a
+        if b - a <= high * _CLOSE and (touched := _last_of_convex(p, error, a, b, resolution)) is not None:
+            return touched
         stack += [(a + half, b), (a, a + half)]
     return None
+
+
+def _last_of_convex(p: arb_poly, error: arb, a: fmpq, b: fmpq, resolution: fmpq) -> fmpq | None:
+    """The last place where what is convex is positive for certain before it touches 0; None where that is not seen.
+
+    It falls up to any place at which its slope is certainly negative, so that no halving has to show it.
+    """
+    slope = p.derivative()
+    bent = slope.derivative()
+    if not p(arb(a)) > error or not bent(arb(a).union(arb(b))) > 0:
+        return None
+    x = (a + b) / 2
+    for _ in range(_STEPS):
+        x = min(max(x - middle(slope(arb(x)) / bent(arb(x))), a), b)
+    if x <= a or p(arb(x)) > error:
+        return None
+    deep = (2 * (error - p(arb(x))).upper() / bent(arb(x))).upper().sqrt()
+    near = x - middle(2 * deep)
+    a = near if near > a and p(arb(near)) > error else a
+    last = _last(p, error, a, x, resolution)
+    return last if slope(arb(last)) < 0 else None
 
 
 def shortfall(known: Enclosure, high: fmpq) -> arb:
@@ -171,14 +195,17 @@ def _sign_on(p: arb_poly, error: arb, centre: fmpq, half: fmpq) -> tuple[bool, i
 
 def _last(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq:
     """The same where p falls steadily, is above at `low` and may not be at `high`."""
-    slope, x = p.derivative(), (low + high) / 2
-    for _ in range(_STEPS):
-        step = middle((p(arb(x)) - error) / slope(arb(x)))
-        x = min(max(middle(arb(x - step)), low), high)
+    slope, x, first, end = p.derivative(), (low + high) / 2, low, high
+    for _ in range(_SAFE_STEPS):
+        value = p(arb(x))
+        low, high = (x, high) if value > error else (low, x)
+        step = middle((value - error) / slope(arb(x)))
         if abs(step) < resolution / 4:
+            x -= step
             break
+        x = middle(arb(x - step)) if low < x - step < high else (low + high) / 2
     for near in (x - resolution / 2, x - resolution):
-        if near > low and p(arb(near)) > error and not p(arb(min(near + 2 * resolution, high))) > error:
+        if near > first and p(arb(near)) > error and not p(arb(min(near + 2 * resolution, end))) > error:
             return near
     while high - low > resolution:
         x = (low + high) / 2

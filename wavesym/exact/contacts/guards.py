@@ -73,11 +73,20 @@ def _begins_positive(known: Enclosure) -> bool:
 
 
 def spread(known: Enclosure, x: fmpq) -> fmpq:
-    """How far off the place is where a function comes to 0; 0 where that is not known."""
-    slope = abs(known.polynomial.derivative()(arb(x))).lower()
-    if not slope > 0:
-        return fmpq(0)
-    return middle(2 * (known.error + known.polynomial(arb(x)).rad()) / slope)
+    """How far off the place is where a function comes to 0, about; 0 where that is not known.
+
+    It is the error over the slope; where that is nearly 0, too, some times the root of the error over the curvature.
+    """
+    slope = known.polynomial.derivative()
+    error, rise, bent = (
+        known.error + known.polynomial(arb(x)).rad(),
+        abs(slope(arb(x))),
+        abs(slope.derivative()(arb(x))),
+    )
+    found = [2 * error / rise.lower()] if rise.lower() > 0 else []
+    if bent.lower() > 0:
+        found.append(2 * ((2 * error / bent.lower()).sqrt() + 2 * rise.upper() / bent.lower()))
+    return min(map(middle, found), default=fmpq(0))
 
 
 def value_range(known: Enclosure, length: fmpq) -> arb:
