@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from wavesym.exact.joints.enclosure import STILL, Enclosure
 from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.joint_motion import JointMotion
+from wavesym.exact.joints.state_space import ElasticState, state_space
 from wavesym.mechanics.network import Bar, Link, Network, Point
 
 SMALL = st.fractions(0, 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))
@@ -172,3 +173,41 @@ def test_springs_and_dashpots_between_masses(mass, dashpots, springs, stiff, ter
 def test_a_joint_without_rod_or_dashpot_has_no_law():
     with pytest.raises(ZeroDivisionError):
         _ = law([0], [[0]]).inverse
+
+
+@given(st.data())
+@settings(max_examples=25, deadline=None)
+def test_the_first_order_form_of_a_joint_balances_the_forces_at_each_point(data: st.DataObject) -> None:
+    size = data.draw(st.integers(1, 4))
+    motions = [data.draw(st.sampled_from([None, None, "velocity"])) for _ in range(size)]
+    mass = [data.draw(st.sampled_from([fmpq(0), fmpq(2), fmpq(5, 3)])) for _ in range(size)]
+    damping = [[fmpq(0)] * size for _ in range(size)]
+    for a in range(size):
+        damping[a][a] += data.draw(POSITIVE)
+        for b in range(a):
+            c = data.draw(SMALL)
+            for i, j, sign in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
+                damping[i][j] += sign * c
+    joint = law(mass, damping, given=motions)
+    springs = [{a: data.draw(SMALL) - 1 for a in range(size)} for _ in range(data.draw(st.integers(0, 2)))]
+    space = state_space(joint, [ElasticState(row, {a: 3 * c for a, c in row.items()}) for row in springs])
+    masses, states = len(joint.heavy), len(joint.heavy) + len(springs)
+    for column in range(states + size):
+        x, s = (
+            [fmpq(int(n == column - first)) for n in range(count)] for first, count in ((0, states), (states, size))
+        )
+        q = [dot(space.shown[a], x) + dot(space.passed[a], s) for a in range(size)]
+        changes = [dot(space.rates[n], x) + dot(space.pushed[n], s) for n in range(states)]
+        assert [q[a] for a in joint.heavy] == x[:masses]
+        assert changes[masses:] == [dot(row.values(), q) for row in springs]
+        for a in range(size):
+            if motions[a] is not None:
+                assert q[a] == s[a]
+                continue
+            inertia = mass[a] * changes[joint.heavy.index(a)] if mass[a] else fmpq(0)
+            pulled = sum((3 * row[a] * z for row, z in zip(springs, x[masses:], strict=True)), fmpq(0))
+            assert inertia + dot(damping[a], q) + pulled == s[a]
+
+
+def dot(one, other):
+    return sum((a * b for a, b in zip(one, other, strict=True)), fmpq(0))

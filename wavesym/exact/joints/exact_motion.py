@@ -15,7 +15,7 @@ from math import factorial, inf
 from flint import arb, fmpq, fmpq_poly
 
 from wavesym.exact.joints.enclosure import ORDER, Onset
-from wavesym.exact.joints.joint_law import JointLaw
+from wavesym.exact.joints.joint_law import JointLaw, bound_sum
 from wavesym.exact.joints.joint_series import motion_series
 
 # powers beyond those of what acts, in which a motion that is a polynomial must have come to its end
@@ -113,18 +113,15 @@ def _derivatives(
                 now[k] = prescribed[k].derivative(j, length)
             elif k in heavy:
                 now[k] = heavy[k]
-        pull = [forces[k].derivative(j, length) + _pulls(law.stiffness[k], springs) for k in size]
-        known = [k for k in size if k not in law.light]
-        right = [pull[k] + _pulls([law.damping[k][b] for b in known], [now[b] for b in known]) for k in law.light]
-        for row, k in enumerate(law.light):
-            now[k] = _pulls([law.inverse[row, n] for n in range(len(right))], right).upper()
+        pull = [
+            forces[k].derivative(j, length) + bound_sum(list(zip(law.stiffness[k], springs, strict=True))) for k in size
+        ]
+        known = {k: now[k] for k in size if k not in law.light}
+        for k, bound in law.light_velocities(pull, known, bound_sum).items():
+            now[k] = bound.upper()
         for k in law.heavy:
-            heavy[k] = ((pull[k] + _pulls(law.damping[k], now)) / arb(law.mass[k])).upper()
+            slow = bound_sum(list(zip(law.damping[k], now, strict=True)))
+            heavy[k] = ((pull[k] + slow) / arb(law.mass[k])).upper()
         springs = [abs(arb(ratio)) * now[a] for a, ratio in law.moves]
         found = [now[k] if orders[k] == j else found[k] for k in size]
     return found
-
-
-def _pulls(factors: Sequence[fmpq], sizes: Sequence[arb]) -> arb:
-    """What these sizes make at most; some may be infinite, where their factor is 0."""
-    return sum((abs(arb(c)) * size for c, size in zip(factors, sizes, strict=True) if c != 0), arb(0))

@@ -7,17 +7,20 @@ Seen from a joint every rod end is a dashpot and a force, so that with arriving 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isqrt
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
-from flint import fmpq, fmpq_mat, fmpq_poly
+from flint import arb, fmpq, fmpq_poly
 
 from wavesym.derivation.rules import joint_rule
 from wavesym.exact.joints.enclosure import Enclosure, Terms, scale_terms
 from wavesym.mechanics.network import End, Joint, Network
+
+Part = TypeVar("Part")
+"""A force or a velocity: a number, a bound, a function, or a row of what it is made of."""
 
 # a series is begun anew where it would have to bear more than exp(this)
 SWING = 24
@@ -165,10 +168,43 @@ class JointLaw:
         return SWING / self.fastest if self.springs and self.fastest != 0 else None
 
     @cached_property
-    def inverse(self) -> fmpq_mat:
-        """The inverse of C on the points without mass. ZeroDivisionError where one has neither rod nor dashpot."""
+    def inverse(self) -> Mapping[tuple[int, int], fmpq]:
+        """The inverse of C on the points without mass, its numbers functions if those of C are.
+
+        ZeroDivisionError where a point has neither rod nor dashpot. As no dashpot gives energy, no pivot is 0 else.
+        """
         size = len(self.light)
-        return fmpq_mat(size, size, [self.damping[a][b] for a in self.light for b in self.light]).inv()
+        rows = [
+            [*(self.damping[a][b] for b in self.light), *(fmpq(int(n == k)) for n in range(size))]
+            for k, a in enumerate(self.light)
+        ]
+        for k, pivot in enumerate(rows):
+            scale = 1 / pivot[k]
+            pivot[:] = [scale * value for value in pivot]
+            for row in rows:
+                if row is not pivot and row[k] != 0:
+                    row[:] = [a - row[k] * b for a, b in zip(row, pivot, strict=True)]
+        return {(n, m): rows[n][size + m] for n in range(size) for m in range(size)}
+
+    def light_velocities(
+        self,
+        forces: Mapping[int, Part] | Sequence[Part],
+        known: Mapping[int, Part],
+        add: Callable[[Sequence[tuple[fmpq, Part]]], Part],
+    ) -> dict[int, Part]:
+        """The velocities of points without mass, which the balance C q = s of forces on them gives.
+
+        Args:
+            forces: s on each of these points, less what springs pull.
+            known: the velocities of other points; what is not in it stands still.
+            add: a sum of parts, each times a factor. One of absolute values makes bounds of bounds.
+        """
+        acting = [
+            add([(fmpq(1), forces[k]), *((-self.damping[k][other], q) for other, q in known.items())])
+            for k in self.light
+        ]
+        shares = (([self.inverse[row, n] for n in range(len(acting))]) for row in range(len(acting)))
+        return {k: add(list(zip(row, acting, strict=True))) for k, row in zip(self.light, shares, strict=True)}
 
     @cached_property
     def absorption(self) -> dict[int, fmpq]:
@@ -227,11 +263,15 @@ def outgoing_terms(end: JointEnd, velocity: Terms, wave: Enclosure) -> Terms:
 
 def scatter(law: JointLaw, forces: Sequence[Terms], known: Mapping[int, Terms]) -> list[Terms]:
     """The velocities of groups: of those without mass they follow from what acts and from the others, `known`."""
-    q = [known.get(a, []) for a in range(len(law.mass))]
-    for row, a in enumerate(law.light):
-        for column, b in enumerate(law.light):
-            share = law.inverse[row, column]
-            q[a] = [*q[a], *scale_terms(forces[b], share)]
-            for c, velocity in known.items():
-                q[a] += scale_terms(velocity, -share * law.damping[b][c])
-    return q
+    q = {**known, **law.light_velocities(forces, known, _join_terms)}
+    return [q.get(a, []) for a in range(len(law.mass))]
+
+
+def _join_terms(parts: Sequence[tuple[fmpq, Terms]]) -> Terms:
+    """A sum of sums, each times a factor."""
+    return [term for factor, terms in parts for term in scale_terms(terms, factor)]
+
+
+def bound_sum(parts: Sequence[tuple[fmpq, arb]]) -> arb:
+    """What a sum is at most whose parts, each times a factor, are bounded; infinite ones where their factor is 0."""
+    return sum((abs(arb(factor)) * bound for factor, bound in parts if factor != 0), arb(0))

@@ -27,8 +27,8 @@ from typing import TYPE_CHECKING
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.joints.enclosure import Enclosure, weighted_sum
-from wavesym.exact.joints.joint_law import JointLaw
-from wavesym.exact.joints.joint_series import dot, motion_series
+from wavesym.exact.joints.joint_law import JointLaw, bound_sum
+from wavesym.exact.joints.joint_series import motion_series
 
 if TYPE_CHECKING:
     from wavesym.exact.joints.relaxation import Relaxation
@@ -104,18 +104,11 @@ class JointMotion:
             total = weighted_sum([(share, forces[k]), *slow, *sprung])
             strained = arb(share) * arb(law.stiffness[k][k]).sqrt() * self.spring_error
             found[k] = replace(total, error=(total.error + strained).upper())
-        right = [
-            weighted_sum(
-                [
-                    (fmpq(1), rates[k]),
-                    *((-law.damping[k][b], each) for b, each in found.items()),
-                    *((-c, velocities[b]) for b, c in enumerate(law.stiffness[k])),
-                ]
-            )
+        acting = {
+            k: weighted_sum([(fmpq(1), rates[k]), *((-c, velocities[b]) for b, c in enumerate(law.stiffness[k]))])
             for k in law.light
-        ]
-        for row, k in enumerate(law.light):
-            found[k] = weighted_sum([(law.inverse[row, n], each) for n, each in enumerate(right)])
+        }
+        found |= law.light_velocities(acting, found, weighted_sum)
         return [found[k] for k in range(len(law.mass))]
 
     def relax(
@@ -186,25 +179,22 @@ class JointMotion:
             if law.mass[k] != 0:
                 left += arb(law.mass[k]) * arb_poly(q[k]).derivative()
             defect[k] = (_size(forces[k].polynomial - left, h) + forces[k].error).upper()
-        inverse = [[abs(arb(law.inverse[a, b])) for b in range(len(law.light))] for a in range(len(law.light))]
-        light = [defect[k] for k in law.light]
-        through = [dot(row, light) for row in inverse]
+        through = law.light_velocities(defect, {}, bound_sum)
         delta, absorbed, kept = arb(0), arb(0), arb(0)  # kept and absorbed: the same, where points are slowed down
         for k in law.heavy:
-            more = sum((abs(arb(law.damping[k][b])) * t for b, t in zip(law.light, through, strict=True)), arb(0))
-            square = (defect[k] + more) ** 2
+            square = (defect[k] + bound_sum([(law.damping[k][b], speed) for b, speed in through.items()])) ** 2
             delta += square / arb(law.mass[k])
             if k in law.absorption:
                 absorbed += square / (4 * arb(law.absorption[k]))
             else:
                 kept += square / arb(law.mass[k])
-        rho = dot(light, through) / 4 if light else arb(0)
+        rho = sum((defect[k] * speed for k, speed in through.items()), arb(0)) / 4
         before = (2 * self.unknown_energy / arb(law.mass[law.heavy[0]])).sqrt() if law.heavy else arb(0)
         kappa = sum(
             (
                 abs(arb(law.group_stiffness[a][b])) * one * other
-                for a, one in zip(law.light, through, strict=True)
-                for b, other in zip(law.light, through, strict=True)
+                for a, one in through.items()
+                for b, other in through.items()
                 if law.group_stiffness[a][b] != 0
             ),
             arb(0),
@@ -224,13 +214,8 @@ class JointMotion:
             if self.decays:
                 after = after.min((before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held).upper())
             self.unknown_energy = (arb(law.mass[k]) * after**2 / 2).upper()
-        right = []
-        for k in law.light:
-            value = defect[k] + speed * arb(law.group_stiffness[k][k]).sqrt()
-            value += sum((abs(arb(law.damping[k][b])) * e for b, e in errors.items()), arb(0))
-            right.append(value)
-        for row, k in enumerate(law.light):
-            errors[k] = dot(inverse[row], right).upper()
+        strained = {k: defect[k] + speed * arb(law.group_stiffness[k][k]).sqrt() for k in law.light}
+        errors |= {k: bound.upper() for k, bound in law.light_velocities(strained, errors, bound_sum).items()}
         return [errors.get(k, arb(0)) for k in range(len(law.mass))]
 
 

@@ -150,10 +150,7 @@ class _Answer:
         forces = [joint_rule().load * acts.get(point, _ZERO) for point in points]
         for each in self._ends:
             forces[each.place] += each.force * waves.get(each.end, _ZERO)
-        known = [_ZERO if k in law.light else acts.get(point, _ZERO) for k, point in enumerate(points)]
-        q = list(known)
-        right = [forces[k] - sum((c * v for c, v in zip(law.damping[k], known, strict=True)), _ZERO) for k in law.light]
-        for row, k in enumerate(law.light):
-            q[k] = sum((law.inverse[row, n] * value for n, value in enumerate(right)), _ZERO)
+        q = {k: acts.get(point, _ZERO) for k, point in enumerate(points) if k not in law.light}
+        q |= law.light_velocities(forces, q, lambda parts: sum((factor * each for factor, each in parts), _ZERO))
         sent = {each.end: each.ratio * q[each.place] - waves.get(each.end, _ZERO) for each in self._ends}
-        return dict(zip(points, q, strict=True)), sent
+        return {point: q[k] for k, point in enumerate(points)}, sent

@@ -1,7 +1,8 @@
 """The motion that is left of a stiff joint when what decays fast has died away, as a polynomial.
 
 A light mass, or a point without mass on a spring and a dashpot, answers at a rate far above all others. With the state
-x = (velocities of masses, displacements of points), inputs f (forces, prescribed velocities) and the law of the joint
+x = (velocities of masses, displacements of points), inputs f (forces, or velocities that are prescribed) and the law of
+the joint (`state_space`)
 
     x' = A x + B f,    q = Q x + S f,
 
@@ -30,6 +31,7 @@ from flint import acb, arb, arb_mat, ctx, fmpq, fmpq_mat
 
 from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.joint_series import Powers
+from wavesym.exact.joints.state_space import ElasticState, Rows, state_space
 
 _APART = 8  # fast rates are so many times the slow ones, at least
 _OSCILLATES = 8  # and at most so many times as fast as they decay
@@ -51,6 +53,7 @@ class Relaxation:
     fast: fmpq
     _heavy: tuple[int, ...]
     _has_springs: bool
+    _motions: tuple[str | None, ...]
     _generator: arb_mat
     _input: arb_mat
     _inverse: arb_mat
@@ -64,7 +67,7 @@ class Relaxation:
         """One for each gap between rates of a law above which all decays, the one with the slowest rates first."""
         if len(law.moves) > _POINTS or not (law.heavy or law.springs):
             return ()
-        system = _system(law)
+        system = _state_space(law)
         return tuple(cls._parting(law, system, *rates) for rates in reversed(_gaps(system[0])))
 
     @classmethod
@@ -98,6 +101,7 @@ class Relaxation:
             fast,
             law.heavy,
             law.springs,
+            law.motions,
             _generator=_round(generator),
             _input=_round(driven),
             _inverse=_round(inverse),
@@ -120,7 +124,11 @@ class Relaxation:
         terms: int,
     ) -> tuple[list[list[arb]], list[arb]]:
         """The coefficients of the velocities of groups, and the displacements of points at the start."""
-        inputs = arb_mat([[each[n] for n in range(terms)] for each in (*forces, *prescribed)])
+        acting = [
+            force if motion is None else given
+            for motion, force, given in zip(self._motions, forces, prescribed, strict=True)
+        ]
+        inputs = arb_mat([[each[n] for n in range(terms)] for each in acting])
         driven, quasistatic = (self._input * inputs).mid(), (self._quasistatic * inputs).mid()
         size = self._generator.nrows()
         state = [velocity[k] for k in self._heavy] + (list(displacement) if self._has_springs else [])
@@ -152,43 +160,27 @@ def _matrix_column(matrix: arb_mat, n: int) -> arb_mat:
     return arb_mat([[matrix[k, n]] for k in range(matrix.nrows())])
 
 
-def _system(law: JointLaw) -> tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat]:
-    """A, B, Q and S of the law; inputs are forces on all groups, and the prescribed velocities of all."""
-    groups, points = len(law.mass), len(law.moves) if law.springs else 0
-    size, given = len(law.heavy) + points, [a for a in range(groups) if law.motions[a] is not None]
-    wide = size + 2 * groups  # columns: state, forces, prescribed velocities
-
-    def unit(column: int) -> list[fmpq]:
-        return [fmpq(int(n == column)) for n in range(wide)]
-
-    def combine(terms: Sequence[tuple[fmpq, list[fmpq]]]) -> list[fmpq]:
-        return [sum((factor * row[n] for factor, row in terms if factor != 0), fmpq(0)) for n in range(wide)]
-
-    velocity = {a: unit(row) for row, a in enumerate(law.heavy)} | {a: unit(size + groups + a) for a in given}
-    sprung = {a: [(-law.stiffness[a][k], unit(len(law.heavy) + k)) for k in range(points)] for a in range(groups)}
-    known = list(velocity.items())
-    right = {
-        a: combine([(fmpq(1), unit(size + a)), *sprung[a], *((-law.damping[a][c], row) for c, row in known)])
-        for a in law.light
-    }
-    for row, a in enumerate(law.light):
-        velocity[a] = combine([(law.inverse[row, n], right[b]) for n, b in enumerate(law.light)])
-    moving = [
+def _state_space(law: JointLaw) -> tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat]:
+    """A, B, Q and S of the law, whose states are velocities of masses and, where there are springs, all places."""
+    groups, places = len(law.mass), law.moves if law.springs else ()
+    space = state_space(
+        law,
         [
-            x / law.mass[a]
-            for x in combine(
-                [(fmpq(1), unit(size + a)), *sprung[a], *((-law.damping[a][c], row) for c, row in velocity.items())]
-            )
-        ]
-        for a in law.heavy
-    ]
-    moving += [[ratio * x for x in velocity[group]] for group, ratio in law.moves[:points]]
-    read = [velocity[a] for a in range(groups)]
+            ElasticState({group: ratio}, {a: law.stiffness[a][k] for a in range(groups)})
+            for k, (group, ratio) in enumerate(places)
+        ],
+    )
+    states = len(law.heavy) + len(places)
 
-    def cut(rows: Sequence[Sequence[fmpq]], low: int, high: int) -> fmpq_mat:
-        return fmpq_mat(len(rows), high - low, [x for row in rows for x in row[low:high]])
+    def matrix(rows: Rows, columns: int) -> fmpq_mat:
+        return fmpq_mat(len(rows), columns, [x for row in rows for x in row])
 
-    return cut(moving, 0, size), cut(moving, size, wide), cut(read, 0, size), cut(read, size, wide)
+    return (
+        matrix(space.rates, states),
+        matrix(space.pushed, groups),
+        matrix(space.shown, states),
+        matrix(space.passed, groups),
+    )
 
 
 def _gaps(a: fmpq_mat) -> list[tuple[fmpq, fmpq, fmpq]]:

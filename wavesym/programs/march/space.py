@@ -23,14 +23,13 @@ from flint import fmpq, fmpq_mat
 from numpy.typing import NDArray
 
 from wavesym.exact.joints.joint_law import JointLaw, joint_ends
+from wavesym.exact.joints.state_space import ElasticState, Rows, state_space
 from wavesym.mechanics.network import Joint, Network
 from wavesym.numbers.doubles import nearest
 
 SCATTERER, BODY, BLOCK = 0, 1, 2
 
 _ZERO = fmpq(0)
-
-Rows = list[list[Any]]
 
 
 @dataclass(frozen=True)
@@ -220,75 +219,19 @@ def _matrix(rows: Rows, width: int) -> fmpq_mat:
 def joint_rows(network: Network, joint: Joint) -> JointRows:
     """The same, also where numbers of the network are functions."""
     law = JointLaw.assemble(network, joint)
-    size = len(joint.points)
-    heavy, light = law.heavy, law.light
     springs = list(_springs(network, joint, law))
-    states = len(heavy) + len(springs)
-    # q = shown x + passed s, one row after the other
-    shown, passed = _zeros(size, states), _zeros(size, size)
-    for n, k in enumerate(heavy):
-        shown[k][n] = fmpq(1)
-    for k, motion in enumerate(law.motions):
-        if motion is not None:
-            passed[k][k] = fmpq(1)
-    pulls = _zeros(size, states)  # of the springs, on the points
-    for n, (stiffness, row) in enumerate(springs, len(heavy)):
-        for k, factor in row.items():
-            pulls[k][n] += factor * stiffness
-    others = [b for b in range(size) if b not in light]
-    inverses = _inverse([[law.damping[a][b] for b in light] for a in light])
-    for n, k in enumerate(light):
-        for m, a in enumerate(light):
-            inverse = inverses[n][m]
-            passed[k][a] += inverse
-            for j in range(states):
-                shown[k][j] -= inverse * (pulls[a][j] + sum((law.damping[a][b] * shown[b][j] for b in others), _ZERO))
-            for b in others:
-                passed[k][b] -= inverse * law.damping[a][b] * passed[b][b]
-    rates, pushed = _zeros(states, states), _zeros(states, size)
-    for n, k in enumerate(heavy):
-        for j in range(states):
-            rates[n][j] = -(pulls[k][j] + _row_product(law.damping[k], shown, j)) / law.mass[k]
-        for j in range(size):
-            rest = _row_product(law.damping[k], passed, j)
-            pushed[n][j] = ((j == k) - rest) / law.mass[k]
-    for n, (_, row) in enumerate(springs, len(heavy)):
-        for j in range(states):
-            rates[n][j] = sum((factor * shown[k][j] for k, factor in row.items()), _ZERO)
-        for j in range(size):
-            pushed[n][j] = sum((factor * passed[k][j] for k, factor in row.items()), _ZERO)
+    elastic = [ElasticState(row, {k: factor * stiffness for k, factor in row.items()}) for stiffness, row in springs]
+    space = state_space(law, elastic)
     return JointRows(
-        rates,
-        pushed,
-        shown,
-        passed,
-        (*(law.mass[k] for k in heavy), *(stiffness for stiffness, _ in springs)),
-        (*(network.points[joint.points[k]].velocity for k in heavy), *(_ZERO for _ in springs)),
+        space.rates,
+        space.pushed,
+        space.shown,
+        space.passed,
+        (*(law.mass[k] for k in law.heavy), *(stiffness for stiffness, _ in springs)),
+        (*(network.points[joint.points[k]].velocity for k in law.heavy), *(_ZERO for _ in springs)),
         tuple(_ports(network, joint)),
-        len(heavy),
+        len(law.heavy),
     )
-
-
-def _zeros(rows: int, columns: int) -> Rows:
-    return [[_ZERO] * columns for _ in range(rows)]
-
-
-def _row_product(row: tuple[Any, ...], matrix: Rows, column: int) -> Any:
-    return sum((value * matrix[b][column] for b, value in enumerate(row)), _ZERO)
-
-
-def _inverse(rows: Rows) -> Rows:
-    """Of a matrix whose elimination needs no exchange of rows, as that of positive dashpots."""
-    size = len(rows)
-    wide = [[*row, *(fmpq(k == n) for n in range(size))] for k, row in enumerate(rows)]
-    for k in range(size):
-        first = 1 / wide[k][k]
-        wide[k] = [first * value for value in wide[k]]
-        for other in range(size):
-            if other != k and wide[other][k] != 0:
-                factor = wide[other][k]
-                wide[other] = [a - factor * b for a, b in zip(wide[other], wide[k], strict=True)]
-    return [row[size:] for row in wide]
 
 
 def _springs(network: Network, joint: Joint, law: JointLaw) -> Iterator[tuple[fmpq, dict[int, fmpq]]]:
