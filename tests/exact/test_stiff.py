@@ -16,6 +16,7 @@ from tests.exact.test_chain_truth import missed, wrong_values
 from wavesym.errors import CostError
 from wavesym.exact.breakpoints import MOST_BREAKPOINTS, Breakpoints
 from wavesym.exact.contacts.events import events
+from wavesym.exact.joints import relaxation
 from wavesym.exact.joints.joint_law import SWING, JointLaw
 from wavesym.exact.motion import Motion
 from wavesym.exact.reference import Reference
@@ -103,12 +104,42 @@ def test_soft_springs_are_not_cut(right: str) -> None:
         assert dict(Breakpoints(known, fmpq(6)).joints) == cut
 
 
-@pytest.mark.parametrize("right", ["1", "1.5"])
-@pytest.mark.parametrize("middle", [GROUND, LIGHT], ids=["mass", "massless"])
+@pytest.mark.parametrize(("middle", "right"), [(GROUND, "1"), (GROUND, "1.5"), (LIGHT, "1.5")])
 def test_what_would_be_cut_too_often_is_refused_at_once(middle: list[dict[str, Any]], right: str) -> None:
     known = model(table(middle, 10**12, ("1", right), 20))
     with pytest.raises(CostError, match=rf"a rate of up to .* stretches .*the limit is {MOST_BREAKPOINTS}"):
         Motion(known, fmpq(20))
+
+
+def settling(stiffness: int, until: object) -> dict[str, Any]:
+    """A body on a stiff spring before a rod: s^2 + K s + K decays at about K and at about 1."""
+    parts = [{"mass": 1, "name": "body"}, {"spring": stiffness}, {"joint": True}, {"rod": 1}, "fixed"]
+    return table(LIGHT, 1, ("1", "1"), until) | {"system": {"type": "chain", "parts": parts}}
+
+
+SETTLING = [table(LIGHT, 50_000, ("1", "1"), "7/4"), table(LIGHT, 10**12, ("1", "1"), "7/4"), settling(50_000, "7/4")]
+
+
+@pytest.mark.parametrize("made", SETTLING, ids=["massless", "stiffest", "body"])
+def test_what_dies_away_early_in_a_window_is_followed_no_longer(made: dict[str, Any]) -> None:
+    """A minute of series on thousands of stretches before; the bound holds against a solver that knows no joints."""
+    assert Breakpoints(model(made), fmpq(7, 4)).stretches < 1000
+    assert missed(made, "1e-9") <= 1
+
+
+@pytest.mark.parametrize("made", SETTLING[:2], ids=["massless", "stiffest"])
+def test_values_are_right_to_the_last_bit_where_what_is_fast_has_died_away(made: dict[str, Any]) -> None:
+    assert wrong_values(made, most=3) == []
+
+
+def test_what_has_not_died_away_is_in_the_radii(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Left out after exp(-20) the bound still holds; after exp(-5) too little is known for any."""
+    made = SETTLING[2]
+    monkeypatch.setattr(relaxation, "_SETTLED", 20)
+    assert missed(made, "1e-9") <= 1
+    monkeypatch.setattr(relaxation, "_SETTLED", 5)
+    with pytest.raises(CostError, match="to fit pieces, more than 1024 bits would be needed"):
+        missed(made, "1e-9")
 
 
 def test_a_contact_beside_a_stiff_spring_opens_when_the_body_turns() -> None:

@@ -7,7 +7,9 @@ loads act.
 
 What stiff springs do between two breakpoints is smooth, but no series of moderate length. There stretches are cut, and
 as the waves that are sent begin anew then, a cut travels as a breakpoint does. Cuts are as far apart as a part or a
-multiple of the common measure of all delays, so that most of those that come back meet others.
+multiple of the common measure of all delays, so that most of those that come back meet others. In a common window of
+equal delays all joints begin anew at once: where what is fast in them decays, cuts end when it has died away, and one
+stretch without it (`joints/relaxation.py`) is left of the window.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from wavesym.errors import CostError
 from wavesym.exact.contacts.events import contact_schedule
 from wavesym.exact.joints.fronts import front_sources, front_times
 from wavesym.exact.joints.joint_law import SWING, JointLaw
+from wavesym.exact.joints.relaxation import settling_gap
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import common_measure
@@ -115,12 +118,17 @@ class Breakpoints:
 
         return MOST_SWING
 
-    def longest(self, number: int) -> fmpq:
-        """The longest stretch of a joint on which it moves."""
+    def swing(self, number: int, law: JointLaw) -> fmpq:
+        """What series of a joint have to bear, as exp(this), on the stretches on which it moves."""
         times = self.joints[number]
         if self._is_at_rest(number):
             times = times[1:]
-        return max((high - low for low, high in pairwise(times)), default=fmpq(0))
+        lengths = [high - low for low, high in pairwise(times)]
+        longest, slowly = max(lengths, default=fmpq(0)), fmpq(0)
+        if (borne := law.longest) is not None and longest > borne and (gap := settling_gap(law, longest)):
+            slowly = gap.slow * longest
+            longest = max((length for length in lengths if length <= borne), default=fmpq(0))
+        return max(slowly, law.fastest * longest)
 
     def _is_at_rest(self, number: int) -> bool:
         """Whether nothing moves on the first stretch of a joint."""
@@ -194,12 +202,26 @@ class Breakpoints:
         natural = self._natural_parts
         if not self._bearable:
             return natural
-        gaps = [high - low for low, high in pairwise([*natural, self._span])]
         longest = min(self._bearable.values())
-        cuts = [max(1, int((gap / longest).ceil())) for gap in gaps]
-        if len(cuts) < sum(cuts) and (count := len(self._last) * self._count * sum(cuts)) > MOST_BREAKPOINTS:
+        spans = [self._swinging(high - low) for low, high in pairwise([*natural, self._span])]
+        cuts = [max(1, int((span / longest).ceil())) for span, _ in spans]
+        count = sum(cuts) + sum(rests for _, rests in spans)
+        if len(cuts) < count and (count := len(self._last) * self._count * count) > MOST_BREAKPOINTS:
             raise self._too_stiff(str(count))
-        return [part + gap * k / n for part, gap, n in zip(natural, gaps, cuts, strict=True) for k in range(n)]
+        return [
+            part + span * k / n
+            for part, (span, rests), n in zip(natural, spans, cuts, strict=True)
+            for k in range(n + rests)
+        ]
+
+    def _swinging(self, length: fmpq) -> tuple[fmpq, bool]:
+        """How long what is fast has to be followed on a stretch of a window, and whether it has died away then."""
+        stiff = [
+            JointLaw.assemble(self._network, self._network.joints[n]) for n, x in self._bearable.items() if x < length
+        ]
+        gaps = [settling_gap(law, length) for law in stiff]
+        times = [gap.settling_time for gap in gaps if gap]
+        return (max(times), True) if times and len(times) == len(gaps) else (length, False)
 
     @cached_property
     def _count(self) -> int:

@@ -134,9 +134,7 @@ class Motion:
     def _hardest(self) -> tuple[JointLaw, fmpq]:
         """The joint whose series has to bear most on its longest stretch: its law, and exp(what)."""
         laws = ((JointLaw.assemble(self._network, self._network.joints[n]), n) for n in self._breakpoints.joints)
-        law, swing = max(
-            ((law, law.fastest * self._breakpoints.longest(n)) for law, n in laws), key=lambda each: each[1]
-        )
+        law, swing = max(((law, self._breakpoints.swing(n, law)) for law, n in laws), key=lambda each: each[1])
         most = self._breakpoints.most_swing
         return law, swing if most is None else min(swing, most)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from heapq import heapify, heappop, heappush
 
 from flint import arb, fmpq, fmpq_poly
@@ -19,8 +20,9 @@ from wavesym.exact.joints.enclosure import (
     shorten,
     weighted_sum,
 )
-from wavesym.exact.joints.joint_law import JointLaw, forces_on, joint_ends, outgoing_terms, scatter
+from wavesym.exact.joints.joint_law import SWING, JointLaw, forces_on, joint_ends, outgoing_terms, scatter
 from wavesym.exact.joints.joint_motion import JointMotion
+from wavesym.exact.joints.relaxation import Relaxation
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import End, Joint, Network
 
@@ -193,12 +195,28 @@ class _MovingJoint:
             moving = scatter(self._motion.law, forces, {})
             self.velocities = [weighted_sum(collect(each)) for each in moving]
         else:
-            self.velocities = self._motion.move([weighted_sum(each) for each in forces], acting, length, terms)
+            self.velocities = self._move([weighted_sum(each) for each in forces], acting, length, terms)
             moving = [[(fmpq(1), each)] for each in self.velocities]
         return [
             weighted_sum(collect(outgoing_terms(end, moving[end.place], wave)))
             for end, wave in zip(self._ends, arriving, strict=True)
         ]
+
+    def _move(
+        self, forces: Sequence[Enclosure], acting: Sequence[fmpq_poly], length: fmpq, terms: int
+    ) -> list[Enclosure]:
+        """The velocities of the points; on a stretch that no series bears, without what has decayed before it."""
+        motion = self._motion
+        if motion.law.longest is None or length <= motion.law.longest:
+            return motion.move(forces, acting, length, terms)
+        relaxation = next(each for each in reversed(self._relaxations) if each.slow * length <= SWING)
+        q, u, missed = motion.relax(relaxation, forces, acting, terms)
+        motion.lose(missed)
+        return motion.follow(q, u, forces, length)
+
+    @cached_property
+    def _relaxations(self) -> tuple[Relaxation, ...]:
+        return Relaxation.separate(self._motion.law)
 
     def derivatives(
         self, sent: Sequence[Enclosure], arriving: Sequence[Enclosure], rates: Sequence[Enclosure]

@@ -25,11 +25,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, log2
-from typing import cast
+from typing import NamedTuple, cast
 
 from flint import acb, arb, arb_mat, ctx, fmpq, fmpq_mat
 
-from wavesym.exact.joints.joint_law import JointLaw
+from wavesym.exact.joints.joint_law import SWING, JointLaw
 from wavesym.exact.joints.joint_series import Powers
 from wavesym.exact.joints.state_space import ElasticState, Rows, state_space
 
@@ -38,6 +38,39 @@ _OSCILLATES = 8  # and at most so many times as fast as they decay
 _FAR = 2**16  # times the slow ones: no larger gap is needed to part them
 _SPARE = 64  # bits
 _POINTS = 20  # of a joint, at most
+_SETTLED = 710  # what has decayed to exp(-this) is below 2^-1024
+_LONG = 4096  # what is fast bears so many units at least where a series without it is worth while
+
+
+class RateGap(NamedTuple):
+    """A gap between the rates of a law: about the largest below it, the least and the largest above it.
+
+    What is above decays at `decay` at least.
+    """
+
+    slow: fmpq
+    fast: fmpq
+    fastest: fmpq
+    decay: fmpq
+
+    @property
+    def settling_time(self) -> fmpq:
+        """When what is fast has died away, below 2^-1024 of what it was."""
+        return _SETTLED / self.decay
+
+
+def settling_gap(law: JointLaw, length: fmpq) -> RateGap | None:
+    """The gap above which all has died away early on a stretch, so that one series bears the rest of it; None: none."""
+    if len(law.moves) > _POINTS or not law.springs:
+        return None
+    return next(
+        (
+            gap
+            for gap in reversed(_gaps(_state_space(law)[0]))
+            if gap.slow * length <= SWING and gap.fast * (length - gap.settling_time) >= _LONG
+        ),
+        None,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,18 +101,17 @@ class Relaxation:
         if len(law.moves) > _POINTS or not (law.heavy or law.springs):
             return ()
         system = _state_space(law)
-        return tuple(cls._parting(law, system, *rates) for rates in reversed(_gaps(system[0])))
+        return tuple(cls._parting(law, system, gap) for gap in reversed(_gaps(system[0])))
 
     @classmethod
     def _parting(
         cls,
         law: JointLaw,
         system: tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat],
-        slow: fmpq,
-        fast: fmpq,
-        fastest: fmpq,
+        gap: RateGap,
     ) -> Relaxation:
-        """What is at most `slow` from what is at least `fast` and at most `fastest`."""
+        """What is below a gap from what is above it."""
+        slow, fast, fastest, _ = gap
         a, b, read, through = system
         size, bits = a.nrows(), ctx.prec + _SPARE
         low, high = log2(max(float(slow), float(fast) / _FAR)), log2(float(fast))
@@ -183,16 +215,18 @@ def _state_space(law: JointLaw) -> tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat]
     )
 
 
-def _gaps(a: fmpq_mat) -> list[tuple[fmpq, fmpq, fmpq]]:
-    """The rates below and above each gap, and the largest of all; what is fast first."""
+def _gaps(a: fmpq_mat) -> list[RateGap]:
+    """The gaps above which all decays; what is fast first."""
     roots = [z for z, _ in cast("list[tuple[acb, int]]", a.charpoly().numer().complex_roots())]
     rates = sorted(((abs(z).mid(), z.real) for z in roots), key=lambda each: -each[0])
     found = []
+    decay = rates[0][0] if rates else arb(0)
     for (rate, real), (slower, _) in pairwise([*rates, (arb(0), arb(0))]):
         if not -real * _OSCILLATES > rate:
             break
+        decay = decay.min((-real).mid())
         if rate > slower * _APART:
-            found.append((_short(slower), _short(rate), _short(rates[0][0])))
+            found.append(RateGap(_short(slower), _short(rate), _short(rates[0][0]), _short(decay)))
     return found
 
 
