@@ -24,7 +24,7 @@ from wavesym.scene import Scene, lower
 from wavesym.systems import SYSTEMS
 from wavesym.verification.collocation import integrate
 from wavesym.verification.independent import READERS, Sketch
-from wavesym.verification.problem import problem_of
+from wavesym.verification.problem import corner_problem
 
 FIELDS = {
     "name": "tower",
@@ -71,7 +71,7 @@ def test_its_programs_are_those_of_an_integrator_that_is_not_derived(kind):
     made = files(model, "all", kind)
     taus = [0.0, 0.3, 1.1, 2.0, 2.6, 3.7, 5.2, 6.9, 7.0]
     found = import_text(made["tower.py"], "tower").evaluate(np.array(taus))
-    motion = integrate(problem_of(model), 7.0, 16)
+    motion = integrate(corner_problem(model), 7.0, 16)
     for reading, values in zip(map(gauge, model.probes), found, strict=True):
         truth = motion.evaluate(reading, taus)
         assert np.max(np.abs(values - truth)) < 1e-6 * np.max(np.abs(truth))
@@ -83,7 +83,9 @@ def test_without_its_dashpot_the_integrator_sees_it():
     model = lower(scene())
     free = lower(scene().with_({"system.dashpot[0]": "1e-9"}))
     values = [wavesym.evaluator(each)(6.9)[2] for each in (scene(), scene().with_({"system.dashpot[0]": "1e-9"}))]
-    truth = [integrate(problem_of(each), 7.0, 16).evaluate(gauge(each.probes[2]), [6.9])[0] for each in (model, free)]
+    truth = [
+        integrate(corner_problem(each), 7.0, 16).evaluate(gauge(each.probes[2]), [6.9])[0] for each in (model, free)
+    ]
     assert abs(values[0] - values[1]) > 0.05
     assert np.allclose(values, truth, rtol=1e-5)
 

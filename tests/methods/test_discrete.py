@@ -11,7 +11,7 @@ from wavesym.mechanics.damping import Damping
 from wavesym.methods.advice import springs
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.network_problem import problem_of
+from wavesym.methods.network_problem import linear_problem
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
@@ -90,7 +90,7 @@ def test_elements_come_to_what_damped_modes_are():
         output={"until": 400, "acceleration": [1, 4], "force": [0], "drift": [2], "relative": [4]},
     )
     model = lower(scene).tolerating(fmpq(1, 10**7))
-    problem = problem_of(model)
+    problem = linear_problem(model)
 
     def elements(count):
         return DiscreteModel(Elements(problem, np.full(4, count))).outputs(5.1)

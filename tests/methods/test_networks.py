@@ -14,7 +14,7 @@ from wavesym.exact.reference import Reference
 from wavesym.lab.chart.subjects import unsupported_methods
 from wavesym.methods import characteristics, differences, discrete, elements, laplace
 from wavesym.methods.catalogue import METHODS
-from wavesym.methods.network_problem import problem_of
+from wavesym.methods.network_problem import linear_problem
 from wavesym.scene import Scene, lower
 
 CHARACTERISTICS = (characteristics.SECOND, characteristics.FOURTH)
@@ -257,6 +257,6 @@ def test_outputs_are_sums_of_what_methods_solve_for(method, resolution, allowed)
 
 def test_what_is_read_as_it_is_costs_nothing_more():
     model = lower(DRIVE)
-    problem = problem_of(model.watching(model.probes[:1]))
+    problem = linear_problem(model.watching(model.probes[:1]))
     values = np.ones((1, 3))
     assert problem.outputs(values, np.arange(3.0)) is values

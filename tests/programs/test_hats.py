@@ -35,7 +35,7 @@ from wavesym.programs.schemes.hats import ShiftedHats
 from wavesym.running.compilation import import_text
 from wavesym.scene import Scene, lower
 from wavesym.verification.collocation import integrate
-from wavesym.verification.problem import problem_of
+from wavesym.verification.problem import corner_problem
 
 HALF_ULP = 2.0**-53
 PARTS = [{"mass": 2, "name": "a"}, {"rod": 1}, {"mass": 1, "name": "b"}, {"rod": "3/2", "impedance": 2}, "absorbing"]
@@ -415,7 +415,7 @@ def test_dampers_between_floors_under_el_centro_are_what_collocation_says() -> N
     found = made(model)
     taus = np.random.default_rng(2).uniform(0, 22, 60)
     values = found.scheme.evaluate(taus)
-    motions = [integrate(problem_of(model), 22.0, points) for points in (8, 16)]
+    motions = [integrate(corner_problem(model), 22.0, points) for points in (8, 16)]
     coarse, fine = (motion.outputs(taus) for motion in motions)
     largest = np.abs(fine).max(axis=1)
     between = np.abs(fine - coarse).max(axis=1)

@@ -33,7 +33,7 @@ from wavesym.programs.march.space import BLOCK, BODY, SCATTERER
 from wavesym.running.compilation import compile_files
 from wavesym.scene import Scene, lower
 from wavesym.verification.collocation import integrate
-from wavesym.verification.problem import problem_of
+from wavesym.verification.problem import corner_problem
 
 REALS = pytest.mark.parametrize("real", [DOUBLE, SINGLE], ids=["double", "single"])
 SHORT_PULSE = {"times": [0, 2], "a": [1, -1], "b": [0, 0]}
@@ -166,7 +166,7 @@ def test_long_horizons_agree_with_direct_integration() -> None:
     model = lower(building(60, KINKS, m=3))
     made = march(model)
     taus = np.random.default_rng(1).uniform(0, 60, 200)
-    coarse, fine = (integrate(problem_of(model), made.tau_max, points) for points in (8, 16))
+    coarse, fine = (integrate(corner_problem(model), made.tau_max, points) for points in (8, 16))
     for probe, row in zip(model.probes, program(model, made).evaluate(taus), strict=True):
         expected = fine.evaluate(gauge(probe), taus.tolist())
         error = np.abs(expected - coarse.evaluate(gauge(probe), taus.tolist())).max()

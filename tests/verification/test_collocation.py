@@ -19,7 +19,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 from wavesym.verification import integrations
 from wavesym.verification.collocation import integrate
-from wavesym.verification.problem import problem_of
+from wavesym.verification.problem import corner_problem
 from wavesym.verification.reference import known_outputs
 
 ORACLE = Path(__file__).parents[2].parent / "shared" / "oracles" / "rigid_mass_on_fixed_bar.json"
@@ -57,7 +57,7 @@ DRIVE = scene(
 
 
 def moved(scene, until, points):
-    return integrate(problem_of(lower(scene)), until, points)
+    return integrate(corner_problem(lower(scene)), until, points)
 
 
 def struck(alpha, until, points):
@@ -171,7 +171,7 @@ def turned(loads):
 def test_a_wrong_network_is_caught(scene, change, monkeypatch):
     truth = known_outputs(lower(scene))
     assert all(outcome.passed for outcome in integrations.collocation(truth))
-    wrong = problem_of(replace(lower(scene), network=change(lower(scene).network)))
-    monkeypatch.setattr(integrations, "problem_of", lambda model: wrong)
+    wrong = corner_problem(replace(lower(scene), network=change(lower(scene).network)))
+    monkeypatch.setattr(integrations, "corner_problem", lambda model: wrong)
     truth = known_outputs(lower(scene))
     assert not all(outcome.passed for outcome in integrations.collocation(truth))

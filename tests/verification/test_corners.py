@@ -23,7 +23,7 @@ from wavesym.verification.independent import independent_model
 from wavesym.verification.invariants import Balancing
 from wavesym.verification.midpoint import MidpointGrid
 from wavesym.verification.outcome import REFUSED, Outcome
-from wavesym.verification.problem import problem_of
+from wavesym.verification.problem import corner_problem
 from wavesym.verification.reference import ReferenceOutputs, known_outputs
 
 CHECKS = (integrations.midpoints, integrations.differences, integrations.corner_changes, checks.invariants)
@@ -181,7 +181,7 @@ def test_energy_that_another_law_takes_is_missed(table: dict[str, Any], key: str
 def test_the_midpoint_rule_is_of_order_two_where_friction_turns() -> None:
     """What slides stops, and goes back, inside a step."""
     model = lower(Scene(**damped_chain(38)))
-    problem = problem_of(model)
+    problem = corner_problem(model)
     errors = []
     for finer in (8, 32, 128):
         grid = MidpointGrid.coarsest(problem, fraction(model.until)).finer(finer)

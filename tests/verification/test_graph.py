@@ -15,7 +15,7 @@ from wavesym.mechanics.network import Joint, Network
 from wavesym.scene import Scene, lower
 from wavesym.verification.integrations import _grid, collocation, midpoints
 from wavesym.verification.invariants import Balance, Balancing
-from wavesym.verification.problem import problem_of
+from wavesym.verification.problem import corner_problem
 from wavesym.verification.reference import known_outputs
 
 GEARED = {
@@ -147,7 +147,7 @@ def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_matrices_are_those_of_the_engine_less_the_bars() -> None:
     network = model().network
-    made = problem_of(model())
+    made = corner_problem(model())
     for joint in network.joints:
         law = JointLaw.assemble(network, joint)
         rows = np.ix_(joint.points, joint.points)

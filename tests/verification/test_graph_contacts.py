@@ -25,7 +25,7 @@ from wavesym.verification.integrations import (
     corner_changes,
     midpoints,
 )
-from wavesym.verification.problem import Change, match_changes, problem_of
+from wavesym.verification.problem import Change, corner_problem, match_changes
 from wavesym.verification.reference import known_outputs
 
 MANY = 2e8
@@ -53,11 +53,11 @@ BOUNCES = [1, 5 / 3, 11 / 3, 13 / 3]
 
 
 def test_collocation_finds_when_a_bar_bounces() -> None:
-    found = integrate(problem_of(bouncing()), 5.0, 8, 200)
+    found = integrate(corner_problem(bouncing()), 5.0, 8, 200)
     assert [change.kind for change in found.changes] == ["closes", "opens"] * 2
     assert [change.tau for change in found.changes] == pytest.approx(BOUNCES, abs=1e-12)
     fallen = 5 - 5 * np.array([0.5, 2, 3]) ** 2
-    (reading,) = problem_of(bouncing()).readings
+    (reading,) = corner_problem(bouncing()).readings
     assert (found.evaluate(reading, [0.5, 2.0, 3.0]) + fallen).tolist() == pytest.approx(
         [3.75, 5 / 3, 40 / 9], abs=1e-12
     )
@@ -76,7 +76,7 @@ def test_the_midpoint_rule_finds_when_a_bar_bounces() -> None:
 def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None:
     body = {"mass": f"{length}e{impedance[2:]}", "velocity": velocity}
     small = model([body, "contact", {"rod": length, "impedance": impedance}, "fixed"], 4 * length, velocity=["0-"])
-    (change,) = integrate(problem_of(small), 4.0 * length, 12, 200).changes
+    (change,) = integrate(corner_problem(small), 4.0 * length, 12, 200).changes
     assert change.tau / length == pytest.approx(3.06766764161830635, rel=1e-12)
     stepped = _grid(small).resolve_changes(4.0 * length, MANY)
     assert stepped is not None
@@ -87,7 +87,7 @@ def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None
 @pytest.mark.parametrize("points", [8, 16])
 def test_collocation_is_exact_where_all_is_polynomial(points: int) -> None:
     parts = [{"rod": 1, "velocity": 1}, {"contact": "1/4"}, {"rod": 2}, {"contact": "1/8"}, {"rod": 1, "impedance": 2}]
-    found = integrate(problem_of(model(parts, 6, velocity=["1/2"])), 6.0, points, 200)
+    found = integrate(corner_problem(model(parts, 6, velocity=["1/2"])), 6.0, points, 200)
     first = [(0, "closes", 0.25), (0, "opens", 4.25)]
     assert [(c.corner, c.kind, pytest.approx(c.tau, abs=1e-12)) for c in found.changes if not c.corner][:2] == first
 
@@ -130,7 +130,7 @@ def test_too_many_fronts_are_refused_in_a_line(monkeypatch: pytest.MonkeyPatch) 
     assert all(outcome.passed for outcome in outcomes)
     assert any("3 panels end at tau" in outcome.note for outcome in outcomes)
     with pytest.raises(UndecidedError):
-        integrate(problem_of(on_a_bar()), 4.7, 8, 3)
+        integrate(corner_problem(on_a_bar()), 4.7, 8, 3)
 
 
 def test_solutions_are_alike_where_the_same_happens_at_each_contact() -> None:

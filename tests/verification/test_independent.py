@@ -20,7 +20,7 @@ from wavesym.systems import SYSTEMS, building, chain_places, collision, drawing,
 from wavesym.verification.collocation import integrate
 from wavesym.verification.independent import READERS, independent_model
 from wavesym.verification.integrations import collocation
-from wavesym.verification.problem import Problem, problem_of
+from wavesym.verification.problem import Problem, corner_problem
 from wavesym.verification.reference import known_outputs
 
 EVERY_PART: dict[str, Any] = {
@@ -115,7 +115,7 @@ def assert_same(scene: Scene) -> None:
     """The same network under the same loads, and the same outputs of it."""
     model = lower(scene)
     own = independent_model(scene, model)
-    theirs, ours = problem_of(model), problem_of(own)
+    theirs, ours = corner_problem(model), corner_problem(own)
     for one, other in zip(numbers(theirs), numbers(ours), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-14, atol=1e-14)
     until = min(float(model.until), 3.0)

@@ -13,7 +13,7 @@ from wavesym.exact.reference import Reference
 from wavesym.scene import Scene, lower
 from wavesym.verification import integrations
 from wavesym.verification.midpoint import MidpointGrid
-from wavesym.verification.problem import problem_of
+from wavesym.verification.problem import corner_problem
 from wavesym.verification.reference import known_outputs
 
 
@@ -48,7 +48,7 @@ FOUR = pytest.mark.parametrize("scene", [BUILDING, FORCE, COLLISION, DRIVE], ids
 
 def with_cells(model, cells):
     """A grid with so many cells in a rod of length 1."""
-    return MidpointGrid(problem_of(model), Fraction(1, cells))
+    return MidpointGrid(corner_problem(model), Fraction(1, cells))
 
 
 @FOUR
@@ -135,7 +135,7 @@ def test_a_wrong_network_is_caught(scene, change, monkeypatch):
     truth = known_outputs(lower(scene))
     assert all(outcome.passed for outcome in integrations.midpoints(truth))
     monkeypatch.setattr(
-        integrations, "problem_of", lambda model: problem_of(replace(model, network=change(model.network)))
+        integrations, "corner_problem", lambda model: corner_problem(replace(model, network=change(model.network)))
     )
     assert not all(outcome.passed for outcome in integrations.midpoints(replace(truth)))  # solved anew
 

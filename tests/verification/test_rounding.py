@@ -12,7 +12,7 @@ from wavesym.exact.reference import Reference, beginning
 from wavesym.methods.quadrature import gauss
 from wavesym.scene import Scene, lower
 from wavesym.verification.collocation import integrate
-from wavesym.verification.problem import problem_of
+from wavesym.verification.problem import corner_problem
 
 UNIT = Fraction(1, 2**53)
 
@@ -23,7 +23,7 @@ def test_it_allows_what_rounding_does(name: str, points: int) -> None:
     model = lower(Scene.from_toml(name))
     exact = Reference(beginning(model))
     taus = np.linspace(0.0, exact.tau_max, 173)[:-1] + exact.tau_max / 977
-    motion = integrate(problem_of(model), exact.tau_max, points)
+    motion = integrate(corner_problem(model), exact.tau_max, points)
     errors = np.max(np.abs(motion.outputs(taus) - np.array(exact.values(taus.tolist()))), axis=1)
     assert np.all(errors <= motion.output_roundoff)
     assert np.all(motion.output_roundoff < 1e-12 * np.maximum(np.max(np.abs(motion.outputs(taus)), axis=1), 1.0))

@@ -13,7 +13,7 @@ from wavesym.lab.timing import medians
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.network_problem import problem_of
+from wavesym.methods.network_problem import linear_problem
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
@@ -66,5 +66,5 @@ def modes(model: Model, taus: Values) -> Values:
 
 def elements(model: Model, count: int) -> Values:
     """The outputs at the samples, `count` elements to a rod."""
-    problem = problem_of(model)
+    problem = linear_problem(model)
     return DiscreteModel(Elements(problem, np.full(len(problem.ends), count))).outputs(float(SPACING))[1]

@@ -12,7 +12,7 @@ from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.network_problem import problem_of
+from wavesym.methods.network_problem import linear_problem
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import attempt, choose
@@ -90,7 +90,7 @@ def springs(model: Model, weight: float, step: float | None = None) -> tuple[Arr
         UnservedError: contacts open and close, nothing holds a part where rods weigh nothing, or a mode is damped that
             there is not.
     """
-    problem = problem_of(model)
+    problem = linear_problem(model)
     close = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
     return DiscreteModel(Elements(problem, np.ones(len(problem.ends), dtype=int), weight)).outputs(step or close)
 

@@ -14,7 +14,7 @@ import numpy as np
 from wavesym.errors import UnservedError
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.elements import Elements
-from wavesym.methods.network_problem import problem_of
+from wavesym.methods.network_problem import linear_problem
 from wavesym.methods.oscillators import DERIVATIVES, KEPT, condense
 from wavesym.methods.problem import Array, Evaluate, Method, Problem
 from wavesym.methods.stepping import Systems, step_systems
@@ -185,5 +185,5 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
 
 
 MODAL = Method(
-    "finite elements, modal", "NumPy", "elements in a unit of delay", (4, 10, 20, 50, 100), problem_of, _solve
+    "finite elements, modal", "NumPy", "elements in a unit of delay", (4, 10, 20, 50, 100), linear_problem, _solve
 )

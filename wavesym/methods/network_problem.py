@@ -75,7 +75,7 @@ def opening(network: Network, link: Link) -> Array:
     return pair
 
 
-def problem_of(model: Model) -> Problem:
+def linear_problem(model: Model) -> Problem:
     """State the problem of a model without corners, modal damping included.
 
     Raises:
@@ -97,7 +97,7 @@ def undamped_problem(model: Model) -> Problem:
     """
     model.refuse_damping()
     model.network.refuse_rodless("this method", "write one")
-    problem = problem_of(model)
+    problem = linear_problem(model)
     if any(reading.order > 0 for reading in problem.readings):
         raise UnservedError("output.acceleration: other methods support no place without mass; write one with mass")
     return problem

@@ -177,10 +177,10 @@ def integrate(problem: CornerProblem, until: float, points: int, most: int = 100
     """
     if problem.laws:
         raise UndecidedError("what rubs or yields, or acts on one side, is not followed")
-    return _Integration(problem, Motion(problem, points, until), most).motion()
+    return _Collocation(problem, Motion(problem, points, until), most).motion()
 
 
-class _Integration:
+class _Collocation:
     """The displacements and velocities of points now, and which contacts are open."""
 
     def __init__(self, problem: CornerProblem, found: Motion, most: int) -> None:

@@ -19,13 +19,13 @@ from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.network_problem import problem_of as damped_problem
+from wavesym.methods.network_problem import linear_problem
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.collocation import Motion, UndecidedError, integrate
 from wavesym.verification.midpoint import LATE, Instants, MidpointGrid
-from wavesym.verification.outcome import Method, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
-from wavesym.verification.problem import Change, KnownChanges, match_changes, problem_of
+from wavesym.verification.outcome import Integration, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
+from wavesym.verification.problem import Change, KnownChanges, corner_problem, match_changes
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly, spread_taus
 from wavesym.verification.return_mapping import REACH, DifferenceGrid
 
@@ -92,7 +92,7 @@ def collocation_beyond(known: ReferenceOutputs) -> list[Outcome]:
     return method.outcomes(known.whole.name, known.names, [None] * len(known.outputs), {})
 
 
-def collocation_method(model: Model, until: float, taus: Sequence[float]) -> Method | str:
+def collocation_method(model: Model, until: float, taus: Sequence[float]) -> Integration | str:
     """Collocation of a model without contacts at the same instants for every output, or why there is none."""
     solved = _solve(model, until)
     return solved if isinstance(solved, str) else solved.method([taus] * len(model.probes))
@@ -107,7 +107,7 @@ class _Solutions:
         Raises:
             Undecided: that takes too many panels, or other things happen at contacts.
         """
-        self._until, self._problem = until, problem_of(model)
+        self._until, self._problem = until, corner_problem(model)
         self.has_contacts = len(self._problem.gaps) > 0
         self._motions: dict[int, Motion] = {}
         for points in _POINTS_OF_CONTACTS if self.has_contacts else (_POINTS,):
@@ -137,7 +137,7 @@ class _Solutions:
             far = np.minimum(far, [motion.distance(reading, taus) for reading in problem.readings])
         return np.array([np.all(far[weights != 0] > _CLOSE, axis=0) for weights in problem.weights])
 
-    def method(self, instants: Sequence[Sequence[float]]) -> Method:
+    def method(self, instants: Sequence[Sequence[float]]) -> Integration:
         """The outputs at instants of each."""
         every = np.unique(np.concatenate([np.asarray(taus, dtype=float) for taus in instants]))
         places = [np.searchsorted(every, taus) for taus in instants]
@@ -150,7 +150,7 @@ class _Solutions:
         def is_affordable(finer: int) -> bool:
             return not self.has_contacts and finer * self.points <= _MOST_POINTS
 
-        return Method("integration", self.points, solve, is_affordable, "plain", instants)
+        return Integration("integration", self.points, solve, is_affordable, "plain", instants)
 
 
 def _solve(model: Model, until: float) -> _Solutions | str:
@@ -184,7 +184,7 @@ def midpoints(known: ReferenceOutputs) -> list[Outcome]:
 
 def differences(known: ReferenceOutputs) -> list[Outcome]:
     """Central differences with return mapping at links with a law; nothing where there are none, or no rods."""
-    problem = problem_of(known.integration_model)
+    problem = corner_problem(known.integration_model)
     if not problem.laws or problem.contacts or not problem.delays:
         return []
     start = _start(known, REACH)
@@ -230,7 +230,7 @@ class _Start:
         def is_affordable(finer: int) -> bool:
             return grid.finer(finer).cost(self.until) <= MOST_MOVED
 
-        method = Method(name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
+        method = Integration(name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
         return method.outcomes(known.model.name, known.names, truths, {"to": f"{self.until:.4g}"})
 
 
@@ -262,7 +262,7 @@ def _start(known: ReferenceOutputs, reach: int) -> _Start | str:
 
 
 def _grid(model: Model) -> MidpointGrid:
-    return MidpointGrid.coarsest(problem_of(model), fraction(model.until))
+    return MidpointGrid.coarsest(corner_problem(model), fraction(model.until))
 
 
 # finite elements
@@ -276,7 +276,7 @@ def elements(known: ReferenceOutputs) -> list[Outcome]:
     model = known.independent or known.whole
     if model.damping is None:
         return []
-    problem = damped_problem(model)
+    problem = linear_problem(model)
     shortest = np.maximum(
         np.rint(_COARSEST_ELEMENTS * problem.delay / np.min(problem.delay, initial=np.inf)), 1
     ).astype(int)
@@ -294,7 +294,7 @@ def elements(known: ReferenceOutputs) -> list[Outcome]:
 
     names = [probe.name for probe in model.probes]
     taus = np.minimum(history(1)[0], model.horizon()).tolist()
-    method = Method(
+    method = Integration(
         "elements", _COARSEST_ELEMENTS, solve, is_affordable, "extrapolated", [taus] * len(names), clear=True
     )
     return method.outcomes(model.name, names, [None] * len(names), {})

@@ -37,7 +37,7 @@ from wavesym.mechanics.probe import Probe
 from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import gauss
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
-from wavesym.verification.problem import CornerProblem, LinkLaw, problem_of
+from wavesym.verification.problem import CornerProblem, LinkLaw, corner_problem
 
 Evaluate = Callable[[Array], Array]
 """tau, shape (n,), to the outputs, shape (outputs, n)."""
@@ -107,7 +107,7 @@ class Balancing:
 
         CostError, GrazingError where it is not known when contacts open and close.
         """
-        problem = self.problem = problem_of(model)
+        problem = self.problem = corner_problem(model)
         at = [_end_at(problem, point) for point in range(problem.points)]
         seen = [Probe(f"{q}@{k}", q, *here) for q in ("velocity", "displacement") for k, here in enumerate(at)]
         seen += [Probe(f"strain@{k}", "strain", *_end(k)) for k in range(len(problem.end_points))]

@@ -182,7 +182,7 @@ class Refinement:
 
 
 @dataclass(frozen=True)
-class Method:
+class Integration:
     """An integration: `solve` gives every output with so many times the coarsest number of steps, `coarsest`.
 
     It is refined as long as `is_affordable` says so of that. `instants` are those of each output's values.

@@ -219,7 +219,7 @@ class CornerProblem(Problem):
                 yield now + self.delays[end // 2], self.group_of[int(self.end_points[end ^ 1])]
 
 
-def problem_of(model: Model) -> CornerProblem:
+def corner_problem(model: Model) -> CornerProblem:
     """State the problem of a model. UnservedError where modes are damped."""
     model.refuse_damping()
     network = model.network

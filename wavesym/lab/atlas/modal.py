@@ -18,7 +18,7 @@ from wavesym.lab.standard import standard
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
-from wavesym.methods.network_problem import problem_of
+from wavesym.methods.network_problem import linear_problem
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.hats.evaluator import hat_march
@@ -168,7 +168,7 @@ def damping_of(panel: str, ratio: Fraction) -> Fraction | str | Mapping[str, Any
 
 def extrapolate(model: Model) -> Extrapolation:
     """The limit of elements that are halved again and again, by two powers of their length."""
-    problem = problem_of(model)
+    problem = linear_problem(model)
     levels = []
     for count in _CELLS:
         cells = np.full(_RODS, count)
