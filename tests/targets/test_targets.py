@@ -1,4 +1,4 @@
-"""A language is a module with a TARGET: files.py asks for no more than that, and other rooms ask files.py."""
+"""A language is a module with `files` and HAS_SELFTEST: files.py asks for no more, and other rooms ask files.py."""
 
 import ast
 import inspect
@@ -19,17 +19,13 @@ from wavesym.targets import files as written
 ROOT = Path(__file__).parents[2]
 
 
-class Basic:
+def basic_files(description, program):
     """A language that says no more than its program's kind."""
-
-    has_selftest = False
-
-    def files(self, description, program):
-        return {f"{description.name}.bas": f"10 PRINT {program.kernel}, {program.reference}\n"}
+    return {f"{description.name}.bas": f"10 PRINT {program.kernel}, {program.reference}\n"}
 
 
-def test_another_language_is_a_name_and_a_target(monkeypatch):
-    monkeypatch.setitem(sys.modules, "wavesym.targets.basic", SimpleNamespace(TARGET=Basic()))
+def test_another_language_is_a_name_and_a_module(monkeypatch):
+    monkeypatch.setitem(sys.modules, "wavesym.targets.basic", SimpleNamespace(files=basic_files, HAS_SELFTEST=False))
     monkeypatch.setattr(written, "TARGETS", (*written.TARGETS, "basic"))
     made = files(lower(scene("made", "1e-2")), "basic", "pieces")
     assert made["made.bas"] == "10 PRINT pieces, None\n"  # no self-test, so that no reference values are computed

@@ -1,4 +1,4 @@
-"""Program -> files: a folder for each language, whose `TARGET` is what target.py says, and the manifest.
+"""Program -> files: for each language a module or a folder, which has `files` and `HAS_SELFTEST`, and the manifest.
 
 Other rooms ask files.py.
 """

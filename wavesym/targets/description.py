@@ -15,8 +15,7 @@ from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program
-from wavesym.targets.literals import c_literal, literal
-from wavesym.targets.number_format import number_format
+from wavesym.targets.literals import c_literal, literal, number_format
 
 _WIDTH = 110
 API_VERSION = 1

@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from wavesym.programs.program import Program
 from wavesym.targets import TARGETS
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
-from wavesym.targets.target import Target
 
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
 
@@ -43,7 +43,8 @@ def files(program: Program, language: str = "c", *, packaged: bool = False) -> d
 
 def sources(program: Program, language: str) -> dict[str, str]:
     """The sources alone."""
-    return _target(language).files(describe(program), program)
+    made: dict[str, str] = _target(language).files(describe(program), program)
+    return made
 
 
 def runtime_sets(program: Program, parts: tuple[str, ...]) -> dict[str, str]:
@@ -56,16 +57,15 @@ def runtime_sets(program: Program, parts: tuple[str, ...]) -> dict[str, str]:
 def fmu_files(program: Program, version: str) -> dict[str, str]:
     """What is text in the file of a stream for simulators, by its place there; the manifest too."""
     description = describe(program)
-    made: dict[str, str] = import_module("wavesym.targets.fmu").fmu_files(description, program, version)
+    made: dict[str, str] = _target("fmu").fmu_files(description, program, version)
     return made | {f"resources/{description.name}.json": manifest(description, program)}
 
 
 def has_selftest(language: str) -> bool:
     """Whether a self-test is among the files of a language, or of "all"."""
-    return any(_target(name).has_selftest for name in (TARGETS if language == "all" else (language,)))
+    return any(_target(name).HAS_SELFTEST for name in (TARGETS if language == "all" else (language,)))
 
 
-def _target(name: str) -> Target:
-    """The language of a folder."""
-    target: Target = import_module(f"wavesym.targets.{name}").TARGET
-    return target
+def _target(name: str) -> Any:
+    """A language: a module with `files` of a description and a program, and whether a self-test is among them."""
+    return import_module(f"wavesym.targets.{name}")

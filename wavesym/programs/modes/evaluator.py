@@ -15,7 +15,15 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.form import Form
 from wavesym.programs.modes.complex_modes import ComplexModes
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.modal_system import ModalSystem, Stepper, padded_count, scheme_tables, stream_tables
+from wavesym.programs.modes.modal_system import (
+    LANES,
+    ModalSystem,
+    Stepper,
+    padded_count,
+    rows_used,
+    scheme_tables,
+    stream_tables,
+)
 from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
@@ -85,6 +93,9 @@ class ModesEvaluator(Form):
         return {
             "loads": len(self.sources),
             "modes": padded_count(len(self.system.frequency)),
+            "lanes": LANES,
+            "moved": len(rows_used(self.system.moved)),
+            "moving": len(rows_used(self.system.moving)),
             "spacing": self.real.nearest(self.spacing),
             "shortest": self.real.nearest(rational(spacing * (1 - off))),
             "longest": self.real.nearest(rational(spacing * (1 + off))),
@@ -93,7 +104,7 @@ class ModesEvaluator(Form):
     @property
     def bytes(self) -> int:
         """The size of the tables of a stream."""
-        rows = sum(padded_count(int(np.count_nonzero(w.any(axis=1)))) for w in (self.system.moved, self.system.moving))
+        rows = sum(padded_count(len(rows_used(weights))) for weights in (self.system.moved, self.system.moving))
         numbers = (
             padded_count(len(self.system.frequency)) * (4 + 4 * len(self.sources) + rows) + self.system.direct.size
         )

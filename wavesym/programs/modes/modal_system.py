@@ -178,12 +178,18 @@ def stream_tables(stepper: Stepper, real: Real) -> Tables:
         rows = [values[first : first + modes] for first in range(0, len(values), modes)]
         made[name] = tuple(x for row in rows for x in [*map(real.nearest, row), *[0.0] * (filled - modes)])
     for name, weights in (("moved", system.moved), ("moving", system.moving)):
-        used = np.flatnonzero(weights.any(axis=1))
+        used = rows_used(weights)
         lanes = np.zeros((padded_count(len(used)), filled))
         lanes[: len(used), :modes] = weights[used]
-        made[f"{name}_row"] = tuple(used.tolist())
+        made[f"{name}_row"] = tuple(used)
         made[f"{name}_weight"] = _as(real, lanes.reshape(-1, LANES, filled).transpose(0, 2, 1))
     return made | {"load_weight": _as(real, system.direct)}
+
+
+def rows_used(weights: Numbers) -> list[int]:
+    """The outputs that some mode counts in."""
+    rows: list[int] = np.flatnonzero(weights.any(axis=1)).tolist()
+    return rows
 
 
 def padded_count(count: int) -> int:

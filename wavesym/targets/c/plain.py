@@ -1,19 +1,24 @@
-"""Programs whose C is tables, under what numbers are, above plain C: closed forms, pieces, marches and modes."""
+"""Programs whose C is tables, under what numbers are, above plain C: closed forms, pieces, marches and modes.
+
+And NAME.h, which streams of waves share with them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from wavesym.programs.program import Program
 from wavesym.rendering import render
-from wavesym.targets.c.kernel import kernels
+from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.tables import program_tables
-from wavesym.targets.description import Description
+from wavesym.targets.description import Description, named_loads
+from wavesym.targets.literals import c_constants
 
 _NUMBERS = {"closed": ("closed/library.h", "real.h"), "pieces": ("real.h", "vectors.h")}
 _BELOW = {"march": ("polynomials.c", "series.h", "joint.c")}
 """What stands below the tables besides the kernel."""
+_UNDER = {"spacing": "under the scene's loads", "panel": "under a step of each load at tau = 0"}
+"""What a stream's bound of errors is for."""
 
 
 @dataclass(frozen=True)
@@ -26,13 +31,53 @@ class CPlain:
     kernel: str
 
 
-def source(scene: Description, program: Program, constants: Mapping[str, str] | None = None) -> str:
-    """NAME.c, with more `constants` than the program has."""
+@dataclass(frozen=True)
+class CHeader:
+    """templates/c/header.h.j2; `more` is what a kind of program declares besides.
+
+    A stream has no functions of tau; its bound holds `under` certain loads. What takes parameters is not `bounded`.
+    """
+
+    scene: Description
+    more: str
+    under: str
+    bounded: bool
+
+
+@dataclass(frozen=True)
+class CModesStream:
+    """templates/c/modes/modes.h.j2: the loads and their units as text, and as constants."""
+
+    scene: Description
+    constants: dict[str, str]
+    sources: tuple[tuple[str, str], ...]
+    state: str
+
+
+def header(scene: Description, program: Program, more: str = "") -> str:
+    """NAME.h: what every program declares, and `more`."""
+    under = _UNDER.get(program.step, "")
+    return render("c/header.h.j2", CHeader(scene, more, under, bounded=program.laws is None))
+
+
+def source(scene: Description, program: Program) -> str:
+    """NAME.c."""
     name = program.kernel
     context = CPlain(
         scene=scene,
         numbers=kernels(scene, *_NUMBERS.get(name, ("real.h",))),
-        tables=program_tables(f"{name}/tables.h", scene, program, constants),
+        tables=program_tables(f"{name}/tables.h", scene, program),
         kernel=kernels(scene, *_BELOW.get(name, ()), f"{name}/{name}.c"),
     )
     return render("c/plain.c.j2", context)
+
+
+def streaming(scene: Description, program: Program) -> str:
+    """What NAME.h of modes declares besides: the stream, one sample of the loads in and all outputs out."""
+    context = CModesStream(
+        scene=scene,
+        constants=c_constants(program.constants, program.real),
+        sources=named_loads(program),
+        state=kernel("modes/state.h", scene),
+    )
+    return render("c/modes/modes.h.j2", context)

@@ -9,10 +9,9 @@ from flint import fmpq
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.program import Program
 from wavesym.rendering import render, text_of
-from wavesym.targets.c import TARGET as C
+from wavesym.targets import c
 from wavesym.targets.description import Description
-from wavesym.targets.fmu.units import DefinedUnit, define_units
-from wavesym.targets.fmu.variables import Variable, parameters, variables
+from wavesym.targets.fmu.variables import DefinedUnit, Variable, define_units, parameters, variables
 from wavesym.targets.literals import literal
 
 
@@ -71,7 +70,7 @@ def fmu_files(scene: Description, program: Program, version: str) -> dict[str, s
     """Text by place in the file that a simulator reads: sources and descriptions."""
     number, name = version.removeprefix("fmu"), scene.name
     compiled = (f"fmi{number}.c", f"{name}.c")
-    sources = {file: text for file, text in C.files(scene, program).items() if not file.endswith("_selftest.c")}
+    sources = {file: text for file, text in c.files(scene, program).items() if not file.endswith("_selftest.c")}
     sources["model.h"] = render("fmu/model.h.j2", _model(scene, program))
     for file in (f"fmi{number}.c", f"fmi{number}.h", "simulation.h"):
         sources[file] = text_of(f"fmu/{file}")

@@ -1,12 +1,13 @@
-"""What a simulator sees: time, loads, outputs, what is lost, parameters, what is fixed, and one choice."""
+"""What a simulator sees: time, loads, outputs, what is lost, parameters, what is fixed, and one choice; and units."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from flint import fmpq
 
+from wavesym.fields.quantity import base_units
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.network import RuntimeField
@@ -98,3 +99,24 @@ def _variables(program: Program) -> Iterator[Variable]:
             yield Variable(label, "parameter", "fixed", about, literal(nearest(value)), given.text)
     about = "whether a load goes in a straight line to its value at the end of a step; else it is held over the step"
     yield Variable("linear", "parameter", "fixed", about, str(stepped).lower(), kind="Boolean")
+
+
+@dataclass(frozen=True)
+class DefinedUnit:
+    """A unit as FMI writes it: powers of SI base units that are not 0, and the factor where it is not 1."""
+
+    name: str
+    attributes: tuple[tuple[str, str], ...]
+
+
+def define_units(names: Iterable[str]) -> tuple[DefinedUnit, ...]:
+    """The units by these names, each once."""
+    return tuple(map(_define_unit, sorted({name for name in names if name})))
+
+
+def _define_unit(name: str) -> DefinedUnit:
+    factor, powers = base_units(name)
+    attributes = [(base, str(powers[base])) for base in ("kg", "m", "s", "rad") if powers.get(base)]
+    if factor != 1:
+        attributes.append(("factor", literal(nearest(rational(factor)))))
+    return DefinedUnit(name, tuple(attributes))

@@ -1,4 +1,4 @@
-"""NAME.py: the tables that a scheme reads, and the scheme itself."""
+"""Python that imports nothing but NumPy: NAME.py, the tables that a scheme reads, and the scheme itself."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from wavesym.programs.schemes import PARTS, SCHEMES
 from wavesym.rendering import render
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, lines, literal
+
+HAS_SELFTEST = False
 
 _WIDTH = 112
 
@@ -26,8 +28,8 @@ class NumPyProgram:
     scheme_name: str
 
 
-def source(scene: Description, program: Program) -> str:
-    """The text of the module."""
+def files(scene: Description, program: Program) -> dict[str, str]:
+    """The text of the module, by its name."""
 
     def literals(values: Iterable[float]) -> Iterable[str]:
         return (str(value) if isinstance(value, int) else literal(value, program.real) for value in values)
@@ -40,7 +42,7 @@ def source(scene: Description, program: Program) -> str:
         scheme="\n\n\n".join(map(_text, (*PARTS.get(program.kernel, ()), scheme))),
         scheme_name=scheme.__name__,
     )
-    return render("numpy/program.py.j2", context)
+    return {f"{scene.name}.py": render("numpy/program.py.j2", context)}
 
 
 def _text(part: type) -> str:
