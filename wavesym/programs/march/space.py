@@ -44,12 +44,18 @@ class Port:
 
 @dataclass(frozen=True)
 class JointSpace:
-    """The laws of a joint; `weights` are masses and springs, `begun` is x at tau = 0."""
+    """The laws of a joint; `weights` are masses and springs, `begun` is x at tau = 0.
+
+    A state is the velocity of the point that it `moves_with`, or, where that is -1, how much longer a spring has
+    become: x' = `lengthening` q, with rows of 0 for velocities.
+    """
 
     rates: fmpq_mat
     pushed: fmpq_mat
     shown: fmpq_mat
     passed: fmpq_mat
+    lengthening: fmpq_mat
+    moves_with: tuple[int, ...]
     weights: tuple[fmpq, ...]
     begun: tuple[fmpq, ...]
     ports: tuple[Port, ...]
@@ -86,7 +92,8 @@ class JointSpace:
 
     def speed_up(self, times: fmpq) -> JointSpace:
         """The same, so many times as fast."""
-        return replace(self, rates=times * self.rates, pushed=times * self.pushed)
+        changes = {name: times * getattr(self, name) for name in ("rates", "pushed", "lengthening")}
+        return replace(self, **changes)
 
     @cached_property
     def norm(self) -> float:
@@ -113,38 +120,6 @@ class JointSpace:
         return np.array(rows).reshape(self.states, self.states)
 
     @cached_property
-    def moves_with(self) -> tuple[int, ...]:
-        """Of each state the point whose velocity it is; -1 where it is how much longer a spring has become."""
-        points = [
-            [k for k in range(self.points) if [self._motion[k, c] for c in range(self._motion.ncols())] == unit]
-            for unit in ([fmpq(b == a) for b in range(self.states + self.points)] for a in range(self.states))
-        ]
-        return tuple(of[0] if of else -1 for of in points)
-
-    @cached_property
-    def lengthening(self) -> fmpq_mat:
-        """By how much each state changes as points move, x' = lengthening q; 0 where it is the velocity of one.
-
-        The rows of [shown passed] are independent, so that those of [rates pushed] give it.
-        """
-        motion, own = self._motion, [point < 0 for point in self.moves_with]
-        rows = fmpq_mat(self.states, self.states + self.points)
-        for a in range(self.states):
-            for c in range(rows.ncols()):
-                value = self.rates[a, c] if c < self.states else self.pushed[a, c - self.states]
-                rows[a, c] = value if own[a] else _ZERO
-        return rows * motion.transpose() * (motion * motion.transpose()).inv()
-
-    @cached_property
-    def _motion(self) -> fmpq_mat:
-        """What the velocities of points are made of: [shown passed]."""
-        rows = fmpq_mat(self.points, self.states + self.points)
-        for k in range(self.points):
-            for c in range(rows.ncols()):
-                rows[k, c] = self.shown[k, c] if c < self.states else self.passed[k, c - self.states]
-        return rows
-
-    @cached_property
     def scattering(self) -> fmpq_mat:
         """Of a joint without state: what goes back into each end, from what arrives at each and acts on each point."""
         ends, points = len(self.ports), self.points
@@ -164,23 +139,32 @@ class JointSpace:
 
 
 SHOWN = JointSpace(
-    fmpq_mat(0, 0), fmpq_mat(0, 1), fmpq_mat(1, 0), fmpq_mat(1, 1, [1]), (), (), (Port(0, _ZERO, fmpq(1), _ZERO),)
+    rates=fmpq_mat(0, 0),
+    pushed=fmpq_mat(0, 1),
+    shown=fmpq_mat(1, 0),
+    passed=fmpq_mat(1, 1, [1]),
+    lengthening=fmpq_mat(0, 1),
+    moves_with=(),
+    weights=(),
+    begun=(),
+    ports=(Port(0, _ZERO, fmpq(1), _ZERO),),
 )
 """A point that moves as a load says, and does nothing: where that load is read."""
 
 
 @dataclass(frozen=True)
 class JointRows:
-    """The laws of a joint as rows, of numbers or of functions of parameters; the first of its states are `masses`."""
+    """The laws of a joint as rows, of numbers or of functions of parameters."""
 
     rates: Rows
     pushed: Rows
     shown: Rows
     passed: Rows
+    lengthening: Rows
+    moves_with: tuple[int, ...]
     weights: tuple[Any, ...]
     begun: tuple[Any, ...]
     ports: tuple[Port, ...]
-    masses: int
 
     @property
     def states(self) -> int:
@@ -195,7 +179,7 @@ class JointRows:
     @property
     def law(self) -> int:
         """What its step is, as of a `JointSpace`, whatever the parameters are."""
-        return SCATTERER if not self.states else BODY if self.states == self.masses == self.points == 1 else BLOCK
+        return SCATTERER if not self.states else BODY if self.points == 1 and self.moves_with == (0,) else BLOCK
 
 
 def joint_space(network: Network, joint: Joint) -> JointSpace:
@@ -206,6 +190,8 @@ def joint_space(network: Network, joint: Joint) -> JointSpace:
         _matrix(rows.pushed, rows.points),
         _matrix(rows.shown, rows.states),
         _matrix(rows.passed, rows.points),
+        _matrix(rows.lengthening, rows.points),
+        rows.moves_with,
         rows.weights,
         rows.begun,
         rows.ports,
@@ -222,15 +208,17 @@ def joint_rows(network: Network, joint: Joint) -> JointRows:
     springs = list(_springs(network, joint, law))
     elastic = [ElasticState(row, {k: factor * stiffness for k, factor in row.items()}) for stiffness, row in springs]
     space = state_space(law, elastic)
+    growth: list[dict[int, fmpq]] = [*({} for _ in law.heavy), *(row for _, row in springs)]
     return JointRows(
         space.rates,
         space.pushed,
         space.shown,
         space.passed,
+        [[row.get(k, _ZERO) for k in range(len(joint.points))] for row in growth],
+        (*law.heavy, *(-1 for _ in springs)),
         (*(law.mass[k] for k in law.heavy), *(stiffness for stiffness, _ in springs)),
         (*(network.points[joint.points[k]].velocity for k in law.heavy), *(_ZERO for _ in springs)),
         tuple(_ports(network, joint)),
-        len(law.heavy),
     )
 
 

@@ -239,7 +239,7 @@ def _masses(made: RuntimePlan) -> Iterator[int]:
     """Of each state whether it is the velocity of a mass: these come first in a joint."""
     for joint in made.plan.joints:
         if isinstance(rows := joint.space, JointRows):  # others have no state
-            yield from (int(n < rows.masses) for n in range(len(rows.weights)))
+            yield from (int(point >= 0) for point in rows.moves_with)
 
 
 def _with_reference(program: Program) -> Program:
