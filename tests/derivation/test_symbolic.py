@@ -8,13 +8,12 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wavesym.derivation.rate_letters import in_rates
+from wavesym.derivation import symbolic as symbolic_module
+from wavesym.derivation.symbolic import generic, in_rates, symbolic
 from wavesym.derivation.table import full_table
 from wavesym.errors import SceneError
-from wavesym.mechanics import symbolic as symbolic_module
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
-from wavesym.mechanics.symbolic import generic, symbolic
 from wavesym.numbers.forms import Forms
 from wavesym.numbers.ratio import Ratio, Ring
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND

@@ -3,11 +3,10 @@
 import pytest
 from flint import fmpq
 
-from wavesym.derivation.rate_letters import in_rates
+from wavesym.derivation.symbolic import generic, in_rates
 from wavesym.derivation.table import full_table
 from wavesym.derivation.table_size import LARGEST_SYMBOLIC, refuse_costly, symbolic_terms
 from wavesym.errors import CostError
-from wavesym.mechanics.symbolic import generic
 from wavesym.numbers.ratio import Ratio
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION

@@ -10,9 +10,9 @@ import pytest
 from tests.support.patience import first_always
 from tests.support.scenes import NAMED
 from wavesym.cli import main
+from wavesym.derivation.symbolic import symbolic
 from wavesym.documents.derivation.document import derivation, scene_derivation
 from wavesym.errors import WavesymError
-from wavesym.mechanics.symbolic import symbolic
 from wavesym.scene import Scene
 
 SYSTEMS = ("collision", "drive", "building")

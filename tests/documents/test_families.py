@@ -11,6 +11,7 @@ from flint import fmpq
 from wavesym.derivation.increments import integrate
 from wavesym.derivation.numbers import expression, number, symbol
 from wavesym.derivation.recurrence import RATE
+from wavesym.derivation.symbolic import symbolic
 from wavesym.derivation.table import full_table
 from wavesym.documents.derivation.chain_laws import meanings, own_laws
 from wavesym.documents.derivation.document import derivation
@@ -18,7 +19,6 @@ from wavesym.documents.derivation.families import integral, own_rate, solve_at_r
 from wavesym.documents.derivation.patterns import GENERIC, pattern_laws, patterns, rates
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
-from wavesym.mechanics.symbolic import symbolic
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE

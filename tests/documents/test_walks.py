@@ -7,11 +7,11 @@ import subprocess
 
 import pytest
 
+from wavesym.derivation.symbolic import generic
 from wavesym.derivation.table import Function
 from wavesym.derivation.walks import departures, function_walks, letters, units, walks_until
 from wavesym.documents.walks import walk_polynomials
 from wavesym.errors import CostError
-from wavesym.mechanics.symbolic import generic
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.drive import DRIVE
 

@@ -5,9 +5,8 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wavesym.derivation.rate_letters import in_rates
+from wavesym.derivation.symbolic import generic, in_rates
 from wavesym.derivation.table import full_table
-from wavesym.mechanics.symbolic import generic
 from wavesym.numbers import factorization as module
 from wavesym.numbers.factorization import irreducible
 from wavesym.systems.building import BUILDING_FORCE

@@ -9,6 +9,7 @@ from flint import fmpq, fmpz_poly, nmod_poly
 from sympy import Add, Rational, binomial
 
 from wavesym.derivation.delay import COUNT, INDEX
+from wavesym.derivation.symbolic import generic
 from wavesym.derivation.table import Function, Rules
 from wavesym.derivation.walks import Unit, departures, function_walks, letters, units, walks_until
 from wavesym.documents.derivation.highest_powers import (
@@ -24,7 +25,6 @@ from wavesym.documents.derivation.highest_powers import (
 )
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
-from wavesym.mechanics.symbolic import generic
 from wavesym.systems import presets
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION

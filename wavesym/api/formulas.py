@@ -72,11 +72,10 @@ def symbolic_tables(scene: Scene, intervals: int | None, format: str) -> tuple[l
 
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
-    from wavesym.derivation.rate_letters import in_rates
+    from wavesym.derivation.symbolic import in_rates, symbolic
     from wavesym.derivation.table import full_table
     from wavesym.derivation.table_size import refuse_costly
     from wavesym.documents.tables import symbolic_lines
-    from wavesym.mechanics.symbolic import symbolic
     from wavesym.numbers.doubles import rational
 
     lowered = lower(scene)
@@ -128,8 +127,8 @@ def formula(
         model = model.shorten(last)
     if not symbolic:
         return output_formula(model, output).render(format)
-    from wavesym.derivation.rate_letters import in_rates
-    from wavesym.mechanics.symbolic import symbolic as in_letters
+    from wavesym.derivation.symbolic import in_rates
+    from wavesym.derivation.symbolic import symbolic as in_letters
 
     chain = _paper_chain(scene, model, "--symbolic", "formula")
     return symbolic_formula(model, output, in_rates(in_letters(chain)), chain.nodes[-1].velocity).render(format)
@@ -173,9 +172,9 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
     >>> wavesym.derive("drive").equations[0].delay_equations[0].equation.lhs
     Derivative(f(1, z), z)*kappa[1] + Derivative(f(1, z), (z, 2))
     """
+    from wavesym.derivation.symbolic import symbolic
     from wavesym.documents.derivation.document import derivation, network_derivation, scene_derivation
     from wavesym.documents.derivation.statement import systems
-    from wavesym.mechanics.symbolic import symbolic
     from wavesym.systems import presets
 
     if isinstance(source, str) and source not in presets():
@@ -199,9 +198,9 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
 
     WavesymError for an m that the system does not have; CostError where the polynomials would be absurd.
     """
+    from wavesym.derivation.symbolic import generic, symbolic
     from wavesym.documents.derivation.statement import systems
     from wavesym.documents.walks import walk_polynomials
-    from wavesym.mechanics.symbolic import generic, symbolic
 
     if isinstance(source, str):
         assert m is not None  # polynomials are those of one chain

@@ -15,13 +15,13 @@ from flint import fmpq
 
 from wavesym.derivation.increments import Increment, add, integrate, trim
 from wavesym.derivation.increments import start as begin
+from wavesym.derivation.symbolic import SymbolicChain
 from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.documents.latex_number import latex_number
 from wavesym.errors import CostError, UnservedError, WavesymError, did_you_mean
 from wavesym.exact.tables.signal import signals
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.numbers.ratio import Ratio
 from wavesym.rendering import render as render_template

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
+from wavesym.derivation.symbolic import SymbolicChain
 from wavesym.derivation.table import Row, Table
 from wavesym.documents.latex_number import latex_number
 from wavesym.exact.tables.network_table import NetworkTable
-from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.factorization import polynomial_text
 from wavesym.numbers.ratio import Ratio
 from wavesym.rendering import render_stream

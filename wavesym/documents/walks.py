@@ -9,12 +9,12 @@ from dataclasses import asdict, dataclass
 
 from flint import fmpq
 
+from wavesym.derivation.symbolic import SymbolicChain
 from wavesym.derivation.table import Function, Rules
 from wavesym.derivation.walks import Letters, Unit, departures, function_walks, letters, units, walks
 from wavesym.documents.derivation.document import template
 from wavesym.errors import CostError
 from wavesym.mechanics.node import Quantity
-from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.ratio import Ratio
 from wavesym.rendering import render
 

@@ -18,7 +18,7 @@ from wavesym.documents.derivation.families import substitute
 from wavesym.mechanics.chain import Chain
 
 if TYPE_CHECKING:
-    from wavesym.mechanics.symbolic import SymbolicChain
+    from wavesym.derivation.symbolic import SymbolicChain
     from wavesym.numbers.ratio import Ratio
 
 

@@ -12,8 +12,8 @@ from wavesym.documents.derivation.statement import Statement, scene_statement, s
 from wavesym.rendering import render
 
 if TYPE_CHECKING:
+    from wavesym.derivation.symbolic import SymbolicChain
     from wavesym.mechanics.model import Model
-    from wavesym.mechanics.symbolic import SymbolicChain
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from wavesym.mechanics.node import Node, System
 from wavesym.systems import presets
 
 if TYPE_CHECKING:
-    from wavesym.mechanics.symbolic import SymbolicChain
+    from wavesym.derivation.symbolic import SymbolicChain
 
 LARGEST_WRITTEN_OUT = 100
 MOST_FAMILIES = 6  # beyond that the law at one rate g is easier to read than a line for each
