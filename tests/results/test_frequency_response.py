@@ -464,6 +464,28 @@ def test_a_band_that_begins_near_0_under_an_acceleration(low: float) -> None:
     assert largest * (1 - 1e-12) <= peak.high <= largest * (1 + 1e-9)
 
 
+FLAT = {
+    "an end that goes as it is told to": ([{"motion": "acceleration", "name": "j"}, {"rod": 1}, {"mass": 3}], 1),
+    "waves that do not come back": (["absorbing", {"rod": 1}, {"joint": True, "name": "j"}, {"rod": 1}, "absorbing"], "1/2"),
+}
+
+
+@pytest.mark.parametrize("band", [(0.0, 0.5), (0.1, 7.0), (0.3, 0.30000000001)])
+@pytest.mark.parametrize("name", FLAT)
+def test_an_amplitude_that_is_the_same_everywhere_is_found_at_once(
+    name: str, band: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was halved down to 1e-10 everywhere, and called infinite at frequencies that the end holds."""
+    monkeypatch.setattr(resonance, "_MOST", 4000)
+    parts, amplitude = FLAT[name]
+    outputs = {"acceleration": ["j"]} if amplitude == 1 else {"velocity": ["j", "3/2"], "strain": ["1/2"]}
+    load = [{"at": "j", "times": [0], "steps": [1]}]
+    scene = Scene(name="flat", system={"type": "chain", "parts": parts}, load=load, output={"until": 5, **outputs})
+    for peak in wavesym.frf(scene, list(band)).peaks():
+        assert peak.low <= float(Fraction(amplitude)) <= peak.high < peak.low * (1 + 1e-9)
+        assert peak.frequency == pytest.approx(band[0], abs=1e-11)
+
+
 @pytest.mark.parametrize("parts", [14, pytest.param(50, marks=pytest.mark.slow)])
 def test_peaks_of_many_parts_against_transfer_matrices(parts: int) -> None:
     """(u, force) from the free top to the bit, in doubles, at 40 000 frequencies."""
@@ -488,7 +510,9 @@ def test_taylor_polynomials_enclose_a_response_and_its_slopes() -> None:
     with ctx.workprec(128):
         for middle, radius in ((2.0, 0.03), (7.5, 0.01), (11.0, 0.002)):
             ball = arb(middle, radius)
-            around = [resonance._coefficients(each, 3) for each in resonance._power_series(transfer, ball)]
+            fractions = resonance._fractions(transfer, ball)
+            assert fractions is not None
+            around = [resonance._coefficients(each, 3) for each in resonance._power_series(transfer, ball, fractions)]
             for part in (-1, -0.5, 0.3, 1):
                 w = acb(arb(middle + part * radius))
                 here = [resonance._coefficients(each, 3) for each in transfer(acb_series([w, 1], prec=3))]

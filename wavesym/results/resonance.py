@@ -2,7 +2,8 @@
 
 On an interval about m of half width r a function is its Taylor polynomial about m, and a rest that its second
 derivative on the whole interval bounds: h(m) + h'(m) s + h''(interval)/2 s^2, |s| <= r, all of it in balls. Intervals
-whose amplitudes may exceed the greatest one found so far are halved until none is left.
+whose amplitudes may exceed the greatest one found so far, L, are halved until none is left. An amplitude |N/D| that hardly
+changes stays near L everywhere: there |N|^2 - L^2 |D|^2 is taken as one polynomial, in which what is alike cancels.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import comb, inf
 
-from flint import acb, acb_series, arb, ctx
+from flint import acb, acb_series, arb, arb_poly, ctx
 
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.modes.harmonic import Quantity
@@ -26,6 +27,7 @@ from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
 _BITS = 256
 _SHARE = arb(2) ** -33  # of the greatest amplitude: what peaks are enclosed to
+_NOISE = arb(2) ** -128  # of an amplitude: one that is no higher than by so much is the same
 _LEAST = arb(2) ** -40  # of the band: an interval in which amplitudes are still not bounded has a pole
 _GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole at 0, where it is 4 or 16
 _MOST = 600_000  # intervals times parts
@@ -43,7 +45,8 @@ class Peak:
 
     Attributes:
         name: the output; `unit` its unit, per unit of the load.
-        frequency: where it is, in Hz, or in rad per tau without [units].
+        frequency: where it is, in Hz, or in rad per tau without [units]; of places that are equally high one, the lower
+            end of the band if that is.
         amplitude: what it is there, to the nearest double; inf at a natural frequency that nothing damps.
         low: proved: it is at least this, and at most `high`.
     """
@@ -153,7 +156,7 @@ class _Search:
 
     def amplitude_squared(self, w: arb, square: arb) -> None:
         """An amplitude, squared, at a frequency."""
-        if square.is_finite() and (self.at is None or square.lower() > self.square):
+        if square.is_finite() and (self.at is None or square.lower() > self.square * (1 + _NOISE)):
             self.square, self.at = square.lower(), w
 
     def excludes(self, square: arb) -> bool:
@@ -208,14 +211,17 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
                 found[k].amplitude_squared(each.middle, squares[k][0])
         following: list[_Interval] = []
         for each, squares in zip(level, middles, strict=True):
-            whole = _squares(transfer, each.low.union(each.high))
-            half = (each.high - each.low) / 2
+            ball, half = each.low.union(each.high), (each.high - each.low) / 2
+            fractions = _fractions(transfer, ball)
+            whole = _squares(transfer, ball, fractions)
             open_for = []
             for k in each.outputs:
                 value, slope, _ = squares[k]
                 rest = value + abs(slope) * half + abs(whole[k][2]) * half * half
                 most = (whole[k][0] if each.low.contains(0) else rest).upper()
                 if found[k].pole or (most.is_finite() and found[k].excludes(most)):
+                    continue
+                if fractions is not None and fractions.stays_below(k, found[k].square * (1 + _SHARE), half):
                     continue
                 if each.high - each.low < (last - first).min(each.high) * _LEAST:
                     found[k].pole, found[k].at = True, each.middle
@@ -241,13 +247,59 @@ def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb)
             search.amplitude_squared(better, _squares(transfer, better)[k][0])
 
 
-def _squares(transfer: Transfers, w: arb) -> list[tuple[arb, arb, arb]]:
+@dataclass(frozen=True)
+class _Fractions:
+    """The transfer functions on a ball: a numerator for each output and one divisor, of which none has a pole there.
+
+    Each is a Taylor polynomial about the middle, and with its last coefficient the rest, which the next one on the whole
+    ball bounds. So balls are not blown up by what cancels part by part.
+    """
+
+    numerators: list[list[acb]]
+    divisor: list[acb]
+
+    def quotients(self, reach: arb) -> list[Quantity]:
+        """The transfer functions, their slopes and half their second derivatives on all of a ball, as power series."""
+        divisor = _on_ball(self.divisor, reach)
+        if divisor[0].contains(0):
+            return [acb_series([acb("nan"), 0, 0], prec=3)] * len(self.numerators)
+        return [acb_series(_on_ball(each, reach), prec=3) / acb_series(divisor, prec=3) for each in self.numerators]
+
+    def stays_below(self, k: int, square: arb, half: arb) -> bool:
+        """Whether an amplitude squared is less than so much within `half` of the middle."""
+        excess = _square_of(self.numerators[k]) - square * _square_of(self.divisor)
+        first, *others = excess.coeffs() or [arb(0)]
+        return bool(first + sum((abs(c) * half**n for n, c in enumerate(others, 1)), start=arb(0)) < 0)
+
+
+def _square_of(powers: Sequence[acb]) -> arb_poly:
+    """The absolute value squared of a polynomial of a real number."""
+    re, im = arb_poly([each.real for each in powers]), arb_poly([each.imag for each in powers])
+    return re * re + im * im
+
+
+def _fractions(transfer: Transfers, w: arb) -> _Fractions | None:
+    """None of points, and where transfer functions are no such fractions."""
+    if w.contains(0) or w.rad() < w * _SHARE or not isinstance(transfer, Transfer):
+        return None
+    middle = acb_series([acb(w.mid()), 1], prec=_TERMS)
+    near, around = transfer.parts(middle), transfer.parts(acb_series([acb(w), 1], prec=_TERMS + 1))
+    if near is None or around is None:
+        return None
+    *numerators, divisor = (
+        _taylor(_coefficients(one, _TERMS), _coefficients(all_, _TERMS + 1)[-1])
+        for one, all_ in zip([*near[0], near[1]], [*around[0], around[1]], strict=True)
+    )
+    return _Fractions(numerators, divisor)
+
+
+def _squares(transfer: Transfers, w: arb, fractions: _Fractions | None = None) -> list[tuple[arb, arb, arb]]:
     """Of each output the square of the amplitude, its slope, and half its second derivative, on all of a ball."""
     if w.contains(0):
         sizes = (abs(acb(value)) for value in transfer(w))
         return [(size * size, arb(0), arb(0)) for size in sizes]
     made = []
-    for value in _power_series(transfer, w):
+    for value in _power_series(transfer, w, fractions):
         c = _coefficients(value, 3)
         re, im = [each.real for each in c], [each.imag for each in c]
         made.append(
@@ -260,38 +312,33 @@ def _squares(transfer: Transfers, w: arb) -> list[tuple[arb, arb, arb]]:
     return made
 
 
-def _power_series(transfer: Transfers, w: arb) -> list[Quantity]:
-    """The transfer functions, their slopes and half their second derivatives on all of a ball, as power series.
-
-    What has poles is a numerator over a divisor, which have none: each is a Taylor polynomial about the middle, and a
-    rest that the next coefficient on the whole ball bounds. So balls are not blown up by what cancels part by part.
-    """
+def _power_series(transfer: Transfers, w: arb, fractions: _Fractions | None) -> list[Quantity]:
+    """The transfer functions, their slopes and half their second derivatives on all of a ball, as power series."""
     series = acb_series([acb(w), 1], prec=3)
-    if w.rad() < w * _SHARE or not isinstance(transfer, Transfer):
+    if fractions is None or not isinstance(transfer, Transfer):
         return transfer(series)
-    middle = acb_series([acb(w.mid()), 1], prec=_TERMS)
-    near, around = transfer.parts(middle), transfer.parts(acb_series([acb(w), 1], prec=_TERMS + 1))
-    if near is None or around is None:
-        return transfer(series)
-    reach = arb(0, w.rad())
-    *numerators, divisor = (
-        _on_ball(_coefficients(one, _TERMS), _coefficients(all_, _TERMS + 1)[-1], reach)
-        for one, all_ in zip([*near[0], near[1]], [*around[0], around[1]], strict=True)
-    )
-    if divisor[0].contains(0):
-        return [acb_series([acb("nan"), 0, 0], prec=3)] * len(numerators)
-    return [acb_series(each, prec=3) / acb_series(divisor, prec=3) for each in numerators]
+    found = fractions.quotients(arb(0, w.rad()))
+    if transfer.imposed_outputs:
+        direct = transfer(series)
+        for k in transfer.imposed_outputs:
+            found[k] = direct[k]
+    return found
 
 
-def _on_ball(powers: Sequence[acb], following: acb, reach: arb) -> list[acb]:
+def _taylor(powers: Sequence[acb], following: acb) -> list[acb]:
+    """A polynomial, and as its last coefficient all that the next one may be on a ball."""
+    size = abs(following).upper()
+    return [*powers, acb(arb(0, size), arb(0, size))]
+
+
+def _on_ball(powers: Sequence[acb], reach: arb) -> list[acb]:
     """A function, its slope and half its second derivative at all distances within reach of where powers are of."""
-    n, size, made = len(powers), abs(following).upper(), []
+    made = []
     for order in range(3):
         value = acb(0)
-        for k in reversed(range(order, n)):
+        for k in reversed(range(order, len(powers))):
             value = value * reach + powers[k] * comb(k, order)
-        rest = arb(0, (size * comb(n, order) * abs(reach).upper() ** (n - order)).upper())
-        made.append(value + acb(rest, rest))
+        made.append(value)
     return made
 
 

@@ -22,9 +22,9 @@ from wavesym.errors import WavesymError, did_you_mean
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.harmonic import Amplitudes, HarmonicNetwork, Quantity
 from wavesym.exact.modes.shape import rigid
-from wavesym.mechanics.gauge import ReadingTerm, readings
+from wavesym.mechanics.gauge import Gauge, ReadingTerm, readings
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Network
+from wavesym.mechanics.network import End, Network
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 
@@ -148,6 +148,15 @@ class Transfer:
             made.append(driven * output_amplitude(self.model.network, probe, amplitudes))
         return made, amplitudes.divisor
 
+    @cached_property
+    def imposed_outputs(self) -> frozenset[int]:
+        """The outputs that are what a driven end itself does, whatever the rest does."""
+        network, driven = self.model.network, [point for point, _ in self.load.drives]
+        if len(driven) != 1 or network.points[driven[0]].motion is None:
+            return frozenset()
+        found = ((k, [each for _, each in _motion_readings(network, p)]) for k, p in enumerate(self.model.probes))
+        return frozenset(k for k, every in found if all(_point_of(network, each) == driven[0] for each in every))
+
     def _undifferentiated_outputs(self, point: int, w: Quantity) -> list[Quantity]:
         """The outputs, not yet differentiated in time, under a unit force on a point, or its unit displacement."""
         if self._rayleigh is None:
@@ -218,6 +227,13 @@ def _motion_readings(network: Network, probe: Probe) -> list[ReadingTerm]:
     """The strains and displacements that an output is the sum of, before it is differentiated in time."""
     moved = replace(probe, quantity="displacement") if probe.quantity in ORDERS else probe
     return [term for term in readings(network, moved) if term.reading.moves]
+
+
+def _point_of(network: Network, reading: Gauge) -> int | None:
+    """The point whose motion is read; None for a strain, and inside a rod."""
+    if reading.quantity == "strain" or (reading.rod and reading.place not in (0, 1)):
+        return None
+    return network.point_at(End(reading.rod - 1, int(reading.place))) if reading.rod else reading.point
 
 
 def output_amplitude(network: Network, probe: Probe, amplitudes: Amplitudes) -> Quantity:

@@ -169,6 +169,7 @@ class Amplitudes:
         for branch in reversed(self._branches):
             self._beyond[branch.far] = self._sum_subtree(branch.far)
             self._resistance[branch.far] = self._branch_fraction(branch)
+        self._root = root
         self._moved: dict[int, Quantity] = {}
         self._scales: dict[int, tuple[Branch, Quantity]] = {}
         self.divisor: Quantity = arb(1)
@@ -183,6 +184,8 @@ class Amplitudes:
         if bar not in self._scales:
             return arb(0)
         branch, scale = self._scales[bar]
+        if branch.near == self._root and place == branch.side:  # as it is driven, whatever the rest does
+            return self._moved[self._root] * branch.ratios[0]
         a, b = self._at_far_end(branch)
         near, far = self._turns_to_ends(branch, place)
         moved = a * far.sine + b * self._medium(bar).impedance * far.cosine
