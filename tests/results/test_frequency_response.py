@@ -466,7 +466,10 @@ def test_a_band_that_begins_near_0_under_an_acceleration(low: float) -> None:
 
 FLAT = {
     "an end that goes as it is told to": ([{"motion": "acceleration", "name": "j"}, {"rod": 1}, {"mass": 3}], 1),
-    "waves that do not come back": (["absorbing", {"rod": 1}, {"joint": True, "name": "j"}, {"rod": 1}, "absorbing"], "1/2"),
+    "waves that do not come back": (
+        ["absorbing", {"rod": 1}, {"joint": True, "name": "j"}, {"rod": 1}, "absorbing"],
+        "1/2",
+    ),
 }
 
 

@@ -81,7 +81,7 @@ def test_sets_are_what_proved_modes_say(name):
     parameters = parameters_of(MODELS[name])
     rows, taus = drawn_rows(parameters, 3), np.linspace(0, parameters.model.horizon(), 83)
     found = ModalSets(parameters).responses(rows, taus[::-1].copy())
-    for row, _, estimate, peaks, values in zip(rows, *found, strict=True):
+    for row, _, estimate, _, peaks, values in zip(rows, *found, strict=True):
         proved = modes(parameters.exact(row), DOUBLE)
         largest = np.array([output.largest for output in proved.outputs])
         error = np.abs(values[:, ::-1] - proved.scheme.evaluate(taus)).max(axis=1)

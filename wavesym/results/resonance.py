@@ -2,8 +2,8 @@
 
 On an interval about m of half width r a function is its Taylor polynomial about m, and a rest that its second
 derivative on the whole interval bounds: h(m) + h'(m) s + h''(interval)/2 s^2, |s| <= r, all of it in balls. Intervals
-whose amplitudes may exceed the greatest one found so far, L, are halved until none is left. An amplitude |N/D| that hardly
-changes stays near L everywhere: there |N|^2 - L^2 |D|^2 is taken as one polynomial, in which what is alike cancels.
+whose amplitudes may exceed the greatest one found so far, L, are halved until none is left. An amplitude |N/D| that
+hardly changes stays near L: then |N|^2 - L^2 |D|^2 is taken as one polynomial, in which what is alike cancels.
 """
 
 from __future__ import annotations
@@ -251,8 +251,8 @@ def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb)
 class _Fractions:
     """The transfer functions on a ball: a numerator for each output and one divisor, of which none has a pole there.
 
-    Each is a Taylor polynomial about the middle, and with its last coefficient the rest, which the next one on the whole
-    ball bounds. So balls are not blown up by what cancels part by part.
+    Each is a Taylor polynomial about the middle, and with its last coefficient the rest, which the next one on the
+    whole ball bounds. So balls are not blown up by what cancels part by part.
     """
 
     numerators: list[list[acb]]

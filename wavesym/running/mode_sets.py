@@ -30,17 +30,41 @@ _WHERE, _MANY = ctypes.c_void_p, ctypes.c_size_t
 _BAD = 1
 _MOST_MODES = 600  # of a set that needs more than the scene's own numbers
 _MOST_SHORT = 64.0  # times the tolerance: more modes are not taken at once than that needs
-_STEP = 2.0**-14  # of a parameter, over which differences are taken
+_STEP = 2.0**-14  # of a parameter, over which differences are taken, first
+_TRIES, _MOST_SCALE = 3, 2.0**12  # of others, each so many times larger or smaller
+_LARGEST = {"damping": 2.0**-4, "load": np.inf}
 
 
 class ModeSetResponses(NamedTuple):
-    """Of each set its status, 1 where it is refused, its estimate, extremes (sets, outputs, 4): the least value, its
-    tau, the greatest value, its tau; and histories (sets, outputs, instants): NaN of those that are refused."""
+    """Of each set its status, 1 where it is refused, its estimate, what rounding may do to outputs (sets, outputs),
+    extremes (sets, outputs, 4): the least value, its tau, the greatest value, its tau; and histories (sets, outputs,
+    instants): NaN of those that are refused."""
 
     status: NDArray[np.int32]
     estimate: Array
+    rounded: Array
     peaks: Array
     values: Array
+
+    def rows(self, some: NDArray[np.bool_]) -> ModeSetResponses:
+        """Those of some sets."""
+        return ModeSetResponses(
+            self.status[some], self.estimate[some], self.rounded[some], self.peaks[some], self.values[some]
+        )
+
+    def put(self, rows: NDArray[np.bool_], others: ModeSetResponses) -> None:
+        """Take others for some sets."""
+        self.status[rows], self.estimate[rows], self.rounded[rows] = others.status, others.estimate, others.rounded
+        self.peaks[rows], self.values[rows] = others.peaks, others.values
+
+
+class _Slopes(NamedTuple):
+    """Derivatives of sets by a parameter, of shape (sets, outputs, times), their estimates, and how many times as large
+    a step may be better."""
+
+    slopes: Array
+    estimate: Array
+    scale: Array
 
 
 class ModalSets:
@@ -86,36 +110,103 @@ class ModalSets:
         """The values, then their derivatives by each parameter, of shape (sets, 1 + parameters, outputs, times), and as
         many estimates: differences, extrapolated, of models with as many modes.
 
-        A parameter that is 0, and may not be less, is changed upwards alone.
+        Where the first step is not good to the tolerance others are taken, and of all the best.
         """
-        own, (sets, count) = self.values(given, tau), given.shape
-        found = no_sets(sets, (1 + count, *own.values.shape[2:]), (1 + count,))
-        found.status[:], found.estimate[:, 0], found.values[:, 0] = own.status, own.estimate, own.values[:, 0]
-        for parameter in range(count):
+        own, (sets, count) = self._horizon_responses(given, tau), given.shape
+        found = no_sets(sets, (1 + count, *own.values.shape[1:]), (1 + count,))
+        found.status[:], found.estimate[:, 0], found.values[:, 0] = own.status, own.estimate, own.values
+        for parameter, most in enumerate(self._largest_steps(given).T):
             size = np.abs(given[:, parameter])
-            by = _STEP * np.where(size > 0, size, 1.0)
-            near, far = (self._difference(given, own, parameter, times * by, tau) for times in (1, 2))
-            slopes = (4 * near - far) / 3
-            wrong, largest = (np.abs(each).max(axis=2, initial=0.0) for each in (slopes - near, slopes))
-            relative = np.divide(wrong, largest, out=np.zeros_like(wrong), where=largest > 0)
-            found.values[:, 1 + parameter] = slopes
-            found.estimate[:, 1 + parameter] = relative.max(axis=1) + own.estimate
+            step = _STEP * np.where(size > 0, size, 1.0)
+            best = self._difference(given, own, parameter, step, tau)
+            scale = best.scale.copy()
+            for _ in range(_TRIES):
+                poor = best.estimate > nearest(self.model.tolerance)
+                if not poor.any():
+                    break
+                step[poor] = np.minimum(step * scale, most)[poor]
+                tried = self._difference(given[poor], own.rows(poor), parameter, step[poor], tau)
+                scale[poor] = tried.scale
+                better = tried.estimate < best.estimate[poor]
+                rows = np.flatnonzero(poor)[better]
+                best.slopes[rows], best.estimate[rows] = tried.slopes[better], tried.estimate[better]
+            found.values[:, 1 + parameter] = best.slopes
+            found.estimate[:, 1 + parameter] = best.estimate + own.estimate
         return found
 
-    def _difference(self, given: Array, own: FoundSets, parameter: int, by: Array, tau: Array) -> Array:
-        """Derivatives by one parameter to the second order of its change."""
+    def _largest_steps(self, given: Array) -> Array:
+        """Those of each parameter: of one that has to be positive, a part of it."""
+        return np.stack(
+            [
+                np.full(len(given), _LARGEST[name]) if name in _LARGEST else np.abs(size) / 16
+                for name, size in zip(self._names, given.T, strict=True)
+            ],
+            axis=1,
+        )
 
-        def values_after(times: float) -> Array:
+    def _difference(self, given: Array, own: ModeSetResponses, parameter: int, step: Array, tau: Array) -> _Slopes:
+        """Derivatives by one parameter, by differences of the second order over `step` and twice that, extrapolated.
+
+        The nearer one is wrong by about a third of how far they are apart, and by what turns of fast modes are missed;
+        both by what rounding does to values, over the step. A parameter that may not be so much less is changed upwards
+        alone.
+        """
+        rounded, points, values = own.rounded.copy(), {0: given[:, parameter]}, {0: own.values}
+
+        def value_at(times: int) -> None:
             other = given.copy()
-            other[:, parameter] += times * by
-            return self._horizon_responses(other, tau, given).values
+            other[:, parameter] += times * step
+            found = self._horizon_responses(other, tau, given)
+            points[times], values[times] = other[:, parameter], found.values
+            np.fmax(rounded, found.rounded, out=rounded)
 
-        up, down, width = values_after(1), values_after(-1), 2 * by[:, None, None]
-        made: Array = (up - down) / width
-        refused = np.isnan(down).all(axis=(1, 2)) & (own.status != _BAD)
+        def central(k: int) -> Array:
+            return (values[k] - values[-k]) / (points[k] - points[-k])[:, None, None]
+
+        def upwards(k: int) -> Array:
+            return (4 * values[k] - values[2 * k] - 3 * values[0]) / (points[2 * k] - points[0])[:, None, None]
+
+        for times in (1, 2, -1, -2):
+            value_at(times)
+        near, far, weight = central(1), central(2), np.full(len(given), 1.5)
+        refused = np.isnan(values[-2]).all(axis=(1, 2)) & (own.status != _BAD)
         if refused.any():
-            made[refused] = ((4 * up - values_after(2) - 3 * own.values[:, 0]) / width)[refused]
-        return made
+            value_at(4)
+            near[refused], far[refused], weight[refused] = upwards(1)[refused], upwards(2)[refused], 6.0
+        slopes = (4 * near - far) / 3
+        curved, largest = (np.abs(each).max(axis=2, initial=0.0) for each in (slopes - near, slopes))
+        curved += self._missed(given, parameter, step)
+        noise = weight[:, None] * rounded / step[:, None]
+        wrong = curved + noise
+        with np.errstate(divide="ignore", invalid="ignore"):
+            relative = np.where(wrong > 0, np.where(wrong < largest, wrong / (largest - wrong), np.inf), wrong)
+            ratio = np.nanmax(noise / largest, axis=1) / np.nanmax(2 * curved / largest, axis=1)
+        scale = np.nan_to_num(np.cbrt(ratio), nan=1.0, posinf=_MOST_SCALE)
+        return _Slopes(slopes, relative.max(axis=1), np.clip(scale, 1 / _MOST_SCALE, _MOST_SCALE))
+
+    def _missed(self, given: Array, parameter: int, step: Array) -> Array:
+        """What these differences miss of derivatives by turns of modes, (sets, outputs): in w t half of a change of a
+        parameter relative to it, in z w t all of one of a damping ratio z; nothing of loads."""
+        name, missed = self._names[parameter], np.zeros((len(given), len(self.model.probes)))
+        if name == "load":
+            return missed
+        unit = np.full(len(given), 0.5) if name == "damping" else np.abs(given[:, parameter])
+        c, relative = self._library(max(self._libraries)), step / unit
+        find = getattr(c, f"{self.model.name}_missed")
+        find.argtypes = [_WHERE, _WHERE, _MANY, _WHERE, _WHERE]
+        numbers, room = np.ascontiguousarray(given), self._room(c)
+        find(address(numbers), address(relative), len(given), address(room), address(missed))
+        return missed / unit[:, None]
+
+    @cached_property
+    def _names(self) -> list[str]:
+        """The field of each parameter."""
+        return [field.name for field in self.fields for _ in field.values]
+
+    def _room(self, c: ctypes.CDLL) -> NDArray[np.uint8]:
+        """That of one model."""
+        room = np.empty(struct_size(c, "model") + 64, np.uint8)
+        return room[-room.ctypes.data % 64 :]
 
     def bounds(self, given: Array) -> FoundSets:
         """The bound of each output, of shape (sets, outputs): that of a program of proved modes, and how far values
@@ -148,7 +239,7 @@ class ModalSets:
             for count in np.unique(doublings[short]).tolist():
                 rows = short & (doublings == count)
                 more = self._by_modes(count, given[rows], tau)
-                found.status[rows], found.estimate[rows], found.peaks[rows], found.values[rows] = more
+                found.put(rows, more)
                 estimate[rows] = more.estimate
                 if like is not None:
                     estimate[rows] = self._by_modes(count, like[rows], np.empty(0)).estimate
@@ -170,20 +261,20 @@ class ModalSets:
 
     def _by_modes(self, doublings: int, given: Array, tau: Array) -> ModeSetResponses:
         """Those by so many modes."""
-        run = getattr(self._library(doublings), f"{self.model.name}_sets")
-        run.argtypes = [_WHERE, _MANY, _WHERE, _WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE]
-        room = np.empty(struct_size(self._library(doublings), "model") + 64, np.uint8)
-        room = room[-room.ctypes.data % 64 :]
-        order = np.argsort(tau, kind="stable")
+        c = self._library(doublings)
+        run = getattr(c, f"{self.model.name}_sets")
+        run.argtypes = [_WHERE, _MANY, _WHERE, _WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE]
+        room, order = self._room(c), np.argsort(tau, kind="stable")
         numbers, instants = np.ascontiguousarray(given), np.ascontiguousarray(tau[order])
         sets, outputs = len(given), len(self.model.probes)
         found = ModeSetResponses(
             np.empty(sets, np.int32),
             np.empty(sets),
+            np.full((sets, outputs), np.nan),
             np.full((sets, outputs, 4), np.nan),
             np.full((sets, outputs, len(tau)), np.nan),
         )
-        rows = [address(each) for each in (found.status, found.estimate, found.peaks, found.values)]
+        rows = [address(each) for each in found]
         run(address(numbers), sets, address(room), address(instants), len(tau), *rows)
         found.status[found.status != _BAD] = 0
         back = np.empty_like(order)

@@ -17,7 +17,8 @@ static void weights_of(model *m, const projection *p, const damping_rule *rule)
         const int counts = output < OUTPUTS && !is_zero[output];
         const int order = counts ? output_order[output] : 0;
         for (int load = 0; load < LOADS; ++load) {
-            const real rest = counts && order < 2 ? rest_of(p, output, load) : 0;
+            real lost;
+            const real rest = counts && order < 2 ? rest_of(p, output, load, &lost) : 0;
             for (int k = 0; k < 3; ++k) {
                 m->direct[load][k][output] = counts && k == 2 - order ? p->imposed[output][load] : 0;
             }
@@ -71,16 +72,20 @@ static void largest_values(const model *m, real *largest)
     }
 }
 
-/* The worst error relative to its output's largest value. */
-static real estimate_of(const model *m, const projection *p, const damping_rule *rule, const real *largest)
+/* The worst error relative to its output's largest value; what is lost by rounding of each output. */
+static real estimate_of(
+    const model *m, const projection *p, const damping_rule *rule, const real *largest, real *rounded)
 {
     declines fall[LOADS];
+    history f[LOADS];
     real worst = 0;
     for (int load = 0; load < LOADS; ++load) {
         fall[load] = declines_under(m, rule, p->w[FOUND - 1], load);
+        f[load] = history_of(m, load);
     }
+    rounding_errors(m, p, f, rounded);
     for (int output = 0; output < OUTPUTS; ++output) {
-        const real error = error_of(m, p, rule, fall, output, largest[output]);
+        const real error = rounded[output] + truncation_error(p, rule, fall, output);
         const real relative = error == 0 ? 0 : error < largest[output] ? error / (largest[output] - error) : HUGE_VAL;
         worst = most_of(worst, relative);
     }
@@ -103,6 +108,7 @@ static int find_model(model *m, const name_parameters *parameters, projection *p
     }
     chain_of(value, &c);
     springs_of(&c, &s);
+    p->complete = is_complete(&c);
     project_modes(&c, &s, p);
     project_loads(&c, &s, p);
     project_outputs(&c, &s, p);
@@ -113,9 +119,9 @@ static int find_model(model *m, const name_parameters *parameters, projection *p
 }
 
 /* Say how wrong a model is whose outputs have these largest values. */
-static int judge(model *m, const projection *p, const damping_rule *rule, const real *largest)
+static int judge(model *m, const projection *p, const damping_rule *rule, const real *largest, real *rounded)
 {
-    m->estimate = estimate_of(m, p, rule, largest);
+    m->estimate = estimate_of(m, p, rule, largest, rounded);
     m->status = m->estimate <= tolerance ? 0 : 2;
     return m->status;
 }
@@ -126,9 +132,10 @@ static int build(model *m, const name_parameters *parameters)
     projection p;
     damping_rule rule;
     real largest[OUTPUTS];
+    real rounded[OUTPUTS];
     if (!find_model(m, parameters, &p, &rule)) {
         return 1;
     }
     largest_values(m, largest);
-    return judge(m, &p, &rule, largest);
+    return judge(m, &p, &rule, largest, rounded);
 }

@@ -69,16 +69,6 @@ static real load_at(const model *m, int load, int k)
     return total;
 }
 
-static real least_of(real x, real y)
-{
-    return x < y ? x : y;
-}
-
-static real most_of(real x, real y)
-{
-    return x > y ? x : y;
-}
-
 static declines declines_under(const model *m, const damping_rule *rule, real w, int load)
 {
     const real least = extreme_ratio(rule, w, 1);
@@ -126,63 +116,148 @@ static declines declines_under(const model *m, const damping_rule *rule, real w,
     return made;
 }
 
-/* About how wrong an output is, relative to its largest value, as modes are: a frequency that is a little wrong is so for
- * as long as its mode remembers, and a shape has some of its neighbours'. */
-static real looseness(const model *m, const projection *p, int output)
+/* A load of the scene: its largest value, its integral, and how much it and its slope vary. */
+typedef struct {
+    real peak;
+    real area;
+    real turn;
+    real bend;
+} history;
+
+static history history_of(const model *m, int load)
 {
-    real largest = 0;
-    real total = 0;
-    for (int n = 0; n < FOUND; ++n) {
-        const real w = p->w[n];
-        const real square = w * w;
-        real share = 0;
-        real gap = HUGE_VAL;
-        if (!(w > 0)) {
-            continue;
-        }
-        if (n > 0) {
-            gap = square - p->w[n - 1] * p->w[n - 1];
-        }
-        if (n + 1 < FOUND) {
-            gap = least_of(gap, p->w[n + 1] * p->w[n + 1] - square);
-        }
-        for (int load = 0; load < LOADS; ++load) {
-            share = most_of(share, fabs(p->share[load][n]));
-        }
-        const int order = output_order[output];
-        const real size = share * fabs(p->output[output][n]) / (order == 2 ? 1 : order == 1 ? w : square);
-        const real decay = m->damping[n] * w;
-        const real kept = decay * tau_max > 1 ? 1 / decay : tau_max;
-        largest = most_of(largest, size);
-        if (size > 0) {
-            total += size * (p->wrong[n] / (2 * w) * kept + p->wrong[n] / gap + p->blurred[n]);
-        }
+    history f = {0, 0, 0, 0};
+    real now = 0;
+    real slope = 0;
+    for (int k = 0; k < SAMPLES && k * spacing <= tau_max; ++k) {
+        const real next = load_at(m, load, k + 1);
+        const real steep = (next - now) / spacing;
+        f.peak = most_of(f.peak, fabs(next));
+        f.area += (fabs(now) + fabs(next)) / 2 * spacing;
+        f.turn += fabs(next - now);
+        f.bend += fabs(steep - slope);
+        now = next;
+        slope = steep;
     }
-    return largest > 0 ? total / largest : 0;
+    return f;
 }
 
-/* About the largest error of an output whose largest value is this. */
-static real error_of(
-    const model *m, const projection *p, const damping_rule *rule, const declines *fall, int output, real largest)
+/* The largest displacement and velocity of an oscillator under a load of share 1, and what they lose by rounding; how
+ * far it swings about what the load holds it at. */
+typedef struct {
+    real y;
+    real v;
+    real y_lost;
+    real v_lost;
+    real free;
+} swing;
+
+/* Under an impulse it moves by h: |h| <= 1/w, |h| <= t and |h'| <= 1, as energy does not grow; the integrals of |h| and
+ * |h'| are `far` and `quick`, of a sum over half periods each exp(-pi z) of the one before. Under a load f it moves by
+ * the integral of h f, by that of the response to a step, which is at most 2/w^2, times f', and so on; about f/w^2 by h/w^2
+ * for each kink of f. */
+static swing swing_of(const history *f, real w, real z, real wrong)
 {
-    const real w = p->w[FOUND - 1] * (1 - DBL_EPSILON);
+    const real pi = 3.14159265358979323846;
+    const real step = spacing / 2;
+    const real steps = HALVES + 1;
+    const real slow = w > 0 ? least_of(tau_max, 1 / w) : tau_max;
+    const real once = w > 0 ? least_of(step, 1 / w) : step;
+    const real loop = z > 0 ? 1 + 2 / (pi * z) : HUGE_VAL;
+    real far = tau_max * least_of(tau_max / 2, slow);
+    real quick = tau_max;
+    real twice = tau_max * tau_max / 2;
+    real smooth = HUGE_VAL;
+    swing found = {0, 0, 0, 0, 0};
+    if (w > 0) {
+        far = least_of(far, loop / (w * w));
+        quick = least_of(quick, 2 * loop / w);
+        twice = least_of(twice, 2 / (w * w));
+        smooth = 2 / (w * w) * f->bend;
+    }
+    found.y = least_of(least_of(f->area * slow, f->peak * far), f->turn * twice);
+    found.v = least_of(least_of(f->area, f->peak * quick), least_of(f->turn * slow, smooth));
+    found.free = w > 0 ? least_of(found.y + f->peak / (w * w), f->bend / (w * w * w)) : 0;
+    /* a frequency that is wrong is a force of what it changes */
+    wrong += 8 * DBL_EPSILON * w * w;
+    const real force = wrong * (found.y + (w > 0 ? 4 * z / w * found.v : 0)) + steps * DBL_EPSILON * f->peak;
+    found.y_lost = force * far;
+    found.v_lost = force * quick;
+    /* each step adds what it rounds, which is remembered as impulses are */
+    const real y_step = 8 * DBL_EPSILON * (found.y + once * found.v + once * once * f->peak);
+    const real v_step = 8 * DBL_EPSILON * (found.v + w * w * once * found.y + once * f->peak);
+    const real h = least_of(steps * slow, far / step + quick);
+    const real h1 = least_of(steps, quick / step + 1 + w * w * far + 2 * z * w * quick);
+    found.y_lost += v_step * h + y_step * (h1 + 2 * z * w * h);
+    found.v_lost += v_step * h1 + y_step * w * w * h;
+    return found;
+}
+
+/* What rounding may do to all outputs: to modes, to what they and loads do in steps, and to sums over all modes. */
+static void rounding_errors(const model *m, const projection *p, const history *f, real *error)
+{
+    const real sum = (MODES + 3 * LOADS) * DBL_EPSILON;
+    const real steps = (HALVES + 1) * DBL_EPSILON;
+    for (int output = 0; output < OUTPUTS; ++output) {
+        error[output] = 0;
+    }
+    for (int load = 0; load < LOADS; ++load) {
+        for (int n = 0; n < FOUND; ++n) {
+            const real w = p->w[n];
+            const real z = m->damping[n];
+            const swing s = swing_of(&f[load], w, z, p->wrong[n]);
+            const real change = 2 * p->wrong[n] * (s.y + (w > 0 ? z / w * s.v : 0));
+            const real size[3] = {s.y, s.v, f[load].peak + w * w * s.y + 2 * z * w * s.v};
+            const real lost[3] = {
+                s.y_lost, s.v_lost, steps * f[load].peak + change + w * w * s.y_lost + 2 * z * w * s.v_lost};
+            const real share = fabs(p->share[load][n]);
+            const real all = share + p->share_lost[load][n];
+            for (int output = 0; output < OUTPUTS; ++output) {
+                const int order = output_order[output];
+                const real value = fabs(p->output[output][n]);
+                const real loose = value * p->share_lost[load][n] + p->output_lost[output][n] * all;
+                error[output] += loose * size[order] + value * share * (lost[order] + sum * size[order]);
+            }
+        }
+        for (int output = 0; output < OUTPUTS; ++output) {
+            const int order = output_order[output];
+            const real grown = order == 2 ? f[load].peak : order == 1 ? f[load].area : f[load].area * tau_max;
+            error[output] += (p->imposed_lost[output][load] + 2 * steps * fabs(p->imposed[output][load])) * grown;
+            if (order < 2 && !is_zero[output]) {
+                real lost;
+                const real rest = fabs(rest_of(p, output, load, &lost));
+                const real size = order == 0 ? f[load].peak : MODES > FOUND ? f[load].bend : 0;
+                error[output] += 2 * (lost + (steps + sum) * rest) * size;
+            }
+        }
+    }
+    for (int output = 0; output < OUTPUTS; ++output) {
+        error[output] = is_zero[output] ? 0 : error[output];
+    }
+}
+
+/* What modes that are not found may add to an output. */
+static real truncation_error(const projection *p, const damping_rule *rule, const declines *fall, int output)
+{
+    const real w = p->w[FOUND - 1] * (1 - rounding);
     const int order = output_order[output];
-    const real left = left_over(p, p->output[output], output_power[output], p->output_total[output]);
+    const real left =
+        left_over(p, p->output[output], p->output_lost[output], output_power[output], p->output_total[output]);
     real error = 0;
     if (is_zero[output]) {
         return 0;
     }
     for (int load = 0; load < LOADS; ++load) {
         const int power = load_place[load] < ROWS;
-        const real other = left_over(p, p->share[load], power, p->load_total[load]);
+        const real other = left_over(p, p->share[load], p->share_lost[load], power, p->load_total[load]);
         const real size = fall[load].size[order];
         const real root = sqrt(left * other);
         /* nothing left out adds nothing */
         error += root > 0 ? root * size * pow(w, output_power[output] + power - fall[load].power[order]) : 0;
         if (rule->b > 0 && order < 2) {
-            error += fabs(rest_of(p, output, load)) * size / (64 * w * w);
+            real lost;
+            error += fabs(rest_of(p, output, load, &lost)) * size / (64 * w * w);
         }
     }
-    error *= 1 + 1e-12;
-    return error + (32 * DBL_EPSILON * sqrt((real)SAMPLES) + looseness(m, p, output)) * largest;
+    return error * (1 + 1e-12);
 }

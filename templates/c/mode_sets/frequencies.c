@@ -3,22 +3,40 @@
  * the first empty line. */
 #include "tables.h"
 
+static real least_of(real x, real y)
+{
+    return x < y ? x : y;
+}
+
+static real most_of(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 /* A chain with its numbers. Arrays over places have one more entry, which is never read. */
 typedef struct {
     real delay[BARS + 1];
     real impedance[BARS + 1];
     real mass[PLACES + 1];
     real held[PLACES + 1];
-    real across[PLACES + 1];
     real link[LINKS + 1];
 } chain;
+
+/* K in parts that are no differences: what holds a row by itself, and the spring to its parent as the row feels it, as the
+ * parent does, and across; a bar is a spring and what holds its ends. Sums keep the last digits of soft springs beside
+ * stiff ones, which a diagonal of K does not. */
+typedef struct {
+    real own[PLACES + 1];
+    real here[PLACES + 1];
+    real there[PLACES + 1];
+    real across[PLACES + 1];
+} bonds;
 
 static void chain_of(const real *value, chain *c)
 {
     for (int place = 0; place <= PLACES; ++place) {
         c->mass[place] = place < PLACES ? value[MASS + place] : 0;
         c->held[place] = place < PLACES ? value[SPRING + place] : 0;
-        c->across[place] = 0;
     }
     for (int bar = 0; bar < BARS; ++bar) {
         const real k = value[ROD_STIFFNESS + bar_rod[bar]];
@@ -27,39 +45,72 @@ static void chain_of(const real *value, chain *c)
         c->impedance[bar] = sqrt(m * k);
     }
     for (int link = 0; link < LINKS; ++link) {
-        const real k = value[LINK + link];
-        c->link[link] = k;
-        c->held[link_left[link]] += link_ratio[link] * link_ratio[link] * k;
-        c->held[link_right[link]] += k;
-        c->across[link_up[link]] -= link_ratio[link] * k;
+        c->link[link] = value[LINK + link];
     }
 }
 
-/* The diagonal of K and what couples each row to its parent, from w^2 and what each bar, were its impedance 1, adds at
- * its ends, and across. */
-static void assemble(
-    const chain *c, real square, const real *pulled, const real *shared, real *diagonal, real *up)
+/* Join two places by a spring. A row and its parent are coupled, others are at rest and hold the row. */
+static void join(bonds *b, int left, real left_ratio, int right, real right_ratio, int row, real k)
+{
+    const real at_left = left_ratio * left_ratio * k;
+    const real at_right = right_ratio * right_ratio * k;
+    if (row == PLACES) {
+        b->own[left] += at_left;
+        b->own[right] += at_right;
+        return;
+    }
+    b->here[row] += row == left ? at_left : at_right;
+    b->there[row] += row == left ? at_right : at_left;
+    b->across[row] += left_ratio * right_ratio * k;
+}
+
+/* From w^2 and, for each bar, were its impedance 1, its stiffness and what holds its ends. */
+static void assemble(const chain *c, real square, const real *stretch, const real *hold, bonds *b)
 {
     for (int place = 0; place <= PLACES; ++place) {
-        diagonal[place] = c->held[place] - square * c->mass[place];
-        up[place] = c->across[place];
+        b->own[place] = c->held[place] - square * c->mass[place];
+        b->here[place] = 0;
+        b->there[place] = 0;
+        b->across[place] = 0;
     }
     for (int bar = 0; bar < BARS; ++bar) {
-        const real left = bar_left_ratio[bar];
-        const real right = bar_right_ratio[bar];
+        const int left = bar_left[bar];
+        const int right = bar_right[bar];
+        const real left_ratio = bar_left_ratio[bar];
+        const real right_ratio = bar_right_ratio[bar];
         const real z = c->impedance[bar];
-        diagonal[bar_left[bar]] += left * left * z * pulled[bar];
-        diagonal[bar_right[bar]] += right * right * z * pulled[bar];
-        up[bar_up[bar]] += left * right * z * shared[bar];
+        b->own[left] += left_ratio * left_ratio * z * hold[bar];
+        b->own[right] += right_ratio * right_ratio * z * hold[bar];
+        join(b, left, left_ratio, right, right_ratio, bar_up[bar], z * stretch[bar]);
+    }
+    for (int link = 0; link < LINKS; ++link) {
+        join(b, link_left[link], link_ratio[link], link_right[link], 1, link_up[link], c->link[link]);
     }
 }
 
-/* The pivots of K, in place of its diagonal, tips first. */
-static void eliminate(real *diagonal, const real *up)
+/* A spring and what holds its end: their last digit, where they cancel, as then what is beyond does not move. */
+static real pivot_of(real spring, real held)
+{
+    const real sum = spring + held;
+    return sum < 0 || sum > 0 ? sum : DBL_EPSILON * fabs(spring);
+}
+
+/* How a spring holds one of its ends, as this feels it, whose other end is held. */
+static real through(real here, real there, real held)
+{
+    return fabs(held) <= DBL_MAX ? here * (held / pivot_of(there, held)) : here;
+}
+
+/* What holds each row, once what hangs on it is eliminated, tips first, and its pivot. */
+static void eliminate(const bonds *b, real *held, real *pivot)
 {
     for (int row = 0; row < ROWS; ++row) {
+        held[row] = b->own[row];
+    }
+    for (int row = 0; row < ROWS; ++row) {
+        pivot[row] = parent[row] < 0 ? held[row] : pivot_of(b->here[row], held[row]);
         if (parent[row] >= 0) {
-            diagonal[parent[row]] -= up[row] * up[row] / diagonal[row];
+            held[parent[row]] += through(b->there[row], b->here[row], held[row]);
         }
     }
 }
@@ -67,23 +118,25 @@ static void eliminate(real *diagonal, const real *up)
 /* How many frequencies lie below w: those of bars whose ends rest, and negative pivots. */
 static int count_below(const chain *c, real w)
 {
-    real pulled[BARS + 1];
-    real shared[BARS + 1];
-    real pivot[PLACES + 1];
-    real up[PLACES + 1];
+    real stretch[BARS + 1];
+    real hold[BARS + 1];
+    real held[ROWS];
+    real pivot[ROWS];
+    bonds b;
     int count = 0;
     for (int bar = 0; bar < BARS; ++bar) {
-        const real angle = w * c->delay[bar];
-        const real sine = sin(angle);
-        const real turn = floor(angle / 3.14159265358979323846 + 0.5);
+        const real half = w * c->delay[bar] / 2;
+        const real sine = sin(half);
+        const real cosine = cos(half);
+        const real turn = floor(2 * half / 3.14159265358979323846 + 0.5);
         const int odd = fmod(turn, 2) != 0;
         /* such that the sine has the sign that goes with it */
-        count += (int)turn - ((odd ? -sine : sine) < 0);
-        pulled[bar] = w * cos(angle) / sine;
-        shared[bar] = -w / sine;
+        count += (int)turn - ((odd ? -sine : sine) * cosine < 0);
+        stretch[bar] = w / (2 * sine * cosine);
+        hold[bar] = -w * sine / cosine;
     }
-    assemble(c, w * w, pulled, shared, pivot, up);
-    eliminate(pivot, up);
+    assemble(c, w * w, stretch, hold, &b);
+    eliminate(&b, held, pivot);
     for (int row = 0; row < ROWS; ++row) {
         count += pivot[row] < 0;
     }
@@ -97,6 +150,12 @@ static real above(const chain *c, int n)
     if (MASSIVE) {
         for (int row = 0; row < ROWS; ++row) {
             total += c->mass[row] > 0 ? c->held[row] / c->mass[row] : 0;
+        }
+        for (int link = 0; link < LINKS; ++link) {
+            const real left = c->mass[link_left[link]];
+            const real right = c->mass[link_right[link]];
+            total += left > 0 ? link_ratio[link] * link_ratio[link] * c->link[link] / left : 0;
+            total += right > 0 ? c->link[link] / right : 0;
         }
         return total > 0 ? 2 * sqrt(total) : 1;
     }
@@ -114,8 +173,9 @@ static void find_frequencies(const chain *c, real *w)
         low[n] = 0;
         w[n] = above(c, n + 1);
     }
-    for (int n = 0; n < FOUND; ++n) {
-        for (int times = 0; times < 64; ++times) {
+    for (int n = FREE; n < FOUND; ++n) {
+        /* to the last digit: as often as a double has digits, and as the first frequency is below the last */
+        for (int times = 0; times < 256; ++times) {
             const real middle = (low[n] + w[n]) / 2;
             if (!(middle > low[n] && middle < w[n])) {
                 break;

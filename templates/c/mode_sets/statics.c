@@ -4,8 +4,8 @@
 
 /* K where nothing moves, eliminated, and the motion without strain, of mass 1. */
 typedef struct {
-    real pivot[PLACES + 1];
-    real up[PLACES + 1];
+    bonds bond;
+    real pivot[ROWS];
     real still[PLACES + 1];
 } springs;
 
@@ -32,14 +32,15 @@ static real linear_mass(const chain *c, const real *moved, int broken, int side,
 
 static void springs_of(const chain *c, springs *s)
 {
-    real pulled[BARS + 1];
-    real shared[BARS + 1];
+    real stretch[BARS + 1];
+    real hold[BARS + 1];
+    real held[ROWS];
     for (int bar = 0; bar < BARS; ++bar) {
-        pulled[bar] = 1 / c->delay[bar];
-        shared[bar] = -1 / c->delay[bar];
+        stretch[bar] = 1 / c->delay[bar];
+        hold[bar] = 0;
     }
-    assemble(c, 0, pulled, shared, s->pivot, s->up);
-    eliminate(s->pivot, s->up);
+    assemble(c, 0, stretch, hold, &s->bond);
+    eliminate(&s->bond, held, s->pivot);
     for (int place = 0; place < PLACES; ++place) {
         s->still[place] = FREE ? rigid[place] : 0;
     }
@@ -51,20 +52,24 @@ static void springs_of(const chain *c, springs *s)
     }
 }
 
-/* How far places move under forces. Where nothing holds the chain forces balance, and its root does not move. */
-static void solve(const springs *s, const real *force, real *moved)
+/* How far places move under forces. Where nothing holds the chain forces balance, and its root does not move.
+ * `sizes` take all that is added as positive: a result is wrong by no more than `rounding` times what comes of them, as
+ * no pivot is a difference. */
+static void solve(const springs *s, const real *force, int sizes, real *moved)
 {
+    const bonds *const b = &s->bond;
     for (int place = 0; place < PLACES; ++place) {
         moved[place] = place < ROWS ? force[place] : 0;
     }
     for (int row = 0; row < ROWS; ++row) {
         if (parent[row] >= 0) {
-            moved[parent[row]] -= s->up[row] * moved[row] / s->pivot[row];
+            moved[parent[row]] += (sizes ? fabs(b->across[row]) : b->across[row]) * moved[row] / s->pivot[row];
         }
     }
     for (int row = ROWS - 1; row >= 0; --row) {
         if (parent[row] >= 0) {
-            moved[row] = (moved[row] - s->up[row] * moved[parent[row]]) / s->pivot[row];
+            const real across = sizes ? fabs(b->across[row]) : b->across[row];
+            moved[row] = (moved[row] + across * moved[parent[row]]) / s->pivot[row];
         } else {
             moved[row] = FREE ? 0 : moved[row] / s->pivot[row];
         }
@@ -95,8 +100,28 @@ static real along(const springs *s, const real *force)
     return total;
 }
 
-/* The shape under forces; bars are `bent` by accelerations where nothing holds the chain. */
-static void loaded_shape(const chain *c, const springs *s, const real *force, real *moved, real *bent)
+/* What solve() may lose: how far places move when nothing that is added cancels. */
+static void solve_sizes(const springs *s, const real *force, real *size)
+{
+    real acting[PLACES];
+    for (int place = 0; place < PLACES; ++place) {
+        acting[place] = fabs(force[place]);
+    }
+    solve(s, acting, 1, size);
+}
+
+static real sizes_along(const springs *s, const real *force)
+{
+    real total = 0;
+    for (int place = 0; place < PLACES; ++place) {
+        total += fabs(force[place] * s->still[place]);
+    }
+    return total;
+}
+
+/* The shape under forces; bars are `bent` by accelerations where nothing holds the chain. By rounding it is wrong by no
+ * more than `rounding` times `size`. */
+static void loaded_shape(const chain *c, const springs *s, const real *force, real *moved, real *bent, real *size)
 {
     real acting[PLACES];
     real pull[PLACES];
@@ -106,14 +131,21 @@ static void loaded_shape(const chain *c, const springs *s, const real *force, re
         acting[place] = force[place];
     }
     if (!FREE) {
-        solve(s, acting, moved);
+        solve(s, acting, 0, moved);
+        solve_sizes(s, acting, size);
         return;
     }
     inertia(c, bent, pull);
     for (int place = 0; place < PLACES; ++place) {
         acting[place] -= pull[place];
     }
-    solve(s, acting, moved);
+    solve(s, acting, 0, moved);
+    for (int place = 0; place < PLACES; ++place) {
+        acting[place] = fabs(force[place]) + fabs(pull[place]);
+    }
+    solve_sizes(s, acting, size);
+    inertia(c, size, pull);
+    const real sizes = sizes_along(s, pull);
     inertia(c, moved, pull);
     real left = along(s, pull);
     for (int bar = 0; bar < BARS; ++bar) {
@@ -122,10 +154,11 @@ static void loaded_shape(const chain *c, const springs *s, const real *force, re
     }
     for (int place = 0; place < PLACES; ++place) {
         moved[place] -= left * s->still[place];
+        size[place] += sizes * fabs(s->still[place]);
     }
 }
 
-/* The shape that the unit motion of a place imposes. */
+/* The shape that the unit motion of a place imposes: forces of one sign, of which no sum loses digits. */
 static void imposed_shape(const chain *c, const springs *s, int place, real *moved)
 {
     real force[PLACES];
@@ -150,7 +183,7 @@ static void imposed_shape(const chain *c, const springs *s, int place, real *mov
             force[link_left[link]] += k;
         }
     }
-    solve(s, force, moved);
+    solve(s, force, 0, moved);
     moved[place] = 1;
 }
 
@@ -162,19 +195,22 @@ static real slope_of_shape(const chain *c, const real *moved, const real *bent, 
     return (end_of(moved, bar, 1) - end_of(moved, bar, 0)) / t + (side ? pull : -pull);
 }
 
-/* The sum of the squares of the slope at the end of a bar over w^4, of all modes. */
-static real break_mass(const chain *c, const springs *s, int bar, int side)
+/* The sum of the squares of the slope at the end of a bar over w^4, of all modes; by rounding it is wrong by `lost`. */
+static real break_mass(const chain *c, const springs *s, int bar, int side, real *lost)
 {
     real force[PLACES];
     real moved[PLACES];
+    real size[PLACES];
     const real gap = (side ? -1 : 1) / c->impedance[bar];
     for (int place = 0; place < PLACES; ++place) {
         force[place] = 0;
     }
     force[bar_left[bar]] -= bar_left_ratio[bar] / c->delay[bar];
     force[bar_right[bar]] += bar_right_ratio[bar] / c->delay[bar];
-    solve(s, force, moved);
+    solve(s, force, 0, moved);
+    solve_sizes(s, force, size);
     const real mass = linear_mass(c, moved, bar, side, gap);
+    *lost = 2 * rounding * linear_mass(c, size, bar, side, fabs(gap));
     if (!FREE) {
         return mass;
     }
