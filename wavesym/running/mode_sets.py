@@ -175,7 +175,7 @@ class ModalSets:
             near[refused], far[refused], weight[refused] = upwards(1)[refused], upwards(2)[refused], 6.0
         slopes = (4 * near - far) / 3
         curved, largest = (np.abs(each).max(axis=2, initial=0.0) for each in (slopes - near, slopes))
-        curved += self._missed(given, parameter, step)
+        curved += self._missed_turns(given, parameter, step)
         noise = weight[:, None] * rounded / step[:, None]
         wrong = curved + noise
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -184,7 +184,7 @@ class ModalSets:
         scale = np.nan_to_num(np.cbrt(ratio), nan=1.0, posinf=_MOST_SCALE)
         return _Slopes(slopes, relative.max(axis=1), np.clip(scale, 1 / _MOST_SCALE, _MOST_SCALE))
 
-    def _missed(self, given: Array, parameter: int, step: Array) -> Array:
+    def _missed_turns(self, given: Array, parameter: int, step: Array) -> Array:
         """What these differences miss of derivatives by turns of modes, (sets, outputs): in w t half of a change of a
         parameter relative to it, in z w t all of one of a damping ratio z; nothing of loads."""
         name, missed = self._names[parameter], np.zeros((len(given), len(self.model.probes)))
