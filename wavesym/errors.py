@@ -117,6 +117,17 @@ class SpacingError(CostError):
     """Instants of loads that fit into no window of a march; it may be that a march of one hat serves them."""
 
 
+class MeasureError(CostError):
+    """Travel times without a common measure that is long enough; `helps` is what to write for one."""
+
+    def __init__(self, message: str, helps: str) -> None:
+        super().__init__(message, helps)
+        self.helps = helps
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 class RangeError(WavesymError, OverflowError):
     """A number would be beyond the largest one of its floating-point format.
 

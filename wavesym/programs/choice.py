@@ -7,7 +7,15 @@ from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple, TypeAlias
 
-from wavesym.errors import CostError, RangeError, SpacingError, ToleranceError, UnservedError, WavesymError
+from wavesym.errors import (
+    CostError,
+    MeasureError,
+    RangeError,
+    SpacingError,
+    ToleranceError,
+    UnservedError,
+    WavesymError,
+)
 from wavesym.exact.tables.signal import refuse_many, signals
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
@@ -15,7 +23,7 @@ from wavesym.numbers.reals import DOUBLE, REALS, Real
 from wavesym.programs.closed_form import closed_form
 from wavesym.programs.form import Form
 from wavesym.programs.pieces import pieces
-from wavesym.programs.request import unmet_tolerance
+from wavesym.programs.request import unfollowed_waves, unmet_tolerance
 
 _USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless requested: they have lost their digits long before.
@@ -149,9 +157,11 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
     if not found:
         if len(tried) == 1 and tried[0].error:
             raise tried[0].error
-        raise unmet_tolerance(
-            model.tolerance, {one.kind: one.refusal for one in refused}, min(one.bound for one in tried)
-        )
+        refusals, bound = {one.kind: one.refusal for one in refused}, min(one.bound for one in tried)
+        measure = next((one.error for one in tried if isinstance(one.error, MeasureError)), None)
+        if measure and bound >= 1:
+            raise unfollowed_waves(model, measure, {kind: refusals[kind] for kind in refusals if kind == "modes"})
+        raise unmet_tolerance(model.tolerance, refusals, bound)
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
     dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from wavesym.errors import ToleranceError, WavesymError, did_you_mean
+from wavesym.errors import MeasureError, ToleranceError, WavesymError, did_you_mean
 
 if TYPE_CHECKING:
     from flint import fmpq
@@ -213,3 +213,22 @@ def unmet_tolerance(tolerance: fmpq, refusals: Mapping[str, str], bound: float) 
     why = (f"{kind}: {re.sub(_HELPS, '', refusal) if remedy else refusal}" for kind, refusal in refusals.items())
     message = f"output.tolerance: {nearest(tolerance):g} cannot be met{remedy} ({'; '.join(why)})"
     return ToleranceError(message, "; ".join(refusals.values()), bound)
+
+
+def unfollowed_waves(model: Model, measure: MeasureError, refusals: Mapping[str, str]) -> ToleranceError:
+    """The error that says that no program follows the waves of a model, and what gives travel times a common measure.
+
+    Args:
+        model: whose travel times have none.
+        measure: what a march says of them.
+        refusals: a sentence for each other kind of program that a change of the scene could make serve.
+    """
+    from wavesym.numbers.doubles import nearest
+
+    others = "; ".join(f"{kind}: {refusal}" for kind, refusal in refusals.items())
+    message = (
+        f"system: no program follows these waves to tau = {nearest(model.until):g}, as travel times of the rods have "
+        f"no common measure; write {measure.helps} under [system], which changes speeds of waves by that or less and "
+        f"keeps impedances, or a shorter horizon{others and f' ({others})'}"
+    )
+    return ToleranceError(message, f"{'; '.join([*refusals.values(), str(measure)])}")

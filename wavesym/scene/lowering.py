@@ -23,11 +23,13 @@ from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.travel_times import percent, speed_change
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.records.load import RecordedLoad
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
+from wavesym.systems import ExplicitChain
 from wavesym.systems.place import Place
 
 _KEPT = "lowered"  # beside the fields of a scene
@@ -145,7 +147,13 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
         loads=scene.physical.loads if scene.physical else tuple(load.description for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
-        notes=(*_horizon_notes(scene), *_damping_notes(scene), *_record_notes(scene), *_shape_notes(scene)),
+        notes=(
+            *_horizon_notes(scene),
+            *_damping_notes(scene),
+            *_speed_notes(scene),
+            *_record_notes(scene),
+            *_shape_notes(scene),
+        ),
         kind=scene.scale.kind if scene.scale else "",
         size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
         dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",
@@ -170,6 +178,18 @@ def _damping_notes(scene: Scene) -> Iterator[str]:
         yield f"system.damping: {nearest(100 * largest):g} % of critical; structures have some percent"
 
 
+def _speed_notes(scene: Scene) -> Iterator[str]:
+    """A line where waves in rods are a little faster or slower than was written."""
+    if not isinstance(system := scene.system, ExplicitChain) or not system.speed_adjustment:
+        return
+    before, after = system.drawing_as_written.bars, system.drawing.bars
+    if change := speed_change(before, after):
+        yield (
+            f"system.speed_adjustment: speeds of waves are changed by {percent(change)} or less, so that travel times "
+            "have a common measure; impedances are as written"
+        )
+
+
 def _record_notes(scene: Scene) -> Iterator[str]:
     """A line for each record that begins later, so that it does not jump."""
     for k, load in enumerate(scene.load):
@@ -185,6 +205,9 @@ def _shape_notes(scene: Scene) -> Iterator[str]:
     for k, load in enumerate(scene.load):
         if isinstance(load, ShapedLoad):
             yield f"load[{k}]: {load.shape} {load.sampling}, one every {_spacing(scene, load)}"
+
+
+_NOTES = (_horizon_notes, _damping_notes, _speed_notes, _record_notes, _shape_notes)
 
 
 def _loads(scene: Scene) -> tuple[AppliedLoad, ...]:

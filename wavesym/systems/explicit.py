@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar, Literal, cast
@@ -10,6 +11,7 @@ from typing import Any, ClassVar, Literal, cast
 from flint import fmpq
 from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, model_serializer, model_validator
 
+from wavesym.errors import MeasureError
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.numbers import Exact
@@ -18,13 +20,18 @@ from wavesym.mechanics.dead_loads import BalanceError, with_dead_loads
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import UnitLoad
+from wavesym.mechanics.travel_times import adjust_speeds
 from wavesym.numbers.doubles import rational
 from wavesym.systems.chain_places import node, place
 from wavesym.systems.drawing import Drawing, draw_parts
 from wavesym.systems.node_loads import NODE_LOADS, OnNode
 from wavesym.systems.parts import Branch, Parts, describe_parts
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
+from wavesym.systems.speed_adjustment import SpeedAdjustment, percent_text
 from wavesym.systems.station import Lines
+
+_OPTIONAL = ("speed_adjustment", "gravity", "initial")
+"""Keys that are left out where they say nothing: so scenes keep the hash that they have had."""
 
 
 class ExplicitChain(SceneTable):
@@ -37,6 +44,7 @@ class ExplicitChain(SceneTable):
     parts: Parts = Field(description="a list of parts")
     branch: tuple[Branch, ...] = ()
     damping: ModalDamping = None
+    speed_adjustment: SpeedAdjustment = Fraction(0)
     gravity: Exact = Field(Fraction(0), description="an acceleration along x")
     initial: Literal["static"] | None = Field(None, description='"static": what is at rest is in balance at first')
 
@@ -61,11 +69,22 @@ class ExplicitChain(SceneTable):
     @model_serializer(mode="wrap")
     def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         found = without_damping(handler(self))
-        return {key: value for key, value in found.items() if key not in ("gravity", "initial") or getattr(self, key)}
+        return {key: value for key, value in found.items() if key not in _OPTIONAL or getattr(self, key)}
 
     @cached_property
     def drawing(self) -> Drawing:
-        """Its points, bars and links, and where they are."""
+        """Its points, bars and links, and where they are; waves are as fast as `speed_adjustment` makes them."""
+        drawn = self.drawing_as_written
+        if not self.speed_adjustment:
+            return drawn
+        try:
+            return replace(drawn, bars=adjust_speeds(drawn.bars, rational(self.speed_adjustment)))
+        except MeasureError as error:
+            raise refusal(f"{percent_text(self.speed_adjustment)} is {error}", "speed_adjustment") from None
+
+    @cached_property
+    def drawing_as_written(self) -> Drawing:
+        """The same with the speeds that were written."""
         return draw_parts(self.parts, self.branch)
 
     @property
@@ -81,9 +100,10 @@ class ExplicitChain(SceneTable):
             for each in self.branch
         }
         damping = {"damping": self.damping.description} if self.damping else {}
+        adjusted = {"speed_adjustment": percent_text(self.speed_adjustment)} if self.speed_adjustment else {}
         dead = {"gravity": str(self.gravity)} if self.gravity else {}
         static = {"initial": self.initial} if self.initial else {}
-        return {"parts": describe_parts(self.parts), **branches, **damping, **dead, **static}
+        return {"parts": describe_parts(self.parts), **branches, **damping, **adjusted, **dead, **static}
 
     def locate(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""

@@ -19,26 +19,24 @@ from typing import Any
 from flint import fmpq, fmpq_poly
 
 from wavesym.derivation.rules import joint_rule
-from wavesym.errors import CostError, SpacingError
+from wavesym.errors import SpacingError
 from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Joint, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.time_derivative import with_derivatives
+from wavesym.mechanics.travel_times import step_of
 from wavesym.numbers.doubles import common_measure, fraction, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.space import SHOWN, JointSpace, Port, joint_space
 
-FINEST = 64
-"""The shortest delay is no more steps than that."""
 MOST_PANELS = 16
 HIGHEST_DEGREE = 2000
 HELPS = "fewer samples, modes, or for what does not jump NumPy or run"
 """Beside another spacing, where loads leave more panels."""
 
 _LONG = 30  # characters of a number that nobody reads
-_LITTLE = 1e-3  # of a delay: as much is less than anyone knows of it
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
@@ -231,7 +229,7 @@ def march_plan(
     reached = model.joints_in_reach(until)
     modelled = {end for number in reached for end, _ in network.joints[number].ends}
     bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.gauges if read.point is None})
-    step = _step([network.bars[bar].delay for bar in bars])
+    step = step_of([network.bars[bar].delay for bar in bars])
     track_of = {End(bar, side): 2 * k + side for k, bar in enumerate(bars) for side in (0, 1)}
     tracks = [
         Track(int(bar.delay / step), bar.initial_wave(side), bar.impedance)
@@ -273,38 +271,6 @@ def march_plan(
         tau_max,
         tuple(sorted(loads.numbers)),
     )
-
-
-def _step(delays: list[fmpq]) -> fmpq:
-    """Their greatest common measure."""
-    step = common_measure(delays)
-    if step * FINEST < (shortest := min(delays)):
-        raise CostError(
-            f"system.parts: delays {_few(delays)} have the common measure {step}, {float(shortest / step):.3g} to the "
-            f"shortest, the limit in a march is {FINEST} ({_nearby(delays)}, or pieces, help)"
-        )
-    return step
-
-
-def _nearby(delays: list[fmpq]) -> str:
-    """What delays would do instead: multiples of a part of the shortest, the fewest parts that change little."""
-    shortest = min(delays)
-    tried = []
-    for parts in range(1, FINEST + 1):
-        unit = shortest / parts
-        near = [((2 * delay / unit + 1) / 2).floor() * unit for delay in delays]
-        change = max(abs(nearest(new / old) - 1) for new, old in zip(near, delays, strict=True))
-        tried.append((change, near))
-        if change <= _LITTLE:
-            break
-    change, near = min(tried, key=lambda each: each[0])
-    return (
-        f"lengths with a larger common measure, as of delays {_few(near)}, which are at most {100 * change:.2g} % off"
-    )
-
-
-def _few(delays: list[fmpq]) -> str:
-    return ", ".join(map(str, sorted(set(delays))[:3])) + (", ..." if len(set(delays)) > 3 else "")
 
 
 def _panels(times: list[fmpq], step: fmpq, helps: str) -> tuple[Panel, ...]:

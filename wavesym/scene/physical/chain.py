@@ -67,6 +67,7 @@ class PhysicalChain(SceneTable):
     parts: Any = Field(description="a list of parts")
     branch: tuple[PhysicalBranch, ...] = ()
     damping: Any = None
+    speed_adjustment: Any = None
     gravity: Any = Field(None, description="an acceleration along x")
     initial: Any = Field(None, description='"static": what is at rest is in balance at first')
 
@@ -90,10 +91,9 @@ class PhysicalChain(SceneTable):
                 {"from": each.from_, "name": each.name, "ratio": each.ratio, "parts": pen.line(each.name, parts)}
                 for each, parts in zip(self.branch, branches, strict=True)
             ]
-        if self.damping is not None:
-            table["damping"] = self.damping
-        if self.initial is not None:
-            table["initial"] = self.initial
+        for key in ("damping", "speed_adjustment", "initial"):
+            if (said := getattr(self, key)) is not None:
+                table[key] = said
         if self.gravity is not None:
             with key_context("gravity"):
                 if kind != "longitudinal":

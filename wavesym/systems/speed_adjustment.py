@@ -1,0 +1,32 @@
+"""How much the speeds of waves in rods may change, so that their travel times have a common measure."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import PlainSerializer, PlainValidator
+
+from wavesym.fields.numbers import decimal_text, exact, percentage
+from wavesym.fields.table import refusal, show
+
+_MOST = Fraction(1, 5)  # another soil
+
+
+def _read(value: object) -> Fraction:
+    """A part of a speed: text in percent, or a number."""
+    percent = percentage(value)
+    number = exact(value) if percent is None else percent
+    if not 0 <= number <= _MOST:
+        raise refusal(
+            f'{show(value)} of a speed is out of range; write "0.5 %", or another up to {percent_text(_MOST)}'
+        )
+    return number
+
+
+def percent_text(ratio: Fraction) -> str:
+    """A ratio in percent."""
+    return f"{decimal_text(100 * ratio)} %"
+
+
+SpeedAdjustment = Annotated[Fraction, PlainValidator(_read), PlainSerializer(percent_text)]
