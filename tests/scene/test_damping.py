@@ -120,7 +120,9 @@ def test_what_is_no_damping_is_refused_in_one_line(damping, message):
 def test_dampers_at_places_are_refused_with_it(parts, other):
     with pytest.raises(SceneError) as caught:
         chain(parts, system={"damping": "0.05"}, velocity=["0"])
-    assert str(caught.value) == f"scene: system.damping: stands beside {other}; write one of them"
+    assert str(caught.value) == (
+        f"scene: system.damping: stands beside {other}; write one of them, or in place of a ratio a dashpot in each rod"
+    )
 
 
 def test_a_collision_has_none():

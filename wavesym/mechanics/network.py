@@ -221,13 +221,19 @@ class Network:
                 "system: gravity and preloads are supported by pieces and `run` only (take one of them)"
             )
 
-    def refuse_loss(self) -> None:
-        """UnservedError where a rod has a loss: for all but frequency responses."""
+    def refuse_loss(self, instead: str = "leave it out, or write damping") -> None:
+        """UnservedError where a rod has a loss, for all but frequency responses; and what to do `instead`."""
         if any(bar.loss != 0 for bar in self.bars):
             raise UnservedError(
                 "system.parts: a loss of a rod is for frequency responses (`frf`) alone, as its motions in time would "
-                "begin before their cause; leave it out, or write damping"
+                f"begin before their cause; {instead}"
             )
+
+    @property
+    def takes_modal_damping(self) -> bool:
+        """Whether its modes may be damped by ratios: nothing else takes energy out of it, or has a corner."""
+        held = [*self.points, *self.links]
+        return not self.corners and all(each.damping == 0 for each in held)
 
     def refuse_rodless(self, what: str, instead: str) -> None:
         """UnservedError where there is no bar, for `what` is of rods; and what to do `instead`."""

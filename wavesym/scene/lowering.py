@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -14,6 +15,7 @@ from flint import fmpq
 
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load, SampledLoad, TimedLoad
+from wavesym.fields.numbers import decimal_text
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
@@ -24,7 +26,7 @@ from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
 from wavesym.mechanics.travel_times import percent, speed_change
-from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.records.load import RecordedLoad
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
@@ -33,6 +35,7 @@ from wavesym.systems import ExplicitChain
 from wavesym.systems.place import Place
 
 _KEPT = "lowered"  # beside the fields of a scene
+_MOST_NAMED = 5  # rods
 _USUAL_DAMPING = fmpq(1, 5)  # of critical; above it a ratio is more often a slip than meant
 
 
@@ -59,8 +62,8 @@ def lower(scene: Scene, *, loads: bool = True) -> Model:
     if True not in kept.models and loads not in kept.models:
         kept.models[loads] = _build_model(scene if loads else _without_loads(scene))
     model = kept.models.get(True) or kept.models[loads]
-    if loads:
-        model.network.refuse_loss()
+    if loads and any(bar.loss != 0 for bar in model.network.bars):
+        model.network.refuse_loss(_damping_in_time(scene, model.network))
     return model
 
 
@@ -188,6 +191,32 @@ def _speed_notes(scene: Scene) -> Iterator[str]:
             f"system.speed_adjustment: speeds of waves are changed by {percent(change)} or less, so that travel times "
             "have a common measure; impedances are as written"
         )
+
+
+def _damping_in_time(scene: Scene, network: Network) -> str:
+    """What to write in place of losses for motions in time: damping, or beside dashpots a dashpot in each rod.
+
+    A rod of stiffness k = Z/T with a dashpot c between its ends loses as one with the loss c w/k at the frequency w,
+    the first of a column that is held at one end: a quarter of a turn while a wave goes through.
+    """
+    losses = [bar for bar in network.bars if bar.loss != 0]
+    if network.takes_modal_damping:
+        ratio = decimal_text(fraction(max(bar.loss for bar in losses)) / 2)
+        return f"for these write damping = {ratio} under [system] in its place"
+    turn = math.pi / 2 / nearest(sum((bar.delay for bar in network.bars), fmpq(0)))
+    size, unit = scene.scale.parts["dashpot"] if scene.scale else (1, "")
+    rods = []
+    for number, bar in enumerate(network.bars, 1):
+        if bar.loss != 0 and len(rods) < _MOST_NAMED:
+            dashpot = float(f"{nearest(bar.loss * bar.impedance / bar.delay) / turn * float(size):.3g}")
+            written = f'"{dashpot:.15g} {unit}"' if unit else f"{dashpot:.15g}"
+            rods.append(f"dashpot = {written} in {bar.name or f'rod {number}'}")
+    others = ", ..." if len(losses) > len(rods) else ""
+    when = f"{turn / math.tau / float(scene.scale.seconds):.3g} Hz" if scene.scale else f"{turn:.3g} rad per tau"
+    return (
+        f"for these write in its place {', '.join(rods)}{others} (they lose as much at {when}, more above; in thin "
+        "rods), or multiply the spectrum of a record by `frf`, as in docs/tutorials/soil.md"
+    )
 
 
 def _record_notes(scene: Scene) -> Iterator[str]:

@@ -259,6 +259,7 @@ class PhysicalBuilding(SceneTable):
     storey: Annotated[tuple[Storey, ...], FailFast(), BeforeValidator(as_list)] = Field(description="a list of storeys")
     foundation_mass: Mass | None = None
     damping: Any = None
+    speed_adjustment: Any = None
 
     def without_units(self) -> DimensionlessSystem:
         """As a building without units, where storeys differ part by part."""
@@ -281,6 +282,8 @@ class PhysicalBuilding(SceneTable):
             acting = LoadUnit("acceleration", "jerk", size, {"a": "steps", "b": "ramps"}, {"at": 0})
         if self.damping is not None:
             table["damping"] = self.damping
+        if self.speed_adjustment is not None and "parts" in table:  # else travel times are all the same
+            table["speed_adjustment"] = self.speed_adjustment
         return DimensionlessSystem(
             kind="shear",
             rods=scaled,

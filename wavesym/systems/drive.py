@@ -185,6 +185,7 @@ class PhysicalDrive(SceneTable):
     shaft: Annotated[tuple[Round, ...], FailFast(), BeforeValidator(as_list)] = Field(description="a list of shafts")
     disc: Annotated[tuple[Disc, ...], FailFast(), BeforeValidator(as_list)] = Field(description="a list of discs")
     damping: Any = None
+    speed_adjustment: Any = None
 
     def without_units(self) -> DimensionlessSystem:
         """As a drive without units, where a wave takes longer through one shaft than another part by part."""
@@ -199,6 +200,8 @@ class PhysicalDrive(SceneTable):
             table, force = {"type": "drive", "parts": parts}, first.stiffness
         if self.damping is not None:
             table["damping"] = self.damping
+        if self.speed_adjustment is not None and "parts" in table:  # else travel times are all the same
+            table["speed_adjustment"] = self.speed_adjustment
 
         def acting(load: Mapping[str, Any]) -> LoadUnit:
             if rods.in_step:

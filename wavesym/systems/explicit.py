@@ -57,7 +57,8 @@ class ExplicitChain(SceneTable):
         except BalanceError as error:
             raise refusal(str(error), "initial") from None
         if self.damping and (other := _damper(network)):
-            raise refusal(f"stands beside {other}; write one of them", "damping")
+            instead = "write one of them, or in place of a ratio a dashpot in each rod"
+            raise refusal(f"stands beside {other}; {instead}", "damping")
         return self
 
     def _check_branches(self) -> None:

@@ -18,9 +18,8 @@ def _read(value: object) -> Fraction:
     percent = percentage(value)
     number = exact(value) if percent is None else percent
     if not 0 <= number <= _MOST:
-        raise refusal(
-            f'{show(value)} of a speed is out of range; write "0.5 %", or another up to {percent_text(_MOST)}'
-        )
+        most = percent_text(_MOST)
+        raise refusal(f'{show(value)} of a speed is out of range; write "0.5 %", or another up to "{most}"')
     return number
 
 

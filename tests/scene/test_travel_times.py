@@ -1,0 +1,169 @@
+"""Layers as they were measured under a record: speeds adjusted for a common measure, and damping in place of a loss."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from flint import fmpq
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wavesym
+from wavesym import Scene, SceneError, ToleranceError, UnservedError
+from wavesym.mechanics.network import Bar
+from wavesym.mechanics.travel_times import FINEST, adjust_speeds, percent, speed_change
+from wavesym.numbers.doubles import common_measure
+from wavesym.scene import lower
+
+LAYERS = (("12 m", 451, 902), ("7.3 m", 333, 632.7), ("5 m", 210, 357))  # m, m/s, kN s/m
+ROCK = 2400.0  # kN s/m
+STEP = 0.02  # s
+SAMPLES = (0, *np.sin(np.arange(1, 60) ** 1.5 / 7).round(3).tolist(), 0)
+
+
+def column(
+    base: Sequence[object] = ({"dashpot": f"{ROCK} kN*s/m"},),
+    rod: dict[str, str] | None = None,
+    until: str = "4 s",
+    **system: object,
+) -> Scene:
+    """Layers on rock, under what its outcrop does."""
+    rods = [
+        {"rod": length, "speed": f"{speed} m/s", "impedance": f"{z} kN*s/m", **(rod or {})}
+        for length, speed, z in LAYERS
+    ]
+    return Scene(
+        name="column",
+        units={"kind": "shear"},
+        system={
+            "type": "chain",
+            "parts": [{"motion": "acceleration", "name": "outcrop"}, *base, *rods, "free"],
+            **system,
+        },
+        load=[{"at": "outcrop", "spacing": f"{STEP} s", "samples": list(SAMPLES), "unit": "m/s^2"}],
+        output={"until": until, "tolerance": 1e-4, "velocity": ["24.3 m"]},
+    )
+
+
+def by_transfer_function(times: np.ndarray) -> np.ndarray:
+    """The surface's velocity by the transfer function of layers (Kramer, 7.2) and Fourier sums, as engineers have it.
+
+    With u = A exp(i k x) + B exp(-i k x) in each layer, x from its top, going down from the surface, where A = B.
+    """
+    count = 1 << 14
+    samples = np.zeros(count)
+    fine = 8  # samples between those that are joined by lines
+    t = np.arange(count) * STEP / fine
+    samples = np.interp(t, np.arange(len(SAMPLES)) * STEP, SAMPLES, right=0.0)
+    w = 2 * np.pi * np.fft.rfftfreq(count, STEP / fine)
+    up, down = np.ones(w.size, complex), np.ones(w.size, complex)
+    for k, (length, speed, z) in reversed(list(enumerate(LAYERS))):
+        turn = np.exp(1j * w * float(length.split()[0]) / speed)
+        up, down = up * turn, down / turn
+        if k:
+            ratio = z / LAYERS[k - 1][2]
+            up, down = (up * (1 + ratio) + down * (1 - ratio)) / 2, (up * (1 - ratio) + down * (1 + ratio)) / 2
+    # in the rock 2 A is the outcrop: its velocity V = u' + (Z/rock) (A - B) w i
+    base, pull = up + down, (up - down) * LAYERS[0][2] / ROCK
+    accelerations = np.fft.irfft(2 * np.fft.rfft(samples) / (base + pull), count)
+    velocities = np.concatenate([[0], np.cumsum((accelerations[1:] + accelerations[:-1]) / 2) * STEP / fine])
+    return np.asarray(np.interp(times, t, velocities))
+
+
+def test_layers_as_measured_run_under_a_record_once_speeds_may_change_a_little() -> None:
+    """Refused with what to write; written so it answers as the layers do by their transfer function."""
+    with pytest.raises(ToleranceError, match="travel times of the rods have no common measure") as caught:
+        wavesym.summary(column(until="20 s"))
+    (written,) = re.findall(r'speed_adjustment = "([^"]*)" under \[system\]', str(caught.value))
+    assert written == "0.5 %"
+    scene = column(speed_adjustment=written)
+    result = wavesym.run(scene, samples=801)
+    expected = by_transfer_function(result.time)
+    assert np.abs(result["velocity@24.3 m"] - expected).max() < 0.01 * np.abs(expected).max()
+    (note,) = lower(scene).labels.notes
+    changed = fmpq(re.findall(r"changed by 0\.(\d+) %", note)[0]) / 10000
+    bars = lower(scene).network.bars, lower(column()).network.bars
+    assert 0 < speed_change(*reversed(bars)) <= changed <= fmpq(1, 200)
+    assert [bar.impedance for bar in bars[0]] == [bar.impedance for bar in bars[1]]
+
+
+def test_a_speed_adjustment_that_is_too_little_says_how_much_is_enough() -> None:
+    with pytest.raises(SceneError, match=r'0.001 % is too little for .*; write "[^"]*" or more') as caught:
+        column(speed_adjustment="0.001 %")
+    assert caught.value.path == "system.speed_adjustment"
+    (enough,) = re.findall(r'write "([^"]*)" or more', str(caught.value))
+    lower(column(speed_adjustment=enough))
+    with pytest.raises(SceneError, match=r'50 of a speed is out of range; write "0.5 %", or another up to "20 %"'):
+        column(speed_adjustment=50)
+
+
+def test_a_scene_keeps_what_was_written() -> None:
+    scene = column(speed_adjustment="0.5 %")
+    assert scene.with_({}).model_dump() == scene.model_dump()
+    assert scene.model_dump()["system"]["speed_adjustment"] == "0.5 %"
+    assert "333 m/s" in str(scene.model_dump()["system"]["parts"])
+    bare = {"type": "chain", "parts": [{"rod": 1}, {"rod": "1.2345678"}, "fixed"], "speed_adjustment": "1/100"}
+    output = {"until": 1, "velocity": ["1"]}
+    again = Scene(name="bare", system=bare, output=output)
+    assert Scene(**again.model_dump()) == again
+    assert again.system.parts[1].speed == 1
+
+
+@given(st.lists(st.fractions("1/50", 50, max_denominator=997), min_size=1, max_size=12), st.fractions("1/1000", "1/5"))
+def test_adjusted_travel_times_are_whole_windows(delays: list, most) -> None:
+    """No speed changes by more than is allowed, or than a refusal says; the shortest is 64 windows at most."""
+    bars = [Bar(k, k + 1, fmpq(2), 2 / fmpq(d.numerator, d.denominator), fmpq(3)) for k, d in enumerate(delays)]
+    allowed = fmpq(most.numerator, most.denominator)
+    try:
+        adjusted = adjust_speeds(bars, allowed)
+    except wavesym.CostError as error:
+        (enough,) = re.findall(r'write "([\d.]+) %" or more', str(error))
+        allowed = fmpq(*map(int, float(enough).as_integer_ratio())) / 100
+        adjusted = adjust_speeds(bars, allowed)
+    times = [bar.delay for bar in adjusted]
+    assert common_measure(times) * FINEST >= min(times) * fmpq(99, 100)
+    assert speed_change(bars, adjusted) <= allowed
+    assert all(new.impedance == 3 and new.length == 2 for new in adjusted)
+
+
+def test_percent_is_rounded_up() -> None:
+    assert [percent(fmpq(*ratio)) for ratio in ((1, 200), (12345, 10**7), (9991, 10**6))] == ["0.5 %", "0.13 %", "1 %"]
+
+
+def test_a_loss_is_refused_in_time_with_what_does_run() -> None:
+    """Beside a dashpot: one in each rod; else damping. As it is written there the scene runs."""
+    lossy = column(rod={"loss": "5 %"}, speed_adjustment="0.5 %")
+    with pytest.raises(UnservedError, match="for these write in its place dashpot = ") as caught:
+        wavesym.summary(lossy)
+    said = re.findall(r'dashpot = ("[^"]*") in rod (\d)', str(caught.value))
+    assert [number for _, number in said] == ["1", "2", "3"]
+    damped = column(speed_adjustment="0.5 %").with_(
+        {f"system.parts[{int(number) + 1}].dashpot": dashpot.strip('"') for dashpot, number in said}
+    )
+    wavesym.summary(damped)
+    # at that frequency both take about as much
+    (hertz,) = map(float, re.findall(r"as much at ([\d.]+) Hz", str(caught.value)))
+    still, both = wavesym.frf(column(), [hertz]), [wavesym.frf(each, [hertz]) for each in (lossy, damped)]
+    name = "velocity@24.3 m"
+    lost = [1 - abs(each[name][0] / still[name][0]) for each in both]
+    assert lost[0] == pytest.approx(lost[1], rel=0.2)
+    assert lost[0] > 0.005
+
+    held = column(base=(), rod={"loss": "5 %"})
+    with pytest.raises(UnservedError, match=r"for these write damping = 0.025 under") as caught:
+        wavesym.summary(held)
+    wavesym.summary(column(base=(), damping="0.025", until="2 s"))
+
+
+def test_storeys_that_differ_take_a_speed_adjustment_too() -> None:
+    storeys = [
+        {"height": height, "stiffness": stiffness, "column_mass": "10 t", "floor_mass": "300 t"}
+        for height, stiffness in (("4.2 m", "500 MN/m"), ("3.5 m", "678 MN/m"))
+    ]
+    system = {"type": "building", "base": "ground", "storey": storeys, "speed_adjustment": "0.5 %"}
+    building = Scene(name="frame", units={}, system=system, output={"until": "1 s", "drift": [1]})
+    bars = lower(building).network.bars
+    assert common_measure([bar.delay for bar in bars]) * FINEST >= min(bar.delay for bar in bars)
