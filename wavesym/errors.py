@@ -120,12 +120,9 @@ class SpacingError(CostError):
 class MeasureError(CostError):
     """Travel times without a common measure that is long enough; `helps` is what to write for one."""
 
-    def __init__(self, message: str, helps: str) -> None:
-        super().__init__(message, helps)
+    def __init__(self, message: str, helps: str = "") -> None:
+        super().__init__(message)
         self.helps = helps
-
-    def __str__(self) -> str:
-        return str(self.args[0])
 
 
 class RangeError(WavesymError, OverflowError):

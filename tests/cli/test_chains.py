@@ -141,7 +141,7 @@ def test_a_march_on_too_fine_a_step_is_one_line(tmp_path: Path, capsys: pytest.C
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert "delays 1, 1001/1000 have the common measure 1/1000" in err
-    assert "as of delays 1, which are at most 0.1 % off" in err
+    assert 'speed_adjustment = "0.5 %" under [system], or pieces, help' in err
     assert not (tmp_path / "out").exists()
 
 
