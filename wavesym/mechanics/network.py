@@ -232,8 +232,8 @@ class Network:
     @property
     def takes_modal_damping(self) -> bool:
         """Whether its modes may be damped by ratios: nothing else takes energy out of it, or has a corner."""
-        held = [*self.points, *self.links]
-        return not self.corners and all(each.damping == 0 for each in held)
+        dashpots = [*(point.damping for point in self.points), *(link.damping for link in self.links)]
+        return not self.corners and not any(dashpots)
 
     def refuse_rodless(self, what: str, instead: str) -> None:
         """UnservedError where there is no bar, for `what` is of rods; and what to do `instead`."""

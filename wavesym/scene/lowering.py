@@ -205,7 +205,7 @@ def _damping_in_time(scene: Scene, network: Network) -> str:
         return f"for these write damping = {ratio} under [system] in its place"
     turn = math.pi / 2 / nearest(sum((bar.delay for bar in network.bars), fmpq(0)))
     size, unit = scene.scale.parts["dashpot"] if scene.scale else (1, "")
-    rods = []
+    rods: list[str] = []
     for number, bar in enumerate(network.bars, 1):
         if bar.loss != 0 and len(rods) < _MOST_NAMED:
             dashpot = float(f"{nearest(bar.loss * bar.impedance / bar.delay) / turn * float(size):.3g}")
