@@ -44,10 +44,14 @@ class Exponentials:
         return _from_parts(parts)
 
     def __add__(self, other: Number) -> Exponentials:
+        if not isinstance(other, Exponentials) and other == 0:
+            return self
         total = dict(self.parts)
         for q, c in Exponentials.from_number(other).parts.items():
             total[q] = total[q] + c if q in total else c
-        return _from_parts(total)
+            if total[q] == 0:
+                del total[q]
+        return _from_nonzero_parts(total)
 
     __radd__ = __add__
 
@@ -114,7 +118,7 @@ def exponential(exponent: Exact) -> Exponentials:
     return _from_nonzero_parts({(int(q.p), int(q.q)): fmpq(1)})
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class Jet:
     """A value and its derivatives; they are exact numbers."""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cached_property
 from typing import Any
 
 
@@ -27,6 +28,11 @@ class Symbol:
     primes: int = 0
     subscript: tuple[Tree, ...] = ()
     superscript: tuple[Tree, ...] = ()
+
+    @cached_property
+    def letter(self) -> str:
+        """The letter with its accent and primes, but without its indices."""
+        return self.accent + self.name + "'" * self.primes
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ class Exact:
         sources = self.responses if source is None else (source,)
         return max(len(self.increment(s, letter, rod, interval).get(rate, ())) for s in sources) - 1
 
-    @property
+    @cached_property
     def rates(self) -> dict[int, fmpq]:
         """The rates of the bodies, by the number that kappa or gamma has for them."""
         first = 1 if self.interval == 1 else 0

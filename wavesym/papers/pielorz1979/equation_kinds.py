@@ -15,7 +15,7 @@ from flint import fmpq
 
 from wavesym.mechanics.node import Node
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, letter_name, sides, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides, span
 from wavesym.papers.pielorz1979.chains import (
     JumpingChain,
     LoadedChain,
@@ -73,13 +73,13 @@ class Conditions(EquationGroup):
     def _rods(self, equation: Tree, i: int | None) -> set[int]:
         """The rods that a condition is about; MeaninglessError where it is about another place than the node."""
         for part in parts_of(equation):
-            if not isinstance(part, Call) or letter_name(part.function) not in DISPLACEMENTS.values():
+            if not isinstance(part, Call) or part.function.letter not in DISPLACEMENTS.values():
                 continue
             if tuple(map(latex, part.arguments)) != (r"\bar{x}", r"\tau"):
                 raise MeaninglessError(f"{latex(part)} is not at the node")
         names = ("U", *DISPLACEMENTS.values())
         scope = Scope({"m": self.scope.chain.m} | ({} if i is None else {"i": i}))
-        moved = (part for part in parts_of(equation) if isinstance(part, Symbol) and letter_name(part) in names)
+        moved = (part for part in parts_of(equation) if isinstance(part, Symbol) and part.letter in names)
         return {rod for symbol in moved for rod in scope.indices(symbol)}
 
     def key(self, equation: Tree, place: Place) -> Key:
@@ -219,7 +219,7 @@ class Loads(EquationGroup):
         function = left.function if isinstance(left, Call) else left
         if not isinstance(function, Symbol):
             raise MeaninglessError(f"{latex(left)} is no load")
-        return letter_name(function), *self.scope.indices(function)
+        return function.letter, *self.scope.indices(function)
 
     def required_keys(self) -> Iterable[Key]:
         return [("M", body) for body in range(1, self.scope.chain.m + 2)] if self.scope.is_drive else [(r"\ddoty", 0)]
@@ -236,7 +236,7 @@ class Constants(Loads):
     units = (replace(SLOW, S_0=fmpq(7, 3)), replace(FAST, S_0=fmpq(2, 5)))
 
     def required_keys(self) -> Iterable[Key]:
-        name = letter_name(self._defined_symbol())
+        name = self._defined_symbol().letter
         if name == r"\kappa":
             return [(name, i) for i in self.scope.chain.system.indices(self.scope.chain.m)["kappa"]]
         return [(name, body) for body in range(1, self.scope.chain.m + 2)]

@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, letter_name, places, sides
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
 from wavesym.papers.pielorz1979.chains import Exact, LoadedChain, building, collision, drive, example, loads
 from wavesym.papers.pielorz1979.transcript import entries, ids, right_reading
 from wavesym.papers.record import Case, Reading, Reproduction, by_size, case
@@ -169,8 +169,8 @@ def _letters(id: str) -> Iterable[str]:
 # forms
 
 
-Statement = tuple[Indices, Tree, Tree, dict[str, Any]]
-"""What a form says of a rod: the indices of an F', its argument, what it is, and at which n."""
+Statements = dict[Indices, list[tuple[Tree, Tree, dict[str, Any]]]]
+"""What a form says of a rod, by the indices of an F': its argument, what it is, and at which n."""
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ class Form:
     step: Tree
     start: Tree
     numbers: Tree
-    statements: dict[tuple[int, int, int], list[Statement]] = field(default_factory=dict, init=False, compare=False)
+    statements: dict[tuple[int, int, int], Statements] = field(default_factory=dict, init=False, compare=False)
     """What is known of it, by m, the most n and a rod: with everything else as it is right."""
 
     @classmethod
@@ -211,7 +211,7 @@ class FormScope(Scope):
         super().__init__({"m": motion.exact.m})
         self._form, self._motion, self._letter, self._changes = form, motion, letter, changes or {}
         self._most_n = INTERVALS[form.name] if most_n is None else most_n
-        self._known_statements: dict[int, list[Statement]] = {}
+        self._known_statements: dict[int, Statements] = {}
         self._totals: dict[tuple[int, int, int, int], Any] = {}
         self._limits: dict[tuple[Any, ...], Tree] = {}
         self._values: dict[tuple[Any, ...], Any] = {}
@@ -241,30 +241,30 @@ class FormScope(Scope):
         if rod not in self._known_statements:
             self._known_statements[rod] = self._statements(rod)
         found = []
-        for indices, argument, right, place in self._known_statements[rod]:
-            if indices == (rod, number):
-                with self.bind({**place, "z": z}):
-                    if self.value(argument) == z:
-                        found.append((right, self.variables))
+        for argument, right, place in self._known_statements[rod].get((rod, number), ()):
+            with self.bind({**place, "z": z}):
+                if self.value(argument) == z:
+                    found.append((right, self.variables))
         if len(found) != 1:
             raise MeaninglessError(f"F'_{{{rod}, {number}}} is given {len(found)} times")
         ((right, bound),) = found
         with self.bind(bound):
             return self.value(right)
 
-    def _statements(self, rod: int) -> list[Statement]:
+    def _statements(self, rod: int) -> Statements:
         known = self._form.statements if "d" not in self._changed_letters else {}
         key = self._motion.exact.m, self._most_n, rod
         if key not in known:
             halves = HALVES if self._form.name == "II" else (None,)
             numbers = places([self._form.numbers], self, self._most_n)
             steps = [(self._form.step, {**place, "half": half}) for place in numbers for half in halves]
-            known[key] = []
+            known[key] = {}
             for equation, place in ((self._form.start, self.variables), *steps):
                 left, right = sides(equation)
                 with self.bind({**place, "i": rod}):
                     function = derivative(left)
-                    known[key].append((self.indices(function.function), function.arguments[0], right, self.variables))
+                    statement = function.arguments[0], right, self.variables
+                    known[key].setdefault(self.indices(function.function), []).append(statement)
         return known[key]
 
     def call(self, call: Call) -> Any:
@@ -276,7 +276,7 @@ class FormScope(Scope):
         """Coefficients, loads, rates, and the cells of the tables."""
         if symbol.superscript and symbol.name == "F":
             return self.coefficient(self.indices(symbol), self.upper(symbol))
-        name = letter_name(symbol)
+        name = symbol.letter
         if symbol.superscript or name != symbol.name or (name in self.letters and symbol.subscript):
             return super().symbol(symbol)
         indices = self.indices(symbol)
@@ -310,6 +310,12 @@ class FormScope(Scope):
 
     def coefficient(self, lower: Indices, upper: Indices) -> Any:
         """The coefficient with these indices; MeaninglessError where there is none."""
+        known, place = self._motion.memory, ("coefficient", self._letter, lower, upper)
+        if place not in known:
+            known[place] = self._find_coefficient(lower, upper)
+        return known[place]
+
+    def _find_coefficient(self, lower: Indices, upper: Indices) -> fmpq:
         increment = self._motion.gain(self._letter, *self._coefficient_place(upper))
         if len(lower) < 2:  # of the family with rate 0, where 0 is as good as none
             power = look_up({(): 0, (0,): 1}, lower, "F")
