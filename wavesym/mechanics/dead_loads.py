@@ -195,7 +195,7 @@ class _Balance:
         except ZeroDivisionError:
             at = network.points[points[0]]
             raise BalanceError(
-                f"what is at {at.name or at.place} is at rest and nothing holds it, so that it has no "
+                f"what is at {at.label} is at rest and nothing holds it, so that it has no "
                 "balance; write what it stands on, or its velocity"
             ) from None
         for point, k in place.items():

@@ -89,7 +89,7 @@ class Model:
         node, parts, _ = load.source.partition(":")  # of a chain, NODE:step
         if parts:
             point = next(p for p in self.network.points if any(unit.source == load.source for unit in p.loads))
-            node = f"what acts at {point.name or point.place}"
+            node = f"what acts at {point.label}"
         return f"{node} jumps by {nearest(load.weight * factor):g}{unit and ' '}{unit} at {when}"
 
     @cached_property

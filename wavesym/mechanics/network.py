@@ -44,6 +44,11 @@ class Point:
     absorbing: bool = field(default=False, compare=False)
     is_glued: bool = field(default=False, compare=False)
 
+    @property
+    def label(self) -> str:
+        """What people call it: by its name, or else by its place."""
+        return self.name or self.place
+
     def action(self, unit: UnitLoad) -> tuple[Any, ...]:
         """The force that a unit load makes here, or the velocity that it prescribes: coefficients by powers of tau."""
         if self.motion != "acceleration":

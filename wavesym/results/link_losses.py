@@ -48,7 +48,7 @@ class LinkSummary(NamedTuple):
 
 def _names(model: Model, link: Link) -> tuple[str, str]:
     left, right = (model.network.points[number] for number in (link.left, link.right))
-    return left.name or left.place, right.name or right.place
+    return left.label, right.label
 
 
 def link_summaries(model: Model, solved: Model | None = None) -> tuple[LinkSummary, ...] | None:

@@ -298,7 +298,7 @@ def _shape(network: Network, mode: Mode) -> dict[str, complex]:
     largest = max(moved, key=abs)
     names: dict[str, complex] = {}
     for point, each in zip(network.points, moved, strict=True):
-        name = point.name or str(point.place)
+        name = point.label
         names.setdefault(name if name not in names else f"{name}+", each / largest if largest else 0j)
     return names
 

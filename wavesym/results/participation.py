@@ -39,7 +39,7 @@ def participations(network: Network, mode: Mode, largest: arb) -> dict[str, Part
     found: dict[str, Participation] = {}
     for number in _driven_points(network):
         point = network.points[number]
-        name = point.name or point.place
+        name = point.label
         if point.motion is None:
             found[name] = Participation(midpoint(mode.points[number] / largest), None)
         elif not mode.frequency.contains(0):

@@ -146,7 +146,7 @@ def _damper(network: Network) -> str:
     """What takes energy out of a chain, or opens and closes: empty where nothing does."""
     for point in network.points:
         if point.damping != 0:
-            return f"a dashpot or an absorbing end at {point.name or point.place}"
+            return f"a dashpot or an absorbing end at {point.label}"
     for link in network.links:
         if link.has_corner:
             return {"contact": "a contact", "spring": "a spring with a corner"}.get(link.law, link.law)

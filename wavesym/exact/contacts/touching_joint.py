@@ -18,7 +18,7 @@ from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, subsets
 from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
 from wavesym.exact.contacts.steady_joint import SteadyJoint, group_forces, prescribed_terms, rate_terms, series_terms
 from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, one_at_each_instant, scale_terms, with_bounds
-from wavesym.exact.joints.joint_law import JointLaw, scatter
+from wavesym.exact.joints.joint_law import JointLaw, exact_sum, scatter
 
 _ONE = fmpq(1)
 _SLACK = fmpq(1, 2**20)
@@ -115,14 +115,14 @@ class TouchingJoint(SteadyJoint):
                     most = exact if all(sign <= 0 for sign in signs) else None
                     result.sends[n] = with_bounds(result.sends[n], None, least, most)
 
-    def _velocity_gains(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> list[fmpq]:
+    def _velocity_gains(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> dict[int, fmpq]:
         """The velocities that groups without mass gain where a contact pushes with 1."""
         touch, push = self.touches[n], [fmpq(0)] * len(law.mass)
         for place, factor in ((touch.right, _ONE), (touch.left, -touch.ratio)):
             if place in moves:
                 group, ratio = moves[place]
                 push[group] += factor * ratio
-        return [sum((law.inverse[a, b] * x for b, x in enumerate(push)), fmpq(0)) for a in range(len(push))]
+        return law.light_velocities(push, {}, exact_sum)
 
     def _try_every_choice(
         self,

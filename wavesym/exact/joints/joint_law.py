@@ -203,8 +203,9 @@ class JointLaw:
             add([(fmpq(1), forces[k]), *((-self.damping[k][other], q) for other, q in known.items())])
             for k in self.light
         ]
-        shares = (([self.inverse[row, n] for n in range(len(acting))]) for row in range(len(acting)))
-        return {k: add(list(zip(row, acting, strict=True))) for k, row in zip(self.light, shares, strict=True)}
+        return {
+            k: add([(self.inverse[row, n], each) for n, each in enumerate(acting)]) for row, k in enumerate(self.light)
+        }
 
     @cached_property
     def absorption(self) -> dict[int, fmpq]:
@@ -270,6 +271,11 @@ def scatter(law: JointLaw, forces: Sequence[Terms], known: Mapping[int, Terms]) 
 def _join_terms(parts: Sequence[tuple[fmpq, Terms]]) -> Terms:
     """A sum of sums, each times a factor."""
     return [term for factor, terms in parts for term in scale_terms(terms, factor)]
+
+
+def exact_sum(parts: Sequence[tuple[fmpq, fmpq]]) -> fmpq:
+    """A sum of numbers, each times a factor."""
+    return sum((factor * number for factor, number in parts), fmpq(0))
 
 
 def bound_sum(parts: Sequence[tuple[fmpq, arb]]) -> arb:

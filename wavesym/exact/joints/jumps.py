@@ -15,7 +15,7 @@ from flint import fmpq
 
 from wavesym.derivation.rules import joint_rule
 from wavesym.errors import WavesymError
-from wavesym.exact.joints.joint_law import JointLaw, joint_ends
+from wavesym.exact.joints.joint_law import JointLaw, exact_sum, joint_ends
 from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
@@ -151,6 +151,6 @@ class _Answer:
         for each in self._ends:
             forces[each.place] += each.force * waves.get(each.end, _ZERO)
         q = {k: acts.get(point, _ZERO) for k, point in enumerate(points) if k not in law.light}
-        q |= law.light_velocities(forces, q, lambda parts: sum((factor * each for factor, each in parts), _ZERO))
+        q |= law.light_velocities(forces, q, exact_sum)
         sent = {each.end: each.ratio * q[each.place] - waves.get(each.end, _ZERO) for each in self._ends}
         return {point: q[k] for k, point in enumerate(points)}, sent

@@ -33,7 +33,7 @@ def refuse_damped(network: Network) -> None:
     for point in network.points:
         if point.damping != 0 and point.motion is None:
             raise UnservedError(
-                f"system: the dashpot or absorbing end at {point.name or point.place} is not supported by modes "
+                f"system: the dashpot or absorbing end at {point.label} is not supported by modes "
                 "(take pieces or march)"
             )
     for link in network.links:
@@ -41,7 +41,7 @@ def refuse_damped(network: Network) -> None:
             what, serve = "dashpot", "pieces and march serve"
             if link.has_corner:
                 what, serve = link.law, "pieces serve"
-            at = link.place or network.points[link.left].name or network.points[link.left].place
+            at = link.place or network.points[link.left].label
             raise UnservedError(f"system: the {what} at {at} is not supported by modes ({serve} it)")
 
 

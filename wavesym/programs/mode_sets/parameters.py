@@ -138,7 +138,7 @@ def _refuse_dashpots(network: Network) -> None:
         if not network.bars:
             remedy = "take a sweep, which computes each case alone"
         raise UnservedError(
-            f"runtime: numbers of modes beside the dashpot or absorbing end at {points[0].name or points[0].place} are "
+            f"runtime: numbers of modes beside the dashpot or absorbing end at {points[0].label} are "
             f"not supported ({remedy})"
         )
 

@@ -132,7 +132,7 @@ def refuse_absorbing(network: Network) -> None:
                 rows[light[each.place]][light[each.place]] += 2 * impedance
         if light and fmpq_mat(rows).det() == 0:
             first = network.points[joint.points[law.light[0]]]
-            at = first.name or first.place
+            at = first.label
             raise UnservedError(
                 f"system: dashpots as large as the impedance at {at} return nothing, which modes do not support "
                 "(write larger or smaller ones, or take pieces or march)"

@@ -93,7 +93,7 @@ def _load_powers(point: Point, coefficients: Sequence[fmpq]) -> list[fmpq]:
         return [fmpq(c) for c in coefficients]
     if coefficients[0] != 0:
         raise UnservedError(
-            f"system.parts: the motion at {point.name or point.place} prescribes a velocity, which modes do not "
+            f"system.parts: the motion at {point.label} prescribes a velocity, which modes do not "
             "support (write one of acceleration, or take pieces or march)"
         )
     return [k * fmpq(c) for k, c in enumerate(coefficients)][1:]
