@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
-from wavesym.methods.elements import FEWEST, interpolate_readings, stencil
+from wavesym.methods.elements import FEWEST, interpolate_readings, keep_places, stencil
 from wavesym.methods.network_problem import gridded_problem
 from wavesym.methods.problem import Array, Evaluate, Method, Problem
 
@@ -154,9 +154,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
     grid = Grid(problem, np.array([int(delay / problem.measure) * parts for delay in problem.delays]), h)
     steps = int(np.ceil(problem.until / h)) + 1
     points = point_steps(problem, h, steps)
-    stencils = [grid.stencil(reading) for reading in problem.readings]
-    kept = np.unique(np.concatenate([places for places, _ in stencils]))
-    stencils = [(np.searchsorted(kept, places), weights) for places, weights in stencils]
+    kept, stencils = keep_places([grid.stencil(reading) for reading in problem.readings])
     times: Array = h * np.arange(steps + 1, dtype=np.float64)
 
     def evaluate(taus: Array) -> Array:

@@ -180,12 +180,22 @@ def stencil(reading: Gauge, cells: int) -> tuple[Unknowns, Array]:
     return first + np.arange(2), np.array([1 + first - place, place - first])
 
 
+Stencils = list[tuple[Unknowns, Array]]
+"""Of each reading the places of a field that it is interpolated from, and their weights."""
+
+
+def keep_places(stencils: Stencils) -> tuple[Unknowns, Stencils]:
+    """The places that stencils read, each once, and the same stencils on what is kept of a field there."""
+    kept = np.unique(np.concatenate([places for places, _ in stencils]))
+    return kept, [(np.searchsorted(kept, places), weights) for places, weights in stencils]
+
+
 def interpolate_readings(
-    problem: Problem, stencils: list[tuple[Unknowns, Array]], times: Array, fields: tuple[Array, Array], taus: Array
+    problem: Problem, stencils: Stencils, times: Array, fields: tuple[Array, Array], taus: Array
 ) -> Array:
     """The readings at `taus`, (readings, n), by lines between `times` (k,).
 
-    `fields` are displacements and velocities (k, places); `stencils` are places and weights for each reading.
+    `fields` are displacements and velocities (k, places).
     """
     rows = []
     for reading, (places, weights) in zip(problem.readings, stencils, strict=True):
@@ -208,9 +218,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
     begin = splu(csc_array(mass + diags_array(massless.astype(float)))).solve
     force = np.append(loads[0], np.zeros(elements.size - problem.points)) - damping @ start
     force[massless] *= np.isin(np.flatnonzero(massless), problem.prescribed) * 4 / h
-    stencils = [_unknowns(elements, reading) for reading in problem.readings]
-    kept = np.unique(np.concatenate([where for where, _ in stencils]))
-    stencils = [(np.searchsorted(kept, where), weights) for where, weights in stencils]
+    kept, stencils = keep_places([_unknowns(elements, reading) for reading in problem.readings])
     has_damping = bool(damping.nnz)
 
     def evaluate(taus: Array) -> Array:

@@ -27,7 +27,7 @@ from wavesym.verification.midpoint import LATE, Instants, MidpointGrid
 from wavesym.verification.outcome import Integration, Outcome, Rule, Solution, Truth, format_error, refused_outcomes
 from wavesym.verification.problem import Change, KnownChanges, corner_problem, match_changes
 from wavesym.verification.reference import ReferenceOutputs, sample_evenly, spread_taus
-from wavesym.verification.return_mapping import REACH, DifferenceGrid
+from wavesym.verification.return_mapping import REACH, integrate_differences
 
 # Gauss's points of a panel at N; where contacts open and close the first number with which the same happens at them
 _POINTS, _POINTS_OF_CONTACTS = 6, (8, 12)
@@ -194,7 +194,7 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
         known,
         "central differences",
         "late",
-        lambda grid, instants: DifferenceGrid(grid.problem, grid.step).integrate(instants),
+        lambda grid, instants: integrate_differences(grid.problem, grid.step, instants),
     )
 
 

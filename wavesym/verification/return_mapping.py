@@ -7,13 +7,14 @@ Nothing is known of events. Fronts stay as sharp as they are, and outputs are re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.differences import Grid, fields, point_steps
+from wavesym.methods.elements import keep_places
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.verification.problem import CornerProblem, LinkLaw
@@ -25,39 +26,40 @@ REACH = 4
 _ROUNDINGS = 8
 
 
-@dataclass(frozen=True)
-class DifferenceGrid:
-    """A network whose bars have cells of a step of tau, which divides all delays. An instant k is tau = k * step."""
+def integrate_differences(problem: CornerProblem, step: Fraction, instants: NDArray[np.int_]) -> tuple[Array, Array]:
+    """Integrate a network by central differences.
 
-    problem: CornerProblem
-    step: Fraction
+    Args:
+        problem: what moves; it has bars.
+        step: of tau; it divides all delays, and is how long cells are.
+        instants: positive numbers of steps, ascending: (n,).
 
-    def integrate(self, instants: NDArray[np.int_]) -> tuple[Array, Array]:
-        """The readings (readings, instants) at positive instants in ascending order, and what rounding adds to each."""
-        problem, h = self.problem, float(self.step)
-        grid = Grid(problem, np.array([int(delay / self.step) for delay in problem.delays]), h)
-        steps = int(instants[-1]) + 1
-        motion = fields(grid, point_steps(problem, h, steps), _ReturnMapping(problem).settle)
-        stencils = [grid.stencil(reading) for reading in problem.readings]
-        kept = np.unique(np.concatenate([places for places, _ in stencils]))
-        history, largest, rows = np.zeros((steps + 1, len(kept))), 0.0, []
-        for row, field in zip(history[1:], motion, strict=False):
-            row[:], largest = field[kept], max(largest, float(np.max(np.abs(field))))
-        for reading, (places, weights) in zip(problem.readings, stencils, strict=True):
-            columns = np.searchsorted(kept, places)
-            before, now, after = (history[np.ix_(instants + k, columns)] @ weights for k in (-1, 0, 1))
-            changes = {-1: now, 0: (after - before) / (2 * h), 1: (after - 2 * now + before) / h**2}
-            of_strain = reading.quantity == "strain"
-            rows.append((now if of_strain else changes[reading.order]) + problem.strain_at_start(reading))
-        unsure = [self._roundoff(reading.quantity, reading.rod, steps) * largest for reading in problem.readings]
-        return np.array(rows).reshape(-1, len(instants)), np.array(unsure)
+    Returns:
+        The readings (readings, n), and what rounding adds to each at most (readings,).
+    """
+    h = float(step)
+    grid = Grid(problem, np.array([int(delay / step) for delay in problem.delays]), h)
+    steps = int(instants[-1]) + 1
+    motion = fields(grid, point_steps(problem, h, steps), _ReturnMapping(problem).settle)
+    kept, stencils = keep_places([grid.stencil(reading) for reading in problem.readings])
+    history, largest, rows = np.zeros((steps + 1, len(kept))), 0.0, []
+    for row, field in zip(history[1:], motion, strict=False):
+        row[:], largest = field[kept], max(largest, float(np.max(np.abs(field))))
+    for reading, (columns, weights) in zip(problem.readings, stencils, strict=True):
+        before, now, after = (history[np.ix_(instants + k, columns)] @ weights for k in (-1, 0, 1))
+        changes = {-1: now, 0: (after - before) / (2 * h), 1: (after - 2 * now + before) / h**2}
+        of_strain = reading.quantity == "strain"
+        rows.append((now if of_strain else changes[reading.order]) + problem.strain_at_start(reading))
+    unsure = [_roundoff(problem, reading, h, steps) * largest for reading in problem.readings]
+    return np.array(rows).reshape(-1, len(instants)), np.array(unsure)
 
-    def _roundoff(self, quantity: str, rod: int, steps: int) -> float:
-        """What rounding adds to a reading for displacements of 1, at most: it goes on to every second point."""
-        h = float(self.step)
-        sizes = {"displacement": float(steps * steps), "velocity": steps / h, "acceleration": 4 * steps / h**2}
-        size = steps / h / float(self.problem.speed[rod - 1]) if quantity == "strain" else sizes[quantity]
-        return _ROUNDINGS * float(UNIT_ROUNDOFF) * size
+
+def _roundoff(problem: CornerProblem, reading: Gauge, h: float, steps: int) -> float:
+    """What rounding adds to a reading for displacements of 1, at most: it goes on to every second point."""
+    sizes = {"displacement": float(steps * steps), "velocity": steps / h, "acceleration": 4 * steps / h**2}
+    of_strain = reading.quantity == "strain"
+    size = steps / h / float(problem.speed[reading.rod - 1]) if of_strain else sizes[reading.quantity]
+    return _ROUNDINGS * float(UNIT_ROUNDOFF) * size
 
 
 class _ReturnMapping:
