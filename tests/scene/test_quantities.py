@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from fractions import Fraction
+from pathlib import Path
 from time import process_time
 
 import pytest
@@ -12,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
+from wavesym.fields import quantity
 from wavesym.fields.dimensions import DIMENSIONS
 from wavesym.fields.quantity import si_value, unit
 
@@ -205,3 +207,16 @@ def test_text_is_a_quantity_or_refused_in_a_line(text: str, dimension: str) -> N
 def test_pint_waits_for_the_first_unit() -> None:
     code = "import wavesym.fields.quantity, sys; assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_usual_units_mean_what_pint_says() -> None:
+    for name, meaning in quantity._USUAL.items():
+        assert quantity._unit_of_pint(name) == meaning, name
+
+
+def test_modes_of_a_frame_in_usual_units_do_not_wait_for_pint() -> None:
+    """Half a second of a command that takes less."""
+    scene = Path(__file__).parents[2] / "examples" / "frames" / "concrete.toml"
+    script = f"import sys; from wavesym import Scene, modes; modes(Scene.from_toml({str(scene)!r}), 10)"
+    script += "; sys.exit('pint' in sys.modules)"
+    subprocess.run([sys.executable, "-c", script], check=True)

@@ -1,7 +1,7 @@
 """Quantities: what a user may write for a number with a unit, and what it is as a fraction, in SI base units.
 
 The grammar is our own, so that no text can make it slow: a number, then names with small powers, multiplied or
-divided. pint knows what the names mean, one by one; it is imported when the first of them is asked for.
+divided. pint knows what the names mean, one by one; it is imported when the first one that is not usual is asked for.
 """
 
 from __future__ import annotations
@@ -156,9 +156,34 @@ def _registry() -> UnitRegistry[Any]:
 _BASES = {"meter": "m", "gram": "kg", "second": "s", "radian": "rad"}
 
 
-@cache
+def _usual_units() -> dict[str, _Meaning]:
+    """Those of most scenes, which need not wait for pint; a test holds them to it."""
+    newton, pascal = {"kg": 1, "m": 1, "s": -2}, {"kg": 1, "m": -1, "s": -2}
+    sizes = {"m": -3, "c": -2, "": 0, "k": 3, "M": 6, "G": 9}
+    units = [
+        *((f"{prefix}m", sizes[prefix], {"m": 1}) for prefix in ("", "m", "c", "k")),
+        *((f"{prefix}g", sizes[prefix] - 3, {"kg": 1}) for prefix in ("", "k", "M")),
+        *((f"{prefix}N", sizes[prefix], newton) for prefix in ("", "k", "M", "G")),
+        *((f"{prefix}Pa", sizes[prefix], pascal) for prefix in ("", "k", "M", "G")),
+        ("t", 3, {"kg": 1}),
+        ("s", 0, {"s": 1}),
+        ("ms", -3, {"s": 1}),
+        ("rad", 0, {"rad": 1}),
+    ]
+    usual = {name: _Meaning(Fraction(10) ** power, powers) for name, power, powers in units}
+    return usual | {"standard_gravity": _Meaning(Fraction("9.80665"), {"m": 1, "s": -2})}
+
+
+_USUAL = _usual_units()
+
+
 def _unit_meaning(name: str) -> _Meaning | None:
     """What a name means; None of what is no unit of length, mass, time or angle, or made of these."""
+    return _USUAL.get(name) or _unit_of_pint(name)
+
+
+@cache
+def _unit_of_pint(name: str) -> _Meaning | None:
     from pint.errors import PintError
 
     registry = _registry()
