@@ -200,3 +200,24 @@ def test_what_is_no_zero_is_not_proved(monkeypatch):
     monkeypatch.setattr(found, "estimate_frequencies", lambda stiffness, count: np.array([2.1 + 7.0j, 0.8 + 0.2j]))
     monkeypatch.setattr(found, "_NEWTON", 1)
     assert not len(complex_frequencies(DAMPED["a mass"], 2))
+
+
+def test_modes_of_many_rows_do_not_wait_for_those_far_away(monkeypatch):
+    """They are those of all rounds, in a quarter of them, and proved with half of the bits."""
+    parts = ["free", *({"rod": f"{3 + k % 5}/100", "impedance": f"{100 + k}/100"} for k in range(40)), "absorbing"]
+    network, rounds = chain(parts).network, []
+
+    def counted(*given):
+        rounds[-1] += 1
+        return pull(*given)
+
+    pull = found._pull
+    monkeypatch.setattr(found, "_pull", counted)
+    spectra = []
+    for far, fewer in ((found._AWAY, found._FEWER_BITS), (np.inf, found._BITS_A_ROW)):
+        rounds.append(0)
+        monkeypatch.setattr(found, "_AWAY", far)
+        monkeypatch.setattr(found, "_FEWER_BITS", fewer)
+        spectra.append([mode.frequency for mode in DampedSpectrum(network).first(8)])
+    assert all(one.overlaps(other) for one, other in zip(*spectra, strict=True))
+    assert rounds[0] < rounds[1] / 2

@@ -29,7 +29,7 @@ from wavesym.mechanics.network import Network
 Complex = NDArray[np.complex128]
 
 _BITS = 224
-_BITS_A_ROW = 12
+_BITS_A_ROW, _FEWER_BITS, _MANY_ROWS = 12, 6, 32  # fewer are tried first where there are many rows
 _BALL, _BALL_A_ROW = 80, 4  # bits: what is not known of a frequency grows from row to row
 _NEWTON = 12
 _MEETING = 1e-5  # frequencies that no step tells apart
@@ -41,6 +41,7 @@ _STRAIGHT = 1e-9  # of what creeps, which has no real part
 _MORE = 1.15  # as many are sought, as those at the edge are pushed off by fewer
 _ROUNDS = 400
 _FOUND = 1e-11
+_AWAY = 4.0  # times the last one wanted: what is still on its way there is no matter
 _CREEPING = 1e-4, 1e2  # where they are sought, spacings of frequencies from 0
 _CREEPERS = 24
 _I = acb(0, 1)
@@ -78,10 +79,15 @@ class DampedSpectrum(CutNetwork):
 
 
 def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
-    with ctx.workprec(_BITS + _BITS_A_ROW * len(stiffness.points)):
-        law, near = stiffness.law(arb), guesses * (1 + _OFF)
-        roots = stiffness.yielding(near, 1j * near).tolist()
-        return [_prove_mode(stiffness, law, *each) for each in zip(guesses.tolist(), roots, strict=True)]
+    near, rows = guesses * (1 + _OFF), len(stiffness.points)
+    roots = stiffness.yielding(near, 1j * near).tolist()
+    found: list[Mode | None] = [None] * len(guesses)
+    for bits in (_FEWER_BITS, _BITS_A_ROW) if rows > _MANY_ROWS else (_BITS_A_ROW,):
+        with ctx.workprec(_BITS + bits * rows):
+            law = stiffness.law(arb)
+            for k, (guess, root) in enumerate(zip(guesses.tolist(), roots, strict=True)):
+                found[k] = found[k] or _prove_mode(stiffness, law, guess, root)
+    return found
 
 
 def estimate_frequencies(stiffness: Stiffness, count: int) -> Complex:
@@ -95,7 +101,7 @@ def estimate_frequencies(stiffness: Stiffness, count: int) -> Complex:
     start = start + apart * (0.1j + 0.02 * (draw.normal(size=many) + 1j * draw.uniform(size=many)))
     creeping = apart * (np.geomspace(*_CREEPING, _CREEPERS) * 1j + 1e-3)
     w = np.concatenate([start, -start.conjugate() + 1e-3 * apart, creeping])
-    moving = np.arange(len(w))
+    moving, resting = np.arange(len(w)), _RESTING * np.pi / float(stiffness.delay)
     for _ in range(_ROUNDS):
         apart = w[moving, None] - w
         apart[np.arange(len(moving)), moving] = np.inf
@@ -106,13 +112,13 @@ def estimate_frequencies(stiffness: Stiffness, count: int) -> Complex:
         step *= np.minimum(1.0, 2.0 / float(stiffness.delay) / np.maximum(size, 1e-300))
         w[moving] -= step
         moving = moving[size > _FOUND * np.abs(w[moving])]
-        if not len(moving):
+        found = np.delete(w, moving)
+        found = found[(found.real > -1e-9 * np.abs(found)) & (np.abs(found) > resting)]
+        found = found[np.argsort(np.abs(found), kind="stable")][:count]
+        away = np.abs(w[moving])
+        if 0 < len(found) == count and np.all((away < resting) | (away > _AWAY * np.abs(found[-1]))):
             break
-    done = np.setdiff1d(np.arange(len(w)), moving)
-    found = w[done]
-    found = found[(found.real > -1e-9 * np.abs(found)) & (np.abs(found) > _RESTING * np.pi / float(stiffness.delay))]
-    found = found[np.argsort(np.abs(found), kind="stable")]
-    return np.asarray(found[:count])
+    return np.asarray(found)
 
 
 def _of_matrix(stiffness: Stiffness) -> Complex:
