@@ -26,8 +26,7 @@ static fmi2Status answer(instance *it, verdict found)
 /* What this model has none of. */
 static fmi2Status none(instance *it, const char *what)
 {
-    snprintf(it->run.said, sizeof it->run.said, "%s: asked for, but this model has none", what);
-    return answer(it, WRONG);
+    return answer(it, lack(&it->run, what));
 }
 
 /* Functions and values that this model has none of. */
@@ -131,23 +130,18 @@ fmi2Status FMI2(fmi2GetBoolean)(fmi2Component c, const fmi2ValueReference refere
                                 fmi2Boolean value[])
 {
     instance *const it = (instance *)c;
-    for (size_t k = 0; k < count; ++k) {
-        if (reference[k] != LINEAR_REFERENCE) {
-            return answer(it, unknown(&it->run, reference[k], "a parameter that is true or false"));
-        }
+    const verdict found = may_be_linear(&it->run, reference, count, 0);
+    for (size_t k = 0; k < count && found == FINE; ++k) {
         value[k] = it->run.now.linear;
     }
-    return fmi2OK;
+    return answer(it, found);
 }
 
 fmi2Status FMI2(fmi2SetBoolean)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
                                 const fmi2Boolean value[])
 {
     instance *const it = (instance *)c;
-    verdict found = FINE;
-    for (size_t k = 0; k < count && found == FINE; ++k) {
-        found = may_be_linear(&it->run, reference[k]);
-    }
+    const verdict found = may_be_linear(&it->run, reference, count, 1);
     for (size_t k = 0; k < count && found == FINE; ++k) {
         it->run.now.linear = value[k] != 0;
     }
@@ -159,39 +153,19 @@ NO_VALUE(fmi2SetInteger, "an integer", (VARIABLES, const fmi2Integer value[]))
 NO_VALUE(fmi2GetString, "a string", (VARIABLES, fmi2String value[]))
 NO_VALUE(fmi2SetString, "a string", (VARIABLES, const fmi2String value[]))
 
-/* A state: into memory that is there already, or new memory. */
-static fmi2Status keep(instance *it, const situation *now, fmi2FMUstate *state)
-{
-    if (*state == NULL) {
-        *state = malloc(sizeof *now);
-    }
-    if (*state == NULL) {
-        return none(it, "memory");
-    }
-    memcpy(*state, now, sizeof *now);
-    return fmi2OK;
-}
-
 fmi2Status FMI2(fmi2GetFMUstate)(fmi2Component c, fmi2FMUstate *state)
 {
-    return keep((instance *)c, &((instance *)c)->run.now, state);
+    return answer((instance *)c, keep(&((instance *)c)->run, &((instance *)c)->run.now, state));
 }
 
 fmi2Status FMI2(fmi2SetFMUstate)(fmi2Component c, fmi2FMUstate state)
 {
-    if (state == NULL) {
-        return none((instance *)c, "a state at NULL");
-    }
-    memcpy(&((instance *)c)->run.now, state, sizeof(situation));
-    return fmi2OK;
+    return answer((instance *)c, put_back(&((instance *)c)->run, state));
 }
 
 fmi2Status FMI2(fmi2FreeFMUstate)(fmi2Component c, fmi2FMUstate *state)
 {
-    if (state) {
-        free(*state);
-        *state = NULL;
-    }
+    give_up(state);
     return fmi2OK;
 }
 
@@ -203,22 +177,12 @@ fmi2Status FMI2(fmi2SerializedFMUstateSize)(fmi2Component c, fmi2FMUstate state,
 
 fmi2Status FMI2(fmi2SerializeFMUstate)(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
 {
-    instance *const it = (instance *)c;
-    return state ? answer(it, serialize(&it->run, (const situation *)state, bytes, size)) : none(it, "a state at NULL");
+    return answer((instance *)c, serialize(&((instance *)c)->run, state, bytes, size));
 }
 
 fmi2Status FMI2(fmi2DeSerializeFMUstate)(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
 {
-    instance *const it = (instance *)c;
-    situation *const kept = (situation *)malloc(sizeof *kept);
-    fmi2Status status;
-    if (kept == NULL) {
-        return none(it, "memory");
-    }
-    status = answer(it, deserialize(&it->run, bytes, size, kept));
-    status = status == fmi2OK ? keep(it, kept, state) : status;
-    free(kept);
-    return status;
+    return answer((instance *)c, deserialize(&((instance *)c)->run, bytes, size, state));
 }
 
 NONE(fmi2GetDirectionalDerivative, "a directional derivative",

@@ -26,8 +26,7 @@ static fmi3Status answer(instance *it, verdict found)
 static fmi3Status none(fmi3Instance of, const char *what)
 {
     instance *const it = (instance *)of;
-    snprintf(it->run.said, sizeof it->run.said, "%s: asked for, but this model has none", what);
-    return answer(it, WRONG);
+    return answer(it, lack(&it->run, what));
 }
 
 /* Functions and values that this model has none of. */
@@ -151,12 +150,10 @@ FMI3_SET(Float64)
 FMI3_GET(Boolean)
 {
     simulation *const s = &((instance *)it)->run;
-    verdict found = single(s, references, count);
+    const verdict fit = single(s, references, count);
+    const verdict found = fit == FINE ? may_be_linear(s, reference, references, 0) : fit;
     for (size_t k = 0; k < references && found == FINE; ++k) {
-        found = reference[k] == LINEAR_REFERENCE ? FINE : unknown(s, reference[k], "a parameter that is true or false");
-        if (found == FINE) {
-            value[k] = s->now.linear != 0;
-        }
+        value[k] = s->now.linear != 0;
     }
     return answer((instance *)it, found);
 }
@@ -164,10 +161,8 @@ FMI3_GET(Boolean)
 FMI3_SET(Boolean)
 {
     simulation *const s = &((instance *)it)->run;
-    verdict found = single(s, references, count);
-    for (size_t k = 0; k < references && found == FINE; ++k) {
-        found = may_be_linear(s, reference[k]);
-    }
+    const verdict fit = single(s, references, count);
+    const verdict found = fit == FINE ? may_be_linear(s, reference, references, 1) : fit;
     for (size_t k = 0; k < references && found == FINE; ++k) {
         s->now.linear = value[k];
     }
@@ -175,32 +170,26 @@ FMI3_SET(Boolean)
 }
 
 /* There are no values of other types. */
-#define NO_TYPE(macro, type) \
-    macro(type) \
+#define NO_TYPE(type) \
+    FMI3_GET(type) \
+    { \
+        return references ? none(it, "a variable of type " #type) : fmi3OK; \
+    } \
+    FMI3_SET(type) \
     { \
         return references ? none(it, "a variable of type " #type) : fmi3OK; \
     }
 
-NO_TYPE(FMI3_GET, Float32)
-NO_TYPE(FMI3_GET, Int8)
-NO_TYPE(FMI3_GET, UInt8)
-NO_TYPE(FMI3_GET, Int16)
-NO_TYPE(FMI3_GET, UInt16)
-NO_TYPE(FMI3_GET, Int32)
-NO_TYPE(FMI3_GET, UInt32)
-NO_TYPE(FMI3_GET, Int64)
-NO_TYPE(FMI3_GET, UInt64)
-NO_TYPE(FMI3_GET, String)
-NO_TYPE(FMI3_SET, Float32)
-NO_TYPE(FMI3_SET, Int8)
-NO_TYPE(FMI3_SET, UInt8)
-NO_TYPE(FMI3_SET, Int16)
-NO_TYPE(FMI3_SET, UInt16)
-NO_TYPE(FMI3_SET, Int32)
-NO_TYPE(FMI3_SET, UInt32)
-NO_TYPE(FMI3_SET, Int64)
-NO_TYPE(FMI3_SET, UInt64)
-NO_TYPE(FMI3_SET, String)
+NO_TYPE(Float32)
+NO_TYPE(Int8)
+NO_TYPE(UInt8)
+NO_TYPE(Int16)
+NO_TYPE(UInt16)
+NO_TYPE(Int32)
+NO_TYPE(UInt32)
+NO_TYPE(Int64)
+NO_TYPE(UInt64)
+NO_TYPE(String)
 
 NO_VALUE(fmi3GetBinary, "a variable of type Binary", (VARIABLES, size_t size[], fmi3Binary value[], size_t count))
 NO_VALUE(fmi3SetBinary, "a variable of type Binary",
@@ -213,39 +202,19 @@ NONE(fmi3GetVariableDependencies, "a list of dependencies while it runs",
      (fmi3Instance it, fmi3ValueReference dependent, size_t elements[], fmi3ValueReference on[], size_t places[],
       fmi3DependencyKind kind[], size_t count))
 
-/* A state: into memory that is there already, or new memory. */
-static fmi3Status keep(instance *it, const situation *now, fmi3FMUState *state)
-{
-    if (*state == NULL) {
-        *state = malloc(sizeof *now);
-    }
-    if (*state == NULL) {
-        return none(it, "memory");
-    }
-    memcpy(*state, now, sizeof *now);
-    return fmi3OK;
-}
-
 fmi3Status FMI3(fmi3GetFMUState)(fmi3Instance it, fmi3FMUState *state)
 {
-    return keep((instance *)it, &((instance *)it)->run.now, state);
+    return answer((instance *)it, keep(&((instance *)it)->run, &((instance *)it)->run.now, state));
 }
 
 fmi3Status FMI3(fmi3SetFMUState)(fmi3Instance it, fmi3FMUState state)
 {
-    if (state == NULL) {
-        return none(it, "a state at NULL");
-    }
-    memcpy(&((instance *)it)->run.now, state, sizeof(situation));
-    return fmi3OK;
+    return answer((instance *)it, put_back(&((instance *)it)->run, state));
 }
 
 fmi3Status FMI3(fmi3FreeFMUState)(fmi3Instance it, fmi3FMUState *state)
 {
-    if (state) {
-        free(*state);
-        *state = NULL;
-    }
+    give_up(state);
     return fmi3OK;
 }
 
@@ -255,24 +224,14 @@ fmi3Status FMI3(fmi3SerializedFMUStateSize)(fmi3Instance it, fmi3FMUState state,
     return fmi3OK;
 }
 
-fmi3Status FMI3(fmi3SerializeFMUState)(fmi3Instance of, fmi3FMUState state, fmi3Byte bytes[], size_t size)
+fmi3Status FMI3(fmi3SerializeFMUState)(fmi3Instance it, fmi3FMUState state, fmi3Byte bytes[], size_t size)
 {
-    instance *const it = (instance *)of;
-    return state ? answer(it, serialize(&it->run, (const situation *)state, bytes, size)) : none(it, "a state at NULL");
+    return answer((instance *)it, serialize(&((instance *)it)->run, state, bytes, size));
 }
 
-fmi3Status FMI3(fmi3DeserializeFMUState)(fmi3Instance of, const fmi3Byte bytes[], size_t size, fmi3FMUState *state)
+fmi3Status FMI3(fmi3DeserializeFMUState)(fmi3Instance it, const fmi3Byte bytes[], size_t size, fmi3FMUState *state)
 {
-    instance *const it = (instance *)of;
-    situation *const kept = (situation *)malloc(sizeof *kept);
-    fmi3Status status;
-    if (kept == NULL) {
-        return none(it, "memory");
-    }
-    status = answer(it, deserialize(&it->run, bytes, size, kept));
-    status = status == fmi3OK ? keep(it, kept, state) : status;
-    free(kept);
-    return status;
+    return answer((instance *)it, deserialize(&((instance *)it)->run, bytes, size, state));
 }
 
 fmi3Status FMI3(fmi3DoStep)(fmi3Instance of, fmi3Float64 at, fmi3Float64 step, fmi3Boolean never_back,

@@ -131,11 +131,22 @@ static verdict set_times(simulation *s, double start, int has_stop, double stop)
     return FINE;
 }
 
+/* From one phase into another, where it is in that one. */
+static verdict enter(simulation *s, phase before, phase after, const char *call)
+{
+    const verdict allowed = need(s, s->now.phase == (int)before, call);
+    s->now.phase = allowed == FINE ? (int)after : s->now.phase;
+    return allowed;
+}
+
 static verdict begin(simulation *s)
 {
-    const verdict allowed = need(s, s->now.phase == MADE, "entering initialization");
-    s->now.phase = allowed == FINE ? INITIALIZING : s->now.phase;
-    return allowed;
+    return enter(s, MADE, INITIALIZING, "entering initialization");
+}
+
+static verdict finish(simulation *s)
+{
+    return enter(s, STEPPING, OVER, "terminating");
 }
 
 /* Inputs have their first values from the start on. */
@@ -154,13 +165,6 @@ static verdict ready(simulation *s)
     s->now.stale = 0;
     s->now.phase = STEPPING;
     return FINE;
-}
-
-static verdict finish(simulation *s)
-{
-    const verdict allowed = need(s, s->now.phase == STEPPING, "terminating");
-    s->now.phase = allowed == FINE ? OVER : s->now.phase;
-    return allowed;
 }
 
 /* A step that cannot be gone on from. */
@@ -335,13 +339,52 @@ static verdict set_reals(simulation *s, const unsigned *reference, size_t count,
     return FINE;
 }
 
-/* Whether what is true or false may be set. */
-static verdict may_be_linear(simulation *s, unsigned reference)
+/* Whether all of them are true or false, and, if they are to be set, may be. */
+static verdict may_be_linear(simulation *s, const unsigned *reference, size_t count, int setting)
 {
-    if (reference != LINEAR_REFERENCE) {
-        return unknown(s, reference, "a parameter that is true or false");
+    for (size_t k = 0; k < count; ++k) {
+        if (reference[k] != LINEAR_REFERENCE) {
+            return unknown(s, reference[k], "a parameter that is true or false");
+        }
     }
-    return need(s, s->now.phase <= INITIALIZING, "setting a fixed parameter");
+    return setting && count > 0 ? need(s, s->now.phase <= INITIALIZING, "setting a fixed parameter") : FINE;
+}
+
+/* What a model has none of. */
+static verdict lack(simulation *s, const char *what)
+{
+    snprintf(s->said, sizeof s->said, "%s: asked for, but this model has none", what);
+    return WRONG;
+}
+
+/* A state: into memory that is there already, or new memory. */
+static verdict keep(simulation *s, const situation *now, void **state)
+{
+    if (*state == NULL) {
+        *state = malloc(sizeof *now);
+    }
+    if (*state == NULL) {
+        return lack(s, "memory");
+    }
+    memcpy(*state, now, sizeof *now);
+    return FINE;
+}
+
+static verdict put_back(simulation *s, const void *state)
+{
+    if (state == NULL) {
+        return lack(s, "a state at NULL");
+    }
+    memcpy(&s->now, state, sizeof s->now);
+    return FINE;
+}
+
+static void give_up(void **state)
+{
+    if (state) {
+        free(*state);
+        *state = NULL;
+    }
 }
 
 /* FNV-1a */
@@ -355,13 +398,18 @@ static uint64_t checksum(const situation *kept)
     return hash;
 }
 
-static verdict serialize(simulation *s, const situation *kept, void *bytes, size_t size)
+static verdict serialize(simulation *s, const void *state, void *bytes, size_t size)
 {
+    const situation *const kept = (const situation *)state;
     char *const to = (char *)bytes;
-    const uint64_t check = checksum(kept);
+    uint64_t check;
+    if (kept == NULL) {
+        return lack(s, "a state at NULL");
+    }
     if (size < KEPT_SIZE) {
         return refuse(s, "size of a serialized state", (double)size, "that which is told");
     }
+    check = checksum(kept);
     memcpy(to, TOKEN, sizeof TOKEN);
     memcpy(to + CHECK_PLACE, &check, sizeof check);
     memcpy(to + KEPT_PLACE, kept, sizeof *kept);
@@ -369,19 +417,27 @@ static verdict serialize(simulation *s, const situation *kept, void *bytes, size
 }
 
 /* What is not a state of this scene, as this program has it, or has been changed, is refused. */
-static verdict deserialize(simulation *s, const void *bytes, size_t size, situation *kept)
+static verdict deserialize(simulation *s, const void *bytes, size_t size, void **state)
 {
     const char *const from = (const char *)bytes;
+    situation *const kept = (situation *)malloc(sizeof *kept);
     uint64_t check = 0;
+    verdict found;
+    if (kept == NULL) {
+        return lack(s, "memory");
+    }
     if (size >= KEPT_SIZE) {
         memcpy(&check, from + CHECK_PLACE, sizeof check);
         memcpy(kept, from + KEPT_PLACE, sizeof *kept);
     }
     if (size < KEPT_SIZE || memcmp(from, TOKEN, sizeof TOKEN) != 0 || check != checksum(kept)) {
         snprintf(s->said, sizeof s->said, "a serialized state: not one of this model, or damaged");
-        return WRONG;
+        found = WRONG;
+    } else {
+        found = keep(s, kept, state);
     }
-    return FINE;
+    free(kept);
+    return found;
 }
 
 #endif

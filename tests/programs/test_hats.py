@@ -23,10 +23,9 @@ from wavesym.errors import CostError, SpacingError, ToleranceError, UnservedErro
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.programs import hats
 from wavesym.programs.choice import choose
-from wavesym.programs.hats import evaluator as hats
-from wavesym.programs.hats.evaluator import HatMarch, hat_march
-from wavesym.programs.hats.split import split, still
+from wavesym.programs.hats import HatMarch, hat_march, split, still
 from wavesym.programs.making import program
 from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judge_march, march

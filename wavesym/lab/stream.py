@@ -62,7 +62,7 @@ def own_samples(made: ModesEvaluator) -> tuple[Values, Values]:
     late = np.maximum(taus - times[-1], 0.0)
     values = np.array([[nearest(value) for value in row] for row in made.loads.samples])
     columns = [
-        (np.interp(taus, times, column) + nearest(slope) * late) * nearest(size)
-        for column, slope, (size, _) in zip(values.T, made.loads.slopes, made.inputs, strict=True)
+        (np.interp(taus, times, column) + nearest(slope) * late) * nearest(given.size)
+        for column, slope, given in zip(values.T, made.loads.slopes, made.inputs, strict=True)
     ]
     return taus, np.column_stack(columns).astype(f"f{made.real.bytes}")

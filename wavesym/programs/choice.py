@@ -190,7 +190,7 @@ def _make_modes(model: Model, real: Real, *_: object) -> Form:
 
 
 def _make_march(model: Model, real: Real, asked: bool, *_: object) -> Form:
-    from wavesym.programs.hats.evaluator import hat_march
+    from wavesym.programs.hats import hat_march
     from wavesym.programs.march.evaluator import march
 
     if not asked and model.tolerance < real.roundoff:

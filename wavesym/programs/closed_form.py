@@ -31,9 +31,8 @@ from wavesym.exact.tables.ball import largest, segments, shift
 from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.flat import firsts
 from wavesym.programs.form import Form
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.program import ProgramOutput, firsts
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000

@@ -10,9 +10,8 @@ from itertools import pairwise
 from flint import fmpq
 
 from wavesym.numbers.reals import Real
-from wavesym.programs.flat import firsts
 from wavesym.programs.form import Form
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.program import ProgramOutput, firsts
 
 # The numbers from 0 on that C has for the widest vectors (templates/c/pieces/pieces.c).
 _OFFSETS = 16

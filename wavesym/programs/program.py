@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from math import ceil
 from typing import TYPE_CHECKING, Literal
+
+from flint import fmpq
 
 from wavesym.exact.contacts.events import ContactEnd
 from wavesym.mechanics.event import ContactEvent
@@ -18,6 +22,11 @@ if TYPE_CHECKING:
 
     from wavesym.programs.runtime.laws import RuntimeLaws
     from wavesym.programs.schemes import Scheme
+
+
+def firsts(counts: Iterable[int]) -> tuple[int, ...]:
+    """Where each group starts in a flat table, and where the last one ends."""
+    return tuple(accumulate(counts, initial=0))
 
 
 @dataclass(frozen=True)
@@ -65,6 +74,25 @@ class Provenance:
 
 
 @dataclass(frozen=True)
+class Input:
+    """A load that is given: its source in the chain, and what 1 of the chain's is in the `unit` that a user gives."""
+
+    source: str
+    size: fmpq
+    unit: str
+
+    @property
+    def name(self) -> str:
+        """What a user calls it: a source without what it is a step of."""
+        return self.source.removesuffix(":step")
+
+    @property
+    def label(self) -> str:
+        """The name, with the unit where it has one."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True)
 class ReferenceValues:
     """The outputs at `taus`, correctly rounded doubles: values[output][k] is that at taus[k]."""
 
@@ -95,7 +123,8 @@ class Program(BoundedOutputs):
 
     `kernel` names what runs its tables, in C and in NumPy: "closed", "pieces", "march", "hats" (one hat of each record,
     in NumPy alone), "modes", "runtime" and "stream" (in C alone).
-    `tables` are flat (flat.py), by name, each number as it is written; which there are, the `program` of each
+    `tables` are flat, by name, each number as it is written, indices as ints (`first_...[g]` is where group g starts in
+    a table, `first_...[g + 1]` where it ends); which there are, the `program` of each
     evaluator says, of marches march/tables.py, of modes modes/modal_system.py, of streams stream/tables.py.
     `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test.
     `laws` are functions of parameters that come at run time. `sources` are the names of loads that it takes while it
@@ -135,7 +164,7 @@ class Program(BoundedOutputs):
 
     def under_jumps(self, model: Model) -> Model:
         """A model under the loads by which its outputs may jump: records that are added up hat by hat do not."""
-        from wavesym.programs.hats.split import rest_of
+        from wavesym.programs.hats import rest_of
 
         return rest_of(model) if self.hats else model
 

@@ -13,7 +13,7 @@ from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import MAKERS, Attempt, attempt, attempts, best
 from wavesym.programs.form import Form
-from wavesym.programs.hats.evaluator import HatMarch
+from wavesym.programs.hats import HatMarch
 from wavesym.programs.march.evaluator import March
 from wavesym.programs.piece_grid import Pieces
 from wavesym.programs.program import Program, Provenance

@@ -21,7 +21,7 @@ from wavesym.methods.elements import Elements
 from wavesym.methods.network_problem import linear_problem
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.hats.evaluator import hat_march
+from wavesym.programs.hats import hat_march
 from wavesym.programs.making import make, program
 from wavesym.programs.march.evaluator import march
 from wavesym.programs.modes.evaluator import ModesEvaluator, modes

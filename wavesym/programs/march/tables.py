@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
-from wavesym.programs.flat import firsts
 from wavesym.programs.march.plan import MarchedJoint, MarchPlan
 from wavesym.programs.march.responses import BlockResponse, BodyOperator, block_response, body_operator
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
+from wavesym.programs.program import firsts
 
 
 class MarchTables:

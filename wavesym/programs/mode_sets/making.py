@@ -17,12 +17,10 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.flat import firsts
-from wavesym.programs.mode_sets.loads import SampledAmplitudes, sampled_amplitudes
-from wavesym.programs.mode_sets.parameters import ModeParameters, mode_parameters
-from wavesym.programs.modes.evaluator import modes
+from wavesym.programs.mode_sets.parameters import ModeParameters, SampledAmplitudes, mode_parameters, sampled_amplitudes
+from wavesym.programs.modes.evaluator import driven_inputs, modes
 from wavesym.programs.modes.modal_system import LANES, padded_count
-from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
+from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, ReferenceValues, firsts
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.laws import RuntimeLaws
 
@@ -119,8 +117,8 @@ class ModeSetsTables:
         streamed, spacing = self.streamed, constants["spacing"]
         if streamed:
             constants |= {"shortest": spacing * (1 - _ULPS), "longest": spacing * (1 + _ULPS)}
-            tables |= {"load_unit": tuple(nearest(size) for size, _ in self._inputs)}
-        sources = self._sources if streamed else ()
+            tables |= {"load_unit": tuple(nearest(given.size) for given in self._inputs)}
+        sources = tuple(given.label for given in self._inputs) if streamed else ()
         made = Program(
             "mode_sets",
             DOUBLE,
@@ -139,19 +137,9 @@ class ModeSetsTables:
         return self._with_reference(made) if tested else made
 
     @property
-    def _sources(self) -> tuple[str, ...]:
-        """The loads of a stream, with the units of their samples."""
-        named = (
-            (step.removesuffix(":step") or ramp.removesuffix(":ramp")) for step, ramp in self.parameters.like.sources
-        )
-        pairs = zip(named, self._inputs, strict=True)
-        return tuple(f"{source} [{unit}]" if unit else source for source, (_, unit) in pairs)
-
-    @property
-    def _inputs(self) -> tuple[tuple[fmpq, str], ...]:
-        """What a load of 1 is in the unit of a stream, and this."""
-        model = self.parameters.model
-        return tuple(model.inputs.get(step or ramp, (fmpq(1), "")) for step, ramp in self.parameters.like.sources)
+    def _inputs(self) -> tuple[Input, ...]:
+        """The loads of a stream."""
+        return driven_inputs(self.parameters.model, self.parameters.like.sources)
 
     def _with_reference(self, made: Program) -> Program:
         """With values of the scene's own numbers by modes that are proved to leave out next to nothing."""

@@ -15,18 +15,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count
+from math import ceil
 
 import numpy as np
 from flint import fmpq
 
-from wavesym.errors import UnservedError
+from wavesym.errors import CostError, UnservedError
 from wavesym.mechanics.damping import Damping
-from wavesym.mechanics.loads import AppliedLoad, merge_loads
+from wavesym.mechanics.loads import AppliedLoad, AppliedRecord, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Network
 from wavesym.mechanics.parameters import ModelParameter, PartParameters, describe_part
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.programs.modes.loads import Numbers
+from wavesym.programs.modes.loads import Numbers, Roughness, linear_loads, sampled_roughness
 from wavesym.programs.modes.truncation import truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.programs.request import refuse_others
@@ -198,3 +199,43 @@ def _draw_network(network: Network) -> Network:
         tuple(replace(b, impedance=b.impedance * next(factors), speed=b.speed * next(factors)) for b in network.bars),
         tuple(replace(link, stiffness=link.stiffness * next(factors)) for link in network.links),
     )
+
+
+_FEWEST_SAMPLES, _MOST_SAMPLES = 500, 1 << 20
+
+
+@dataclass(frozen=True)
+class SampledAmplitudes:
+    """`samples` (n, amplitudes), the first of them 0 at tau = 0, `step` apart; of each which of the drivers `loads` it
+    is of, and its roughness, of samples that are 1 apart."""
+
+    step: fmpq
+    samples: Numbers
+    loads: tuple[int, ...]
+    rough: tuple[Roughness, ...]
+
+
+def sampled_amplitudes(parameters: ModeParameters, *, streamed: bool = False) -> SampledAmplitudes:
+    """Those of a model up to its horizon: as a stream takes them, or so often that extremes are seen.
+
+    CostError where they are too many.
+    """
+    like, model = parameters.like, parameters.model
+    step = like.loads.spacing(model.until, model.spacing)
+    step /= 1 if streamed else ceil(nearest(_FEWEST_SAMPLES * step / model.until))
+    count = ceil(model.horizon() / nearest(step)) + 2
+    if count > _MOST_SAMPLES:
+        raise CostError(
+            f"load: {count} samples, {nearest(step):g} apart in tau, the limit is {_MOST_SAMPLES} (times with a larger "
+            "common measure, or a shorter horizon, help)"
+        )
+    every: Sequence[AppliedLoad] = parameters.amplitudes or [
+        AppliedRecord(pair[1] or pair[0], fmpq(0), fmpq(1), tuple(x for x in model.loads if x.source in pair))
+        for pair in like.sources
+    ]
+    samples, loads = np.zeros((count, len(every))), []
+    for column, amplitude in zip(samples.T, every, strict=True):
+        acting = linear_loads(amplitude.changes, like.sources, like.model.until, like.model.describe_step)
+        loads.append(next(j for j, pair in enumerate(like.sources) if amplitude.source in pair))
+        column[:] = acting.sample(step, count)[:, loads[-1]]
+    return SampledAmplitudes(step, samples, tuple(loads), tuple(map(sampled_roughness, samples.T)))

@@ -18,8 +18,8 @@ from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
 from wavesym.programs.modes.dissipation import Complex, Dissipation, complexes, part
+from wavesym.programs.modes.harmonic_response import LowFrequency, dashpots, series
 from wavesym.programs.modes.loads import Numbers, Roughness
-from wavesym.programs.modes.low_frequency import LowFrequency, dashpots, series
 from wavesym.programs.modes.modal_system import ModalSystem
 from wavesym.programs.modes.projection import Driver, ModalOutput, share
 from wavesym.programs.modes.truncation import ModalModel

@@ -31,8 +31,8 @@ from numpy.typing import NDArray
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Quantity
 from wavesym.numbers.doubles import nearest
+from wavesym.programs.modes.harmonic_response import TERMS, Dashpot, SlowPort
 from wavesym.programs.modes.loads import Numbers
-from wavesym.programs.modes.low_frequency import TERMS, Dashpot, SlowPort
 
 Complex = NDArray[np.complex128]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -12,7 +13,7 @@ from flint import fmpq
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, nearest, rational, relative
 from wavesym.numbers.reals import Real
-from wavesym.programs.form import Form
+from wavesym.programs.form import Form, leap
 from wavesym.programs.modes.complex_modes import ComplexModes
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import (
@@ -27,8 +28,7 @@ from wavesym.programs.modes.modal_system import (
 from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
-from wavesym.programs.program import Program, ProgramOutput, Provenance, SteppedRow, SteppedValues
-from wavesym.programs.reference_values import leap
+from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, SteppedRow, SteppedValues
 from wavesym.programs.schemes.modes import ModesScheme
 
 _CHECKED = 40  # samples of a self-test
@@ -39,19 +39,17 @@ _ULPS = 8  # by which a step may differ from the spacing
 class ModesEvaluator(Form):
     """A modal system under loads, stepped exactly in `real` numbers; a stream takes steps of `spacing`.
 
-    `sources` are the names of the loads; a stream takes them in units of their own, one of which is `inputs` and its
-    name. What is said of an error is `proved`, or an estimate.
+    A stream takes the loads as `inputs`, in units of their own. What is said of an error is `proved`, or an estimate.
     """
 
     KERNEL = "modes"
 
     system: ModalSystem
     loads: LinearLoads
-    sources: tuple[str, ...]
     spacing: fmpq
     real: Real
     tau_max: float
-    inputs: tuple[tuple[fmpq, str], ...]
+    inputs: tuple[Input, ...]
     outputs: tuple[ProgramOutput, ...] = ()
     proved: bool = True
 
@@ -69,7 +67,7 @@ class ModesEvaluator(Form):
     @cached_property
     def _stepper(self) -> Stepper:
         """The system under loads in units of their own."""
-        sizes = np.array([nearest(size) for size, _ in self.inputs])
+        sizes = np.array([nearest(given.size) for given in self.inputs])
         system = replace(self.system, pushes=self.system.pushes / sizes, direct=self.system.direct / sizes[:, None])
         return Stepper(system, self.spacing)
 
@@ -80,18 +78,12 @@ class ModesEvaluator(Form):
         return scheme_tables(self.system, self.loads, self.real) | stream
 
     @property
-    def labelled_sources(self) -> tuple[str, ...]:
-        """The names of the loads, with the units that a stream takes."""
-        pairs = zip(self.sources, self.inputs, strict=True)
-        return tuple(f"{source} [{unit}]" if unit else source for source, (_, unit) in pairs)
-
-    @property
     def constants(self) -> dict[str, float]:
         """Its single numbers. A step that is not between the shortest and the longest is refused."""
         spacing = nearest(self.spacing)
         off = _ULPS * 2 * nearest(self.real.roundoff)
         return {
-            "loads": len(self.sources),
+            "loads": len(self.inputs),
             "modes": padded_count(len(self.system.frequency)),
             "lanes": LANES,
             "moved": len(rows_used(self.system.moved)),
@@ -105,9 +97,7 @@ class ModesEvaluator(Form):
     def bytes(self) -> int:
         """The size of the tables of a stream."""
         rows = sum(padded_count(len(rows_used(weights))) for weights in (self.system.moved, self.system.moving))
-        numbers = (
-            padded_count(len(self.system.frequency)) * (4 + 4 * len(self.sources) + rows) + self.system.direct.size
-        )
+        numbers = padded_count(len(self.system.frequency)) * (4 + 4 * len(self.inputs) + rows) + self.system.direct.size
         return self.real.bytes * numbers
 
     @property
@@ -128,19 +118,19 @@ class ModesEvaluator(Form):
 
     def program(self, provenance: Provenance, **more: Any) -> Program:
         """Its program, in NumPy and as a stream."""
-        sources = self.labelled_sources
+        sources = tuple(given.label for given in self.inputs)
         return super().program(provenance, sources=sources, proved=self.proved, step="spacing", **more)
 
     def reference(self, model: Model) -> SteppedValues:
         """For the self-test of a stream: loads up to the largest of the scene's that leap, and what comes of them."""
-        largest = self.loads.largest or fmpq(1)
+        largest, sizes = self.loads.largest or fmpq(1), [given.size for given in self.inputs]
         given = [
-            tuple(self.real.nearest(size * largest * leap(k, j)) for j, (size, _) in enumerate(self.inputs))
+            tuple(self.real.nearest(size * largest * leap(k, j)) for j, size in enumerate(sizes))
             for k in range(1, _CHECKED + 1)
         ]
         exact = [tuple(map(rational, row)) for row in given]
-        plain = [tuple(value / size for value, (size, _) in zip(row, self.inputs, strict=True)) for row in exact]
-        rest = (fmpq(0),) * len(self.inputs)
+        plain = [tuple(value / size for value, size in zip(row, sizes, strict=True)) for row in exact]
+        rest = (fmpq(0),) * len(sizes)
         times = tuple(self.spacing * k for k in range(_CHECKED + 1))
         loads = LinearLoads(times, (rest, *plain), rest)
         same = replace(self, loads=loads, tau_max=self.real.not_below(times[-1]))
@@ -152,7 +142,12 @@ class ModesEvaluator(Form):
         )
 
 
-_PLAIN = fmpq(1), ""
+def driven_inputs(model: Model, sources: Sequence[tuple[str, str]]) -> tuple[Input, ...]:
+    """The loads of a stream, each a pair of a step and a ramp."""
+    plain = fmpq(1), ""
+    return tuple(
+        Input(step or ramp.removesuffix(":ramp"), *model.inputs.get(step or ramp, plain)) for step, ramp in sources
+    )
 
 
 def modal_model(model: Model) -> ModalModel[Any]:
@@ -179,16 +174,14 @@ def modes(model: Model, real: Real) -> ModesEvaluator:
         OverflowError: where numbers would be beyond those of the format.
     """
     made = modal_system(model.to_horizon(real))
-    sources = tuple(step.removesuffix(":step") or ramp.removesuffix(":ramp") for step, ramp in made.sources)
     spacing = made.loads.spacing(model.until, model.spacing)
     evaluator = ModesEvaluator(
         made.system,
         made.loads,
-        sources,
         spacing,
         real,
         model.horizon(real),
-        tuple(model.inputs.get(step or ramp, _PLAIN) for step, ramp in made.sources),
+        driven_inputs(model, made.sources),
         proved=made.proved,
     )
     totals = made.errors + evaluator.rounding.errors

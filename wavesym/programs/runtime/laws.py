@@ -15,8 +15,8 @@ from itertools import chain
 from flint import fmpq, fmpq_mat, fmpq_mpoly
 
 from wavesym.numbers.ratio import Ratio
-from wavesym.programs.flat import firsts
 from wavesym.programs.march.plan import MarchedJoint
+from wavesym.programs.program import firsts
 from wavesym.programs.runtime.network import RuntimeField
 
 Function = Ratio | fmpq

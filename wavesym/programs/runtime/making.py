@@ -12,11 +12,10 @@ from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
-from wavesym.programs.flat import firsts
+from wavesym.programs.form import reference_values
 from wavesym.programs.march.space import BLOCK, BODY, JointRows
 from wavesym.programs.march.tables import port_tables
-from wavesym.programs.program import Program, ProgramOutput, Provenance
-from wavesym.programs.reference_values import reference_values
+from wavesym.programs.program import Program, ProgramOutput, Provenance, firsts
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places, most_roundings

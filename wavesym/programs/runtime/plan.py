@@ -26,9 +26,9 @@ from wavesym.mechanics.network import Point
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
-from wavesym.programs.flat import firsts
 from wavesym.programs.march.plan import MarchPlan, OutputTerm, Stretch, load_events, march_plan, unit_action
 from wavesym.programs.march.space import joint_rows
+from wavesym.programs.program import firsts
 from wavesym.programs.runtime.laws import Function
 from wavesym.programs.runtime.network import FreeNetwork, drawn_number
 

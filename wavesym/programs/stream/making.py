@@ -18,19 +18,20 @@ from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
 from wavesym.numbers.reals import REALS, Real
+from wavesym.programs.form import leap, reference_values
 from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import first_degree, judge_degree, refuse_long
 from wavesym.programs.program import (
+    Input,
     Program,
     ProgramOutput,
     Provenance,
     SteppedRow,
     SteppedValues,
 )
-from wavesym.programs.reference_values import leap, reference_values
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.stream.parameters import free_stream, quick_enough, refuse_stiff, with_parameters
-from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
+from wavesym.programs.stream.plan import StreamPlan, stream_plan
 from wavesym.programs.stream.tables import StreamTables
 
 _ONE = fmpq(1)
@@ -84,7 +85,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         made.constants(nearest(tolerance)),
         made.bytes,
         Provenance(model, _reason(plan, degree, made) + _at_worst(plan, verdict, tolerance), request.options),
-        sources=tuple(f"{given.name} [{given.unit}]" if given.unit else given.name for given in plan.inputs),
+        sources=tuple(given.label for given in plan.inputs),
         proved=False,
         direct=plan.direct,
         step="panel",

@@ -26,6 +26,7 @@ from wavesym.mechanics.node import RAMPS
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, Panel, march_plan, unit_action
+from wavesym.programs.program import Input
 
 LONGEST = fmpq(1, 8)
 SHORTEST = fmpq(1, 64)
@@ -40,20 +41,6 @@ _LOOKED = 1 << 17  # multiples of a spacing
 _CALM = 4.0  # rate times panel
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
-
-
-@dataclass(frozen=True)
-class Input:
-    """A load that is given: its source in the chain, and what 1 of the chain's is in the `unit` that a user gives."""
-
-    source: str
-    size: fmpq
-    unit: str
-
-    @property
-    def name(self) -> str:
-        """What a user calls it: a source without what it is a step of."""
-        return self.source.removesuffix(":step")
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.flat import firsts
 from wavesym.programs.march.evaluator import step_multiplications
 from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.march.space import BLOCK, BODY, SHOWN, JointSpace
 from wavesym.programs.march.tables import MarchTables
+from wavesym.programs.program import firsts
 from wavesym.programs.stream.interpolation import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
 
