@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import fields
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +12,6 @@ from jinja2.compiler import CodeGenerator
 from jinja2.meta import find_referenced_templates
 
 if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
     from jinja2.compiler import Frame
     from jinja2.nodes import Template
 
@@ -66,14 +64,13 @@ def _environment() -> _Templates:
     return _Templates([place for place in places if place.is_dir()])
 
 
-def render(template: str, context: DataclassInstance) -> str:
-    """`template` filled with the fields of `context`. ValueError unless these are just the ones it uses."""
-    return "".join(render_stream(template, context))
+def render(template: str, /, **given: Any) -> str:
+    """`template` filled with what is given by name. ValueError unless these are just the names that it uses."""
+    return "".join(render_stream(template, **given))
 
 
-def render_stream(template: str, context: DataclassInstance) -> Iterator[str]:
+def render_stream(template: str, /, **given: Any) -> Iterator[str]:
     """The same, piece by piece."""
-    given: dict[str, Any] = {field.name: getattr(context, field.name) for field in fields(context)}
     used = _template_names(template)
     if used != given.keys():
         raise ValueError(f"{template}: unused {sorted(given.keys() - used)}, missing {sorted(used - given.keys())}")

@@ -94,7 +94,9 @@ class Formula:
             for g in self.gains
         )
         function = f"{self.scene}_{_identifier(self.name)}"
-        return render_template("c/formula.c.j2", CFormula(self.title, function, tuple(self.letters.items()), gains))
+        return render_template(
+            "c/formula.c.j2", title=self.title, function=function, letters=tuple(self.letters.items()), gains=gains
+        )
 
 
 @dataclass(frozen=True)
@@ -105,16 +107,6 @@ class CGain:
     start: str
     constant: bool
     terms: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class CFormula:
-    """templates/c/formula.c.j2."""
-
-    title: str
-    function: str
-    letters: tuple[tuple[str, fmpq], ...]
-    gains: tuple[CGain, ...]
 
 
 Term = Callable[[Number, Number, int], str]

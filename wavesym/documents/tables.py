@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from flint import fmpq
 
@@ -15,19 +14,6 @@ from wavesym.exact.tables.network_table import NetworkTable
 from wavesym.numbers.factorization import polynomial_text
 from wavesym.numbers.ratio import Ratio
 from wavesym.rendering import render_stream
-
-
-@dataclass(frozen=True)
-class LatexTable:
-    """templates/latex/tables.tex.j2 and tables_fragment.tex.j2, which is for a document that there is.
-
-    `rows` is read once. `starts` says when intervals start, and what w is.
-    """
-
-    name: str
-    label: str
-    starts: str
-    rows: Iterator[tuple[str, ...]]
 
 
 def table_lines(table: Table | NetworkTable, name: str, format: str) -> Iterator[str]:
@@ -85,7 +71,7 @@ def _latex(table: Table | NetworkTable, name: str, *, fragment: bool) -> Iterato
         starts = r"when it leaves its end of the rod, at the $\tau$ that is the interval, with $w$ the time since then"
     rows = (tuple(map(_latex_cell, row)) for row in table.rows())
     template = "latex/tables_fragment.tex.j2" if fragment else "latex/tables.tex.j2"
-    return render_stream(template, LatexTable(name.replace("_", r"\_"), name, starts, rows))
+    return render_stream(template, name=name.replace("_", r"\_"), label=name, starts=starts, rows=rows)
 
 
 def _latex_cell(value: object) -> str:

@@ -51,13 +51,6 @@ class Walks:
     responses: tuple[WalkResponse, ...]
 
 
-@dataclass(frozen=True)
-class WalksDocument:
-    """templates/text/walks.txt.j2 and templates/latex/walks.tex.j2."""
-
-    systems: tuple[Walks, ...]
-
-
 def walk_polynomials(chains: Iterable[SymbolicChain], intervals: int, format: str) -> str:
     """The walk polynomials of every function for every source, `intervals` of each, as "text", "latex" or "json".
 
@@ -67,7 +60,7 @@ def walk_polynomials(chains: Iterable[SymbolicChain], intervals: int, format: st
     made = tuple(_walks(symbols, intervals, write) for symbols in chains)
     if format == "json":
         return json.dumps([asdict(walks) for walks in made], indent=2) + "\n"
-    return render(template("walks", format), WalksDocument(made))
+    return render(template("walks", format), systems=made)
 
 
 def _walks(symbols: SymbolicChain, intervals: int, write: Callable[[str], str]) -> Walks:

@@ -70,12 +70,6 @@ class JudgedFigure:
     statements: tuple[JudgedStatement, ...]
 
 
-@dataclass(frozen=True)
-class _Page:
-    version: str
-    figures: tuple[JudgedFigure, ...]
-
-
 def write_figure(directory: Path, number: int) -> list[Path]:
     """Write the figure `number` into `directory`, as .svg and .png; the paths written. OSError."""
     made = redraw_figure(number)
@@ -87,9 +81,9 @@ def write_figure(directory: Path, number: int) -> list[Path]:
 
 def write_page(directory: Path) -> Path:
     """Write the page on which the figures in `directory` stand beside their verdicts; its path. OSError."""
-    page = _Page(__version__, tuple(map(judged_figure, FIGURES)))
+    judged = tuple(map(judged_figure, FIGURES))
     path = directory / PAGE
-    write_whole({path: render("html/figures.html.j2", page)})
+    write_whole({path: render("html/figures.html.j2", version=__version__, figures=judged)})
     return path
 
 

@@ -4,28 +4,16 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from wavesym.programs.program import Program
 from wavesym.programs.schemes import PARTS, SCHEMES
 from wavesym.rendering import render
 from wavesym.targets.description import Description
-from wavesym.targets.literals import Lines, lines, literal
+from wavesym.targets.literals import lines, literal
 
 HAS_SELFTEST = False
 
 _WIDTH = 112
-
-
-@dataclass(frozen=True)
-class NumPyProgram:
-    """templates/numpy/program.py.j2; every table as the lines between its brackets."""
-
-    scene: Description
-    tables: dict[str, Lines]
-    constants: dict[str, str]
-    scheme: str
-    scheme_name: str
 
 
 def files(scene: Description, program: Program) -> dict[str, str]:
@@ -35,14 +23,15 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         return (str(value) if isinstance(value, int) else literal(value, program.real) for value in values)
 
     scheme = SCHEMES[program.kernel]
-    context = NumPyProgram(
+    text = render(
+        "numpy/program.py.j2",
         scene=scene,
         tables={name: lines(literals(program.tables[name]), _WIDTH) for name in scheme.TABLES},
         constants=dict(zip(scheme.CONSTANTS, literals(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
         scheme="\n\n\n".join(map(_text, (*PARTS.get(program.kernel, ()), scheme))),
         scheme_name=scheme.__name__,
     )
-    return {f"{scene.name}.py": render("numpy/program.py.j2", context)}
+    return {f"{scene.name}.py": text}
 
 
 def _text(part: type) -> str:

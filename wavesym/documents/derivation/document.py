@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from wavesym.documents.derivation.network_statement import network_statement
@@ -14,13 +14,6 @@ from wavesym.rendering import render
 if TYPE_CHECKING:
     from wavesym.derivation.symbolic import SymbolicChain
     from wavesym.mechanics.model import Model
-
-
-@dataclass(frozen=True)
-class DerivationDocument:
-    """templates/text/derivation.txt.j2 and templates/latex/derivation.tex.j2."""
-
-    systems: tuple[Statement, ...]
 
 
 def derivation(name: str, m: int | None, format: str) -> str:
@@ -38,7 +31,7 @@ def network_derivation(model: Model, format: str) -> str:
     made = network_statement(model.name, model.network, _notation(format))
     if format == "json":
         return json.dumps(asdict(made), indent=2) + "\n"
-    return render(template("network", format), made)
+    return render(template("network", format), **vars(made))
 
 
 def _notation(format: str) -> Text:
@@ -48,7 +41,7 @@ def _notation(format: str) -> Text:
 def _write(made: tuple[Statement, ...], format: str) -> str:
     if format == "json":
         return json.dumps([asdict(statement) for statement in made], indent=2) + "\n"
-    return render(template("derivation", format), DerivationDocument(made))
+    return render(template("derivation", format), systems=made)
 
 
 def template(name: str, format: str) -> str:

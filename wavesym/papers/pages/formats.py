@@ -13,7 +13,6 @@ from wavesym.papers.entries import Slip
 from wavesym.papers.pages.document import (
     Block,
     Cell,
-    Document,
     Field,
     Findings,
     Table,
@@ -227,32 +226,23 @@ def _markdown_block(block: Block) -> Iterator[str]:
 # HTML and LaTeX
 
 
-@dataclass(frozen=True)
-class _HtmlContext:
-    document: Document
-    line: Callable[[Line], str]
-
-
 def html(findings: Findings) -> str:
     """One file: MathML, no script, nothing from the network. WavesymError without the library that writes MathML."""
-    return render("papers/errata.html.j2", _HtmlContext(document(findings, "html"), HTML.line))
+    return render("papers/errata.html.j2", document=document(findings, "html"), line=HTML.line)
 
 
-@dataclass(frozen=True)
-class _LatexContext:
-    document: Document
-    line: Callable[[Line], str]
-    tex: Callable[[str], str]
+def _of_latex(findings: Findings) -> dict[str, object]:
+    return {"document": document(findings, "latex"), "line": LATEX.line, "tex": tex}
 
 
 def as_latex(findings: Findings) -> str:
     """An appendix that can be cited, for pdfLaTeX and LuaLaTeX; pure ASCII."""
-    return render("papers/errata.tex.j2", _LatexContext(document(findings, "latex"), LATEX.line, tex))
+    return render("papers/errata.tex.j2", **_of_latex(findings))
 
 
 def as_fragment(findings: Findings) -> str:
     """The same without a preamble, to be \\input; records have labels."""
-    return render("papers/errata_fragment.tex.j2", _LatexContext(document(findings, "latex"), LATEX.line, tex))
+    return render("papers/errata_fragment.tex.j2", **_of_latex(findings))
 
 
 CHARACTERS: Mapping[str, str] = {

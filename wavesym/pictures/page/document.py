@@ -72,11 +72,6 @@ class Report:
     sha256: str
 
 
-@dataclass(frozen=True)
-class _Context:
-    report: Report
-
-
 def page(scene: Scene) -> str:
     """The page of a scene, with the text it was read from. CostError, ToleranceError as for its histories."""
     model = with_titles(lower(scene))
@@ -86,7 +81,7 @@ def page(scene: Scene) -> str:
     columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
     return fitting(
         _report(scene, model, drawn, columns),
-        lambda report: render("html/report.html.j2", _Context(report)),
+        lambda report: render("html/report.html.j2", report=report),
         columns,
     )
 

@@ -50,11 +50,6 @@ class SweepPage:
     sha256: str
 
 
-@dataclass(frozen=True)
-class _Context:
-    sweep: SweepPage
-
-
 def sweep_page(folder: Path) -> str:
     """The page of the sweep in a folder, done or not. WavesymError where there is none."""
     found = results(folder)
@@ -74,7 +69,7 @@ def sweep_page(folder: Path) -> str:
         version=found.manifest.wavesym,
         sha256=found.manifest.sha256,
     )
-    return render("html/sweep.html.j2", _Context(page))
+    return render("html/sweep.html.j2", sweep=page)
 
 
 def _facts(found: SweepResults) -> Iterator[tuple[str, str]]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
-from wavesym.targets.c.runtime import CRuntimeField, parameter_fields
+from wavesym.targets.c.runtime import parameter_fields
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, named_loads
@@ -16,39 +14,14 @@ from wavesym.targets.literals import c_constants
 _BUILD = ("frequencies", "shapes", "statics", "projection", "oscillators", "estimate", "steps", "build")
 
 
-@dataclass(frozen=True)
-class CModeSets:
-    """templates/c/mode_sets/mode_sets.c.j2."""
-
-    scene: Description
-    streamed: bool
-    fields: tuple[CRuntimeField, ...]
-    tables: str
-    numbers: str
-    kernel: str
-
-
-@dataclass(frozen=True)
-class CModeSetsHeader:
-    """templates/c/mode_sets/mode_sets.h.j2: what a stream takes are `sources`; `owner` is what functions are of."""
-
-    scene: Description
-    streamed: bool
-    peaks: bool
-    fields: tuple[CRuntimeField, ...]
-    constants: dict[str, str]
-    sources: tuple[tuple[str, str], ...]
-    model: str
-    owner: str
-
-
 def files(scene: Description, program: Program) -> dict[str, str]:
     """NAME.h and NAME.c, and the self-test where there are reference values."""
     assert program.laws is not None
     streamed, peaks = bool(program.step), "peaks" in program.parts
     fields = tuple(parameter_fields(program.laws, program.real))
     reading = ("stream",) if streamed else ("read", *(["peaks"] if peaks else []))
-    context = CModeSets(
+    source = render(
+        "c/mode_sets/mode_sets.c.j2",
         scene=scene,
         streamed=streamed,
         fields=fields,
@@ -56,7 +29,8 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         numbers=kernels(scene, "real.h", "vectors.h"),
         kernel=kernels(scene, *(f"mode_sets/{file}.c" for file in (*_BUILD, *reading))),
     )
-    header = CModeSetsHeader(
+    header = render(
+        "c/mode_sets/mode_sets.h.j2",
         scene=scene,
         streamed=streamed,
         peaks=peaks,
@@ -66,10 +40,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         model=kernel("mode_sets/model.h", scene),
         owner=f"{scene.name}_state *state" if streamed else f"{scene.name}_model *model",
     )
-    made = {
-        f"{scene.name}.h": render("c/mode_sets/mode_sets.h.j2", header),
-        f"{scene.name}.c": render("c/mode_sets/mode_sets.c.j2", context),
-    }
+    made = {f"{scene.name}.h": header, f"{scene.name}.c": source}
     if isinstance(program.reference, ReferenceValues):
         made[f"{scene.name}_selftest.c"] = selftest(scene, program, program.reference)
     return made

@@ -5,8 +5,6 @@ And NAME.h, which streams of waves share with them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
@@ -21,63 +19,33 @@ _UNDER = {"spacing": "under the scene's loads", "panel": "under a step of each l
 """What a stream's bound of errors is for."""
 
 
-@dataclass(frozen=True)
-class CPlain:
-    """templates/c/plain.c.j2."""
-
-    scene: Description
-    numbers: str
-    tables: str
-    kernel: str
-
-
-@dataclass(frozen=True)
-class CHeader:
-    """templates/c/header.h.j2; `more` is what a kind of program declares besides.
+def header(scene: Description, program: Program, more: str = "") -> str:
+    """NAME.h: what every program declares, and `more`.
 
     A stream has no functions of tau; its bound holds `under` certain loads. What takes parameters is not `bounded`.
     """
-
-    scene: Description
-    more: str
-    under: str
-    bounded: bool
-
-
-@dataclass(frozen=True)
-class CModesStream:
-    """templates/c/modes/modes.h.j2: the loads and their units as text, and as constants."""
-
-    scene: Description
-    constants: dict[str, str]
-    sources: tuple[tuple[str, str], ...]
-    state: str
-
-
-def header(scene: Description, program: Program, more: str = "") -> str:
-    """NAME.h: what every program declares, and `more`."""
-    under = _UNDER.get(program.step, "")
-    return render("c/header.h.j2", CHeader(scene, more, under, bounded=program.laws is None))
+    under, bounded = _UNDER.get(program.step, ""), program.laws is None
+    return render("c/header.h.j2", scene=scene, more=more, under=under, bounded=bounded)
 
 
 def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     name = program.kernel
-    context = CPlain(
+    return render(
+        "c/plain.c.j2",
         scene=scene,
         numbers=kernels(scene, *_NUMBERS.get(name, ("real.h",))),
         tables=program_tables(f"{name}/tables.h", scene, program),
         kernel=kernels(scene, *_BELOW.get(name, ()), f"{name}/{name}.c"),
     )
-    return render("c/plain.c.j2", context)
 
 
 def streaming(scene: Description, program: Program) -> str:
     """What NAME.h of modes declares besides: the stream, one sample of the loads in and all outputs out."""
-    context = CModesStream(
+    return render(
+        "c/modes/modes.h.j2",
         scene=scene,
         constants=c_constants(program.constants, program.real),
         sources=named_loads(program),
         state=kernel("modes/state.h", scene),
     )
-    return render("c/modes/modes.h.j2", context)

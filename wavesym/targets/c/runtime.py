@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby
 
 from flint import fmpq, fmpq_mpoly
@@ -72,70 +73,18 @@ class CRuntimeField:
     values: Lines
 
 
-@dataclass(frozen=True)
-class CRuntimeStructs:
-    """templates/c/runtime/structs.h.j2: `work` is in a model, `inside`, where it is too much for a stack."""
-
-    scene: Description
-    sizes: tuple[tuple[str, str], ...]
-    fields: tuple[CRuntimeField, ...]
-    work: str
-    model: str
-    inside: bool
-    others: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class CRuntimeHeader:
-    """templates/c/runtime/runtime.h.j2: what there is besides values, and what takes how many bytes."""
-
-    scene: Description
-    parts: tuple[str, ...]
-    memory: tuple[tuple[str, str], ...]
-    stack: tuple[tuple[str, str], ...]
-    structs: str
-
-
-@dataclass(frozen=True)
-class CRuntime:
-    """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression.
-
-    Plain C is the `kernel`, which builds models, what is `read` of them, and with batches `lanes` and `batch`.
-
-    `products` are what is multiplied and added up on the way to them, `slope_products` to their derivatives. `slopes`
-    are these, by the number of a parameter. Work is `inside` of models where it is too much for a stack. `arrays` are
-    the laws with how many numbers each has.
-    """
-
-    scene: Description
-    parts: tuple[str, ...]
-    inside: bool
-    fields: tuple[CRuntimeField, ...]
-    products: Lines
-    laws: tuple[tuple[str, str], ...]
-    slope_products: Lines
-    slopes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
-    tables: str
-    largest: str
-    least: str
-    numbers: str
-    kernel: str
-    read: str
-    lanes: str
-    batch: str
-    arrays: tuple[tuple[str, str], ...]
-
-
 def files(scene: Description, program: Program) -> dict[str, str]:
-    """NAME.h, NAME.c and NAME_selftest.c of a program."""
-    context = _context(scene, program)
-    structs = CRuntimeStructs(
+    """NAME.h, NAME.c and NAME_selftest.c of a program; work is `inside` of models where it is too much for a stack."""
+    assert program.laws is not None
+    fields = tuple(parameter_fields(program.laws, program.real))
+    structs = partial(
+        render,
+        "c/runtime/structs.h.j2",
         scene=scene,
         sizes=tuple((name.upper(), str(program.constants[name])) for name in _SIZES),
-        fields=context.fields,
+        fields=fields,
         work="\n\n".join((kernel("runtime/wide.h", scene), _one_set(scene), kernel("runtime/work.h", scene))),
         model=kernel("runtime/model.h", scene),
-        inside=False,
         others=tuple(
             kernels(scene, *files)
             for part, files in (
@@ -147,20 +96,21 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         ),
     )
     memory = Memory(scene.name, program.real.bytes, len(program.outputs))
-    memory.read(render("c/runtime/structs.h.j2", structs))
+    memory.read(structs(inside=False))
     inside = memory.size(f"{scene.name}_work") > _MOST_ON_STACK
-    declared = render("c/runtime/structs.h.j2", replace(structs, inside=inside))
+    declared = structs(inside=inside)
     memory.read(declared)
-    source = render("c/runtime/runtime.c.j2", replace(context, inside=inside))
+    source = _source(scene, program, fields, inside=inside)
     memory.read(source)
-    header = CRuntimeHeader(
+    header = render(
+        "c/runtime/runtime.h.j2",
         scene=scene,
         parts=program.parts,
         memory=tuple(_struct_sizes(scene, program.parts, memory, inside)),
         stack=tuple(_stack_sizes(scene, program.parts, memory, inside)),
         structs=declared,
     )
-    made = {f"{scene.name}.h": render("c/runtime/runtime.h.j2", header), f"{scene.name}.c": source}
+    made = {f"{scene.name}.h": header, f"{scene.name}.c": source}
     if isinstance(program.reference, ReferenceValues):
         made[f"{scene.name}_selftest.c"] = selftest(scene, program, program.reference)
     return made
@@ -172,7 +122,13 @@ def _one_set(scene: Description) -> str:
     return re.sub(r"\bOF\((\w+)\)", rf"{scene.name}_\1", text)
 
 
-def _context(scene: Description, program: Program) -> CRuntime:
+def _source(scene: Description, program: Program, fields: Sequence[CRuntimeField], *, inside: bool) -> str:
+    """NAME.c.
+
+    `laws` are what is assigned, with the expression, `products` what is multiplied and added up on the way to them,
+    `slopes` derivatives by the number of a parameter. Plain C is the `kernel`, which builds models, what is `read` of
+    them, and with batches `lanes` and `batch`. `arrays` are the laws with how many numbers each has.
+    """
     laws, real, parts = program.laws, program.real, program.parts
     assert laws is not None
     own = not any(field.name == "load" for field in laws.fields)
@@ -193,11 +149,12 @@ def _context(scene: Description, program: Program) -> CRuntime:
     needed = {
         name: functions for name, functions in laws.functions.items() if bounded or name not in ("weight", "impedance")
     }
-    return CRuntime(
+    return render(
+        "c/runtime/runtime.c.j2",
         scene=scene,
         parts=program.parts,
-        inside=False,
-        fields=tuple(parameter_fields(laws, real)),
+        inside=inside,
+        fields=fields,
         products=product_lines(laws, laws.every, real),
         laws=(*assignments(laws, needed, real), ("load", "amplitude" if own else "p->load")),
         slope_products=product_lines(laws, laws.every_slope, real) if derived else (),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import accumulate
 
 from flint import arb
@@ -12,51 +11,24 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.program import Program, ReferenceValues, SteppedValues
 from wavesym.rendering import render
 from wavesym.targets.description import Description
-from wavesym.targets.literals import Lines, c_literals
+from wavesym.targets.literals import c_literals
 
 _ORIGINS = {"mode_sets": "of modes that are proved to leave out next to nothing"}
 _LENIENT = 10  # times the error that is estimated, where no bound is proved: what is right comes nowhere near it
 
 
-@dataclass(frozen=True)
-class CSelfTest:
-    """templates/c/selftest.c.j2: `expected` by output, then by tau; doubles whatever the program's type is.
-
-    What takes parameters is `built` with the scene's own; names of its functions begin with `function`, and their
-    arguments with `model`. `origin` says where reference values are from.
-    """
-
-    scene: Description
-    count: str
-    tables: dict[str, Lines]
-    built: bool
-    origin: str
-    function: str
-    model: str
-
-
-@dataclass(frozen=True)
-class CSteppedSelfTest:
-    """templates/c/stepped_selftest.c.j2: `expected` by step, then by output; doubles whatever the program's type is.
-
-    What takes parameters is `built` with the scene's own. Steps are `equal` where all have one length.
-    """
-
-    scene: Description
-    count: str
-    tables: dict[str, Lines]
-    built: bool
-    equal: bool
-
-
 def selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
-    """The program that holds the C of a program against reference values."""
+    """The program that holds the C of a program against reference values: doubles whatever the program's type is.
+
+    What takes parameters is `built` with the scene's own.
+    """
     built = program.laws is not None
     # the reference is rounded once, and the largest value is too
     allowed = [
         (_LENIENT * output.bound if built else output.bound + 2.0**-52) * output.largest for output in program.outputs
     ]
-    context = CSelfTest(
+    return render(
+        "c/selftest.c.j2",
         scene=scene,
         count=str(len(reference.taus)),
         tables={
@@ -69,11 +41,10 @@ def selftest(scene: Description, program: Program, reference: ReferenceValues) -
         function=f"{scene.name}_model_" if built else f"{scene.name}_",
         model="&model, " if built else "",
     )
-    return render("c/selftest.c.j2", context)
 
 
 def stepped_selftest(scene: Description, program: Program, reference: SteppedValues) -> str:
-    """The program that holds a stream against reference values."""
+    """The same of a stream, step by step."""
     rows, equal = reference.rows, program.has_equal_steps
     sizes = [
         max(map(abs, column), default=0.0) for column in zip(*(row.values for row in rows if row.values), strict=True)
@@ -89,7 +60,8 @@ def stepped_selftest(scene: Description, program: Program, reference: SteppedVal
             for output, size in zip(program.outputs, sizes, strict=True)
         ]
     places = accumulate((len(row.values) for row in rows), initial=0)
-    context = CSteppedSelfTest(
+    return render(
+        "c/stepped_selftest.c.j2",
         scene=scene,
         count=str(len(rows)),
         tables={
@@ -102,4 +74,3 @@ def stepped_selftest(scene: Description, program: Program, reference: SteppedVal
         built=program.laws is not None,
         equal=equal,
     )
-    return render("c/stepped_selftest.c.j2", context)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from wavesym.programs.program import Program
 from wavesym.programs.stream.parameters import MADE
@@ -11,56 +11,22 @@ from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assignments, parameter_fields, product_lines
 from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, named_loads
-from wavesym.targets.literals import Lines, c_constants
+from wavesym.targets.literals import c_constants
 
 _KERNEL = tuple(f"stream/{part}.c" for part in ("waves", "panels", "breakpoints", "stream"))
 
 
-@dataclass(frozen=True)
-class CStream:
-    """templates/c/stream/stream.c.j2.
+def source(scene: Description, program: Program) -> str:
+    """NAME.c.
 
     With parameters at run time `laws` are assigned, each with its expression, to `functions`, arrays of so many
     numbers; `made_tables` are the tables that `build` computes, in the state. Without parameters these are empty.
     """
-
-    scene: Description
-    tables: str
-    numbers: str
-    series: str
-    kernel: str
-    fields: tuple[CRuntimeField, ...]
-    functions: tuple[tuple[str, str], ...]
-    made_tables: tuple[str, ...]
-    products: Lines
-    laws: tuple[tuple[str, str], ...]
-    terms: str
-    calm: str
-    largest: str
-    least: str
-
-
-@dataclass(frozen=True)
-class CStreamHeader:
-    """templates/c/stream/stream.h.j2: the loads and their units as text, and as constants; outputs with those that act
-    on them at once; parameters as `CStream` has them.
-    """
-
-    scene: Description
-    constants: dict[str, str]
-    sources: tuple[tuple[str, str], ...]
-    direct: tuple[tuple[str, str], ...]
-    fields: tuple[CRuntimeField, ...]
-    arrays: tuple[tuple[str, str], ...]
-    state: str
-
-
-def source(scene: Description, program: Program) -> str:
-    """NAME.c."""
     laws = program.laws
     made = (*MADE, "growth") if laws else ()
     known = replace(program, constants={name: of for name, of in program.constants.items() if name not in made})
-    context = CStream(
+    return render(
+        "c/stream/stream.c.j2",
         scene=scene,
         tables=program_tables("stream/tables.h", scene, known),
         numbers=kernel("real.h", scene),
@@ -76,12 +42,12 @@ def source(scene: Description, program: Program) -> str:
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",
     )
-    return render("c/stream/stream.c.j2", context)
 
 
 def streaming(scene: Description, program: Program) -> str:
     """What NAME.h declares besides: the stream."""
-    context = CStreamHeader(
+    return render(
+        "c/stream/stream.h.j2",
         scene=scene,
         constants=c_constants(program.constants, program.real),
         sources=named_loads(program),
@@ -94,7 +60,6 @@ def streaming(scene: Description, program: Program) -> str:
         arrays=_arrays(program),
         state=kernel("stream/state.h", scene),
     )
-    return render("c/stream/stream.h.j2", context)
 
 
 def _fields(program: Program) -> tuple[CRuntimeField, ...]:

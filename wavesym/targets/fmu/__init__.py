@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from flint import fmpq
 
 from wavesym.numbers.doubles import nearest, rational
@@ -11,59 +9,8 @@ from wavesym.programs.program import Program
 from wavesym.rendering import render, text_of
 from wavesym.targets import c
 from wavesym.targets.description import Description
-from wavesym.targets.fmu.variables import DefinedUnit, Variable, define_units, parameters, variables
+from wavesym.targets.fmu.variables import define_units, parameters, variables
 from wavesym.targets.literals import literal
-
-
-@dataclass(frozen=True)
-class FmuModel:
-    """templates/fmu/model.h.j2: times in tau, as C writes them; `stepped` streams go on in equal steps.
-
-    `positive` says of each of the `parameters` whether it has to be: "1" or "0".
-    """
-
-    scene: Description
-    seconds: str
-    inputs: str
-    direct: str
-    linear: str
-    stepped: str
-    constants: tuple[str, ...]
-    parameters: tuple[Variable, ...]
-    positive: tuple[str, ...]
-    step: str
-    longest: str
-
-
-@dataclass(frozen=True)
-class FmuDescription:
-    """templates/fmu/modelDescription3.xml.j2: variables in the order of their references; times of the simulator.
-
-    `about` says in a sentence what the model is and what time is.
-    """
-
-    scene: Description
-    about: str
-    variables: tuple[Variable, ...]
-    units: tuple[DefinedUnit, ...]
-    stepped: bool
-    stop: str
-    step: str
-
-
-@dataclass(frozen=True)
-class FmuSourced(FmuDescription):
-    """templates/fmu/modelDescription2.xml.j2, which has the `files` to compile as well."""
-
-    files: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class FmuBuild:
-    """templates/fmu/buildDescription.xml.j2."""
-
-    scene: Description
-    files: tuple[str, ...]
 
 
 def fmu_files(scene: Description, program: Program, version: str) -> dict[str, str]:
@@ -71,21 +18,22 @@ def fmu_files(scene: Description, program: Program, version: str) -> dict[str, s
     number, name = version.removeprefix("fmu"), scene.name
     compiled = (f"fmi{number}.c", f"{name}.c")
     sources = {file: text for file, text in c.files(scene, program).items() if not file.endswith("_selftest.c")}
-    sources["model.h"] = render("fmu/model.h.j2", _model(scene, program))
+    sources["model.h"] = _model(scene, program)
     for file in (f"fmi{number}.c", f"fmi{number}.h", "simulation.h"):
         sources[file] = text_of(f"fmu/{file}")
-    context = _description(scene, program)
     if version == "fmu3":
-        sources["buildDescription.xml"] = render("fmu/buildDescription.xml.j2", FmuBuild(scene, compiled))
-    else:
-        context = FmuSourced(**vars(context), files=compiled)
-    described = render(f"fmu/modelDescription{number}.xml.j2", context)
+        sources["buildDescription.xml"] = render("fmu/buildDescription.xml.j2", scene=scene, files=compiled)
+        described = _description(scene, program, "fmu/modelDescription3.xml.j2")
+    else:  # which has the files to compile as well
+        described = _description(scene, program, "fmu/modelDescription2.xml.j2", files=compiled)
     return {"modelDescription.xml": described, **{f"sources/{file}": text for file, text in sorted(sources.items())}}
 
 
-def _model(scene: Description, program: Program) -> FmuModel:
+def _model(scene: Description, program: Program) -> str:
+    """What a simulator has to know of a stream; times in tau, as C writes them."""
     found = variables(program)
-    return FmuModel(
+    return render(
+        "fmu/model.h.j2",
         scene=scene,
         seconds=scene.seconds or "1.0",
         inputs=str(len(program.sources)),
@@ -100,10 +48,12 @@ def _model(scene: Description, program: Program) -> FmuModel:
     )
 
 
-def _description(scene: Description, program: Program) -> FmuDescription:
+def _description(scene: Description, program: Program, template: str, **files: tuple[str, ...]) -> str:
+    """Variables in the order of their references; times of the simulator."""
     model = program.provenance.model
     found = variables(program)
-    return FmuDescription(
+    return render(
+        template,
         scene=scene,
         about=f"{scene.model[0]}. {scene.units.replace('Time is tau, of which one', 'One tau')}",
         variables=found,
@@ -111,6 +61,7 @@ def _description(scene: Description, program: Program) -> FmuDescription:
         stepped=program.has_equal_steps,
         stop=_time(program, model.until),
         step=_time(program, panel(program)),
+        **files,
     )
 
 
