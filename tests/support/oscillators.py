@@ -17,7 +17,7 @@ from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.program import Input, ProgramOutput
 
 RECORD = Path(__file__).parents[2] / "examples" / "records" / "elcentro_1940_ns_peknold.csv"
 """El Centro as published: times in s, accelerations in g, from (0, 0) on."""
@@ -79,9 +79,9 @@ def uniform(samples, spacing: fmpq) -> LinearLoads:
 
 def evaluator(system: ModalSystem, loads: LinearLoads, until: float, real: Real = DOUBLE) -> ModesEvaluator:
     """The program of a system as it stands: its errors are those of rounding. A stream counts load 0 in -2/3 N."""
-    sources = tuple(f"load{j}" for j in range(system.pushes.shape[1]))
-    units = ((fmpq(-3, 2), "N"), *((fmpq(1), ""),) * (len(sources) - 1))
-    made = ModesEvaluator(system, loads, sources, loads.spacing(exact(until)), real, until, units)
+    first, *others = (f"load{j}" for j in range(system.pushes.shape[1]))
+    inputs = (Input(first, fmpq(-3, 2), "N"), *(Input(name, fmpq(1), "") for name in others))
+    made = ModesEvaluator(system, loads, loads.spacing(exact(until)), real, until, inputs)
     errors, largest = made.rounding
     outputs = (
         ProgramOutput(f"displacement@{k}", error / size, size)

@@ -268,7 +268,7 @@ def test_a_stream_of_the_scenes_loads_gives_its_histories(scene):
     tables = ModeSetsTables(parameters, streamed=True)
     spacing, samples = (
         float(tables.amplitudes.step),
-        tables.amplitudes.samples * [float(size) for size, _ in tables._inputs],
+        tables.amplitudes.samples * [float(given.size) for given in tables._inputs],
     )
     room, out = np.zeros(1 << 20, np.uint8), np.zeros(len(lowered.probes))
     state, place = room.ctypes.data_as(ctypes.c_void_p), out.ctypes.data_as(ctypes.c_void_p)

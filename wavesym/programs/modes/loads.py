@@ -142,10 +142,13 @@ class Roughness:
         """The largest sum_{k <= n} |kinks_k| exp(-rate (times_n - times_k)) for any n."""
         total, step = np.abs(self.kinks), 1
         while step < len(total):  # so many kinks are summed up
-            earlier = total[:-step] * np.exp(-rate * (self.times[step:] - self.times[:-step]))
-            total = np.append(total[:step], total[step:] + earlier)
+            total[step:] += total[:-step] * self._faded(rate, step)
             step *= 2
         return float(np.max(total, initial=0.0) * _MORE)
+
+    def _faded(self, rate: float, count: int) -> Numbers | float:
+        """What is left of a kink when so many others have followed."""
+        return np.asarray(np.exp(-rate * (self.times[count:] - self.times[:-count])))
 
 
 @dataclass(frozen=True)
@@ -160,14 +163,8 @@ class ScaledRoughness(Roughness):
     def in_step(self) -> float:
         return self.unit.in_step * self.by * _MORE if self.kinks.any() else 0.0
 
-    def fading(self, rate: float) -> float:
-        """As of any load; here kinks are equally far apart."""
-        total, step, apart = np.abs(self.kinks), 1, self.apart
-        while step < len(total):
-            earlier = total[:-step] * np.exp(-rate * apart * step * (1 - 1e-12))
-            total[step:] += earlier
-            step *= 2
-        return float(np.max(total, initial=0.0) * _MORE)
+    def _faded(self, rate: float, count: int) -> Numbers | float:
+        return float(np.exp(-rate * self.apart * count * (1 - 1e-12)))  # kinks are equally far apart
 
 
 def sampled_roughness(samples: Numbers) -> Roughness:
