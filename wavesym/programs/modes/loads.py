@@ -142,11 +142,11 @@ class Roughness:
         """The largest sum_{k <= n} |kinks_k| exp(-rate (times_n - times_k)) for any n."""
         total, step = np.abs(self.kinks), 1
         while step < len(total):  # so many kinks are summed up
-            total[step:] += total[:-step] * self._faded(rate, step)
+            total[step:] += total[:-step] * self._decay(rate, step)
             step *= 2
         return float(np.max(total, initial=0.0) * _MORE)
 
-    def _faded(self, rate: float, count: int) -> Numbers | float:
+    def _decay(self, rate: float, count: int) -> Numbers | float:
         """What is left of a kink when so many others have followed."""
         return np.asarray(np.exp(-rate * (self.times[count:] - self.times[:-count])))
 
@@ -163,7 +163,7 @@ class ScaledRoughness(Roughness):
     def in_step(self) -> float:
         return self.unit.in_step * self.by * _MORE if self.kinks.any() else 0.0
 
-    def _faded(self, rate: float, count: int) -> Numbers | float:
+    def _decay(self, rate: float, count: int) -> Numbers | float:
         return float(np.exp(-rate * self.apart * count * (1 - 1e-12)))  # kinks are equally far apart
 
 
