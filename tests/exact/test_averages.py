@@ -14,10 +14,9 @@ import wavesym
 from tests.support.chains import chains
 from tests.support.scenes import scenes
 from wavesym.errors import CostError, WavesymError
-from wavesym.exact import averages as module
-from wavesym.exact.averages import Averages, averages
+from wavesym.exact import output_piece as module
 from wavesym.exact.extremes import BOUND, extremes_and_averages
-from wavesym.exact.output_piece import Piece
+from wavesym.exact.output_piece import Averages, Piece, averages
 from wavesym.numbers.doubles import midpoint
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower

@@ -27,9 +27,8 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.arrivals import identically_zero
-from wavesym.exact.averages import NO_AVERAGES, Averages, averages
 from wavesym.exact.motion import Motion
-from wavesym.exact.output_piece import Piece, split
+from wavesym.exact.output_piece import NO_AVERAGES, Averages, Piece, averages, split
 from wavesym.exact.tables.ball import is_zero
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
