@@ -11,9 +11,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from flint import fmpq
 
+from wavesym.mechanics.network import Link, Point
 from wavesym.scene import Scene, SceneError
+from wavesym.scene.lowering import load_names
 from wavesym.scene.scene_file import parse_text
+from wavesym.systems.contacts import refuse_joined_corners
 
 COLLISION = """name = "good"
 [system]
@@ -323,6 +327,7 @@ LARGE = {
     "lines of dotted keys": ("".join(f"a.b.k{k} = 1\n" for k in range(300_000)), "more than 20000 tables"),
     "lines of quoted keys": ("".join(f"'a' . \"b\".k{k} = 1\n" for k in range(300_000)), "more than 20000 tables"),
     "dotted keys in a line": ("a = [" + "{b.c=1}," * 300_000 + "]", "more than 20000 tables"),
+    "comments": ("# a\n" * 2_000_000, "more than 1000000 lines"),
     "quotes": ('"\\' * 2_000_000, "no TOML, "),
     "a long word": ("a" * 4_000_000, "no TOML, "),
 }
@@ -354,6 +359,25 @@ def test_as_much_as_is_parsed_is_refused_soon(text):
     with pytest.raises(SceneError, match="unknown key"):
         Scene.from_toml(text)
     assert time.process_time() - start < 4  # 13 s, once; one second where nothing else runs
+
+
+def test_loads_are_numbered_in_one_go():
+    """Each of 20 000 loads was counted among all, for 12 s."""
+    loads = [SimpleNamespace(label=label) for label in ["step on a", "step on b", *["step on a"] * 50_000]]
+    start = time.process_time()
+    names = load_names(SimpleNamespace(load=loads))
+    assert time.process_time() - start < 1
+    assert names[:3] == ("step on a (1)", "step on b", "step on a (2)")
+    assert names[-1] == "step on a (50001)"
+
+
+def test_what_rubs_is_looked_for_once():
+    """The friction of each of thousands of joints was looked for among all links, for 6 s."""
+    points = [Point(fmpq(1))] * 20_000
+    links = [Link(n, n + 1, fmpq(1), friction=fmpq(k == 0)) for k, n in enumerate(range(0, 20_000, 2))]
+    start = time.process_time()
+    refuse_joined_corners(points, links, {})
+    assert time.process_time() - start < 2
 
 
 def test_decimals_are_no_dotted_keys():

@@ -6,9 +6,11 @@ import hashlib
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
+from itertools import count
 from typing import NamedTuple
 
 from flint import fmpq
@@ -268,10 +270,8 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, AppliedLoad], ...]:
 def load_names(scene: Scene) -> tuple[str, ...]:
     """What each load is, for people; several of one kind on one body are numbered."""
     labels = [load.label for load in scene.load]
-    return tuple(
-        f"{label} ({labels[: k + 1].count(label)})" if labels.count(label) > 1 else label
-        for k, label in enumerate(labels)
-    )
+    numbers = {label: count(1) for label, found in Counter(labels).items() if found > 1}
+    return tuple(f"{label} ({next(numbers[label])})" if label in numbers else label for label in labels)
 
 
 def _spacing(scene: Scene, load: Load) -> str:

@@ -29,7 +29,8 @@ def refuse_impacts(points: Sequence[Point], contacts: Iterable[tuple[Link, Keys]
 
 def _joining_two(links: Sequence[Link], distinct: Sequence[bool]) -> Iterator[int]:
     """The links that join two `distinct` points, one after another, or what is joined already."""
-    leader, found = list(range(len(distinct))), list(distinct)
+    leader = {point: point for link in links for point in (link.left, link.right)}
+    found = {point: distinct[point] for point in leader}
 
     def leader_of(point: int) -> int:
         while leader[point] != point:
@@ -52,9 +53,16 @@ def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], writte
 
     Raises that of `table.refusal`.
     """
+    if not any(link.friction != 0 for link in links):
+        return
     rigid = [point.mass != 0 or point.motion is not None for point in points]
-    for joint in Network(tuple(points), (), tuple(links)).joints:
-        corners = [link for link in links if link.has_corner and link.left in joint.points]
+    network = Network(tuple(points), (), tuple(links))
+    prescribed = [point.motion is not None for point in points]
+    corners_of: dict[int, list[Link]] = {}
+    for link in links:
+        if link.has_corner:
+            corners_of.setdefault(network.joint_of[link.left], []).append(link)
+    for corners in corners_of.values():
         rubbing = [link for link in corners if link.friction != 0]
         light = [link for link in rubbing if not (rigid[link.left] and rigid[link.right])]
         for link, other in product(rubbing, corners):
@@ -72,7 +80,7 @@ def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], writte
                     *written[link.right],
                     "breakaway",
                 )
-        for number in _joining_two(rubbing, [point.motion is not None for point in points]):
+        for number in _joining_two(rubbing, prescribed):
             raise refusal(
                 "of parts that other friction, or what moves as is given, may hold as well, so that nothing says what "
                 "each takes; write a rod between them",
