@@ -207,6 +207,16 @@ def test_gradients_are_what_their_matrices_say(sprung):
             assert found.estimates[name][0, k] < 1e-3
 
 
+def test_the_gradient_of_a_peak_is_that_at_its_tau(sprung):
+    """By differences of peaks, whose tau moves."""
+    own, output, step = sprung.parameters["stiffness"], 2, 1e-3
+    tau = sprung.peaks().tau_max[0, output]
+    found = sprung.gradients(tau).by["stiffness"][0, :, output]
+    changed = own + np.concatenate([np.diag(own), -np.diag(own)]) * step
+    up, down = np.split(sprung.peaks(stiffness=changed).max[:, output], 2)
+    assert found == pytest.approx((up - down) / (2 * step * own), rel=1e-3, abs=1e-3 * np.abs(found).max())
+
+
 def test_bad_numbers_are_refused_and_others_are_not(sprung):
     mass = np.tile(sprung.parameters["mass"], (4, 1))
     mass[1, 2], mass[3, 0] = -1, np.nan

@@ -75,7 +75,8 @@ class SetPeaks:
 class SetGradients:
     """`values` of shape (sets, outputs, *tau.shape), and `by[field]`, their derivatives by each number of a field, of
     shape (sets, numbers, outputs, *tau.shape). `estimates[field]`, of shape (sets, numbers), are about the largest
-    error of any output's derivative relative to its largest value, as the estimate of `checks` is of the values.
+    error of any output's derivative relative to its largest value, as the estimate of `checks` is of the values; inf
+    where nothing is known of it.
     """
 
     values: Array
@@ -204,7 +205,10 @@ class RuntimeModel:
         return found.values.reshape(len(found.values), len(self.outputs), *instants.shape)
 
     def gradients(self, tau: ArrayLike, *, strict: bool = False, **parameters: ArrayLike) -> SetGradients:
-        """Values, and their derivatives by all parameters, given or not; arguments and errors are those of `run`."""
+        """Values, and their derivatives by all parameters, given or not; arguments and errors are those of `run`.
+
+        The derivative of a peak is that of its output at its tau, as its slope is 0 there: `gradients(peaks.tau_max)`.
+        """
         instants = _numbers("tau", tau)
         check_horizon(instants, self.tau_max, strict=strict)
         found = self._engine.tangents(self._parameter_rows(parameters), instants.ravel())
