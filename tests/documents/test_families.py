@@ -122,7 +122,7 @@ def chain(system, m, numbers, pattern):
         )
     else:
         given = Parameters(dict(enumerate(numbers[: m + 1])))
-    for pair in pattern.given:
+    for pair in pattern.equalities:
         for i in _places(pair, m):
             base = {"kappa": given.kappa, "J": given.inertia}[str(pair.left.base)]
             base[i] = number(pair.right, {"i": i, "m": m}, given)
@@ -150,7 +150,7 @@ def runner(chain, laws, found):
 def test_lists_run_to_the_exact_tables(system, m, pattern, numbers):
     one = chain(system, m, numbers, pattern)
     laws = pattern_laws(system, pattern)
-    found = rates(laws) if pattern.given else None
+    found = rates(laws) if pattern.equalities else None
     for source in one.sources[:2]:
         assert runner(one, laws, found).run(source) == exact(one, source)
 

@@ -54,7 +54,7 @@ class TargetMachine:
 
     name: str
     bare: str
-    hosted: str
+    hosted_triple: str
     runner: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
     layout: str = "gcc_x86_32"
@@ -128,7 +128,7 @@ def rows(
             (target, subject, pool.submit(row, target, subject))
             for target in targets
             for subject in subjects
-            if target.hosted or not subject.calls_exp  # exp is all that a program asks of a machine
+            if target.hosted_triple or not subject.calls_exp  # exp is all that a program asks of a machine
         ]
         for target, subject, run in runs:
             try:
@@ -159,7 +159,7 @@ def status(
 def compile_bare(subject: PortableProgram, target: TargetMachine, folder: Path) -> MachineBytes:
     """A program alone, compiled for a machine with nothing on it. CompilerError where that says a word, where there is
     data that can be written, where it calls what such a machine has not, and, in single precision, for doubles."""
-    triple = target.hosted if subject.calls_exp else target.bare
+    triple = target.hosted_triple if subject.calls_exp else target.bare
     single = subject.request.precision == "single"
     flags = (*_STRICT, *(_NO_DOUBLES if single else ()), *target.options)
     frames = ("-Wframe-larger-than=0", "-Wno-error=frame-larger-than")  # tells the frame of each function
@@ -204,7 +204,7 @@ def selftest(subject: PortableProgram, target: TargetMachine, folder: Path) -> s
     if missing := absent(*(program for program in target.runner[:1] if not program.startswith("."))):
         return f"not run: no {missing[0]}"
     files = (f"{subject.name}.c", f"{subject.name}_selftest.c")
-    result = run_command([*_ZIG, "-target", target.hosted, *files, "-o", "selftest", "-lm"], folder, _SECONDS)
+    result = run_command([*_ZIG, "-target", target.hosted_triple, *files, "-o", "selftest", "-lm"], folder, _SECONDS)
     if result.status == 0:
         result = run_command(target.runner, folder, _SECONDS)
     if result.status != 0:

@@ -28,14 +28,14 @@ Task = tuple[int, list[Place] | None]
 class Batches:
     """The cases of a sweep as batches, numbered from 0: blocks of `chunk` cases in each dimension.
 
-    `kind` is how they are computed: "recorded", "parameters", "structures" or "single". `together` says of each
+    `kind` is how they are computed: "recorded", "parameters", "structures" or "single". `is_joined` says of each
     dimension whether the cases of a batch may differ in it.
     """
 
     kind: str
     shape: tuple[int, ...]
     chunk: tuple[int, ...]
-    together: tuple[bool, ...] = ()
+    is_joined: tuple[bool, ...] = ()
 
     @property
     def grid(self) -> tuple[int, ...]:

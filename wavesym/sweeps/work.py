@@ -44,7 +44,7 @@ def _shared_cases(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict
         if batches.kind == "recorded":
             return dict(record_cases(plan, group))
         if batches.kind == "parameters":
-            return dict(parameters(plan, group, batches.together))
+            return dict(parameters(plan, group, batches.is_joined))
         if batches.kind == "structures":
             return dict(structure_cases(plan, group))
         return {}

@@ -115,7 +115,7 @@ def _proofs(system: System) -> Iterator[Proof]:
             for step in inequalities
             if not step.holds
         )
-        of = f"{system.name}, {family.of.replace('$', '')}"
+        of = f"{system.name}, {family.subject.replace('$', '')}"
         yield Proof(POWERS, of, arrangements(family, inequalities), len(inequalities), beyond)
 
 

@@ -75,7 +75,7 @@ def _places(system: System, family: PowerFamily, law: CoefficientLaw) -> Iterato
 def _bodies(family: PowerFamily, node: Expr, places: Region) -> Iterator[Region]:
     """Where the body of the family is: nowhere where it is any of them, at its place, or about `node`."""
     first, last = (exact(value.subs(places)) for value in (family.first, family.last))
-    if family.merged:
+    if family.is_merged:
         yield {}
     elif first == last:
         yield {BODY: first}
@@ -155,7 +155,7 @@ def _evaluate_row(value: Expr, place: Expr, at: Region) -> Expr:
 
 
 def _of_family(family: PowerFamily, node: Expr, at: Region) -> bool:
-    if not family.merged:
+    if not family.is_merged:
         return bool(at[BODY] == node)
     first, last = (exact(value.subs(at)) for value in (family.first, family.last))
     return bool((node - first).is_nonnegative and (last - node).is_nonnegative)

@@ -49,19 +49,19 @@ class PowerRow:
 class PowerFamily:
     """The powers beside the `rate` of body l = first, first + step, ... last; or of all of these, where they are one.
 
-    `of` says it in words. `period` is what a further visit takes from the budget; `offset` the number of the body at
-    x = 0. `merged` families are those of equal bodies. `smallest` is the least m that it is about. Where every
-    step is a visit, T**(K + 1), K the highest power, has with 1 for other letters the number of `walks` of K steps to y
+    `subject` says it in words. `period` is what a further visit takes from the budget; `offset` the number of the body
+    at x = 0. `is_merged`: whether it is of equal bodies. `smallest` is the least m that it is about. Where every step
+    is a visit, T**(K + 1), K the highest power, has with 1 for other letters the number of `walks` of K steps to y
     (by reflection, a sum over images): the sum of `leading` over all whole j; a binomial with a half in it is 0.
     Where sources are numbered, `sources` are the first and the last one that the family is about.
     """
 
-    of: str
+    subject: str
     rate: Expr
     first: Expr
     last: Expr
     step: int
-    merged: bool
+    is_merged: bool
     period: int
     offset: int
     smallest: int
@@ -215,12 +215,12 @@ _LAST_SENT: tuple[tuple[str, Expr | int, Expr, Expr, bool, tuple[Expr | int, ...
 )
 
 
-def _collision(of: str, first: Expr | int, last: Expr, period: int, smallest: int) -> PowerFamily:
+def _collision(subject: str, first: Expr | int, last: Expr, period: int, smallest: int) -> PowerFamily:
     rows = tuple(
         _row(function, rod, y, t - 1 - Abs(_l - y), t - 1 + 2 * contact, *places)
         for function, rod, t, y, contact, places in _LAST_SENT
     )
-    return PowerFamily(of, _GAMMA, exact(first), exact(last), 2, False, period, 0, smallest, rows)
+    return PowerFamily(subject, _GAMMA, exact(first), exact(last), 2, False, period, 0, smallest, rows)
 
 
 _EQUAL_BODIES = PowerFamily(

@@ -43,10 +43,10 @@ class Equal(NamedTuple):
 
 @dataclass(frozen=True)
 class Pattern:
-    """Parameters of which some are equal; `given` says which."""
+    """Parameters of which some are equal; `equalities` say which."""
 
     name: str
-    given: tuple[Equal, ...]
+    equalities: tuple[Equal, ...]
     parameters: Parameters
 
 

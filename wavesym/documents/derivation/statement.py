@@ -163,7 +163,7 @@ class _Author:
                 for at in self.w.places(row.first, row.last, row.step)
             )
             yield Powers(
-                of=self.n.word(family.of),
+                of=self.n.word(family.subject),
                 size=self._size(family),
                 rate=self.n.expression(family.rate),
                 rows=tuple(rows),
@@ -235,7 +235,7 @@ class _Author:
                 pattern.name,
                 self._size(system),
                 laws,
-                given=tuple(line for equal in pattern.given for line in self.w.equal(equal)),
+                given=tuple(line for equal in pattern.equalities for line in self.w.equal(equal)),
             )
 
     def scene(self, name: str, symbols: SymbolicChain) -> Families:
