@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 from math import sqrt
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from flint import fmpq, fmpq_mat
@@ -31,6 +31,9 @@ SCATTERER, BODY, BLOCK = 0, 1, 2
 
 _ZERO = fmpq(0)
 
+Matrix = TypeVar("Matrix")
+Number = TypeVar("Number")
+
 
 @dataclass(frozen=True)
 class Port:
@@ -43,27 +46,32 @@ class Port:
 
 
 @dataclass(frozen=True)
-class JointSpace:
+class JointLaws(Generic[Matrix, Number]):
     """The laws of a joint; `weights` are masses and springs, `begun` is x at tau = 0.
 
     A state is the velocity of the point that it `moves_with`, or, where that is -1, how much longer a spring has
     become: x' = `lengthening` q, with rows of 0 for velocities.
     """
 
-    rates: fmpq_mat
-    pushed: fmpq_mat
-    shown: fmpq_mat
-    passed: fmpq_mat
-    lengthening: fmpq_mat
+    rates: Matrix
+    pushed: Matrix
+    shown: Matrix
+    passed: Matrix
+    lengthening: Matrix
     moves_with: tuple[int, ...]
-    weights: tuple[fmpq, ...]
-    begun: tuple[fmpq, ...]
+    weights: tuple[Number, ...]
+    begun: tuple[Number, ...]
     ports: tuple[Port, ...]
 
     @property
     def states(self) -> int:
         """How many numbers x has."""
         return len(self.weights)
+
+
+@dataclass(frozen=True)
+class JointSpace(JointLaws[fmpq_mat, fmpq]):
+    """Those of numbers."""
 
     @property
     def points(self) -> int:
@@ -153,23 +161,8 @@ SHOWN = JointSpace(
 
 
 @dataclass(frozen=True)
-class JointRows:
-    """The laws of a joint as rows, of numbers or of functions of parameters."""
-
-    rates: Rows
-    pushed: Rows
-    shown: Rows
-    passed: Rows
-    lengthening: Rows
-    moves_with: tuple[int, ...]
-    weights: tuple[Any, ...]
-    begun: tuple[Any, ...]
-    ports: tuple[Port, ...]
-
-    @property
-    def states(self) -> int:
-        """How many numbers x has."""
-        return len(self.weights)
+class JointRows(JointLaws[Rows, Any]):
+    """Those of rows of numbers or of functions of parameters."""
 
     @property
     def points(self) -> int:
