@@ -189,7 +189,7 @@ def test_a_hopkinson_specimen_in_layers_has_a_summary_and_a_page(until: str) -> 
     text = page(scene)
     assert time.process_time() - start < 120  # a third of it where nothing else runs
     assert len(text.encode()) < 400_000
-    assert "Not drawn: output.until: fronts meet rods so often" in text
+    assert "Not drawn: what happens between the places of the outputs would take too long" in text
     (found,) = summarise(lower(scene)).outputs
     assert found.arrival is not None
     assert found.arrival.in_scene_time == pytest.approx(98.742, abs=1e-3)  # 0.5 m at sqrt(E/rho)
@@ -209,7 +209,7 @@ def test_a_page_says_that_fronts_are_too_many_to_be_drawn_along_the_chain(monkey
     monkeypatch.setattr(document, "_PIECES", 100)
     monkeypatch.setattr(summaries, "_MOST_FRONTS", 1)
     text = page(scene)
-    assert "Not drawn: output.until: fronts meet rods so often that" in text
+    assert "Not drawn: what happens between the places of the outputs would take too long" in text
     assert "The largest drift would cost too much" in text
     assert "history-0" in text
     assert "Largest drift" not in text

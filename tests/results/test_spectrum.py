@@ -143,17 +143,22 @@ def test_the_command_prints_csv_and_draws(tmp_path, capsys):
         '[[load]]\nspacing = "1/2"\nsamples = [0, 1, -1, 0]\n[output]\nuntil = 12\nacceleration = [1, 2]\n'
     )
     picture = tmp_path / "floors.svg"
-    assert main(["spectrum", str(scene), "--damping", "0.02", "-o", str(picture)]) == 0
+    assert main(["spectrum", str(scene), "--damping", "0.02"]) == 0
     captured = capsys.readouterr()
     header, *rows = captured.out.splitlines()
     assert header == "period,acceleration@1,acceleration@2"
     found = spectra(lower(Scene.from_toml(scene)), 0.02)
     assert [[float(x) for x in row.split(",")] for row in rows] == np.vstack([found.periods, found.values]).T.tolist()
     assert "damping 0.02" in captured.err
+    assert main(["spectrum", str(scene), "--damping", "0.02", "-o", str(picture)]) == 0
     drawn = picture.read_text()
     assert "<svg" in drawn
     assert main(["spectrum", str(scene), "--damping", "0.02", "-o", str(picture)]) == 0
     assert picture.read_text() == drawn
+    table = tmp_path / "floors.csv"
+    assert main(["spectrum", str(scene), "--damping", "0.02", "-o", str(table)]) == 0
+    assert table.read_text() == captured.out
+    assert capsys.readouterr().out == ""  # what is asked for as a file goes there
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import pytest
 
 from wavesym.errors import MOST_FAULTS
 from wavesym.scene import Scene, SceneError
+from wavesym.scene.first_scene import first_text
 from wavesym.scene.key_lines import key_lines, line_of
 
 FAULTY = """name = "bad"
@@ -83,7 +84,11 @@ steps = ["1 N"]
 until = "1 ms"
 velocity = ["hammer"]
 """
-    assert places(text, tmp_path) == [("system.parts[1].rod", 7), ("system.parts[2].A", 8)]
+    assert places(text, tmp_path) == [
+        ("system.parts[0].mass", 6),
+        ("system.parts[1].rod", 7),
+        ("system.parts[2].A", 8),
+    ]
     for old, new in {"1 s": "1 m", "8 m": "8 m^2", "1 kg*m": "1 kg", "1 N": "1 m", "1 ms": "1 m^3"}.items():
         text = text.replace(f'"{old}"', f'"{new}"')
     assert places(text, tmp_path) == [("load[0].steps[0]", 13), ("output.until", 15)]
@@ -131,3 +136,73 @@ def test_where_keys_stand(text: str, lines: dict[str, int]) -> None:
 )
 def test_what_is_missing_is_on_the_line_of_its_table(path: str, line: int) -> None:
     assert line_of(path, {"a": 1, "a[0]": 2, 'a[0]."b c"': 3}) == line
+
+
+IN_UNITS = """name = "seven"
+[units]
+pressure = "MPa"
+force = "kNN"
+[system]
+type = "chain"
+parts = [
+  { motion = "acceleration", name = "base" },
+  { rod = "4 m", A = "1 m^2", G = "3 MPa", rho = "1700 kg/m^3" },
+  { mass = "12 kN", name = "top" },
+]
+[[load]]
+at = "ground"
+spacing = "0.1 s"
+samples = [0, 1]
+unit = "g"
+[output]
+until = "1 kg"
+velocityy = ["top"]
+displacement = ["9 m"]
+"""
+
+
+def test_one_wrong_unit_of_results_hides_nothing(tmp_path: Path) -> None:
+    """Loads and places hang on the system: where it is wrong they wait, and nothing else does."""
+    assert places(IN_UNITS, tmp_path) == [
+        ("units.pressure", 3),
+        ("system.parts[1].G", 9),
+        ("system.parts[2].mass", 10),
+        ("output.velocityy", 19),
+    ]
+    sound = IN_UNITS.replace("G = ", "E = ").replace("12 kN", "12 kg")
+    assert places(sound, tmp_path) == [
+        ("units.pressure", 3),
+        ("units.force", 4),
+        ("load[0].at", 13),
+        ("output.until", 18),
+        ("output.velocityy", 19),
+        ("output.displacement[0]", 20),
+    ]
+
+
+def test_a_load_at_no_node_is_told_so_and_not_that_its_unit_is_wrong(tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text(IN_UNITS.replace("G = ", "E = ").replace("12 kN", "12 kg"))
+    with pytest.raises(SceneError) as refused:
+        Scene.from_toml(path)
+    (line,) = [line for line in refused.value.lines if "load[0]" in line]
+    assert 'load[0].at: "ground" is not a node; write "base", "top", or a place such as "1.2 m"' in line
+
+
+@pytest.mark.parametrize("kind", ["frame", "wall", "soil", "drive", "impact", "pile"])
+def test_units_that_were_forgotten_are_named(kind: str) -> None:
+    text = first_text(kind)
+    head, _, tail = text.partition("[units]")
+    without = head + tail[tail.index("[system]") :]
+    with pytest.raises(SceneError) as refused:
+        Scene.from_toml(without)
+    assert refused.value.path == "units"
+    assert "has a unit; write the line [units] before [system]" in refused.value.what
+    Scene.from_toml(text)
+
+
+def test_a_mass_at_the_end_of_a_chain_needs_no_free_end() -> None:
+    parts = [{"rod": 1}, {"mass": 1}, "free"]
+    with pytest.raises(SceneError, match='or leave "free" out, as a chain may end with a node'):
+        Scene(name="end", system={"type": "chain", "parts": parts}, output={"until": 1, "velocity": ["1"]})
+    Scene(name="end", system={"type": "chain", "parts": parts[:-1]}, output={"until": 1, "velocity": ["1"]})

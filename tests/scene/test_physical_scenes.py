@@ -27,6 +27,7 @@ from wavesym.documents.inspection.units import remarks
 from wavesym.errors import SceneError, UnservedError
 from wavesym.fields.numbers import decimal_text
 from wavesym.fields.rounding import decimal, polar_moment, root, rounded_root
+from wavesym.fields.table import Faults
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
@@ -793,11 +794,11 @@ def test_remarks_are_made_of_what_is_odd() -> None:
     stout = [ROD | {"length": "5 cm"}, ROD]
     body = BODY | {"left": stout[0], "right": stout[0], "mass": "1 t"}
     scene = changed(COLLISION, "system.body", [body, body | {"velocity": "0 m/s", "mass": "10 g"}])
-    said = list(remarks(physical(scene)))
+    said = list(remarks(physical(scene, Faults())))
     assert any(line.startswith("rods 1 to 4 are 1.77 times as long as wide") for line in said)
     assert any(line.startswith("kappa = 31.4 of rod 2, above 10") for line in said)
     assert any(line.startswith("kappa = ") and "of rod 1, " not in line for line in said)
-    assert not list(remarks(physical(BUILDING)))
+    assert not list(remarks(physical(BUILDING, Faults())))
 
 
 def test_what_is_refused_later_speaks_of_seconds_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -30,7 +30,6 @@ from wavesym.api.pictures import (
     plot_spectra,
     plot_with_notes,
     record,
-    refuse_no_picture,
     report,
     scene_html,
 )
@@ -62,7 +61,6 @@ __all__ = [
     "plot_with_notes",
     "program",
     "record",
-    "refuse_no_picture",
     "report",
     "run",
     "run_csv",

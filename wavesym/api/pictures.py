@@ -82,13 +82,6 @@ def plot_spectra(found: Spectra, path: Path) -> None:
     save(draw_spectra(found), path)
 
 
-def refuse_no_picture(path: Path) -> None:
-    """SceneError for a suffix that is no picture's: before the work that a picture takes."""
-    from wavesym.pictures.saving import picture_format
-
-    picture_format(path)
-
-
 def scene_html(scene: Scene) -> str:
     """A scene as a notebook shows it: a line of what it is, and its structure drawn."""
     from wavesym.pictures.page.structure import structure_html

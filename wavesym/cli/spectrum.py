@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, RATIO, SCENE, put, put_notes, refuse_out, require_matplotlib
+from wavesym.cli.parameters import PATH, RATIO, SCENE, deliver, is_drawn, put_notes, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="Ratio of the oscillators' damping, below 1; 5% is 0.05.",
 )
-@click.option("-o", "out", type=PATH, metavar="FILE", help="A picture, too: .svg, .png or .pdf.")
+@click.option("-o", "out", type=PATH, metavar="FILE|PICTURE", help="Where it goes; .svg, .png, .pdf: drawn.")
 def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
     """Print response spectra of accelerations as CSV.
 
@@ -33,17 +33,15 @@ def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
     Example:
       wavesym spectrum lab.toml --damping 0.02 -o floors.svg
     """
-    if out is not None:
-        require_matplotlib()
-        refuse_out(out)
+    drawn = is_drawn(out, (".csv",))
+    refuse_out(out)
     with progress(f"spectrum {scene.name}"):
         from wavesym import api
 
-        if out is not None:
-            api.refuse_no_picture(out)
         found = api.spectrum(scene, damping)
-        if out is not None:
+        if drawn and out is not None:
             api.plot_spectra(found, out)
         notes = api.spectrum_notes(scene, found)
     put_notes(scene, notes)
-    put(found.csv())
+    if not drawn:
+        deliver("".join(found.csv()), out)

@@ -24,7 +24,7 @@ from pydantic_core import PydanticCustomError
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
 from wavesym.fields.shapes import ShapedLoad
-from wavesym.fields.table import SceneTable, key_context, refusal, scene_error, show
+from wavesym.fields.table import Fault, Faults, SceneTable, key_context, refusal, scene_error, show
 from wavesym.numbers.doubles import rational
 from wavesym.scene.describe import describe
 from wavesym.scene.key_lines import key_lines, line_of
@@ -33,10 +33,16 @@ from wavesym.scene.names import Name
 from wavesym.scene.outputs import NoOutput, Observable, Output, observables
 from wavesym.scene.paths import replace_at_path
 from wavesym.scene.physical.scale import Scale, UnitsTable
-from wavesym.scene.physical.scene import PhysicalScene, physical
+from wavesym.scene.physical.scene import PhysicalScene, forgotten_units, physical
 from wavesym.scene.report import ReportTable
 from wavesym.scene.scene_file import read_toml
 from wavesym.systems import SYSTEMS, ExplicitChain, Preset, SystemTable
+
+
+def _may_follow(fault: Fault, faults: Faults) -> bool:
+    """Whether a fault may be one only since a table was left out in which others were found."""
+    left_out = {keys[:2] for _, keys in faults.found}
+    return fault.keys[:2] in left_out or fault.keys[:1] == ("load",) or fault.keys == ("output",)
 
 
 class Scene(SceneTable):
@@ -68,8 +74,19 @@ class Scene(SceneTable):
     _physical: PhysicalScene | None = PrivateAttr(default=None)
 
     def __init__(self, /, **fields: Any) -> None:
+        faults = Faults()
+        if "units" not in fields and (quantity := forgotten_units(fields)):
+            what = f"missing, and {show(quantity)} has a unit; write the line [units] before [system]"
+            faults.found.append(Fault(what, ("units",)))
+            fields = {**fields, "units": {}}
         try:
-            found = physical(fields) if "units" in fields else None
+            found = physical(fields, faults) if "units" in fields else None
+            if found is not None and faults.found:  # what does not hang together with these is told, too
+                others = Faults()
+                with others.gather():
+                    super().__init__(**found.fields)
+                faults.found += [fault for fault in others.found if not _may_follow(fault, faults)]
+                faults.refuse()
             super().__init__(**(fields if found is None else found.fields))
         except (PydanticCustomError, ValidationError) as error:
             raise scene_error(error) from None

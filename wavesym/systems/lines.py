@@ -35,7 +35,9 @@ def alternating(
             nodes.append(None)
             continue
         if nodes[-1] is not None:
-            raise refusal("a node beside another; write a rod, a spring or a dashpot between them", *at, k)
+            free = "free" in (part, nodes[-1][1])
+            instead = ', or leave "free" out, as a chain may end with a node' if free else ""
+            raise refusal(f"a node beside another; write a rod, a spring or a dashpot between them{instead}", *at, k)
         if 0 < k < len(parts) - 1 and (part in ("free", "fixed", "absorbing") or isinstance(part, MotionPart)):
             raise refusal("an end between other parts; write a mass or a joint", *at, k)
         nodes[-1] = k, part

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 from wavesym import __version__
-from wavesym.errors import CostError, WavesymError
+from wavesym.errors import CostError, ToleranceError, WavesymError
 from wavesym.exact.contacts.events import events
 from wavesym.exact.joints.fronts import has_more_fronts
 from wavesym.mechanics.model import Model
@@ -182,11 +182,21 @@ def _line_pictures(
 ) -> tuple[tuple[LineHistories, ...], str]:
     """What happens along the chain, or why that is not known; with few other outputs they were refused for that."""
     if refusal is not None and len(model.probes) < _FEW:
-        return (), f"Not drawn: {refusal}"
+        return (), _not_drawn(refusal)
     try:
         return line_histories(scene, model, program), ""
     except WavesymError as error:
-        return (), f"Not drawn: {error}"
+        return (), _not_drawn(error)
+
+
+def _not_drawn(refusal: WavesymError) -> str:
+    """Why something is not drawn, in words for whoever reads the page; `plot --kind xt` has those for its author."""
+    if isinstance(refusal, ToleranceError | CostError):
+        return (
+            "Not drawn: what happens between the places of the outputs would take too long to compute for all of this "
+            "time. The results above do not depend on it."
+        )
+    return f"Not drawn: {refusal}"
 
 
 def _fair(model: Model) -> list[Probe]:

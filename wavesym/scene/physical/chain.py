@@ -82,6 +82,11 @@ class PhysicalChain(SceneTable):
             if isinstance(part, RodKeys):
                 with faults.gather(*keys):
                     elastic.append(part.elastic(names["dashpot"]))
+        if faults.found:  # what else is wrong does not hang together with these
+            blank = _Pen(kind, names, Rods.from_rods(()))
+            for line in (main, *branches):
+                with faults.gather():
+                    blank.line("", [(keys, part) for keys, part in line if not isinstance(part, RodKeys)])
         faults.refuse()
         rods = Rods.from_rods(elastic)
         pen = _Pen(kind, names, rods)
@@ -139,6 +144,7 @@ _MEASURES = {
     "yield": "force",
     "preload": "force",
 }
+_MOST_NAMED = 5  # nodes
 _WRITTEN = {"yields": "yield"}  # fields whose keys are words of Python
 
 
@@ -156,6 +162,7 @@ class _Pen:
         self.force = first.stiffness * self.displacement
         self.lines: dict[str, Fraction] = {}
         self.moved: dict[object, str] = {}  # what a motion end is, by its name and its place
+        self.nodes: list[str] = []  # their names
         self._next = 0
         self._units = {
             "mass": first.mass,
@@ -175,20 +182,23 @@ class _Pen:
         """The parts of a line."""
         x = Fraction(0)
         written: list[object] = []
+        faults = Faults()
         for keys, part in parts:
-            with key_context(*keys):
+            with faults.gather(*keys):
                 if isinstance(part, RodKeys):
                     length = self.rods.all[self._next].length
                     written.append(self._rod(part, length))
                     x += length
                 elif isinstance(part, SceneTable):
                     table = self._convert(part)
+                    self.nodes += [str(table["name"])] if "name" in table else []
                     if "motion" in table:
                         ends = table.get("name"), (name, x)
                         self.moved |= {at: str(table["motion"]) for at in ends if at is not None}
                     written.append(table)
                 else:
                     written.append(part)
+        faults.refuse()
         self.lines[name] = x
         return written
 
@@ -231,6 +241,9 @@ class _Pen:
             return LoadUnit(self.names["force"], self.names["force rate"], self.force)
         with key_context("at"):
             found = place(load["at"], self.lines)
+        if found.x is None and found.name not in self.nodes:
+            names = "".join(f"{show(name)}, " for name in self.nodes[:_MOST_NAMED])
+            raise refusal(f'{show(load["at"])} is not a node; write {names}or a place such as "1.2 m"', "at")
         at: object = found.name if isinstance(found, PlaceInMetres) and found.x is None else (found.line, found.x)
         unit = self.displacement / self.rods.seconds
         added = {"at": PlaceInUnits(found.dimensionless(self.rods.first.length), load["at"])}

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from wavesym.fields.quantity import unit
-from wavesym.fields.table import SceneTable, key_context, refusal, show
+from wavesym.fields.table import Faults, SceneTable, refusal, show
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.length import LengthUnit
 from wavesym.numbers.doubles import rational
@@ -60,8 +60,8 @@ class Results:
     sizes: Mapping[str, Fraction]
 
     @classmethod
-    def from_table(cls, units: UnitsTable, kind: Kind) -> Results:
-        """Those of a scene. Raises the error of `table.refusal`."""
+    def from_table(cls, units: UnitsTable, kind: Kind, faults: Faults) -> Results:
+        """Those of a scene; what is wrong with them is kept in `faults`."""
         dimensions = {key: key for key in _DEFAULTS} | (_ROUND | {"force": "force"} if kind == "torsional" else _ALONG)
         texts: dict[str, str] = {}
         sizes: dict[str, Fraction] = {}
@@ -69,9 +69,10 @@ class Results:
             given = getattr(units, key)
             if given is None:
                 given = usual.replace("m/", "rad/") if dimensions[key].startswith("angular") else usual
-            with key_context(key):
+            with faults.gather("units", key):
                 sizes[key] = unit(given, dimensions[key])
             texts[key] = str(given)
+            sizes.setdefault(key, Fraction(1))
         return cls(texts, sizes)
 
     def length(self, one: Fraction) -> LengthUnit:

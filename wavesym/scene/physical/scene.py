@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from wavesym.fields.quantity_fields import plain, read_quantity, tidy
 from wavesym.fields.table import Fault, Faults, key_context, key_path, refusal, show
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.quantities import QUANTITIES
-from wavesym.scene.outputs import LONGEST_HORIZON
+from wavesym.scene.outputs import LONGEST_HORIZON, Output
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.description import describe
 from wavesym.scene.physical.loads import Acts, dimensionless, read
@@ -25,6 +26,7 @@ from wavesym.systems import PHYSICAL, SYSTEMS, ExplicitChain, ExplicitPreset, Sy
 from wavesym.systems.dimensionless import DimensionlessSystem
 from wavesym.systems.place import read_titled_place
 
+_QUANTITY = re.compile(r"\s*[+-]?[\d./eE+-]+\s+[A-Za-z]")
 _LENGTHS = {each.name for each in QUANTITIES.values() if each.place_quantity}
 """Outputs whose places are lengths on a chain; a drift counts rods."""
 
@@ -63,36 +65,62 @@ class PhysicalScene:
         return tuple(describe({key: value for key, value in load.items() if key != "name"}) for load in loads)
 
 
-def physical(fields: Mapping[str, Any]) -> PhysicalScene:
-    """The fields of a scene with [units], rewritten. Raises that of `table.refusal`, or of a validation."""
-    with key_context("units"):
-        units = UnitsTable.model_validate(fields["units"])
+def physical(fields: Mapping[str, Any], faults: Faults) -> PhysicalScene:
+    """The fields of a scene with [units], rewritten; those of loads and outputs in which anything is wrong left out.
+
+    What is wrong is kept in `faults`. Raises them, as an error of a validator, where it is the system.
+    """
+    units = _units(fields["units"], faults)
+    found = _system_or_none(fields, units, faults)
+    if found is None:
+        faults.refuse()
+        raise AssertionError("a system that is wrong has faults")
+    results = Results.from_table(units, found.kind, faults)
     made = dict(fields)
-    found = _system(fields.get("system"), units)
-    with key_context("units"):
-        results = Results.from_table(units, found.kind)
-    with key_context("system"), _of_quantities(fields["system"]):  # before loads and places on it
+    with faults.gather("system"), _of_quantities(fields["system"]):  # before loads and places on it
         length = results.length(found.lengths[0]) if found.lines is not None else None
         made["system"] = _table(found.system).model_validate(found.system, context=length)
+    if not isinstance(made["system"], SystemTable):
+        faults.refuse()
     seconds = found.rods.seconds
     table = dict(fields)
     inputs = []
-    faults = Faults()
+    sound = len(faults.found)
     if isinstance(loads := fields.get("load"), list | tuple):
         table["load"], made["load"] = [], []
         for k, load in enumerate(loads):
             with faults.gather("load", k):
                 table["load"].append(read(load, found.load_unit))
                 made["load"].append(_load(table["load"][-1], found, seconds))
+        if len(faults.found) > sound:
+            made["load"] = ()
     if isinstance(output := fields.get("output"), Mapping):
-        with faults.gather("output"):
-            made["output"] = _output(output, found, seconds)
-    faults.refuse()
-    for acting in (found.load_unit(load) for load in table.get("load", ()) if isinstance(load, Mapping)):
-        size, text = results.unit_of(acting.dimension)
-        inputs.append((acting.size / size, text))
+        made["output"] = _output(output, found, seconds, faults)
+    if made.get("load", ()) != ():
+        for acting in (found.load_unit(load) for load in table["load"] if isinstance(load, Mapping)):
+            size, text = results.unit_of(acting.dimension)
+            inputs.append((acting.size / size, text))
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
     return PhysicalScene(plain(table), made, scale, found.kappa, tuple(inputs))
+
+
+def _units(table: object, faults: Faults) -> UnitsTable:
+    """The table of units; what is wrong with it is kept, and left out."""
+    with faults.gather("units"):
+        return UnitsTable.model_validate(table)
+    known = table if isinstance(table, Mapping) else {}
+    return UnitsTable.model_validate({key: known[key] for key in UnitsTable.model_fields if key in known})
+
+
+def _system_or_none(fields: Mapping[str, Any], units: UnitsTable, faults: Faults) -> DimensionlessSystem | None:
+    """The system; None where it is wrong, and then unknown keys of outputs are told of, too."""
+    with faults.gather():
+        return _system(fields.get("system"), units)
+    others = Faults()
+    with others.gather("output"):
+        Output.model_validate(fields.get("output", {}))
+    faults.found += [fault for fault in others.found if fault.what.startswith("unknown key")]
+    return None
 
 
 def acts(fields: Mapping[str, Any]) -> Acts:
@@ -141,20 +169,22 @@ def _load(load: object, found: DimensionlessSystem, seconds: Fraction) -> object
     return dimensionless(load, found.load_unit(load), seconds) if isinstance(load, Mapping) else load
 
 
-def _output(output: Mapping[str, Any], found: DimensionlessSystem, seconds: Fraction) -> dict[str, Any]:
+def _output(output: Mapping[str, Any], found: DimensionlessSystem, seconds: Fraction, faults: Faults) -> dict[str, Any]:
+    """The outputs, without those in which anything is wrong, which is kept in `faults`."""
     made = dict(output)
-    faults = Faults()
     if "until" in output:
-        with faults.gather("until"):
+        made.pop("until")
+        with faults.gather("output", "until"):
             made["until"] = _horizon(output["until"], seconds)
-    if found.lines is not None:
-        for quantity in _LENGTHS & output.keys():
-            if isinstance(places := output[quantity], list | tuple):
-                made[quantity] = list(places)
-                for k, at in enumerate(places):
-                    with faults.gather():
-                        made[quantity][k] = _position(at, found, quantity, k)
-    faults.refuse()
+    for quantity in _LENGTHS & output.keys() if found.lines is not None else ():
+        if isinstance(places := output[quantity], list | tuple):
+            sound = len(faults.found)
+            made[quantity] = list(places)
+            for k, at in enumerate(places):
+                with faults.gather("output"):
+                    made[quantity][k] = _position(at, found, quantity, k)
+            if len(faults.found) > sound:
+                del made[quantity]
     return made
 
 
@@ -175,3 +205,17 @@ def _position(at: object, found: DimensionlessSystem, quantity: str, k: int) -> 
     with key_context(quantity, k):
         written, title = read_titled_place(at) if isinstance(at, Mapping) else (at, "")
         return place(written, found.lines).position(found.rods.first.length)._replace(title=title)
+
+
+def forgotten_units(fields: Mapping[str, Any]) -> str:
+    """A quantity with a unit in a scene without [units], as it is written; empty where there is none."""
+    coming: list[object] = [fields.get(key) for key in ("output", "load", "system")]
+    while coming:
+        match coming.pop():
+            case str() as text if _QUANTITY.match(text):
+                return text
+            case Mapping() as table:
+                coming += reversed(list(table.values()))
+            case list() | tuple() as values:
+                coming += reversed(values)
+    return ""
