@@ -37,7 +37,7 @@ FAMILIES = [
     for name, families in POWERS.items()
     for family in families
 ]
-GENERIC = [family for family in FAMILIES if not family.values[1].merged]
+GENERIC = [family for family in FAMILIES if not family.values[1].is_merged]
 
 PRIME = 2**61 - 1
 INTERVALS = 10
