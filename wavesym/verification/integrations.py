@@ -230,7 +230,8 @@ class _Start:
         def is_affordable(finer: int) -> bool:
             return grid.finer(finer).cost(self.until) <= MOST_MOVED
 
-        method = Integration(name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), clear=True)
+        late = grid.tau(1) if rule == "late" else 0.0
+        method = Integration(name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), True, late)
         return method.outcomes(known.model.name, known.names, truths, {"to": f"{self.until:.4g}"})
 
 

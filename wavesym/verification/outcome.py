@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -81,7 +81,7 @@ class ProgramValues:
 class Outcome:
     """What a check found for a subject, an output or another: cells by column, and whether all is as it may be.
 
-    `note` is for what does not fit into a column, `integral` for programs to be compared with.
+    `note` is for what does not fit into a column, `integral` for programs to be compared with. It may be not `decided`.
     """
 
     subject: str
@@ -89,6 +89,14 @@ class Outcome:
     passed: bool
     note: str = ""
     integral: IntegratedOutput | None = None
+    decided: bool = True
+
+    @property
+    def verdict(self) -> str:
+        """As the last column has it."""
+        if not self.passed:
+            return "FAIL"
+        return "PASS" if self.decided and REFUSED not in self.cells.values() else "-"
 
 
 @dataclass(frozen=True)
@@ -185,7 +193,8 @@ class Refinement:
 class Integration:
     """An integration: `solve` gives every output with so many times the coarsest number of steps, `coarsest`.
 
-    It is refined as long as `is_affordable` says so of that. `instants` are those of each output's values.
+    It is refined as long as `is_affordable` says so of that. `instants` are those of each output's values. What happens
+    at corners may be `late` by so much with N steps: where events do not converge, a difference of grids is no bound.
     """
 
     name: str
@@ -195,6 +204,7 @@ class Integration:
     rule: Rule
     instants: Sequence[Sequence[float]]
     clear: bool = False
+    late: float = 0.0
 
     def refine(self, truths: Sequence[Truth | None]) -> tuple[int, list[Refinement]]:
         """N, and all outputs with N, 2N and 4N steps, compared with their values and scales where these are known."""
@@ -217,8 +227,15 @@ class Integration:
         for name, truth, taus, each in zip(names, truths, self.instants, refined, strict=True):
             integral = IntegratedOutput(taus, each.values, each.allowed * each.scale, self.clear)
             note = "" if each.method_error <= FINE else too_coarse(scene, self.name)
-            passed = integral.judges if truth is None else each.is_right
-            outcomes.append(Outcome(name, {**cells, **each.cells(steps)}, passed, note, integral))
+            right = integral.judges if truth is None else each.is_right
+            lag = integral.steepest * self.late * self.coarsest / (4 * steps)
+            decided = right or each.method_error <= FINE or not each.best * each.scale <= integral.allowed + lag
+            if not decided:
+                integral = replace(integral, allowed=integral.allowed + lag)
+                note = f"{scene}: the {self.name} does not decide {name}, as what happens at corners comes a step late"
+            outcomes.append(
+                Outcome(name, {**cells, **each.cells(steps)}, right or not decided, note, integral, decided)
+            )
         return outcomes
 
 

@@ -37,8 +37,7 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
     def add_rows(number: int, name: str, column: str, outcomes: Iterable[Outcome]) -> None:
         nonlocal passed, notes
         for outcome in outcomes:
-            verdict = "FAIL" if not outcome.passed else "-" if REFUSED in outcome.cells.values() else "PASS"
-            rows[number].append({"scene": name, column: outcome.subject, **outcome.cells, "verdict": verdict})
+            rows[number].append({"scene": name, column: outcome.subject, **outcome.cells, "verdict": outcome.verdict})
             notes += [outcome.note] if outcome.note else []
             passed = passed and outcome.passed
 
