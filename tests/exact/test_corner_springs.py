@@ -204,8 +204,6 @@ def test_what_is_no_law_is_said_in_a_line(spring: dict[str, Any], line: str) -> 
 @pytest.mark.parametrize(
     ("parts", "line"),
     [
-        ([{"joint": True, "dashpot": 1, "friction": 1}, {"spring": 4, "yield": 1}, "fixed"], "joined to a spring"),
-        ([{"mass": 1, "friction": 1}, "contact", {"rod": 1}], "joined to a contact"),
         ([{"mass": 1, "friction": 1}, {"friction": 1}, "fixed"], "nothing says what each takes"),
         ([{"mass": 1, "friction": 1}, {"friction": 1}, {"mass": 1, "friction": 1}], "nothing says what each takes"),
         ([{"mass": 1, "friction": 1}, {"dashpot": 1}, {"joint": True}, {"rod": 1}], "not proved"),

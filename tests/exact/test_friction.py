@@ -216,8 +216,7 @@ def test_pieces_follow_friction(tmp_path):
 @pytest.mark.parametrize(
     ("held", "message"),
     [
-        ("{ joint = true, friction = 1 }, { spring = 1 }, { mass = 1, friction = 2 }", "other friction"),
-        ('{ mass = 1, friction = 1 }, "contact"', "a contact"),
+        ('{ mass = 1, friction = 1 }, "contact", { joint = true, friction = 2 }', "nothing says what each takes"),
         ("{ mass = 1, friction = -1 }", "negative"),
         ("{ mass = 1, friction = 1 }, { dashpot = 1 }, { joint = true }", "dashpot ties"),
     ],
@@ -403,6 +402,7 @@ def test_a_limit_at_rest_that_is_that_of_sliding_changes_nothing() -> None:
     [
         ("{ joint = true, friction = 1, breakaway = 2 }", "more than one thing"),
         ("{ mass = 1, friction = 1, breakaway = 2 }, { spring = 1, yield = 1 }, { mass = 1 }", "more than one thing"),
+        ('{ mass = 1, friction = 1, breakaway = 2 }, "contact"', "more than one thing"),
         ("{ mass = 1 }, { friction = 1, breakaway = 2 }, { mass = 1 }", "more than one thing"),
         ("{ mass = 1, friction = 2, breakaway = 1 }", "less than friction"),
         ("{ mass = 1, breakaway = 1 }", "write friction = R"),

@@ -14,6 +14,9 @@ from typing import Any
 Choose = Callable[[Sequence[Any]], Any]
 """Takes one of some things."""
 
+Mix = Callable[[int], dict[str, Any]]
+"""Draws a chain by its seed."""
+
 LENGTHS = [1, 1, "1/2", "3/2", "1.000000001", "0.7"]
 IMPEDANCES = [1, 1, 2, "1/2", "1.001"]
 MASSES = [1, 1, "1/2", 2, "1.001"]
@@ -183,6 +186,46 @@ def rubbing_masses(seed: int) -> dict[str, Any]:
         last["friction"] = choose(LIMITS[1:])
     end = choose([[], [{"rod": choose(LENGTHS)}, "fixed"], [spring(choose), "fixed"]])
     return _scene(choose, [first, spring(choose), last, *end], choose([3, "7/2"]))
+
+
+def friction_beside_contacts(seed: int) -> dict[str, Any]:
+    """A rod strikes what rubs on the ground: a mass or a joint, beside springs, rods, other contacts and friction."""
+    choose = Random(seed).choice
+    parts: list[Any] = choose([[], ["fixed"], [_mass(choose, 0)]])
+    parts += [_rod(choose, choose([1, "1/2", "0.3", 0])), _contact(choose)]
+    if light := choose([0, 0, 1]):
+        node = {"joint": True, "name": "n2"}
+    else:
+        node = _mass(choose, 2) | {"dashpot": 0} | choose([{}, {}, spring(choose)])
+    parts.append(node | {"friction": choose(LIMITS[1:])})
+    follows = choose(["rod", "fixed", "contact"] if light else ["", "rod", "fixed", "contact", "spring", "friction"])
+    match follows:
+        case "rod" | "fixed":
+            parts += [_rod(choose, 0), *["fixed"] * (follows == "fixed")]
+        case "contact" if not light:
+            parts += [_contact(choose), _rod(choose, choose([0, -1])), choose(["free", "fixed"])]
+        case "contact":
+            parts += [_rod(choose, 0), _contact(choose), _rod(choose, choose([0, -1]))]
+        case "spring":
+            parts += [spring(choose), _mass(choose, 4) | {"dashpot": 0}]
+        case "friction":
+            parts += [{"friction": choose(LIMITS[1:])}, _mass(choose, 4) | {"dashpot": 0}]
+    return _scene(choose, parts, choose([3, 4, "5.000000001"]))
+
+
+def light_friction(seed: int) -> dict[str, Any]:
+    """Friction of a joint without mass on the ground, or on another part, beside springs and friction of others."""
+    choose = Random(seed).choice
+    parts: list[Any] = choose([[], ["fixed"], [_mass(choose, 0)]])
+    parts += [_rod(choose, choose([1, 0, "0.3"])), {"joint": True, "name": "n2"} | choose([{}, spring(choose)])]
+    if choose([0, 1]):
+        parts[-1] |= {"friction": choose(LIMITS[1:])}
+        parts += [spring(choose), _mass(choose, 4) | {"dashpot": 0}]
+    else:
+        parts += [{"friction": choose(LIMITS[1:])}, _mass(choose, 4) | {"dashpot": 0} | choose([{}, spring(choose)])]
+    parts[-1] |= choose([{}, {"friction": choose(LIMITS[1:])}])
+    parts += choose([[], [_rod(choose, 0)], [spring(choose), "fixed"]])
+    return _scene(choose, parts, choose([3, 4, "5.000000001"]))
 
 
 def damped_chain(seed: int) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import product
 
 from wavesym.fields.table import refusal
 from wavesym.mechanics.network import Link, Network, Point
@@ -45,11 +44,8 @@ def _joining_two(links: Sequence[Link], distinct: Sequence[bool]) -> Iterator[in
         found[one] = found[one] or found[other]
 
 
-_CALLED = {"contact": "a contact", "friction": "other friction", "spring": "a spring that acts on one side or yields"}
-
-
 def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], written: Mapping[int, Keys]) -> None:
-    """What rubs, in its joint with a law that has a corner, must be between masses, and it must be known what it takes.
+    """What rubs or touches must not be held twice, so that it is known what each takes; nor break away beside others.
 
     Raises that of `table.refusal`.
     """
@@ -65,13 +61,7 @@ def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], writte
     for corners in corners_of.values():
         rubbing = [link for link in corners if link.friction != 0]
         light = [link for link in rubbing if not (rigid[link.left] and rigid[link.right])]
-        for link, other in product(rubbing, corners):
-            if other is not link and (light or other.contact):
-                raise refusal(
-                    f"joined to {_CALLED[other.law]} by what has no length; write a rod between them",
-                    *written[link.right],
-                    "friction",
-                )
+        holding = [link for link in corners if rubbing and (link.friction != 0 or link.contact)]
         for link in rubbing:
             if link.breakaway != 0 and (light or len(corners) > 1 or not _has_motion(points, link)):
                 raise refusal(
@@ -80,11 +70,11 @@ def refuse_joined_corners(points: Sequence[Point], links: Sequence[Link], writte
                     *written[link.right],
                     "breakaway",
                 )
-        for number in _joining_two(rubbing, prescribed):
+        for number in _joining_two(holding, prescribed):
             raise refusal(
                 "of parts that other friction, or what moves as is given, may hold as well, so that nothing says what "
                 "each takes; write a rod between them",
-                *written[rubbing[number].right],
+                *written[holding[number].right],
                 "friction",
             )
         for link in rubbing:

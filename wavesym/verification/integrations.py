@@ -174,7 +174,7 @@ def midpoints(known: ReferenceOutputs) -> list[Outcome]:
     Where steps stay coarse that is said, but no failure: what they allow is in the table. Where links have corners N is
     so large that the same happens at them with 2N and 4N; that is one more front.
     """
-    start = _start(known, 1)
+    start = coarsest_start(known, 1)
     if isinstance(start, str):
         return refused_outcomes(known, "to", start)
     rule: Rule = "extrapolated" if start.grid.is_aligned and not start.struck else "wandering"
@@ -187,7 +187,7 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
     problem = corner_problem(known.integration_model)
     if not problem.laws or problem.contacts or not problem.delays:
         return []
-    start = _start(known, REACH)
+    start = coarsest_start(known, REACH)
     if isinstance(start, str):
         return refused_outcomes(known, "to", start)
     return start.outcomes(
@@ -199,7 +199,7 @@ def differences(known: ReferenceOutputs) -> list[Outcome]:
 
 
 @dataclass(frozen=True)
-class _Start:
+class Start:
     """The coarsest grid, up to which tau it is taken, what happens at corners, and instants away from fronts."""
 
     grid: MidpointGrid
@@ -236,7 +236,7 @@ class _Start:
 
 
 @lru_cache(maxsize=2)
-def _start(known: ReferenceOutputs, reach: int) -> _Start | str:
+def coarsest_start(known: ReferenceOutputs, reach: int) -> Start | str:
     """The coarsest grid on which there is something to read from so many steps around, or why there is none."""
     model = known.integration_model
     first, struck = _grid(model), list[tuple[Change, float]]()
@@ -259,7 +259,7 @@ def _start(known: ReferenceOutputs, reach: int) -> _Start | str:
     instants = sample_evenly(first.instants(until, struck, reach), _MOST_INSTANTS)
     if not len(instants):
         return f"to step between the fronts would take too long (at {first.tau(1):.1g} a step)"
-    return _Start(first, until, struck, instants)
+    return Start(first, until, struck, instants)
 
 
 def _grid(model: Model) -> MidpointGrid:

@@ -267,7 +267,7 @@ class Friction(Corner):
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Know how fast it slides at the end of a stretch."""
-        if self.link in moved.closed:
+        if self.link in moved.closed or self.link not in moved.rates:  # it may have done nothing but stick
             self.rate, self.sign, self.closed = arb(0), 0, True
             return
         self.rate = moved.rates[self.link].evaluate(length)

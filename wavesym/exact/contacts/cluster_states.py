@@ -59,6 +59,19 @@ class ClusterStates:
         groups = {cluster.group(k) for k in cluster.stuck}
         return [k for k in cluster.points if self._law.mass[k] != 0 and cluster.group(k) in groups]
 
+    def unseen_rates(self, cluster: Cluster, later: Mapping[int, PointState]) -> dict[int, arb]:
+        """How fast the points of such groups may be besides: one without mass as fast as some mass of its group.
+
+        `later` are states at the end of a stretch, where less is known.
+        """
+        held = self.held_masses(cluster)
+        rates = {k: (2 * later.get(k, self.of_point[k]).unknown / arb(self._law.mass[k])).sqrt().upper() for k in held}
+        for k in cluster.points:
+            like = [j for j in held if cluster.group(j) == cluster.group(k)]
+            if like and k not in held and self._law.motions[k] is None:
+                rates[k] = max((rates[j] * arb(abs(cluster.ratio(k) / cluster.ratio(j)))).upper() for j in like)
+        return rates
+
     def _joined_velocities(self, cluster: Cluster, prescribed: Sequence[fmpq_poly]) -> tuple[list[arb], arb]:
         """The velocities of groups, and the energy that masses that stick, with the same momentum, lose by it."""
         law = cluster.law

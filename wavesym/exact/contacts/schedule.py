@@ -126,9 +126,12 @@ def _attempt(
             "(another gap, yield, load or length helps)"
         )
     what = "force" if undecided.closed else "gap"
+    beside = next(joint.points for joint in network.joints if link.left in joint.points)
+    rubs = any(each.friction != 0 and each.left in beside for each in network.links)
+    helps = "a rod between it and friction" if rubs else "heavier masses beside it"
     raise GrazingError(
         f"contact at {link.place}: {bits} bits do not show the sign of its {what} at tau = {tau} "
-        "(another gap, load or length, or heavier masses beside it, help)"
+        f"(another gap, load or length, or {helps}, help)"
     )
 
 

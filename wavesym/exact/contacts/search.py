@@ -23,6 +23,7 @@ from wavesym.exact.contacts.guards import BranchEnd
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, SwingError
 from wavesym.exact.contacts.spring_branches import OneSided, Yielding
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
+from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
 
@@ -82,6 +83,7 @@ class Search:
         self.changes: list[Change] = []
         self.width = shortest * _WIDTH
         self._network, self._relaxing = network, relaxing
+        self._arriving: tuple[tuple[int, fmpq, fmpq], Sequence[Enclosure]] | None = None
         # the first stretch on which it is left open what a contact does
         self._least = shortest / fmpq(2) ** (ctx.prec - _SPARE)
         self._resolution = self._least / 4
@@ -138,6 +140,7 @@ class Search:
 
     def _advance(self, course: Course, time: fmpq) -> None:
         """From where a joint's motion is known up to the next limit, or to where a contact may change."""
+        self._arriving = None
         breakpoint, limit = course.pass_breakpoints(time), course.limit(time)
         if course.moved is not None:
             if not breakpoint and self._extend(course, time, limit):
@@ -168,10 +171,17 @@ class Search:
         """On a stretch, or on as much of it as a series bears; as a `trial`, if all stay on these branches so long."""
         joint = self.waves.joints[course.number]
         try:
-            arriving = self.waves.arriving(course.number, start, length)
+            arriving = self._arrive(course.number, start, length)
             return joint.move(arriving, start, length, closed, sliding=sliding, relaxing=self._relaxing, trial=trial)
         except SwingError as error:
             return self._move(course, start, error.longest, closed, sliding, trial=trial)
+
+    def _arrive(self, number: int, start: fmpq, length: fmpq) -> Sequence[Enclosure]:
+        """What comes to a joint on a stretch; the last is kept, as many choices are tried on one."""
+        key = (number, start, length)
+        if self._arriving is None or self._arriving[0] != key:
+            self._arriving = (key, self.waves.arriving(number, start, length))
+        return self._arriving[1]
 
     def _cut(
         self, course: Course, start: fmpq, moved: JointStretch, low: fmpq

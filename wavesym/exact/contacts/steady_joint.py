@@ -243,21 +243,23 @@ class SteadyJoint(ABC):
         for k, (group, ratio) in zip(points, law.moves, strict=True):
             result.velocities[k] = scale_terms(q[group], ratio)
         certain = {k for n in cluster.pushes for k in self.touches[n].sides if self.touches[n].breakaway != 0}
-        for k in self._states.held_masses(cluster):
-            if k not in certain and (unknown := result.state.get(k, self._states.of_point[k]).unknown) != 0:
-                slow = (2 * unknown / arb(self.law.mass[k])).sqrt().upper()
+        for k, slow in self._states.unseen_rates(cluster, result.state).items():
+            if k not in certain and slow != 0:
                 result.velocities[k] = [*result.velocities[k], (_ONE, Enclosure(arb_poly(), slow))]
         result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places)
         self.springs.strain(cluster, result, self._states.of_point, places if motion is None else motion)
         self._lose_excess(cluster, result)
 
     def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
-        """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it."""
+        """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it.
+
+        Where contacts are vague, a force that holds may be anything in its range at any time.
+        """
+        taus = [arb(0).union(arb(result.length))] if result.vague else [fmpq(0), result.length]
         for n in cluster.pushes:
             touch = self.touches[n]
             for _ in {touch.left, touch.right} & set(cluster.stuck):
-                ends = (_excess(result.pushes[n], tau, touch.friction) for tau in (fmpq(0), result.length))
-                excess = max(ends)
+                excess = max(_excess(result.pushes[n], tau, touch.friction) for tau in taus)
                 if touch.friction == 0 or touch.breakaway != 0 or not excess > 0:
                     continue
                 lightness = sum(1 / self.law.mass[j] for j in (touch.left, touch.right) if self.law.mass[j] != 0)
@@ -342,11 +344,11 @@ def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
     return terms
 
 
-def _excess(force: Enclosure, tau: fmpq, limit: fmpq) -> arb:
-    """By how much a force is beyond its limit at an instant, at most."""
-    if force.exact is not None:
+def _excess(force: Enclosure, tau: fmpq | arb, limit: fmpq) -> arb:
+    """By how much a force is beyond its limit at an instant, or anywhere in a span, at most."""
+    if isinstance(tau, fmpq) and force.exact is not None:
         return arb(abs(force.exact(tau)) - limit).upper()
-    return (abs(force.evaluate(tau)) - arb(limit)).upper()
+    return (abs(force.evaluate_on(arb(tau))) - arb(limit)).upper()
 
 
 def prescribed_terms(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:

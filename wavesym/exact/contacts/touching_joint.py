@@ -80,9 +80,12 @@ class TouchingJoint(SteadyJoint):
             for n, force in self.forces.of_cluster(cluster, result, forces, acting, motion).items()
             if n in vague
         }
-        if not cluster.stateless:
+        if cluster.stateless:
+            result.state |= self._states.sticking_state(cluster, prescribed, result.length)
+        else:
             result.state |= self._states.state_after(cluster, motion)
         self.springs.strain(cluster, result, self._states.of_point, motion)
+        self._lose_excess(cluster, result)
 
     def _bound_sends(
         self,

@@ -1,0 +1,138 @@
+"""Two laws in one joint: which pairs are served, as the documents have it, and drawn mixes against another solver."""
+
+from __future__ import annotations
+
+import re
+import time
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import wavesym
+from tests.exact.test_corner_truth import wrong
+from tests.support.cornered import Mix, friction_beside_contacts, light_friction
+from tests.support.series import Unclear
+from wavesym.errors import WavesymError
+from wavesym.exact.contacts.schedule import GrazingError
+from wavesym.scene import Scene
+
+LAWS: dict[str, Any] = {
+    "contact": "contact",
+    "gap": {"spring": 4, "gap": ["-1/8", "1/4"]},
+    "push": {"spring": 4, "only": "push"},
+    "yield": {"spring": 4, "yield": "1/8"},
+    "friction": {"friction": "1/3"},
+    "friction, dashpot": {"friction": "1/3", "dashpot": "1/5"},
+    "breakaway": {"friction": "1/3", "breakaway": "1/2"},
+    "spring": {"spring": 4},
+    "dashpot": {"dashpot": "1/5"},
+}
+BESIDE, AT = ([law for law in LAWS if law != without] for without in ("breakaway", "contact"))
+PAGE = Path(__file__).parents[2] / "docs" / "contacts.md"
+
+# a contact opens and closes while what it touches sticks and slips; a joint without mass; a spring that yields there
+CONTACTS = (3, 8, 14, 33, 44, 46)
+LIGHT = (2, 11, 17)
+
+
+def pair(beside: str, at: str, node: dict[str, Any]) -> dict[str, Any]:
+    """A rod that comes with a velocity, a law, and a node that has another one to the ground; a rod if it is light."""
+    joint = [] if beside == "contact" else [{"joint": True}]
+    parts = [{"rod": 1, "velocity": 1}, *joint, LAWS[beside], node | {"name": "n"} | LAWS[at]]
+    parts += [{"rod": 2}] if "joint" in node else []
+    output = {"until": "5/2", "tolerance": 1e-9, "velocity": ["n"], "displacement": ["n"]}
+    return {"name": "pair", "system": {"type": "chain", "parts": parts}, "output": output}
+
+
+NODES = {"mass": {"mass": 1, "velocity": 0}, "joint": {"joint": True}}
+
+
+def documented() -> dict[tuple[str, str, str], bool]:
+    """Which pairs the page says are served: by law between rod and node, law at the node, and kind of node."""
+    section = PAGE.read_text(encoding="utf-8").split("## Laws in one joint")[1].split("\n## ")[0]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in re.findall(r"^\|.*\|$", section, re.M)]
+    laws = [name.strip("`") for name in rows[0][1:]]
+    found = {}
+    for beside, *cells in rows[2:]:
+        for at, cell in zip(laws, cells, strict=True):
+            served = {"yes": (True, True), "mass": (True, False), "joint": (False, True), "no": (False, False)}[cell]
+            found |= {(beside.strip("`"), at, kind): each for kind, each in zip(NODES, served, strict=True)}
+    return found
+
+
+def refusal(table: dict[str, Any]) -> str:
+    """Why a scene is refused; nothing where it is not."""
+    try:
+        Scene(**table)
+    except WavesymError as error:
+        return str(error)
+    return ""
+
+
+def test_pairs_of_laws_are_served_or_refused_at_once_as_the_page_says() -> None:
+    said = documented()
+    assert said.keys() == set(product(BESIDE, AT, NODES))
+    for (beside, at, kind), served in said.items():
+        begin = time.perf_counter()
+        refused = refusal(pair(beside, at, NODES[kind]))
+        assert time.perf_counter() - begin < 2
+        assert served == (refused == ""), (beside, at, kind, refused)
+        assert served or ("write" in refused and "\n" not in refused)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", NODES)
+@pytest.mark.parametrize("beside", BESIDE)
+def test_pairs_of_laws_do_as_they_should(beside: str, kind: str) -> None:
+    for at in AT:
+        if documented()[beside, at, kind]:
+            assert wrong(pair(beside, at, NODES[kind]), first="0") == [], at
+
+
+DRAWN = [
+    *((friction_beside_contacts, seed) for seed in CONTACTS),
+    *((light_friction, seed) for seed in LIGHT),
+]
+
+
+@pytest.mark.parametrize(("draw", "seed"), DRAWN)
+def test_mixed_laws_do_as_they_should(draw: Mix, seed: int) -> None:
+    assert wrong(draw(seed), first="0") == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", range(0, 100, 20))
+@pytest.mark.parametrize("draw", [friction_beside_contacts, light_friction])
+def test_drawn_mixes_do_as_they_should(draw: Mix, start: int) -> None:
+    refused = 0
+    for seed in range(start, start + 20):
+        try:
+            assert wrong(draw(seed), first="0") == [], seed
+        except (GrazingError, Unclear):
+            refused += 1
+    assert refused <= 5
+
+
+def test_friction_of_a_mass_beside_a_contact_that_is_slightly_off_is_seen() -> None:
+    table = friction_beside_contacts(CONTACTS[0])
+    other = {"friction": "0.3333", "spring": "0.99"}
+    parts = [
+        {**part, **{key: other[key] for key in other if key in part}} if isinstance(part, dict) else part
+        for part in table["system"]["parts"]
+    ]
+    assert wrong(table, table | {"system": {"type": "chain", "parts": parts}}, first="0")
+
+
+def test_a_mass_that_comes_to_rest_on_a_rod_at_rest_is_refused_with_what_helps() -> None:
+    """Its contact bears 0 from then on, as far as any number of bits shows; a rod between both laws does help."""
+    node, rods = {"mass": 2, "velocity": -1, "name": "n"}, [{"rod": "3/2"}, "contact"]
+    output = {"until": 2, "velocity": ["n"]}
+
+    def scene(parts: list[Any]) -> Scene:
+        return Scene(name="rest", system={"type": "chain", "parts": parts}, output=output)
+
+    with pytest.raises(GrazingError, match=r"contact at 3/2.* a rod between it and friction"):
+        wavesym.run(scene([*rods, node | {"friction": 3}]))
+    assert wavesym.run(scene([*rods, node, {"rod": 1}, {"joint": True, "friction": 3}])).events == ()
