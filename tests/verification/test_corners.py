@@ -12,7 +12,15 @@ import pytest
 from flint import fmpq
 
 from tests.support.assembly import exact
-from tests.support.cornered import breaking_chain, damped_chain, sliding_chain, touching_chain
+from tests.support.cornered import (
+    Mix,
+    breaking_chain,
+    damped_chain,
+    friction_beside_contacts,
+    light_friction,
+    sliding_chain,
+    touching_chain,
+)
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
@@ -85,6 +93,20 @@ def test_belts_that_jump_pass_every_check(seed: int) -> None:
 )
 def test_contacts_beside_springs_pass_every_check(seed: int) -> None:
     seen = known(touching_chain(seed))
+    for check in CHECKS:
+        assert all(outcome.passed for outcome in judged(check(seen)))
+
+
+@pytest.mark.parametrize(("draw", "seed"), [(friction_beside_contacts, 14), (light_friction, 2)])
+def test_friction_beside_other_laws_keeps_its_balances(draw: Mix, seed: int) -> None:
+    assert all(outcome.passed for outcome in judged(checks.invariants(known(draw(seed)))))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("draw", [friction_beside_contacts, light_friction])
+@pytest.mark.parametrize("seed", [1, 3, 8, 11, 24])
+def test_friction_beside_other_laws_passes_every_check(draw: Mix, seed: int) -> None:
+    seen = known(draw(seed))
     for check in CHECKS:
         assert all(outcome.passed for outcome in judged(check(seen)))
 

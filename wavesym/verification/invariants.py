@@ -347,13 +347,21 @@ class _Books:
 
     @cached_property
     def _free_weights(self) -> Array:
-        """0 for points that friction may hold, or without mass contacts to a prescribed motion; 1 for others."""
+        """0 for points that friction or contacts to such may hold, or, without mass, to a prescribed motion; else 1."""
         problem, held = self._problem, 1 - self._free
         touching = problem.parting != 0
         for _ in problem.parting:
             held = np.maximum(held, np.any(touching[np.any(touching & (held > 0), axis=1)], axis=0))
-        rubbing = np.any([law.row != 0 for law in problem.laws if law.friction], axis=0)
+        rubbing = self._rubbing
+        for _ in problem.parting:
+            rubbing = rubbing | np.any(touching[np.any(touching & rubbing, axis=1)], axis=0)
         return np.where(rubbing, 0.0, np.where(problem.mass == 0, 1 - held, 1.0))
+
+    @cached_property
+    def _rubbing(self) -> Array:
+        """Whether friction acts on a point: what that takes while it sticks is not known."""
+        laws = [law.row != 0 for law in self._problem.laws if law.friction]
+        return np.any(laws, axis=0) if laws else np.zeros(self._problem.points, dtype=bool)
 
     @cached_property
     def _push(self) -> Array:
@@ -363,7 +371,7 @@ class _Books:
     def _pushes(self, acting: Array) -> Array:
         """What contacts push with where that acts on points."""
         problem = self._problem
-        light = (problem.mass == 0) & problem.is_free
+        light = (problem.mass == 0) & problem.is_free & ~self._rubbing
         return np.asarray(-np.linalg.pinv(problem.parting[:, light].T) @ acting[light])
 
     def contacts(self, largest: float) -> BoundedValues:
