@@ -1,16 +1,36 @@
-"""python -m tools.bench FOLDER: measure all on the scenes in it, and write its README.md."""
+"""python -m tools.bench FOLDER: measure all on its scenes, and write its README.md; FOLDER corners: that part alone."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
-from tools.bench.report import report
+from tools.bench import corners
+from tools.bench.report import corner_figures, report
+
+
+def measure(lines: Iterable[str]) -> str:
+    """Each line as soon as it is measured, printed: what takes minutes is seen to go on."""
+    found = []
+    for line in lines:
+        print(line, flush=True)
+        found.append(f"{line}\n")
+    return "".join(found)
+
+
+def replace_section(page: str, title: str, section: str, following: str) -> str:
+    """A page with another section of a title; where it has none, before the one that is following."""
+    before, _, after = page.partition(f"{following}\n")
+    return f"{before.partition(title)[0]}{section}\n{following}\n{after}"
+
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
-    lines = []
-    for line in report(folder):  # each as soon as it is measured: what takes minutes is seen to go on
-        print(line, flush=True)
-        lines.append(f"{line}\n")
-    Path(folder, "README.md").write_text("".join(lines), encoding="utf-8")
+    page = folder / "README.md"
+    if sys.argv[2:] == ["corners"]:
+        section = measure(corner_figures(folder.parent / "examples" / "corners"))
+        text = replace_section(page.read_text(encoding="utf-8"), corners.TITLE, section, "## Charts")
+    else:
+        text = measure(report(folder))
+    page.write_text(text, encoding="utf-8")

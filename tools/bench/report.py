@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tools.bench import frames, many_sets, panels, parameters, record_response, streaming, sweeps
+from tools.bench import corners, frames, many_sets, panels, parameters, record_response, streaming, sweeps
 from tools.bench.commands import ran
 from tools.bench.equal_degree import FittedPieces, at_degree, fit_pieces, ratios
 from tools.bench.harness import CALLS, EVERY, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
@@ -65,6 +65,8 @@ def report(folder: Path) -> Iterator[str]:
     yield from _set_up(folder)
     yield ""
     yield from _records(folder)
+    yield ""
+    yield from corner_figures(folder.parent / "examples" / "corners")
     yield ""
     yield "## Charts"
     yield ""
@@ -183,6 +185,25 @@ def _records(folder: Path) -> Iterator[str]:
     yield "1e-3: the peaks of 31 outputs by modes, compiling apart, on one core. Errors are those of eight frames."
     yield ""
     yield from _table(frames.HEAD, frames.rows(folder.parent / "examples" / "records"))
+
+
+def corner_figures(examples: Path) -> Iterator[str]:
+    """Links with corners: also measured alone, by `python -m tools.bench FOLDER corners`."""
+    yield corners.TITLE
+    yield ""
+    yield "The examples whose laws change: all events to 20 digits, `run` with 1001 samples, and the C of pieces at the"
+    yield f"scene's tolerance with `{' '.join(FAST)}`."
+    yield ""
+    yield from _table(corners.HEAD, corners.rows(examples))
+    yield ""
+    yield "A block on a spring that friction holds, and a load that turns again and again:"
+    yield ""
+    yield from _table(corners.GROWTH_HEAD, corners.growth_rows())
+    yield ""
+    yield "Explicit steps for the same outputs, central differences with return mapping (NumPy), halved until the worst"
+    yield "is within so much of its largest value away from fronts; too many are reckoned from the order seen."
+    yield ""
+    yield from _table(corners.STEPS_HEAD, corners.steps_rows(examples))
 
 
 def _machine() -> Iterator[str]:

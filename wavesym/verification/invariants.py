@@ -371,7 +371,7 @@ class _Books:
     def _pushes(self, acting: Array) -> Array:
         """What contacts push with where that acts on points."""
         problem = self._problem
-        light = (problem.mass == 0) & problem.is_free & ~self._rubbing
+        light = (problem.mass == 0) & problem.is_free & np.logical_not(self._rubbing)
         return np.asarray(-np.linalg.pinv(problem.parting[:, light].T) @ acting[light])
 
     def contacts(self, largest: float) -> BoundedValues:
