@@ -34,8 +34,14 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     if config.getoption("--run-slow"):
         return
+    cases = Counter[tuple[pytest.Item | pytest.Collector | None, str]]()
     for item in items:
-        if "slow" in item.keywords:
+        slow = "slow" in item.keywords
+        if not slow and (quick := item.get_closest_marker("quick")):
+            key = item.parent, item.name.partition("[")[0]
+            cases[key] += 1
+            slow = cases[key] > quick.args[0]
+        if slow:
             item.add_marker(pytest.mark.skip(reason="slow: run with --run-slow"))
     for test in {item.obj for item in items if isinstance(item, pytest.Function) and is_hypothesis_test(item.obj)}:
         # Hypothesis has no other way to change the settings of a test that has its own

@@ -17,7 +17,6 @@ from zipfile import ZipFile
 import pytest
 
 import wavesym
-from tests.support.patience import first_always
 from wavesym.scene.first_scene import KINDS
 
 ROOT = Path(wavesym.__file__).parents[1]
@@ -76,9 +75,8 @@ def test_commands_keep_numpy_to_one_thread(monkeypatch: pytest.MonkeyPatch, told
     assert seen == f"{threads} False\n"
 
 
-@pytest.mark.parametrize(
-    "first", first_always(["__import__('wavesym.derivation.table')", "wavesym.evaluator", "wavesym.tables"])
-)
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("first", ["__import__('wavesym.derivation.table')", "wavesym.evaluator", "wavesym.tables"])
 def test_tables_is_the_function_whatever_was_imported_before(first: str) -> None:
     assert run_python(f"import wavesym\n{first}\nprint(callable(wavesym.tables))") == "True\n"
 

@@ -12,8 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.patience import first_always
-
 SCENE = """name = "mine"
 system = {type = "building", m = 3, kappa = ["1/4", "3/5", 1, "2/7"], base = "ground"}
 load = [{times = [0, "5/2"], a = [1, 0], b = [0, "-1/3"]}, {spacing = "1/4", samples = [0, 0.1, -0.2]}]
@@ -72,9 +70,10 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return given(tmp_path_factory.mktemp("plain") / "here", PLAIN)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     "changes",
-    first_always(OTHERS),
+    OTHERS,
     ids=lambda changes: changes["PYTHONHASHSEED"],
 )
 def test_the_environment_leaves_no_trace(plain: dict[str, bytes], tmp_path: Path, changes: dict[str, str]) -> None:

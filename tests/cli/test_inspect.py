@@ -279,6 +279,7 @@ def test_single_precision() -> None:
     assert str(error.value).endswith(f"(closed: {missed['refusal']})")
 
 
+@pytest.mark.slow
 def test_a_scene_that_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """Its refusals are those of the errors, numbers included; the exit status is 0."""
     given = scene(until=10**6)

@@ -137,6 +137,7 @@ def test_a_scene_that_is_not_built_in(capsys: pytest.CaptureFixture[str]) -> Non
     assert refused(capsys, "scenes", "drive_m2").endswith('Did you mean "drive_m1"?')
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_scene_to_start_from_works_and_is_explained(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["init", kind]) == 0

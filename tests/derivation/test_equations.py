@@ -36,6 +36,7 @@ def rods(relation: Relation, known: dict[sympy.Basic, sympy.Expr]) -> range:
     return range(first, last + 1, relation.step)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     "name", ["drive_m1", "building_m2", "collision_m4", pytest.param("drive_equal", marks=pytest.mark.slow)]
 )

@@ -7,7 +7,6 @@ import subprocess
 
 import pytest
 
-from tests.support.patience import first_always
 from tests.support.scenes import NAMED
 from wavesym.cli import main
 from wavesym.derivation.symbolic import symbolic
@@ -85,8 +84,9 @@ def test_the_smallest_written_out(system, m):
         assert len(statement["families"]) == 2
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("source", [*SYSTEMS, *NAMED])
-@pytest.mark.parametrize("m", first_always([None, 4]))
+@pytest.mark.parametrize("m", [None, 4])
 def test_latex_and_text_say_as_much(source, m):
     if source in SYSTEMS:
         latex, made, text = (derivation(source, m, format) for format in ("latex", "json", "text"))

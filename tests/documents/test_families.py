@@ -146,6 +146,7 @@ def runner(chain, laws, found):
     return Run(laws, found, chain.m, lambda part, places: number(part, places, chain.parameters))
 
 
+@pytest.mark.quick(7)
 @pytest.mark.parametrize(("system", "m", "pattern", "numbers"), CASES)
 def test_lists_run_to_the_exact_tables(system, m, pattern, numbers):
     one = chain(system, m, numbers, pattern)
@@ -227,6 +228,7 @@ SCENES = [
 ]
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("one", SCENES, ids=lambda one: f"{one.system.name}-{one.m}")
 def test_the_lists_of_a_scene_run_to_its_tables(one):
     symbols = symbolic(one)

@@ -38,6 +38,7 @@ def instants(made: PiecewiseChain, until: Fraction) -> list[float]:
     )
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("seed", KEPT)
 def test_contacts_open_and_close_as_they_should(seed: int) -> None:
     assert wrong(seeded(seed)) == []

@@ -76,16 +76,19 @@ def test_what_rubs_slips_and_sticks_as_it_should(seed: int) -> None:
     assert wrong(drawn(seed)) == []
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("seed", SPRUNG)
 def test_springs_with_laws_change_branches_as_they_should(seed: int) -> None:
     assert wrong(seeded(seed)) == []
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("seed", DAMPED)
 def test_dashpots_beside_springs_that_yield_act_all_the_time(seed: int) -> None:
     assert wrong(damped_chain(seed)) == []
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("seed", TOUCHING)
 def test_contacts_beside_springs_open_and_close_as_they_should(seed: int) -> None:
     assert wrong(touching_chain(seed)) == []
@@ -104,6 +107,7 @@ def test_springs_beside_contacts_that_nothing_makes_yield_are_linear() -> None:
     assert Reference(linear).values(taus) == Reference(yielding).values(taus)
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize("seed", [*SLIDING, *RESTING])
 def test_what_rubs_on_another_part_slips_and_sticks_as_it_should(seed: int) -> None:
     assert wrong(sliding_chain(seed), first="0") == []
@@ -124,6 +128,7 @@ def test_what_comes_to_rest_on_two_masses_that_stick_goes_back(mass: str) -> Non
     assert wrong({"name": "three", "system": {"type": "chain", "parts": parts}, "output": output}) == []
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("seed", BREAKING)
 def test_friction_that_bears_more_at_rest_breaks_away_as_it_should(seed: int) -> None:
     assert wrong(breaking_chain(seed), first="0") == []

@@ -77,6 +77,7 @@ def begun(law: JointLaw, decaying: int) -> tuple[JointMotion, list[fmpq_poly]]:
     return motion, [force(fmpq_poly([time, 1])) for force in forces]
 
 
+@pytest.mark.quick(6)
 @pytest.mark.parametrize("law", STIFF, ids=["open", "closed", "light", "light closed", "body"])
 @pytest.mark.parametrize("decaying", [40, 1200])
 def test_the_slow_motion_encloses_what_steps_find(law: JointLaw, decaying: int) -> None:
@@ -186,6 +187,7 @@ def stretches(table: dict[str, Any]) -> int:
     return sum(map(len, known.stages.values()))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("dashpot", "cap"),
     [("1/100", {}), ("1/10000", {}), pytest.param("1/100", {"mass": "1/10000"}, marks=pytest.mark.slow)],

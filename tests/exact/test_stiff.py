@@ -43,6 +43,7 @@ def model(made: dict[str, Any]) -> Model:
     return lower(wavesym.Scene(**made))
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("stiffness", [10**4, 10**6])
 @pytest.mark.parametrize("middle", [GROUND, BETWEEN], ids=["to ground", "between"])
 def test_stiff_springs_are_right_to_the_last_bit(middle: list[dict[str, Any]], stiffness: int) -> None:

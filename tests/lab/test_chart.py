@@ -70,6 +70,7 @@ def test_samples_stay_on_the_horizon(precision, until):
     assert spacing(until, 1, precision) > 0
 
 
+@pytest.mark.slow
 def test_our_evaluators_keep_their_bounds():
     judge, seen = _Judge(SCENE), set()
     for one in subjects(SCENE, 301):

@@ -93,6 +93,7 @@ def test_what_is_extrapolated_is_right_within_its_own_curve():
     assert modal.largest_error(found.limit, right, sizes) <= modal.largest_error(found.coarser, found.limit, sizes)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("panel", modal.PANELS)
 def test_a_ratio_that_is_off_is_seen(panel):
     """By one part in 1000, far above what modes and elements differ by."""

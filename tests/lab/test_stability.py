@@ -166,6 +166,7 @@ def test_masses_and_springs_swing_as_they_should():
 # other methods at fronts
 
 
+@pytest.mark.slow
 def test_other_methods_at_fronts():
     known = truth(other_methods.jumping(), per_unit=40, around=other_methods.AROUND)
     for method, resolution, part in (

@@ -19,7 +19,7 @@ from wavesym.scene import Scene, lower
 
 CHARACTERISTICS = (characteristics.SECOND, characteristics.FOURTH)
 REFUSED = dict.fromkeys(CHARACTERISTICS, ("springs and dashpots",))
-RESOLUTIONS = {discrete.MODAL: 40, laplace.METHOD: 1000}
+RESOLUTIONS = {discrete.MODAL: 16, laplace.METHOD: 1000}
 
 
 def scene(parts, branch=(), load=(), **output):
@@ -114,6 +114,7 @@ def test_laplace_converges(name):
     assert math.log(first / last, 5) > 2
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("method", "coarse", "order"),
     [(elements.NEWMARK, 40, 0.8), (discrete.MODAL, 8, 0.7)],

@@ -172,6 +172,7 @@ def test_sizes_go_from_light_to_dark_and_values_with_a_sign_from_white() -> None
     assert signed[0] < signed[SHADES // 2] > signed[-1]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("kind", ["envelope", "map"])
 def test_the_same_picture_again(kind: str, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")

@@ -318,7 +318,7 @@ def test_pictures_speak_the_units_of_a_scene(tmp_path: Path) -> None:
     assert any(text.get_text() == "2 mm at 2.333 ms" for text in axes.texts)
 
 
-@pytest.mark.parametrize(("horizon", "kind"), [(7, "march"), (3000, "march")])
+@pytest.mark.parametrize(("horizon", "kind"), [(7, "march"), pytest.param(3000, "march", marks=pytest.mark.slow)])
 def test_a_picture_takes_what_is_made_quickly(horizon: int, kind: str) -> None:
     """Of what nothing serves to 1e-6 it shows what 1e-4 does: that much no eye sees."""
     made = made_of.drawable(lower(Scene.from_toml("drive_m1").with_({"output.until": horizon})))

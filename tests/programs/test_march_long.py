@@ -77,6 +77,7 @@ def run(model, evaluator, taus):
     return out.T, energy
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("kappa", [Fraction(1, 100), Fraction(3, 5), Fraction(5)])
 def test_the_sum_of_modes_is_the_motion(kappa):
     taus = calm([1, 2, 30])

@@ -89,6 +89,7 @@ def test_no_error_is_above_the_bound(drawn, asked, random):
         )
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("count", [2000, pytest.param(100_000, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", SCENES)
 def test_the_bound_is_met_and_is_near_the_error(name, count):

@@ -5,7 +5,6 @@ from fractions import Fraction
 
 import pytest
 
-from tests.support.patience import first_always
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.march import evaluator
@@ -18,7 +17,8 @@ from wavesym.scene import Scene
 from wavesym.scene.lowering import lower
 
 
-@pytest.mark.parametrize("name", first_always(["drive_equal", "building_m2", "stepped_shaft", "geared_drive"]))
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("name", ["drive_equal", "building_m2", "stepped_shaft", "geared_drive"])
 def test_it_is_the_least_that_will_do_and_few_are_tried(name, monkeypatch) -> None:
     scene = Scene.from_toml(name)
     output = scene.output.model_copy(update={"until": Fraction(60)})

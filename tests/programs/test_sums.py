@@ -110,7 +110,8 @@ def test_every_program_keeps_its_bounds(name: str, kind: str) -> None:
     assert max(bounds) <= 1e-6
 
 
-@pytest.mark.parametrize(("name", "kind"), [("chain", "march"), ("drive", "march")])
+@pytest.mark.quick(1)
+@pytest.mark.parametrize(("name", "kind"), [("drive", "march"), ("chain", "march")])
 def test_c_and_numpy_are_one(name: str, kind: str) -> None:
     given = model(name)
     reference = Reference(given)

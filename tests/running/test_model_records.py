@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import wavesym
-from tests.support.patience import first_always
 from wavesym.errors import SpacingError, UnservedError
 from wavesym.programs.march import plan
 from wavesym.programs.request import Request
@@ -95,6 +94,7 @@ def check(model, scene, factors):
     return given, wrong
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("scene", [SHAKEN, LINKED, pytest.param(TURNED, marks=pytest.mark.slow)])
 def test_a_record_counts_times_its_factor(scene):
     factors = [Fraction(-2), Fraction(1, 2), Fraction(3)][: len(scene.load)]
@@ -126,7 +126,8 @@ def test_a_record_within_bounds(scene, chosen):
     assert same < 1e-20 * np.sum(data**2) < other
 
 
-@pytest.mark.parametrize("scene", first_always([SHAKEN, LINKED]))
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("scene", [SHAKEN, LINKED])
 def test_samples_that_only_add_up_are_seen(scene):
     program = runtime_program(lower(scene), Request(runtime=("load",)), amplitudes(scene))
     added = replace(

@@ -111,9 +111,8 @@ def missed(case):
 @pytest.mark.parametrize(
     "case",
     [
-        "drive",
         "collision",
-        *(pytest.param(base, marks=pytest.mark.slow) for base in ("ground", "force", "chain", "storeys")),
+        *(pytest.param(base, marks=pytest.mark.slow) for base in ("drive", "ground", "force", "chain", "storeys")),
     ],
 )
 def test_another_set_is_another_scene(case):

@@ -352,6 +352,7 @@ WIDE = {
 }
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("text", WIDE.values(), ids=WIDE)
 def test_as_much_as_is_parsed_is_refused_soon(text):
     """Each of many unknown keys was compared with those that are known, and parsed anew for its line."""

@@ -151,6 +151,7 @@ def test_the_block_slides_as_far_as_newmark_says() -> None:
     assert block.set.unit == "mm"
 
 
+@pytest.mark.slow
 def test_teeth_part_and_strike_at_one_flank_or_the_other() -> None:
     """There the pinion is where it was against the gear, or has crossed the play of 10 mrad."""
     scene = Scene.from_toml(CORNERS / "gears_with_backlash.toml")
@@ -160,6 +161,7 @@ def test_teeth_part_and_strike_at_one_flank_or_the_other() -> None:
     assert {round(abs(play), 9) for play in (motor - gear).tolist()} == {0, 10}
 
 
+@pytest.mark.slow
 def test_a_driven_pile_gives_its_energy_to_the_soil() -> None:
     """Of 16 kJ that the ram brings, what it and the pile keep and dashpots take is left: the soil's share is less."""
     soil = wavesym.summary(Scene.from_toml(CORNERS / "smith_pile.toml")).links or ()

@@ -7,7 +7,7 @@ from math import exp, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wavesym
@@ -42,6 +42,7 @@ def value(shape: str, pace: float, t: float) -> float:
     return (1 - 2 * a * a) * exp(-a * a)
 
 
+@settings(max_examples=45)
 @given(
     st.sampled_from(sorted(PACE)),
     st.sampled_from(["1/3", "1", "7/2", "0.3000001"]),
@@ -146,6 +147,7 @@ def test_a_shape_is_kept_as_it_was_written() -> None:
     assert wavesym.run(louder, tau).values == pytest.approx(2 * wavesym.run(made, tau).values)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("shape", sorted(PACE))
 def test_drives_and_buildings_take_shapes(shape: str) -> None:
     drive = Scene.from_toml("drive_m1").model_dump()

@@ -147,6 +147,7 @@ def test_moments_change_the_momentum_of_a_drive_and_then_leave_it():
     assert np.allclose(energy, energy[0], rtol=1e-12)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("wrong", ["a", "b"])
 def test_a_wrong_sign_is_caught(monkeypatch, wrong):
     right = truth.Node.moves

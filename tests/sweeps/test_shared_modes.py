@@ -25,7 +25,7 @@ FRAME: dict[str, Any] = {
     "system": {"type": "building", "base": "ground", "damping": "1/20", "storey": [{**STOREY, "count": 2}, STOREY]},
     "load": [{"spacing": "0.1 s", "samples": ["0", "1/4", "-3/10", "1/5", "-1/10", 0], "unit": "g"}],
     "output": {
-        "until": "2 s",
+        "until": "1.5 s",
         "tolerance": "1e-3",
         "drift": [1, 3],
         "acceleration": [3],
@@ -36,7 +36,7 @@ FRAME: dict[str, Any] = {
     },
 }
 NUMBERS = {
-    "system.storey[0].stiffness": ["500 MN/m", "600 MN/m", "711 MN/m"],
+    "system.storey[0].stiffness": ["500 MN/m", "711 MN/m"],
     "system.storey[1].floor_mass": ["250 t", "300 t"],
     "system.damping": ["0.02", "0.05"],
 }
@@ -65,7 +65,7 @@ def whole(made: SweepPlan) -> dict[tuple[int, ...], dict[str, Any]]:
 
 def assert_as_alone(made: SweepPlan, found: Mapping[tuple[int, ...], Mapping[str, Any]]) -> None:
     """Extremes and histories of some cases are those of their scenes alone, within both bounds."""
-    for place, case in list(found.items())[::3]:
+    for place, case in list(found.items())[::5]:
         alone = single(made, made.scene(place)).arrays
         size = np.maximum(np.abs(alone["min"]), np.abs(alone["max"]))
         allowed = (case["bound"] + alone["bound"]) * size

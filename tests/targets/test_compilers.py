@@ -9,7 +9,6 @@ from itertools import cycle, islice, product
 import pytest
 
 from tests.support.builds import LANGUAGES, SOURCES, STRICT, built, needs_binutils, sections, source
-from tests.support.patience import first_always
 from wavesym.running.compilation import FLAGS
 from wavesym.running.toolchain import CompilerError, at_hand, compiler
 
@@ -124,7 +123,8 @@ int main(void)
 """
 
 
-@pytest.mark.parametrize("language", first_always(["c++17", "c99"]))
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("language", ["c++17", "c99"])
 def test_several_scenes_are_one_program(language, tmp_path):
     """No two of them share a name, and headers do not mind each other."""
     made = [source(*of) for of in SOURCES]
@@ -166,9 +166,10 @@ def object_file(text, name, folder, found):
     return folder / f"{name}.o"
 
 
+@pytest.mark.quick(6)
 @needs_binutils
-@each_compiler
 @each_source
+@each_compiler
 def test_symbols_and_sections(of, name, tmp_path, tally):
     found = named(name, tally)
     made = source(*of)

@@ -44,8 +44,9 @@ def complaint(file, folder, *flags, step="-c"):
     return ""
 
 
-@pytest.mark.parametrize("precision", FORMATS)
+@pytest.mark.quick(len(READ))
 @pytest.mark.parametrize("kernel", READ)
+@pytest.mark.parametrize("precision", FORMATS)
 def test_a_kernel_is_c_as_it_stands(kernel, precision):
     assert complaint(kernel, C, *FORMATS[precision]) == ""
 

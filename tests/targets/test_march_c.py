@@ -18,7 +18,6 @@ from tests.support.builds import LANGUAGES, STRICT, needs_binutils, sections
 from tests.support.drives import every, exact
 from tests.support.generated import files, numpy_text, program_files
 from tests.support.marches import asked
-from tests.support.patience import first_always
 from wavesym.numbers.reals import DOUBLE, REALS, SINGLE
 from wavesym.programs.making import make
 from wavesym.programs.march.evaluator import march
@@ -32,7 +31,7 @@ from wavesym.targets.c.tables import Declaration, declarations
 from wavesym.targets.manifest import CODE_AT_MOST
 
 BUILDS = {"plain": ("-std=c99", "-O0"), "contracted": (*FLAGS, "-march=native", "-ffp-contract=fast")}
-SELFTESTS = first_always([(each, real) for each in at_hand() for real in (SINGLE, DOUBLE)])
+SELFTESTS = [(each, real) for each in at_hand() for real in (SINGLE, DOUBLE)]
 
 
 def scene(system, load=(), until=9, **outputs) -> Scene:
@@ -142,6 +141,7 @@ def evaluated(library: ctypes.CDLL, of: Scene, taus: np.ndarray) -> np.ndarray:
     return out.T.astype(np.float64)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("language", ["c99", "c++17"])
 def test_it_is_strict_c_and_cpp(language: str, precision: str, tmp_path: Path) -> None:
@@ -158,8 +158,9 @@ FEW = {
 }
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("states", [*FEW, *(pytest.param(name, marks=pytest.mark.slow) for name in SCENES)])
-@pytest.mark.parametrize("level", first_always(["-O3", "-O2", "-O1", "-O0", "-Os"]))
+@pytest.mark.parametrize("level", ["-O3", "-O2", "-O1", "-O0", "-Os"])
 def test_few_states_are_no_warning(level: str, states: str, tmp_path: Path) -> None:
     if states in FEW:
         load = [{"at": "body", "times": [0, "1/3"], "steps": [1, 2]}] if states != "none" else []

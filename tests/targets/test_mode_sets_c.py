@@ -60,7 +60,13 @@ SPRINGS = chain(
     until=9,
 )
 ALIKE = building(["1/20"] * 11, [samples(6)], until=40, tolerance="1e-2", drift=[1, 10], force=[0], acceleration=[10])
-MODELS = {**UNDAMPED, "fixed at both ends": FIXED, "springs and rods": SPRINGS, "ten storeys alike": ALIKE}
+MODELS = {
+    "springs and rods": SPRINGS,
+    "nothing holds it": UNDAMPED["nothing holds it"],
+    **UNDAMPED,
+    "fixed at both ends": FIXED,
+    "ten storeys alike": ALIKE,
+}
 
 
 def parameters_of(model):
@@ -75,6 +81,7 @@ def drawn_rows(parameters, sets, wide=0.3):
     return rows
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("name", MODELS)
 def test_sets_are_what_proved_modes_say(name):
     """For chains of all kinds: held, free, with gears, springs and branches, damped or not."""
@@ -114,6 +121,7 @@ class BuiltModel:
         self.displacements, self.velocities = take(modes, filled), take(modes, filled)
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("name", MODELS)
 def test_modes_in_doubles_are_the_proved_ones(name):
     """Frequencies, and what outputs and loads have of each mode, up to its sign."""
@@ -200,6 +208,7 @@ def program_files(scene, **options):
     return files(program(scene, Request.from_options(**{"runtime": runtime_of(scene), **options}), tested=True))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize(
     "options", [{"parts": ("peaks",)}, {"stream": True, "runtime": ("stiffness",)}], ids=["read", "stream"]
@@ -211,7 +220,8 @@ def test_it_compiles_without_warnings(tmp_path, language, options):
     assert (tmp_path / "frame.o").stat().st_size > 0
 
 
-@pytest.mark.parametrize("scene", [SPRUNG, FRAME, RAYLEIGH], ids=["sprung", "frame", "rayleigh"])
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("scene", [RAYLEIGH, SPRUNG, FRAME], ids=["rayleigh", "sprung", "frame"])
 def test_its_selftest_passes(tmp_path, scene):
     name = scene.name
     for file, text in program_files(scene).items():
@@ -252,6 +262,7 @@ def test_bad_numbers_are_refused_and_too_few_modes_told():
         assert np.isnan(frame.frame_error_estimate(of)) == (status == 1)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("scene", [SPRUNG, FRAME], ids=["sprung", "frame"])
 def test_a_stream_of_the_scenes_loads_gives_its_histories(scene):
     """Samples in the units that the header names."""

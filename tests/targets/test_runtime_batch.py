@@ -7,7 +7,6 @@ import pytest
 
 from tests.support.builds import LANGUAGES, STRICT
 from tests.support.built_model import written
-from tests.support.patience import first_always
 from tests.targets.test_runtime_c import BUILDING, CASES, drawn, flat
 from wavesym.running.toolchain import compiler
 
@@ -166,8 +165,9 @@ def test_a_set_is_what_it_is_alone(tmp_path):
     assert check_building(made, own("building")[:4]) == [1, 2, 1]
 
 
-@pytest.mark.parametrize("of_caller", first_always([["-O1"], ["-O1", "-march=native"]]))
-@pytest.mark.parametrize("flags", first_always([["-O1", "-DNAME_PLAIN"], ["-O1"], ["-O1", "-march=native"]]))
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("of_caller", [["-O1"], ["-O1", "-march=native"]])
+@pytest.mark.parametrize("flags", [["-O1", "-DNAME_PLAIN"], ["-O1"], ["-O1", "-march=native"]])
 def test_who_calls_may_be_compiled_with_other_flags(flags, of_caller, tmp_path):
     """What is the caller's has one size, however wide the vectors are that its functions use."""
     made = Batch(BUILDING, ["kappa", "load"], tmp_path, flags, of_caller=of_caller)

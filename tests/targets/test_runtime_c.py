@@ -13,7 +13,6 @@ import wavesym
 from tests.support.builds import LANGUAGES, STRICT, needs_binutils
 from tests.support.built_model import BuiltModel, written
 from tests.support.faults import BODIES
-from tests.support.patience import first_always
 from wavesym.cli import main
 from wavesym.errors import WavesymError
 from wavesym.running.toolchain import compiler
@@ -105,7 +104,8 @@ def missed(made, scene, count=181):
     return float(np.max(errors[largest > 0] / largest[largest > 0]))
 
 
-@pytest.mark.parametrize("case", first_always(CASES))
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("case", CASES)
 def test_any_parameters_give_what_their_scene_gives(case, tmp_path):
     scene, numbers = CASES[case]
     made = BuiltModel(scene, list(numbers), tmp_path)
@@ -195,7 +195,8 @@ def test_out_of_range_is_nan(tmp_path):
         assert np.isnan(out[:, 1:]).all() == status
 
 
-@pytest.mark.parametrize("language", first_always(LANGUAGES))
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("language", LANGUAGES)
 def test_it_compiles_without_a_warning(language, tmp_path):
     written(DRIVE, ["kappa", "load"], tmp_path)
     if language == "c++17" and shutil.which("g++") is None:

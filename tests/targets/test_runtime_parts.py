@@ -11,7 +11,6 @@ import pytest
 import wavesym
 from tests.support.builds import LANGUAGES, STRICT, needs_binutils, sections
 from tests.support.built_model import BuiltModel
-from tests.support.patience import first_always
 from tests.targets.test_runtime_c import BUILDING, COLLISION
 from tests.targets.test_runtime_memory import stated
 from wavesym.cli import main
@@ -73,8 +72,9 @@ def test_there_is_what_is_asked_for_and_nothing_else(case):
         assert told["command"].endswith(f"--runtime {','.join(runtime)}{named}")
 
 
-@pytest.mark.parametrize("language", first_always(["c99", "c++17"]))
-@pytest.mark.parametrize("parts", first_always(CHOICES), ids=lambda parts: "-".join(parts) or "values")
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("language", ["c99", "c++17"])
+@pytest.mark.parametrize("parts", CHOICES, ids=lambda parts: "-".join(parts) or "values")
 @pytest.mark.parametrize("case", SCENES)
 def test_each_choice_compiles_without_a_warning(case, parts, language, tmp_path):
     scene, runtime = SCENES[case]
@@ -84,8 +84,9 @@ def test_each_choice_compiles_without_a_warning(case, parts, language, tmp_path)
         assert (tmp_path / f"{file}.o").stat().st_size  # a warning is an error, which `run` raises
 
 
+@pytest.mark.quick(1)
 @needs_binutils
-@pytest.mark.parametrize("precision", first_always(["double", "single"]))
+@pytest.mark.parametrize("precision", ["double", "single"])
 def test_values_alone_are_small(precision, tmp_path):
     """Two storeys to 12 at 1e-8: 78 KB of code and 158 KB of model before."""
     scene = wavesym.Scene.from_toml("building_m2")
@@ -113,10 +114,9 @@ def test_a_smaller_kappa_makes_a_smaller_model(tmp_path):
     assert model_size(SMALL, tmp_path, Fraction(1, 1000))[1]["degree"] <= sizes[0][1]["degree"]
 
 
-@pytest.mark.parametrize("largest", first_always([1, 4, 40]))
-@pytest.mark.parametrize(
-    "scene", first_always([wavesym.Scene.from_toml("bench/c.toml"), BUILDING, COLLISION]), ids=lambda s: s.name
-)
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("largest", [1, 4, 40])
+@pytest.mark.parametrize("scene", [wavesym.Scene.from_toml("bench/c.toml"), BUILDING, COLLISION], ids=lambda s: s.name)
 def test_every_set_up_to_the_largest_kappa_is_taken_and_far_beyond_it_none(scene, largest, tmp_path):
     """In the first one waves cancel where bodies are equal."""
     made = BuiltModel(scene, ["kappa"], tmp_path, kappa_max=largest)

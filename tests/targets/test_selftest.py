@@ -241,18 +241,19 @@ def test_values_that_are_wrong_by_two_bounds_are_seen(evaluator, right, tmp_path
     assert statuses(made, right, right.replace("return sum", f"return sum + {wrong!r}"), tmp_path) == [0, 1]
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize(
     ("evaluator", "right", "wrong"),
     [
         ("pieces", "sum.a = sum.a * w.a + power;", "sum.a = sum.a * w.a + power * (real)1.001;"),
-        ("pieces", "s.rows[m][k] = not_a_number();", "s.rows[m][k] = 0;"),
-        ("pieces", "outside = 1;", "outside = 0;"),
         (
             "closed",
             "out[output * count + k] = at_tau[output];",
             "out[output * count + count - 1 - k] = at_tau[output];",
         ),
         ("march", "out[output * count + k] = at_tau[output];", "out[output * count + i] = at_tau[output];"),
+        ("pieces", "s.rows[m][k] = not_a_number();", "s.rows[m][k] = 0;"),
+        ("pieces", "outside = 1;", "outside = 0;"),
     ],
 )
 def test_sample_is_tested_too(evaluator, right, wrong, tmp_path):

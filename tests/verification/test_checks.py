@@ -54,6 +54,7 @@ def compared(scene, truth, evaluator="auto"):
     return [outcome.passed for outcome in outcomes]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("scene", [DRIVE, BUILDING, COLLISION], ids=["drive", "building", "collision"])
 def test_all_is_well(scene):
     truth = known_outputs(lower(scene))

@@ -156,6 +156,7 @@ def turned(loads):
     return tuple(replace(load, coefficients=tuple(-c for c in load.coefficients)) for load in loads)
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize(
     ("scene", "change"),
     [

@@ -120,6 +120,7 @@ def test_places_off_the_grid_are_read_off_lines():
         assert "extrapolated" not in outcome.cells
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("scene", "change"),
     [

@@ -82,6 +82,7 @@ def stated(family: PowerFamily, row: PowerRow, m: int, rod: int, n: int, body: i
     return max(-1, budget // family.period) if arrives else -1
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize(("system", "family"), GENERIC)
 def test_degrees_of_walk_polynomials_are_the_formulas(system, family):
     """A degree with numbers modulo a prime for the other letters is at most the true one, which the proof bounds."""

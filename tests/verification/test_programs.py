@@ -105,6 +105,7 @@ def test_a_fault_is_seen_and_its_program_named(
     )
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     "parts",
     [
@@ -134,6 +135,7 @@ def test_a_fault_in_what_a_model_gives_is_seen(parts: list[str], monkeypatch: py
         assert not [name for name in failing(text) if name.endswith((", C", "sample", "sample backwards", "others"))]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("runtime", [(), ("kappa", "inertia")], ids=["fixed", "tuned"])
 @pytest.mark.parametrize("wrong", ["0 * most", "most / (most - most)"], ids=["nothing", "no number"])
 def test_a_stream_that_hides_what_it_has_lost_is_seen(
@@ -159,6 +161,7 @@ FAULTS_OF_FMUS = {
 }
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("fault", FAULTS_OF_FMUS)
 def test_fmus_are_verified_and_a_fault_in_one_is_seen(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The C beside them is right: what simulators call it by is not."""
