@@ -266,6 +266,7 @@ def test_the_program_is_the_one_that_is_generated(name: str) -> None:
     assert rows["march", "double", "speed"]["refusal"].startswith("not tried: another program meets the tolerance")
 
 
+@pytest.mark.slow
 def test_single_precision() -> None:
     given = scene("drive_m1", tolerance="1e-4")
     rows = by(told(given)["tried"], *TRIED)

@@ -219,6 +219,7 @@ def test_a_page_says_that_fronts_are_too_many_to_be_drawn_along_the_chain(monkey
     assert "Largest drift" not in text
 
 
+@pytest.mark.slow
 def test_without_the_count_it_goes_on_to_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cost, "_GROWN", 10**9)
     monkeypatch.setattr(cost, "MOST_STAGES", 3000)

@@ -126,7 +126,7 @@ def test_a_record_within_bounds(scene, chosen):
     assert same < 1e-20 * np.sum(data**2) < other
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [SHAKEN, LINKED])
 def test_samples_that_only_add_up_are_seen(scene):
     program = runtime_program(lower(scene), Request(runtime=("load",)), amplitudes(scene))

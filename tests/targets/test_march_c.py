@@ -67,8 +67,9 @@ def scene_of(name) -> Scene:
     return SCENES.get(name) or every(3, tolerance="1e-3")
 
 
-@pytest.mark.parametrize("how", SELFTESTS, ids=lambda how: "-".join(each.name for each in how))
+@pytest.mark.quick(1 + len(SCENES))
 @EACH
+@pytest.mark.parametrize("how", SELFTESTS, ids=lambda how: "-".join(each.name for each in how))
 def test_c_passes_its_self_test(name, how, monkeypatch) -> None:
     compiler, real = how
     monkeypatch.setenv("CC", shlex.join(compiler.command))
