@@ -1,4 +1,4 @@
-"""Springs that act on one side, with gaps, and springs that yield: against closed forms and a solver of its own."""
+"""Springs that act on one side, with gaps, and springs that yield: against closed forms."""
 
 from __future__ import annotations
 
@@ -10,10 +10,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from flint import fmpq
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from tests.support.sprung import LawSpring, Sprung
 from wavesym.errors import SceneError
 from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.contacts.springs import CornerSpring
@@ -103,78 +100,6 @@ def test_where_no_corner_is_met_values_are_those_of_the_linear_scene(law: dict[s
         with_law, without = (chain([*parts, end, "fixed"], 6, at=("a", "b")) for end in ends)
     taus = [0.3, 1.0, 2.7, 3.1, 5.9]
     assert Reference(with_law).values(taus) == Reference(without).values(taus)
-
-
-def mixed(draw: st.DrawFn) -> tuple[Model, Sprung, float]:
-    """Two masses and two springs in a row, each with a law, in a scene and in the solver."""
-    size = st.sampled_from(["1", "1/2", "2", "3/7", "1.001"])
-    until = draw(st.sampled_from(["4", "7/2"]))
-    laws, springs = [], []
-    for place, (left, right) in enumerate(((0, 1), (1, None))):
-        stiffness, limit = (Fraction(draw(st.sampled_from(["4", "9/2", "3"]))), Fraction(draw(size)))
-        kind = draw(st.sampled_from(["push", "pull", "both", "yield", "unequal", "linear"]))
-        k, r = mp.mpf(stiffness.numerator) / stiffness.denominator, mp.mpf(limit.numerator) / limit.denominator
-        name = str(place)
-        table: dict[str, Any] = {"spring": str(stiffness)}
-        if kind in ("push", "pull"):
-            table |= {"only": kind, "gap": str(limit / 4)}
-            springs.append(LawSpring(left, right, k, {"push": -1, "pull": 1}[kind], r / 4, name=name))
-        elif kind == "both":
-            table |= {"gap": [str(-limit / 4), str(limit / 8)]}
-            springs += [LawSpring(left, right, k, side, r / (8 if side > 0 else 4), name=name) for side in (-1, 1)]
-        elif kind in ("yield", "unequal"):
-            table |= {"yield": str(limit) if kind == "yield" else [str(limit / 3), str(limit)]}
-            springs.append(LawSpring(left, right, k, limits=(r if kind == "yield" else r / 3, r), name=name))
-        else:
-            springs.append(LawSpring(left, right, k, name=name))
-        laws.append(table)
-    masses, speeds = (
-        [draw(size) for _ in range(2)],
-        [draw(st.sampled_from(["1", "-1/2", "0", "3/2"])) for _ in range(2)],
-    )
-    damping = draw(st.sampled_from(["0", "1/5"]))
-    jump, when = draw(st.sampled_from(["1", "-2", "1/3"])), draw(st.sampled_from(["0", "1", "2.3"]))
-    nodes = [
-        {"mass": mass, "velocity": speed, "name": name} for mass, speed, name in zip(masses, speeds, "ab", strict=True)
-    ]
-    nodes[0]["dashpot"] = damping
-    load = {"at": "a", "times": [when], "steps": [jump]}
-    model = chain([nodes[0], laws[0], nodes[1], laws[1], "fixed"], until, (load,), ("a", "b"))
-
-    def number(text: str) -> mp.mpf:
-        value = Fraction(text)
-        return mp.mpf(value.numerator) / value.denominator
-
-    with mp.workdps(50):
-        solver = Sprung(
-            [number(mass) for mass in masses],
-            [number(damping), mp.mpf(0)],
-            springs,
-            [number(speed) for speed in speeds],
-            [(number(when), 0, number(jump))],
-        )
-    return model, solver, float(Fraction(until))
-
-
-@pytest.mark.slow
-@settings(max_examples=100)
-@given(st.data())
-def test_drawn_chains_are_those_of_a_solver_of_its_own(data: st.DataObject) -> None:
-    """Every event to 20 digits, every value to the last bit."""
-    with mp.workdps(50):
-        model, solver, until = data.draw(st.composite(mixed)())
-        taus = [mp.mpf(k) * until / 16 for k in (1, 3, 7, 11, 16)]
-        happened, values = solver.run(taus)
-    found = list(events(model))
-    # what begins on the edge of a branch, at tau = 0, is no event
-    expected = [each for each in happened if each[2] > mp.mpf(10) ** -15]
-    assert [event.kind for event in found] == [kind for kind, _, _ in expected]
-    with mp.workdps(40):
-        for event, (_, _, tau) in zip(found, expected, strict=True):
-            assert abs(mp.mpf(event.digits) - tau) <= mp.mpf(10) ** -19 * tau
-    computed = np.array(Reference(model).values([float(tau) for tau in taus]))
-    truth = np.array([[float(value) for value in row] for row in values]).T
-    assert np.all(np.abs(computed[[2, 3, 0, 1]] - truth) <= 2.0**-52 * np.maximum(np.abs(truth), 1e-3))
 
 
 def test_the_rest_of_a_spring_on_the_wrong_side_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
