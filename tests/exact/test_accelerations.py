@@ -66,6 +66,7 @@ def worst_integral(scene: Scene) -> float:
     return float(np.max(np.abs(summed - gained)) / np.max(np.abs(acceleration)))
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("seed", [2, 3, 4, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (0, 1, 5))])
 def test_the_integral_of_an_acceleration_is_what_the_velocity_gains(seed: int) -> None:
     assert worst_integral(drawn(Random(seed))) < 1e-12

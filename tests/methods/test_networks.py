@@ -89,6 +89,7 @@ def errors(method, name, resolution, broken=lambda problem: problem):
     return np.max(np.abs(found - values) / sizes, axis=1)
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_differences_converge(name):
     """A step divides all delays, so that there may be many more cells than stated."""
@@ -107,6 +108,7 @@ def test_characteristics_converge(name, method, order):
     assert last < 1e-12 or math.log(first / last, 4) > order
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_laplace_converges(name):
     first, last = (np.max(errors(laplace.METHOD, name, n)) for n in (400, 2000))

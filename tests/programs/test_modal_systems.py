@@ -94,6 +94,7 @@ def with_modes(model, count):
     return ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("name", UNDAMPED)
 def test_outputs_are_those_of_waves_but_for_what_is_left_out(name):
     """With few modes and with enough, errors are within the bound, which meets the tolerance."""
@@ -161,6 +162,7 @@ DAMPED = {
 }
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize("name", DAMPED)
 def test_damped_modes_beyond_those_taken_are_within_the_bound(name):
     model = replace(building(["1", "1/4", "3/5"], [samples(9)], **ALL, **MORE), damping=DAMPED[name])

@@ -40,6 +40,7 @@ def same(one, other):
     assert one.tobytes() == other.tobytes()
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("name", SCENES)
 @each_program
 def test_a_program_is_its_generated_numpy(name, evaluator, precision):

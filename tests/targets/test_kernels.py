@@ -103,6 +103,7 @@ def test_a_broken_kernel_is_seen(kernel, right, wrong, tmp_path):
     assert complaint(kernel, tmp_path)
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("of", SOURCES, ids="-".join)
 def test_a_program_writes_all_tables_that_it_has(of):
     made = source(*of)

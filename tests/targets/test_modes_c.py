@@ -138,6 +138,7 @@ BREAKS = {
 }
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize("fault", BREAKS)
 def test_a_broken_stream_is_seen_by_its_selftest(fault, tmp_path):
     written(evaluator(storeys(3, 3, 0.05), uniform([0, *SAMPLES], fmpq(1)), 80.0), tmp_path)

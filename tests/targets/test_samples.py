@@ -142,6 +142,7 @@ def test_runs_end_where_single_values_change_pieces(made, data):
     np.testing.assert_array_equal(found, expected)
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [

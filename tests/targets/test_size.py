@@ -25,6 +25,7 @@ SCENE = wavesym.Scene(
 )
 
 
+@pytest.mark.quick(3)
 @needs_binutils
 @pytest.mark.parametrize("made_by", [each for each in at_hand() if each.name in TARGETS], ids=lambda each: each.name)
 @pytest.mark.parametrize("evaluator", ["closed", "pieces"])

@@ -51,6 +51,7 @@ def with_cells(model, cells):
     return MidpointGrid(corner_problem(model), Fraction(1, cells))
 
 
+@pytest.mark.quick(2)
 @FOUR
 def test_what_is_extrapolated_is_of_order_four(scene):
     assert all(outcome.passed for outcome in integrations.midpoints(known_outputs(lower(scene))))

@@ -49,6 +49,7 @@ SOON = [
 ]
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize(("system", "family"), SOON)
 def test_upper_bounds_by_induction(system, family):
     proof = list(steps(system, family))
