@@ -17,6 +17,7 @@ from wavesym.mechanics.network import Bar
 from wavesym.mechanics.travel_times import FINEST, adjust_speeds, percent, speed_change
 from wavesym.numbers.doubles import common_measure
 from wavesym.scene import lower
+from wavesym.scene.explicit_text import explicit_text
 
 LAYERS = (("12 m", 451, 902), ("7.3 m", 333, 632.7), ("5 m", 210, 357))  # m, m/s, kN s/m
 ROCK = 2400.0  # kN s/m
@@ -165,5 +166,7 @@ def test_storeys_that_differ_take_a_speed_adjustment_too() -> None:
     ]
     system = {"type": "building", "base": "ground", "storey": storeys, "speed_adjustment": "0.5 %"}
     building = Scene(name="frame", units={}, system=system, output={"until": "1 s", "drift": [1]})
-    bars = lower(building).network.bars
-    assert common_measure([bar.delay for bar in bars]) * FINEST >= min(bar.delay for bar in bars)
+    delays = [bar.delay for bar in lower(building).network.bars]
+    assert common_measure(delays) * FINEST >= min(delays)
+    written_out = [bar.delay for bar in lower(Scene.from_toml(explicit_text(building))).network.bars]
+    assert [delay / delays[0] for delay in delays] == [delay / written_out[0] for delay in written_out]

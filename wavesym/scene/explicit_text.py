@@ -47,8 +47,8 @@ def _lines(scene: Scene) -> Iterator[str]:
         yield ""
     yield "[system]"
     yield 'type = "chain"'
-    if damping := scene.system.model_dump(mode="json").get("damping"):
-        yield f"damping = {_value(damping)}"
+    said = scene.system.model_dump(mode="json")
+    yield from (f"{key} = {_value(said[key])}" for key in ("damping", "speed_adjustment") if said.get(key))
     yield "parts = ["
     yield from (f"  {part}," for part in _parts(parts, numbers))
     yield "]"
