@@ -14,8 +14,8 @@ from tests.cli.test_cli import SCENE, folder, refused
 from wavesym import api
 from wavesym.cli import main
 from wavesym.results import rows
-from wavesym.scene import builtin_names, lower
-from wavesym.scene.first_scene import IN_UNITS, KINDS
+from wavesym.scene import Scene, builtin_names, lower
+from wavesym.scene.first_scene import IN_UNITS, KINDS, first_text
 
 __all__ = ["folder"]
 
@@ -251,3 +251,11 @@ def test_names_of_files_are_no_commands_to_a_terminal(capsys: pytest.CaptureFixt
         lines = (told.out + told.err).splitlines()
         assert all(line.isprintable() for line in lines), command
         assert "a\\x1b[2J\\x07.csv" in lines[0]
+
+
+def test_a_column_of_soil_under_a_record_that_begins_with_a_jump_has_accelerations() -> None:
+    """No place without mass is accelerated by a jump: the load rises to the first sample."""
+    record = Path(__file__).parents[2] / "examples/records/elcentro_1940_ns_peknold.at2"
+    text = first_text("soil", record).replace("strain = ", 'acceleration = ["40 m"]\nstrain = ')
+    scene = Scene.from_toml(text).with_({"output.until": "1 s"})
+    assert wavesym.summary(scene)["acceleration@40 m"].max.value > 0

@@ -53,6 +53,11 @@ def first_text(kind: str, record: str | PathLike[str] | None = None) -> str:
         lines.append(f'spacing = "0.01 s"{"":14}# of its samples: the file does not say')
         return _replace_samples(text, lines, "")
     begin = found.times[0] if found.times else Fraction(0)
+    if kind == "soil" and not found.times and found.samples[0]:
+        begin = step
+        lines.append(
+            f'start = "{decimal_text(step)} {found.clock or "s"}"{"":15}# its first sample is not 0: it rises to it'
+        )
     end = begin + (len(found.samples) - 1) * step
     return _replace_samples(text, lines, f"{decimal_text(end)} {found.clock or 's'}")
 
