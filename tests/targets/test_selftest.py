@@ -19,7 +19,7 @@ import pytest
 from tests.support.builds import scene
 from tests.support.generated import files
 from tests.support.truth import Truth
-from wavesym.programs import reference_values
+from wavesym.programs import form as program_form
 from wavesym.running.compilation import FLAGS
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
@@ -189,7 +189,7 @@ def test_a_change_far_below_the_bound_is_none(tmp_path):
 
 @pytest.mark.slow
 def test_a_self_test_of_few_points_would_miss_some(monkeypatch, tmp_path):
-    monkeypatch.setattr(reference_values, "_MOST_POINTS", 12)
+    monkeypatch.setattr(program_form, "_MOST_POINTS", 12)
     program = mutable("pieces", "double", "1e-9", tmp_path)
     assert program.passes()
     assert len(unseen(program, "coefficient", program.outputs())) > 100
