@@ -16,6 +16,7 @@ from tests.pictures.clear import texts_keep_clear
 from wavesym.api import evaluator
 from wavesym.derivation.increments import start
 from wavesym.exact.contacts.events import contact_ends
+from wavesym.exact.extremes import extremes
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.model import Model
@@ -147,6 +148,24 @@ def test_loose_tolerances_stay_and_tight_ones_do_not_hinder() -> None:
         update={"output": THIRDS.output.model_copy(update={"tolerance": Fraction(1, 10**30)})}
     )
     assert len(histories(lower(impossible)).outputs) == len(THIRDS.outputs)
+
+
+@pytest.mark.parametrize("name", ["drive_m1", "building_m2"])
+def test_labels_are_the_proved_extremes_to_their_digits(name: str) -> None:
+    short = Scene.from_toml(name)
+    long = short.model_copy(update={"output": short.output.model_copy(update={"until": Fraction(40)})})
+    proved, marked = extremes(lower(long)), histories(lower(long))
+    drawn = [replace(history, peaks=None).extremes for history in marked.outputs]
+    missed = 0
+    for pair, history, vertices in zip(proved, marked.outputs, drawn, strict=True):
+        true = np.array([(each.tau, each.value) for each in pair])
+        largest = np.max(np.abs(true[:, 1]))
+        assert np.max(np.abs(history.extremes - true)[:, 1]) <= ALLOWED * largest
+        assert np.max(np.abs(history.extremes - true)[:, 0]) <= 0.002, "when, to the square root of that"
+        missed += np.max(np.abs(vertices - true)[:, 1]) > ALLOWED * largest
+    assert missed, "the vertices that are drawn alone do not have them"
+    told = {f"{each.value:.4g}" for pair in proved for each in pair}
+    assert {mark.text.partition(" at ")[0] for panel in panels.panels(marked) for mark in panel.marks} <= told
 
 
 def test_fronts_too_dense_to_be_seen_are_not_drawn_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:

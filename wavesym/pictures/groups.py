@@ -143,8 +143,9 @@ def _even(shown: Sequence[History], count: int) -> list[Sequence[History]]:
 def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
     """The greatest and the least value of each curve, or of all where they are many; what is formal has none."""
     for group in [[each] for each in shown] if len(shown) <= _MARKED else [shown]:
-        points = np.vstack([history.real for history in group])
-        for k in sorted({int(np.argmax(points[:, 1])), int(np.argmin(points[:, 1]))}):
+        points = np.vstack([history.extremes for history in group])
+        ends = {int(np.argmax(points[:, 1])), int(np.argmin(points[:, 1]))}
+        for k in sorted(ends, key=lambda k: float(points[k, 0])):
             tau, value = points[k]
             if abs(value) > _NOISE * np.max(np.abs(points[:, 1])):
                 text = number_text(value, unit_text(shown[0].output.unit), 4)

@@ -25,6 +25,7 @@ from wavesym.programs.making import make
 from wavesym.programs.march.plan import march_plan
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
+from wavesym.results.sampling import sampled_extremes
 
 Points = NDArray[np.float64]
 
@@ -43,12 +44,14 @@ class History:
     """One output over tau, dimensionless.
 
     `stretches` are polylines (n, 2) of tau and value; from one to the next the output jumps. What comes after
-    `formal` is the formal continuation of a contact that has opened.
+    `formal` is the formal continuation of a contact that has opened. `peaks` are tau and value of the least and of the
+    greatest value that was looked for between the vertices, (2, 2).
     """
 
     output: Probe
     stretches: tuple[Points, ...]
     formal: float = inf
+    peaks: Points | None = None
 
     @property
     def name(self) -> str:
@@ -63,6 +66,13 @@ class History:
     def real(self) -> Points:
         """The vertices that are no formal continuation."""
         return self.points[self.points[:, 0] <= self.formal]
+
+    @property
+    def extremes(self) -> Points:
+        """Tau and value of its least and of its greatest value, (2, 2), in which nothing is formal."""
+        if self.peaks is not None:
+            return self.peaks
+        return self.real[[np.argmin(self.real[:, 1]), np.argmax(self.real[:, 1])]]
 
     @property
     def zero(self) -> bool:
@@ -88,19 +98,23 @@ def histories(model: Model, columns: int = 1, program: Program | None = None) ->
     that has these outputs, or of one that is made quickly.
     """
     program = program or drawable(model)
-    names = [output.name for output in program.outputs]
     contacts = contact_ends(model)
     formal = [_formal(model, probe, contacts) for probe in model.probes]
     dense = _dense(model)
     sudden = program.under_jumps(model)
     fronts = [[] if dense else arrivals(sudden, probe) for probe in model.probes]
     taus = _instants(program, columns, fronts, formal)
-    values = program.evaluate(taus)[[names.index(probe.name) for probe in model.probes]]
+    values = program.evaluate(taus)
+    names = [output.name for output in program.outputs]
+    rows = [names.index(probe.name) for probe in model.probes]
+    ends = np.full(len(names), program.tau_max)
+    ends[rows] = np.minimum(ends[rows], formal)
+    peaks = _peaks(program, taus, values, ends)
     return Histories(
         model,
         tuple(
-            History(probe, _split_at_fronts(np.column_stack([taus, row]), own), late)
-            for probe, row, own, late in zip(model.probes, values, fronts, formal, strict=True)
+            History(probe, _split_at_fronts(np.column_stack([taus, values[row]]), own), late, peaks[row])
+            for probe, row, own, late in zip(model.probes, rows, fronts, formal, strict=True)
         ),
         contacts,
         dense,
@@ -176,6 +190,17 @@ def _instants(program: Program, columns: int, fronts: list[list[float]], formal:
     before = [nextafter(tau, 0) for tau in sudden]
     late = [tau for tau in formal if tau < until]
     return np.unique(np.concatenate([program.instants(until / count), sudden, before, late]))
+
+
+def _peaks(program: Program, taus: Points, values: Points, ends: Points) -> Points:
+    """The tau and value of the least and the greatest value of each output until it `ends`, (outputs, 2, 2).
+
+    They are looked for around the highest of the `values` (outputs, taus), as `summary` does.
+    """
+    last = np.searchsorted(taus, ends, side="right") - 1
+    held = np.take_along_axis(values, np.minimum(np.arange(taus.size), last[:, None]), axis=1)
+    found, when = sampled_extremes(taus, held, lambda tau: program.each(np.minimum(tau, ends[:, None])))
+    return np.stack([when, found], axis=2)
 
 
 def _split_at_fronts(points: Points, fronts: list[float]) -> tuple[Points, ...]:

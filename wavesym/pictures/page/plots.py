@@ -124,8 +124,7 @@ def _size(given: PlotPanel) -> tuple[float, tuple[float, float]]:
 
 
 def _describe(history: History, scale: Timescale) -> str:
-    points = history.real
-    least, greatest = points[int(np.argmin(points[:, 1]))], points[int(np.argmax(points[:, 1]))]
+    least, greatest = history.extremes
     unit = f" {history.output.unit}".rstrip()
     return (
         f"{history.name}: from {least[1]:.4g}{unit} at {scale.format(least[0])} "
