@@ -146,6 +146,18 @@ def test_names_do_not_lie_over_one_another():
     assert not any(box.overlaps(tick) for box in boxes for tick in ticks)
 
 
+@pytest.mark.parametrize("branch", ["1/2", "2", "20"])
+def test_numbers_below_a_branch_do_not_lie_over_those_beside_them(branch):
+    own = {**CHAIN, "branch": [{"from": "a", "name": "b", "parts": [{"rod": branch}, "fixed"]}]}
+    scene = wavesym.Scene(name="beside", system=own, output={"until": 2, "velocity": [0]})
+    figure = xt.draw(lower(scene), scene.system.lines)
+    figure.canvas.draw()
+    shown = [[text.get_window_extent() for text in axes.get_xticklabels() if text.get_text()] for axes in figure.axes]
+    assert min(map(len, shown[:2])) >= 1
+    boxes = [box for axes in shown[:2] for box in axes]
+    assert not any(one.overlaps(other) for k, one in enumerate(boxes) for other in boxes[:k])
+
+
 def test_fronts_are_where_outputs_jump():
     """A pulse of two jumps runs down a bar and back: lines leave its ends then, and no others."""
     parts = [{"joint": True, "name": "head"}, {"rod": 2}, "fixed"]

@@ -43,6 +43,7 @@ _ROWS, _COLUMNS = 600, 500  # cells of all lines together
 _OFF = 0.4142  # of a cell: where in it the value is taken
 _MOST_FRONTS = 400  # lines that can be told apart
 _NARROWEST = 0.12  # of all lines together: where names and numbers still fit
+_NUMBER = 0.5  # inches of a number below a panel
 _DIGITS = 36  # that numbers below a panel may have together
 _SENSE = {"velocity": "", "force": ": pull red, push blue"}
 
@@ -96,6 +97,7 @@ def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> F
             _frame(axes, name, stations, until, scale.title if left == _LEFT else "")
             if model.length is not None:
                 _lengths(axes, axis_text(name, model.length), float(model.length.size))
+            _thin_ticks(axes, room, first=left == _LEFT)
             draw_nodes(axes, model.network, stations, loose, until)
             if not name:
                 _formal(axes, model, float(stations[-1].x))
@@ -140,6 +142,15 @@ def _lengths(axes: Axes, label: str, length: float) -> None:
     axes.set_xticks([min(place / length, high) for place in places], [f"{place:.6g}" for place in places])
     axes.set_xlim(low, high)
     axes.set_xlabel(label)
+
+
+def _thin_ticks(axes: Axes, room: float, *, first: bool) -> None:
+    """So many numbers as fit below a panel; the 0 of a later one would lie over the end of the one before it."""
+    low, high = axes.get_xlim()
+    ticks = [(x, text.get_text()) for x, text in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)]
+    inside = [tick for tick in ticks if low < tick[0] <= high or (first and tick[0] == low)]
+    step = -(-len(inside) // max(1, int(room / _NUMBER)))
+    axes.set_xticks(*zip(*inside[::-step][::-1], strict=True))
 
 
 def _formal(axes: Axes, model: Model, long: float) -> None:
