@@ -1,5 +1,7 @@
 """Models whose stiffness, mass, damping and loads are given when they run: many damped structures, by modes."""
 
+import re
+
 import numpy as np
 import pytest
 from flint import fmpq
@@ -241,6 +243,16 @@ def test_what_modes_cannot_give_is_refused_in_one_line(sprung):
     stepped = SPRUNG.with_({"load": [{"at": "f4", "times": [0], "steps": [1]}]})
     with pytest.raises(UnservedError, match="modes support no jump"):
         wavesym.model(stepped, ["mass"])
+
+
+@pytest.mark.parametrize("name", ["drive_m1", "building_m2"])
+def test_numbers_of_modes_under_a_jump_name_numbers_that_are_served(name):
+    jumping = wavesym.Scene.from_toml(name)
+    with pytest.raises(UnservedError, match="modes support no jump") as refused:
+        wavesym.model(jumping, ["stiffness"])
+    named = re.search(r"; under a jump take (.*) at run time", str(refused.value))
+    for word in re.split(", | or ", named[1]):
+        assert np.isfinite(wavesym.model(jumping, [word]).values([1.0])).all()
 
 
 @pytest.mark.parametrize(

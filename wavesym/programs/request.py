@@ -173,7 +173,7 @@ def refuse_others(option: str, names: Sequence[str], known: Sequence[str]) -> No
     """WavesymError for a name that is none of those there are, and for one that is given twice."""
     for place, name in enumerate(names):
         if name not in known:
-            choice = f"{_one_of(known)}. {did_you_mean(name, known)}".rstrip(". ")
+            choice = f"{alternatives(known)}. {did_you_mean(name, known)}".rstrip(". ")
             raise WavesymError(f"{option}: {name or 'an empty name'} is unknown; write {choice}")
         if name in names[:place]:
             raise WavesymError(f"{option}: {name} stands twice; write it once")
@@ -190,10 +190,11 @@ def refuse_beside(other: str, options: Iterable[tuple[str, object, object]]) -> 
 def refuse_unknown(option: str, word: str, known: Iterable[str]) -> None:
     """WavesymError for a word that is none of those there are."""
     if word not in (names := tuple(known)):
-        raise WavesymError(f"{option}: {word} is unknown; write {_one_of(names)}")
+        raise WavesymError(f"{option}: {word} is unknown; write {alternatives(names)}")
 
 
-def _one_of(names: Sequence[str]) -> str:
+def alternatives(names: Sequence[str]) -> str:
+    """Names of which one is to be taken, as a sentence has them."""
     *others, last = names
     return f"{', '.join(others)} or {last}" if others else last
 

@@ -30,7 +30,7 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.modes.loads import Numbers, Roughness, linear_loads, sampled_roughness
 from wavesym.programs.modes.truncation import truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
-from wavesym.programs.request import refuse_others
+from wavesym.programs.request import OF_MODES, alternatives, refuse_others
 from wavesym.programs.runtime.network import PLAIN, ParameterUnit, RuntimeField, field_of, unit_of_load
 
 _MORE = 1.1  # times as many modes as one set of numbers needs
@@ -117,6 +117,7 @@ def mode_parameters(
     UnservedError for what modes do not serve, WavesymError for a name that the scene does not have.
     """
     _refuse_dashpots(model.network)
+    _refuse_jumps(model, names)
     known = {name: numbers for name, numbers in _numbers(model) if numbers}
     refuse_others("runtime", names, [*known, *(["load"] if model.loads else [])])
     fields = [
@@ -142,6 +143,17 @@ def _refuse_dashpots(network: Network) -> None:
             f"runtime: numbers of modes beside the dashpot or absorbing end at {points[0].label} are "
             f"not supported ({remedy})"
         )
+
+
+def _refuse_jumps(model: Model, names: Sequence[str]) -> None:
+    """UnservedError for loads that jump, which says what a march takes instead of numbers that modes alone have."""
+    try:
+        _ = UndampedModes(model.to_horizon()).loads
+    except UnservedError as error:
+        if model.damping is not None or not model.network.bars or OF_MODES.keys().isdisjoint(names):
+            raise
+        others = alternatives([*model.parameters.numbers, "load"])
+        raise UnservedError(f"{error}; under a jump take {others} at run time, or a sweep") from None
 
 
 def names_of(model: Model) -> tuple[str, ...]:
