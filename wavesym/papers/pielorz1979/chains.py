@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx, fmpq
 
-from wavesym.derivation.increments import Increment, combine, integrate, start
+from wavesym.derivation.increments import Increment, combine, differentiate, integrate, start
 from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, System
@@ -255,7 +255,7 @@ class LoadedChain:
         key = source, *function, number, order
         if key not in self.memory:
             increment = self.exact.responses[source][function][number]
-            self.memory[key] = {0: integrate, 1: lambda same: same, 2: _differentiate}[order](increment)
+            self.memory[key] = {0: integrate, 1: lambda same: same, 2: differentiate}[order](increment)
         found: Increment = self.memory[key]
         return found
 
@@ -340,16 +340,6 @@ def _terms(increment: Increment, w: fmpq, weight: fmpq | int = 1) -> Iterator[tu
         for power in reversed(powers):
             value = value * w + power
         yield -rate * w, weight * value
-
-
-def _differentiate(increment: Increment) -> Increment:
-    return {
-        rate: [
-            (k + 1) * above - rate * this
-            for k, (this, above) in enumerate(zip(powers, [*powers[1:], fmpq(0)], strict=True))
-        ]
-        for rate, powers in increment.items()
-    }
 
 
 @cache
