@@ -5,7 +5,7 @@ What is printed is what is judged: a reading is made from the strings of the rec
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
@@ -120,14 +120,18 @@ def reading(printed: str, ranges: Iterable[str]) -> Reading:
     return Reading(read_formula(printed), tuple(map(read_range, ranges)))
 
 
-def faults(right: Reading) -> Iterator[tuple[str, Reading]]:
-    """Every fault in the formula, and both ends of every range; no two have the same name."""
+def faults(
+    right: Reading,
+    of_formula: Callable[[Any], Iterable[tuple[str, Any]]] = mutations,
+    kept_ranges: Collection[Tree] = (),
+) -> Iterator[tuple[str, Reading]]:
+    """Every fault in the formula, and both ends of every range but the kept ones; no two have the same name."""
     named = set()
-    for change, formula in mutations(right.formula):
+    for change, formula in of_formula(right.formula):
         named.add(change)
         yield change, Reading(formula, right.ranges)
     for place, range_ in enumerate(right.ranges):
-        for change, wrong in ends(range_):
+        for change, wrong in ends(range_) if range_ not in kept_ranges else ():
             name = f"{change}, in {latex(range_)}" if change in named else change
             named.add(name)
             yield name, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))

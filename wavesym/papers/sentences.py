@@ -16,9 +16,9 @@ from typing import Any
 
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds
-from wavesym.papers.mutations import ends, mutations
+from wavesym.papers.mutations import mutations
 from wavesym.papers.reader import UnreadableError, read_formula, read_range
-from wavesym.papers.record import Adapter, Case, Reading, Sentence, Test
+from wavesym.papers.record import Adapter, Case, Reading, Sentence, Test, faults
 from wavesym.papers.tree import latex
 
 Words = Mapping[str, str]
@@ -101,15 +101,14 @@ class SentenceReader:
 
     def faults(self, right: Reading) -> Iterator[tuple[str, Reading]]:
         """Every other word in every place, and both ends of every range."""
-        for change, sentence in self.patterns[right.formula.pattern].others(right.formula):
-            yield change, Reading(sentence, right.ranges)
-        for place, range_ in enumerate(right.ranges):
-            for change, wrong in ends(range_):
-                yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
+        return faults(right, self.patterns[right.formula.pattern].others)
 
-    def pattern_data(self, sentence: Sentence) -> Mapping[str, Any]:
-        """What else is known of a sentence's pattern."""
-        return self.patterns[sentence.pattern].data
+    def pattern_data(self, text: str) -> Mapping[str, Any]:
+        """What else is known of a sentence's pattern; nothing where no pattern has it."""
+        try:
+            return self.patterns[self.sentence(text).pattern].data
+        except UnreadableError:
+            return {}
 
 
 def read_patterns(path: Path) -> tuple[SentencePattern, ...]:
@@ -138,8 +137,8 @@ def sentence_test(
             raise MeaninglessError("nothing is within its ranges")
 
     def test(entry: PaperEntry) -> Test:
-        against = _pattern_data(reader, entry.right_strings[0]).get("reference", "nothing known")
-        meant = _pattern_data(reader, entry.statement).get("convention")
+        against = reader.pattern_data(entry.right_strings[0]).get("reference", "nothing known")
+        meant = reader.pattern_data(entry.statement).get("convention")
 
         def intended_cases(reading: Reading) -> Iterator[Case]:
             words = {**reading.formula.words, **(meant["words"] if meant else {})}
@@ -149,10 +148,3 @@ def sentence_test(
         return Test(against, cases_in_range, reader.read, reader.faults, conventions=conventions)
 
     return test
-
-
-def _pattern_data(reader: SentenceReader, sentence: str) -> Mapping[str, Any]:
-    try:
-        return reader.pattern_data(reader.sentence(sentence))
-    except UnreadableError:
-        return {}

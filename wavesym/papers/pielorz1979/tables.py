@@ -15,7 +15,7 @@ from typing import Any
 from wavesym.derivation.table import Function as TableFunction
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, constants_in, holds, items, places, sides, span
-from wavesym.papers.mutations import ends, mutations
+from wavesym.papers.mutations import ends
 from wavesym.papers.pielorz1979.forms import (
     ALPHA,
     EXACT,
@@ -40,7 +40,7 @@ from wavesym.papers.pielorz1979.forms import (
 from wavesym.papers.pielorz1979.powers import PAIRS, power_cases, right_power_cases
 from wavesym.papers.pielorz1979.transcript import entries, ids, right_reading
 from wavesym.papers.reader import read_formula, read_range
-from wavesym.papers.record import Case, Reading, Test
+from wavesym.papers.record import Case, Reading, Test, faults
 from wavesym.papers.tree import (
     Blank,
     Call,
@@ -119,14 +119,14 @@ def _is_exponential(part: Tree) -> bool:
 def cell(entry: PaperEntry) -> Test:
     """A cell of Tables 2 to 4."""
     name, row = EXAMPLE[entry.id[:2]], entry.subject["row"]
-    faults = partial(_faults, entry)
+    own_faults = partial(_faults, entry)
     if row in "dw":
-        return Test("the motion under delayed moments, by (4.10)", partial(_in_motion, entry.id), faults=faults)
+        return Test("the motion under delayed moments, by (4.10)", partial(_in_motion, entry.id), faults=own_faults)
     m, n = zip(*PAIRS[name], strict=True)
     return Test(
         f"{_POWERS}, m = {min(m)} ... {max(m)}, n = 0 ... {max(n)}",
         partial(_cell_cases, entry, name),
-        faults=faults,
+        faults=own_faults,
         conventions={"functions that rest have no power": partial(_while_moving, entry)} if name == "III" else {},
     )
 
@@ -150,18 +150,11 @@ def _while_moving(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
             yield tried
 
 
-def _faults(entry: PaperEntry, right: Reading) -> Iterator[tuple[str, Reading]]:
+def _faults(entry: PaperEntry, right: Reading) -> Iterable[tuple[str, Reading]]:
     """Those of the formula, and of a range that is the cell's own: the others are faults of the heads."""
     if isinstance(right.formula, Blank):
-        for digit in "01":
-            yield f"{digit} for {latex(right.formula)}", Reading(Number(digit), right.ranges)
-        return
-    for change, formula in mutations(right.formula):
-        yield change, Reading(formula, right.ranges)
-    for place, range_ in enumerate(right.ranges):
-        if range_ not in map(read_range, entry.ranges):
-            for change, wrong in ends(range_):
-                yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
+        return [(f"{digit} for {latex(right.formula)}", Reading(Number(digit), right.ranges)) for digit in "01"]
+    return faults(right, kept_ranges=tuple(map(read_range, entry.ranges)))
 
 
 def definition(entry: PaperEntry) -> Test:
@@ -284,16 +277,12 @@ def interval(entry: PaperEntry) -> Test:
     def read(text: str, ranges: Iterable[str]) -> Reading:
         return Reading(read_range(text), tuple(map(read_range, ranges)))
 
-    def faults(right: Reading) -> Iterator[tuple[str, Reading]]:
-        yield from ((change, replace(right, formula=wrong)) for change, wrong in ends(right.formula))
-        yield from ((change, replace(right, ranges=(wrong,))) for change, wrong in ends(right.ranges[0]))
-
     return Test(
         f"{FORMS[name]} as corrected in every interval that z is said to lie in, against the motion; inside of "
         "intervals, every z in one of them",
         lambda reading: _interval_cases(name, [reading], ends_too=False),
         read,
-        faults,
+        partial(faults, of_formula=ends),
     )
 
 
