@@ -83,12 +83,20 @@ class PaperEntry(_Data):
         return self.english or self.printed
 
     @property
+    def printed_strings(self) -> tuple[str, tuple[str, ...]]:
+        """What is judged, and its ranges, those that are not printed too."""
+        return self.statement, (*self.ranges, *self.inferred_ranges)
+
+    @property
+    def right_ranges(self) -> tuple[str, ...]:
+        """The printed ranges, as they are right."""
+        return self.ranges if self.slip is None or self.slip.ranges is None else self.slip.ranges
+
+    @property
     def right_strings(self) -> tuple[str, tuple[str, ...]]:
-        """What is right, as printed or as corrected: the formula, and its ranges."""
-        if self.slip is None:
-            return self.statement, (*self.ranges, *self.inferred_ranges)
-        ranges = self.ranges if self.slip.ranges is None else self.slip.ranges
-        return self.slip.correction, (*ranges, *self.inferred_ranges)
+        """What is right, as printed or as corrected, and its ranges, those that are not printed too."""
+        right = self.statement if self.slip is None else self.slip.correction
+        return right, (*self.right_ranges, *self.inferred_ranges)
 
 
 class Passage(_Data):

@@ -210,14 +210,11 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
     found = list(problems)
     slip = entry.slip
     stop_at: Literal["", "value"] = "value" if slip and not test.variation else ""
-    printed = _Trial.run(test, entry.statement, (*entry.ranges, *entry.inferred_ranges), stop_at)
-    settled, text, ranges = printed, entry.statement, (*entry.ranges, *entry.inferred_ranges)
+    settled = printed = _Trial.run(test, *entry.printed_strings, stop_at)
     evidence: list[str] = []
     verdict: Verdict = "holds"
     if slip:
-        text = slip.correction
-        ranges = (*(entry.ranges if slip.ranges is None else slip.ranges), *entry.inferred_ranges)
-        settled = _Trial.run(test, text, ranges)
+        settled = _Trial.run(test, *entry.right_strings)
         if printed.wrong is None:
             found.append("called wrong, yet no case shows it")
         else:
@@ -233,11 +230,11 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
         evidence.append(f"It holds in {_all(printed.telling_count)}.")
     if not settled.telling_count:
         found.append("no case tells anything")
-    turned, unturned = _faulty(entry, test, text, ranges) if settled.wrong is None else (Mutations(), ())
+    turned, unturned = _faulty(entry, test) if settled.wrong is None else (Mutations(), ())
     found += unturned
     difference = None
     if test.is_subtracted and slip and not settled.wrong:
-        difference = _difference(test, entry.statement, text)
+        difference = _difference(test, entry.statement, slip.correction)
     if test.observation:
         evidence.append(test.observation())
     return Record(
@@ -259,9 +256,8 @@ def _kind(entry: PaperEntry, test: Test, printed: _Trial) -> tuple[Verdict, str]
     if test.mathematics:
         under.append(("model", "As mathematics", test.mathematics))
     under += [("convention", f"Where {meaning},", cases) for meaning, cases in test.conventions.items()]
-    text, ranges = entry.statement, (*entry.ranges, *entry.inferred_ranges)
     for verdict, words, cases in under:
-        trial = _Trial.run(replace(test, cases=cases), text, ranges, stop_at="failure")
+        trial = _Trial.run(replace(test, cases=cases), *entry.printed_strings, stop_at="failure")
         if trial.telling_count and trial.wrong is None:
             return verdict, f"{words} it holds as printed in {_all(trial.telling_count)}."
     if printed.false is None:
@@ -292,11 +288,11 @@ def _difference(test: Test, printed: str, corrected: str) -> str | None:
         return None
 
 
-def _faulty(entry: PaperEntry, test: Test, text: str, ranges: Iterable[str]) -> tuple[Mutations, tuple[str, ...]]:
+def _faulty(entry: PaperEntry, test: Test) -> tuple[Mutations, tuple[str, ...]]:
     """The faults tried in what holds; and what is wrong with them."""
     reasons = dict(entry.equivalent)
     tried, problems, survived = 0, [], []
-    for change, wrong in test.faults(test.read(text, ranges)):
+    for change, wrong in test.faults(test.read(*entry.right_strings)):
         tried += 1
         turned = _Trial.is_turned(test, wrong)
         if turned and change in reasons:

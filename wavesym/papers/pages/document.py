@@ -13,7 +13,7 @@ from operator import attrgetter
 from wavesym import __version__
 from wavesym.papers.entries import Paper, PaperEntry
 from wavesym.papers.pages.lines import Code, Line, correction, formula, join_lines, prose, readable, statement
-from wavesym.papers.record import VERDICTS, Record, Verdict
+from wavesym.papers.record import VERDICTS, Record, Reproduction, Verdict
 from wavesym.papers.tables import PrintedTable, TableHead, places
 
 SIGNS = {
@@ -321,7 +321,7 @@ def fields(record: Record, findings: Findings) -> Iterable[Field]:
     for problem in record.problems:
         yield Field("problem", ((problem,),))
     if findings.reproduce:
-        yield from _reproduction(record)
+        yield from _reproduction_fields(record)
 
 
 def describe_origin(record: Record) -> str | None:
@@ -330,19 +330,27 @@ def describe_origin(record: Record) -> str | None:
     return ORIGINS[slip.origin] if slip and record.verdict in ("misprint", "unreadable") else None
 
 
-def _reproduction(record: Record) -> Iterable[Field]:
-    """How to see a counterexample: its scene as a file, the command that shows it, and what to look at."""
+def reproduction(record: Record) -> dict[str, str] | None:
+    """How to see a counterexample: its scene with the name of a file, the command that shows it, what to look at, and
+    what it says; only this where there is no chain behind it. None where there is no counterexample.
+    """
     wrong = record.counterexample
     if wrong is None:
-        return
-    if wrong.example is None:
+        return None
+    example, file = (wrong.example(), scene_file(record)) if wrong.example else (Reproduction("", "", ""), "")
+    command = example.command.replace("SCENE", file)
+    return {"file": file, "scene": example.scene, "command": command, "look": example.look, "said": f"{wrong}."}
+
+
+def _reproduction_fields(record: Record) -> Iterable[Field]:
+    parts = reproduction(record)
+    if parts and parts["file"]:
+        yield Field("reproduce", (("Save this scene as ", Code(parts["file"]), ":"),), parts["scene"])
+        yield Field("then type", ((Code(parts["command"]),),))
+        yield Field("look at", ((parts["look"],),))
+    elif parts:
         words = "There is no chain behind it to run: these are all its numbers."
-        yield Field("reproduce", ((f"{wrong}. {words}",),))
-        return
-    example, file = wrong.example(), scene_file(record)
-    yield Field("reproduce", (("Save this scene as ", Code(file), ":"),), example.scene)
-    yield Field("then type", ((Code(example.command.replace("SCENE", file)),),))
-    yield Field("look at", ((example.look,),))
+        yield Field("reproduce", ((f"{parts['said']} {words}",),))
 
 
 def scene_file(record: Record) -> str:

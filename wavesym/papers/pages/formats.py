@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import unicodedata
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
 from textwrap import fill, indent
 
-from wavesym.papers.entries import Slip
 from wavesym.papers.pages.document import (
     Block,
     Cell,
@@ -20,7 +19,7 @@ from wavesym.papers.pages.document import (
     describe_origin,
     document,
     fields,
-    scene_file,
+    reproduction,
     statistics,
 )
 from wavesym.papers.pages.lines import Code, Different, Formula, Inline, Line
@@ -157,7 +156,7 @@ def _object(record: Record, findings: Findings) -> dict[str, object]:
         "ranges": list(entry.ranges),
         "inferred": list(entry.inferred_ranges),
         "corrected": record.correction,
-        "corrected_ranges": _corrected_ranges(entry.ranges, slip),
+        "corrected_ranges": list(entry.right_ranges) if slip else None,
         "verdict": record.verdict,
         "origin": slip.origin if slip else None,
         "origin_meaning": describe_origin(record),
@@ -175,23 +174,8 @@ def _object(record: Record, findings: Findings) -> dict[str, object]:
         "problems": list(record.problems),
     }
     if findings.reproduce:
-        row["reproduce"] = _json_reproduction(record)
+        row["reproduce"] = reproduction(record)
     return row
-
-
-def _corrected_ranges(ranges: Sequence[str], slip: Slip | None) -> list[str] | None:
-    return None if slip is None else list(ranges if slip.ranges is None else slip.ranges)
-
-
-def _json_reproduction(record: Record) -> dict[str, str] | None:
-    wrong = record.counterexample
-    if wrong is None:
-        return None
-    if wrong.example is None:
-        return {"file": "", "scene": "", "command": "", "look": "", "said": f"{wrong}."}
-    example, file = wrong.example(), scene_file(record)
-    command = example.command.replace("SCENE", file)
-    return {"file": file, "scene": example.scene, "command": command, "look": example.look, "said": f"{wrong}."}
 
 
 # markdown

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from wavesym.papers.pages.marks import differences, differing_tokens
@@ -43,9 +43,9 @@ _TOKENS = re.compile(r"(\$[^$]*\$|\s+)")
 _SIGNS = {"dots": "...", "leq": "≤", "geq": "≥", "langle": "⟨", "rangle": "⟩"}
 
 
-def formula(text: str) -> Formula | Code:
-    """A string that is no prose; code where it cannot be read."""
-    for read in (read_formula, read_range):
+def formula(text: str, readers: Sequence[Callable[[str], Tree]] = (read_formula, read_range)) -> Formula | Code:
+    """A string that is no prose; code where none of the readers can read it."""
+    for read in readers:
         try:
             return Formula(text, read(text))
         except UnreadableError:
@@ -55,10 +55,7 @@ def formula(text: str) -> Formula | Code:
 
 def range_of_values(text: str) -> Formula | Code:
     """A range; code where it cannot be read."""
-    try:
-        return Formula(text, read_range(text))
-    except UnreadableError:
-        return Code(text)
+    return formula(text, (read_range,))
 
 
 def prose(text: str) -> Line:
@@ -102,13 +99,12 @@ def _versions(record: Record) -> tuple[tuple[Line, ...], tuple[Line, ...]]:
     if slip is None:
         own = prose(entry.english) if entry.english else (formula(entry.printed),)
         return (own, *((range_of_values(range_),) for range_ in entry.ranges)), ()
-    right = entry.ranges if slip.ranges is None else slip.ranges
     if entry.english:
         sentences = _compare_words(entry.english, slip.correction)
     else:
         one, other = _compare_formulas([formula(entry.printed)], [formula(slip.correction)])
         sentences = tuple(one), tuple(other)
-    ranges = [list(map(range_of_values, texts)) for texts in (entry.ranges, right)]
+    ranges = [list(map(range_of_values, texts)) for texts in (entry.ranges, entry.right_ranges)]
     if slip.ranges is not None:
         ranges = [*_compare_formulas(*ranges)]
     first, second = ((sentence, *((r,) for r in side)) for sentence, side in zip(sentences, ranges, strict=True))

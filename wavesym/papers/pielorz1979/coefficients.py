@@ -297,12 +297,7 @@ def listed_values(lines: Iterable[Reading], m: int, most_n: int) -> Iterator[tup
 
 def right_lines(but: str = "") -> list[Reading]:
     """The list as it should be, but for a line that is as printed."""
-    return [_printed_reading(id) if id == but else right_reading(id) for id in ids("line")]
-
-
-def _printed_reading(id: str) -> Reading:
-    record = transcribed(id)
-    return reading(record.printed, (*record.ranges, *record.inferred_ranges))
+    return [reading(*transcribed(id).printed_strings) if id == but else right_reading(id) for id in ids("line")]
 
 
 @cache
