@@ -489,6 +489,35 @@ def test_an_amplitude_that_is_the_same_everywhere_is_found_at_once(
         assert peak.frequency == pytest.approx(band[0], abs=1e-11)
 
 
+@pytest.mark.quick(2)
+@pytest.mark.parametrize(("low", "high"), [(0.0, 1e6), (1e-6, 1e6), (1e-6, 1e8), (1e-3, 1e6)])
+def test_no_resonance_is_missed_in_a_band_that_is_very_wide(low: float, high: float) -> None:
+    """The ball of a part whose ends differ by 2^30 and more has 0 in it, where no slope and no bend are known."""
+    parts = [{"mass": 2, "name": "a"}, {"spring": 3}, {"mass": 1, "name": "b", "dashpot": "1/2"}]
+    load = [{"at": "a", "times": [0], "steps": [1]}]
+    scene = Scene(
+        name="s", system={"type": "chain", "parts": parts}, load=load, output={"until": 5, "acceleration": ["b"]}
+    )
+    w = np.linspace(2, 2.2, 200_001)
+    largest = np.abs(3 * w**2 / ((3 - 2 * w**2) * (3 - w**2 + 0.5j * w) - 9)).max()
+    (peak,) = wavesym.frf(scene, [low, high]).peaks()
+    assert peak.low <= largest * (1 + 1e-9)
+    assert largest <= peak.high <= largest * (1 + 1e-9)
+
+
+def test_an_acceleration_beside_a_velocity_without_limit_at_0() -> None:
+    """Times i w a ball near 0 had 0 in it, and its power series no inverse: a traceback."""
+    parts = [{"motion": "acceleration", "name": "a"}, {"rod": 1}, {"joint": True, "name": "b"}]
+    parts += [{"rod": 2, "impedance": 2}, "absorbing"]
+    load = [{"at": "a", "times": [0], "steps": [1]}]
+    output = {"until": 5, "velocity": ["b"], "acceleration": ["b"]}
+    scene = Scene(name="s", system={"type": "chain", "parts": parts}, load=load, output=output)
+    velocity, acceleration = wavesym.frf(scene, [0.0, 30.0]).peaks()
+    assert (velocity.frequency, velocity.high) == (0.0, np.inf)
+    # what arrives at rod 2 never comes back: 1/(cos w + i 2 sin w), which is largest where cos w = 1
+    assert acceleration.low <= 1 <= acceleration.high < 1 + 1e-9
+
+
 @pytest.mark.parametrize("parts", [14, pytest.param(50, marks=pytest.mark.slow)])
 def test_peaks_of_many_parts_against_transfer_matrices(parts: int) -> None:
     """(u, force) from the free top to the bit, in doubles, at 40 000 frequencies."""

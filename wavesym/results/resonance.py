@@ -33,6 +33,7 @@ _GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole
 _MOST = 600_000  # intervals times parts
 _NEWTON = 3
 _TERMS = 10  # of Taylor polynomials
+_ROUNDED = arb(2) ** -20  # of a radius: what rounding adds to it, in a few products
 _PARTS = 64  # of the band at first
 _FIRST_MODES, _MOST_MODES = 32, 2048
 
@@ -218,7 +219,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
             for k in each.outputs:
                 value, slope, _ = squares[k]
                 rest = value + abs(slope) * half + abs(whole[k][2]) * half * half
-                most = (whole[k][0] if each.low.contains(0) else rest).upper()
+                most = (whole[k][0] if _reaches_zero(ball) else rest).upper()
                 if found[k].pole or (most.is_finite() and found[k].excludes(most)):
                     continue
                 if fractions is not None and fractions.stays_below(k, found[k].square * (1 + _SHARE), half):
@@ -272,6 +273,11 @@ class _Fractions:
         return bool(first + sum((abs(c) * half**n for n, c in enumerate(others, 1)), start=arb(0)) < 0)
 
 
+def _reaches_zero(w: arb) -> bool:
+    """Whether 0 is in a ball, or so near to it that a product of the ball may have it: then it has no power series."""
+    return not w > w.rad() * _ROUNDED
+
+
 def _square_of(powers: Sequence[acb]) -> arb_poly:
     """The absolute value squared of a polynomial of a real number."""
     re, im = arb_poly([each.real for each in powers]), arb_poly([each.imag for each in powers])
@@ -280,7 +286,7 @@ def _square_of(powers: Sequence[acb]) -> arb_poly:
 
 def _fractions(transfer: Transfers, w: arb) -> _Fractions | None:
     """None of points, and where transfer functions are no such fractions."""
-    if w.contains(0) or w.rad() < w * _SHARE or not isinstance(transfer, Transfer):
+    if _reaches_zero(w) or w.rad() < w * _SHARE or not isinstance(transfer, Transfer):
         return None
     middle = acb_series([acb(w.mid()), 1], prec=_TERMS)
     near, around = transfer.parts(middle), transfer.parts(acb_series([acb(w), 1], prec=_TERMS + 1))
@@ -294,8 +300,11 @@ def _fractions(transfer: Transfers, w: arb) -> _Fractions | None:
 
 
 def _squares(transfer: Transfers, w: arb, fractions: _Fractions | None = None) -> list[tuple[arb, arb, arb]]:
-    """Of each output the square of the amplitude, its slope, and half its second derivative, on all of a ball."""
-    if w.contains(0):
+    """Of each output the square of the amplitude, its slope, and half its second derivative, on all of a ball.
+
+    The last two are 0 where it reaches 0: there the first alone says something.
+    """
+    if _reaches_zero(w):
         sizes = (abs(acb(value)) for value in transfer(w))
         return [(size * size, arb(0), arb(0)) for size in sizes]
     made = []
