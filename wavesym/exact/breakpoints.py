@@ -9,7 +9,8 @@ What stiff springs do between two breakpoints is smooth, but no series of modera
 as the waves that are sent begin anew then, a cut travels as a breakpoint does. Cuts are as far apart as a part or a
 multiple of the common measure of all delays, so that most of those that come back meet others. In a common window of
 equal delays all joints begin anew at once: where what is fast in them decays, cuts end when it has died away, and one
-stretch without it (`joints/relaxation.py`) is left of the window.
+stretch without it (`joints/relaxation.py`) is left of the window. Of other delays this is so after each front that no
+cut has made: cuts follow it from joint to joint, and end there as they do here.
 """
 
 from __future__ import annotations
@@ -257,6 +258,8 @@ class Breakpoints:
 
     def _with_cuts(self) -> Mapping[int, Sequence[fmpq]]:
         """When fronts meet joints, those of cuts and where these are made, too; and no later than is known then."""
+        if self._rests:
+            return self._with_rests()
         found = self._meetings({number: self._reach(number) for number in self._bearable})
         for number, times in found.items():
             end = self._last[number] + self._cut_distance
@@ -265,15 +268,55 @@ class Breakpoints:
             times.append(min(self._last[number] + 1, end))
         return found
 
+    def _with_rests(self) -> Mapping[int, Sequence[fmpq]]:
+        """The same, cuts ending when what is fast has died away after a front."""
+        longest = min(self._bearable.values())
+        found = self._meetings(dict.fromkeys(self._bearable, longest), self._rests)
+        for number, times in found.items():
+            end, following = self._natural[number][-1], times[-1] + longest
+            if number in self._bearable and not any(low <= following < high for low, high in self._rests[number]):
+                end = min(end, following)
+            times.append(end)
+        return found
+
+    @cached_property
+    def _rests(self) -> Mapping[int, Sequence[tuple[fmpq, fmpq]]]:
+        """Between which instants joints with springs are not cut; nothing where that is not most of the time.
+
+        A front that no cut has made meets the other end of a bar as such: what dies away here has died away there.
+        """
+        gaps = []
+        for number, bearable in self._bearable.items():
+            length = max(high - low for low, high in pairwise(self._natural[number]))
+            if length > bearable:
+                law = JointLaw.assemble(self._network, self._network.joints[number])
+                gaps.append(settling_gap(law, length))
+        known = [gap for gap in gaps if gap]
+        if not known or len(known) < len(gaps):
+            return {}
+        settled = max(gap.settling_time for gap in known) + min(self._bearable.values())
+        least = 2 * settled + max(gap.resting_time for gap in known)
+        rests, passed, rested = {}, fmpq(0), fmpq(0)
+        for number in self._bearable:
+            stretches = list(pairwise(self._natural[number]))
+            still = stretches[:1] if self._is_at_rest(number) else []
+            moving = stretches[len(still) :]
+            rests[number] = still + [(low + settled, high) for low, high in moving if high - low >= least]
+            passed += sum((high - low for low, high in moving), fmpq(0))
+            rested += sum((high - low for low, high in rests[number][len(still) :]), fmpq(0))
+        return rests if 2 * rested > passed else {}
+
     @cached_property
     def _sources(self) -> Sequence[tuple[fmpq, int]]:
         return front_sources(self._network, self._acting, self._last)
 
-    def _meetings(self, cuts: Mapping[int, fmpq]) -> dict[int, list[fmpq]]:
+    def _meetings(
+        self, cuts: Mapping[int, fmpq], rests: Mapping[int, Sequence[tuple[fmpq, fmpq]]] | None = None
+    ) -> dict[int, list[fmpq]]:
         """0, and when fronts meet joints."""
         found: dict[int, list[fmpq]] = {number: [fmpq(0)] for number in self._last}
-        sources = [*self._sources, *((fmpq(0), number) for number in cuts)]
-        for count, (time, number) in enumerate(front_times(self._network, sources, self._last, cuts), 1):
+        sources = self._sources if rests else [*self._sources, *((fmpq(0), number) for number in cuts)]
+        for count, (time, number) in enumerate(front_times(self._network, sources, self._last, cuts, rests), 1):
             if count > MOST_BREAKPOINTS:
                 if cuts:
                     raise self._too_stiff(f"more than {MOST_BREAKPOINTS}")

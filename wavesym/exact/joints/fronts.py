@@ -4,10 +4,12 @@ them. When they meet joints, and what they carry, in the order of time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from heapq import heapify, heappop, heappush
 from itertools import count, islice
 from math import lcm
+from operator import itemgetter
 from typing import Any, TypeVar
 
 from flint import fmpq
@@ -37,6 +39,7 @@ def front_times(
     sources: Iterable[tuple[fmpq, int]],
     last: Mapping[int, fmpq],
     cuts: Mapping[int, fmpq] | None = None,
+    rests: Mapping[int, Sequence[tuple[fmpq, fmpq]]] | None = None,
 ) -> Iterator[tuple[fmpq, int]]:
     """All meetings of fronts with joints, in order of time, each instant of a joint once.
 
@@ -45,12 +48,17 @@ def front_times(
         sources: When something begins at joints (by number).
         last: The joints that matter, each with the tau until which it does.
         cuts: Joints from which a front sets out so long after the last one they met, if they have met none since.
+        rests: Between which instants, in order, joints send no such fronts.
     """
     coming, cuts = list(sources), cuts or {}
     values = [*(bar.delay for bar in network.bars), *(time for time, _ in coming), *cuts.values()]
     unit = lcm(*(int(value.q) for value in values))  # whole numbers: they are compared sooner than fractions
     delays = [int(bar.delay * unit) for bar in network.bars]
     reaches = {number: int(reach * unit) for number, reach in cuts.items()}
+    resting = {
+        number: [(int((start * unit).ceil()), int((end * unit).ceil())) for start, end in each]
+        for number, each in (rests or {}).items()
+    }
     latest = {number: int((tau * unit).floor()) for number, tau in last.items()}
     beside = {
         number: [
@@ -66,14 +74,19 @@ def front_times(
         time, number, is_cut = heappop(heap)
         if number not in latest or time > latest[number] or met.get(number) == time:
             continue
-        if is_cut and time - met[number] < reaches[number]:
-            continue  # something has come since
+        if is_cut and (time - met[number] < reaches[number] or _is_within(time, resting.get(number, ()))):
+            continue  # something has come since, or all that is fast has died away
         met[number] = time
         yield fmpq(time, unit), number
         if number in reaches:
             heappush(heap, (time + reaches[number], number, True))
         for delay, other in beside[number]:
             heappush(heap, (time + delay, other, False))
+
+
+def _is_within(time: int, spans: Sequence[tuple[int, int]]) -> bool:
+    place = bisect_right(spans, time, key=itemgetter(0))
+    return place > 0 and time < spans[place - 1][1]
 
 
 def has_more_fronts(model: Model, most: int) -> bool:

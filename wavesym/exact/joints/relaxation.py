@@ -58,6 +58,11 @@ class RateGap(NamedTuple):
         """When what is fast has died away, below 2^-1024 of what it was."""
         return _SETTLED / self.decay
 
+    @property
+    def resting_time(self) -> fmpq:
+        """How long a stretch without what is fast has to be to be worth while."""
+        return _LONG / self.fast
+
 
 def settling_gap(law: JointLaw, length: fmpq) -> RateGap | None:
     """The gap above which all has died away early on a stretch, so that one series bears the rest of it; None: none."""
@@ -67,7 +72,7 @@ def settling_gap(law: JointLaw, length: fmpq) -> RateGap | None:
         (
             gap
             for gap in reversed(_gaps(_state_space(law)[0]))
-            if gap.slow * length <= SWING and gap.fast * (length - gap.settling_time) >= _LONG
+            if gap.slow * length <= SWING and gap.settling_time + gap.resting_time <= length
         ),
         None,
     )
