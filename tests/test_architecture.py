@@ -183,6 +183,7 @@ _FIELDS_NAMED_OTHERWISE = {
     **dict.fromkeys(("until", "_until"), "the key of a scene"),
     "from_": "a key of a scene",
     "at": "Peak.at, which users read",
+    "by": "SetGradients.by, which users read",
     "between": "a key of what `summary` and `derive` write",
     **dict.fromkeys(("of", "given", "sent"), "keys of what `derive` writes"),
     "dissipated": "a key of what `summary` writes",
@@ -191,11 +192,8 @@ _FIELDS_NAMED_OTHERWISE = {
     **dict.fromkeys(("computed", "done", "failed", "together", "written"), "a key of a sweep's files"),
 }
 _ROOMS_WITH_OTHER_FIELDS = (
-    *(f"wavesym/{room}/" for room in ("derivation", "exact", "methods", "programs", "running", "systems", "targets")),
-    "wavesym/mechanics/model.py",
-    "wavesym/results/response_ranges.py",
-    "wavesym/results/statistics.py",
-    "wavesym/verification/",
+    *(f"wavesym/exact/{part}" for part in ("contacts/", "joints/state_space.py", "modes/")),
+    *(f"wavesym/programs/{part}" for part in ("closed_form.py", "march/", "modes/")),
 )
 """Where fields are not yet named by the field's words."""
 

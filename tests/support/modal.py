@@ -30,7 +30,7 @@ def by_elements(model, resolution):
     problem = undamped_problem(model)
     cells = np.maximum(np.rint(problem.delay * resolution), 4).astype(int)
     elements = Elements(problem, cells)
-    free = np.setdiff1d(np.arange(elements.size), problem.prescribed)
+    free = np.setdiff1d(np.arange(elements.size), problem.prescribed_points)
     mass, stiffness = (matrix.toarray() for matrix in (elements.mass, elements.stiffness))
     return mass[free], mass[np.ix_(free, free)], stiffness[np.ix_(free, free)]
 

@@ -207,7 +207,7 @@ def test_energy_that_another_law_takes_is_missed(table: dict[str, Any], key: str
     def balances(model: Model) -> dict[str, bool]:
         values = Reference(model).values
         found = books.balances(lambda taus: np.array(values(taus.tolist())), None)
-        return {each.name: each.error <= each.allowed for each in found}
+        return {each.name: each.error <= each.error_bound for each in found}
 
     assert balances(books.model) == {"momentum": True, "energy": True}
     assert not balances(wrong)["energy"]

@@ -57,7 +57,7 @@ def test_motion_that_is_prescribed() -> None:
         outcome.passed and not outcome.note
         for outcome in (*midpoints(known_outputs(moved)), *collocation(known_outputs(moved)))
     )
-    assert all(balance.error <= balance.allowed < 1e-12 for balance in balances(moved))
+    assert all(balance.error <= balance.error_bound < 1e-12 for balance in balances(moved))
 
 
 def test_delays_without_a_reasonable_common_measure_are_refused_in_a_line_by_a_grid() -> None:
@@ -68,7 +68,7 @@ def test_delays_without_a_reasonable_common_measure_are_refused_in_a_line_by_a_g
     assert "refused" in outcome.cells.values()
     assert "a step" in outcome.note
     assert all(outcome.passed and "at 4N" in outcome.cells for outcome in collocation(known_outputs(other)))
-    assert all(balance.error <= balance.allowed < 1e-12 for balance in balances(other))
+    assert all(balance.error <= balance.error_bound < 1e-12 for balance in balances(other))
 
 
 def test_collocation_agrees_to_rounding() -> None:
@@ -89,14 +89,14 @@ def test_a_grid_has_every_front_load_and_output_on_it() -> None:
 def balances(right: Model, wrong: Model | None = None) -> tuple[Balance, Balance]:
     """The balances of a model, of values of another one."""
     balancing = Balancing(right, 12_000)
-    assert balancing.struck
+    assert balancing.balance_times
     exact = Reference(replace(balancing.model, network=(wrong or right).network))
     errors = [2.0**-50] * len(balancing.model.probes)
     return balancing.balances(lambda taus: np.array(exact.values(taus.tolist())), errors)
 
 
 def test_momentum_and_energy_are_kept() -> None:
-    assert all(balance.error <= balance.allowed < 1e-12 for balance in balances(model()))
+    assert all(balance.error <= balance.error_bound < 1e-12 for balance in balances(model()))
 
 
 def squared(network: Network) -> Network:
@@ -124,7 +124,7 @@ def softened(network: Network) -> Network:
 def test_faults_of_a_network_are_found(fault: Callable[[Network], Network], monkeypatch: pytest.MonkeyPatch) -> None:
     right = model()
     wrong = replace(right, network=fault(right.network))
-    assert any(balance.error > balance.allowed for balance in balances(right, wrong))
+    assert any(balance.error > balance.error_bound for balance in balances(right, wrong))
     monkeypatch.setattr("wavesym.verification.integrations.Reference", lambda _: Reference(wrong))
     assert not all(outcome.passed for outcome in midpoints(known_outputs(right)))
     assert not all(outcome.passed for outcome in collocation(replace(known_outputs(wrong), model=right)))
@@ -140,7 +140,7 @@ def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(JointLaw, "assemble", wrong)
     right = model()
-    assert any(balance.error > balance.allowed for balance in balances(right))
+    assert any(balance.error > balance.error_bound for balance in balances(right))
     assert not all(outcome.passed for outcome in midpoints(known_outputs(right)))
     assert not all(outcome.passed for outcome in collocation(known_outputs(right)))
 

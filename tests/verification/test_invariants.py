@@ -67,9 +67,9 @@ MOST = 30_000
 def exactly(scene, until):
     """A scene's books, its values in balls, rounded once, and what that costs."""
     books = Balancing(lower(scene).shorten(fmpq(until)), MOST)
-    assert books.struck
+    assert books.balance_times
     response = Response(books.model)
-    last = float(books.struck[-1])
+    last = float(books.balance_times[-1])
     return books, response, [2.0**-53 * np.abs(row).max() for row in response(np.linspace(0, last, 401))]
 
 
@@ -80,14 +80,14 @@ def balances(books, evaluate, errors):
 @FOUR
 def test_balances_hold_to_the_last_digits(scene):
     for balance in balances(*exactly(scene, 6)):
-        assert balance.error <= balance.allowed < 1e-12
+        assert balance.error <= balance.error_bound < 1e-12
 
 
 @settings(max_examples=10)
 @given(scenes())
 def test_balances_hold_in_any_system(scene):
     for balance in balances(*exactly(scene, 3)):
-        assert balance.error <= balance.allowed < 1e-12
+        assert balance.error <= balance.error_bound < 1e-12
 
 
 def in_rods(scene, tau):
@@ -141,8 +141,8 @@ def test_another_system_is_seen(scene):
     kappa[1] *= 1 + Fraction(1, 10**9)
     other = again(scene, {"kappa": kappa})
     seen, _, errors = exactly(scene, 6)
-    assert all(balance.error <= balance.allowed for balance in balances(*exactly(other, 6)))
-    assert all(balance.error > balance.allowed for balance in balances(seen, exactly(other, 6)[1], errors))
+    assert all(balance.error <= balance.error_bound for balance in balances(*exactly(other, 6)))
+    assert all(balance.error > balance.error_bound for balance in balances(seen, exactly(other, 6)[1], errors))
 
 
 @FOUR
@@ -150,7 +150,7 @@ def test_a_leak_is_seen(scene):
     """Everything 1e-9 too small."""
     seen, evaluate, errors = exactly(scene, 4)
     _, energy = balances(seen, lambda taus: evaluate(taus) * (1 - 1e-9 * taus), errors)
-    assert energy.error > energy.allowed
+    assert energy.error > energy.error_bound
 
 
 def test_one_wrong_output_is_seen():
@@ -165,7 +165,7 @@ def test_one_wrong_output_is_seen():
             values[wrong] *= 1 + 1e-9
             return values
 
-        assert any(balance.error > balance.allowed for balance in balances(seen, changed, errors))
+        assert any(balance.error > balance.error_bound for balance in balances(seen, changed, errors))
 
 
 def test_what_is_not_looked_at_is_said(monkeypatch):
@@ -185,5 +185,5 @@ def test_the_march_keeps_them_for_long(scene):
     made = march(books.model.tolerating(fmpq(1, 10**4)))
     evaluate = assemble(made).evaluate
     for balance in balances(books, evaluate, [output.bound * output.largest for output in made.outputs]):
-        assert balance.error <= balance.allowed
+        assert balance.error <= balance.error_bound
         assert balance.error < 1e-9

@@ -71,7 +71,7 @@ def line(model: Model) -> Line:
     alike = all(np.all(each == 1) for each in (problem.delay, problem.speed, problem.ratios))
     if not np.array_equal(problem.ends, ends) or not alike or not problem.reads_outputs:
         raise UnservedError("system: rods that differ, branches or sums given, a line of equal rods expected")
-    free = ~np.isin(np.arange(problem.points), problem.prescribed)
+    free = ~np.isin(np.arange(problem.points), problem.prescribed_points)
     alpha, beta = (np.where(free, 2 * each, 0.0) for each in _adjacent(problem.impedance))
     return Line(
         inertia=problem.mass,

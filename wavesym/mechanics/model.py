@@ -57,8 +57,8 @@ class Model:
     are `spacing` apart. The `clock` is that of a physical scene, `length` the unit of its places where they are
     lengths. `damping` is that of its modes; `inputs` says of the sources of its loads, and of the numbers of its parts
     by name, what 1 is in a unit, and that unit. An `endless` one goes on after that tau. `preset` are the parameters of
-    a network that a preset made, None where they are those of its parts. Contacts and other corners are `followed` as
-    far as these outputs need, too, so that one solution serves several models.
+    a network that a preset made, None where they are those of its parts. Contacts and other corners are followed
+    as far as `followed_probes` need, too, so that one solution serves several models.
     """
 
     name: str
@@ -75,7 +75,7 @@ class Model:
     inputs: Mapping[str, tuple[fmpq, str]] = field(default_factory=dict)
     endless: bool = False
     preset: Parametrization | None = None
-    followed: tuple[Probe, ...] = ()
+    followed_probes: tuple[Probe, ...] = ()
 
     @property
     def parameters(self) -> Parametrization:
@@ -138,8 +138,10 @@ class Model:
 
         A contact counts as if it were closed: it may close. What one does is asked for until the end, as an output is.
         """
-        if self.followed and self.network.corners:
-            return replace(self, probes=(*self.probes, *self.followed), followed=()).joints_in_reach(until)
+        if self.followed_probes and self.network.corners:
+            return replace(self, probes=(*self.probes, *self.followed_probes), followed_probes=()).joints_in_reach(
+                until
+            )
         return self._arrival_times(until, [self.network.links[number].left for number in self.contacts(until)])
 
     def contacts(self, until: fmpq) -> tuple[int, ...]:
@@ -195,4 +197,4 @@ class Model:
 
     def following(self, probes: Iterable[Probe]) -> Model:
         """The same whose contacts are followed as far as these outputs need, too."""
-        return replace(self, followed=tuple(probes))
+        return replace(self, followed_probes=tuple(probes))

@@ -89,7 +89,7 @@ def _tables(order: int, problem: Problem, resolution: float) -> tuple[dict[str, 
     depth = int(max(lags)) + 1
     impedance = np.repeat(problem.impedance, 2)
     ends = problem.ends.ravel()
-    free = ~np.isin(np.arange(problem.points), problem.prescribed)
+    free = ~np.isin(np.arange(problem.points), problem.prescribed_points)
     ratios = problem.ratios.ravel()
     before = problem.start_waves.ravel()
     gamma = np.where(free, np.diag(problem.damping) + problem.incidence**2 @ impedance, 1.0)

@@ -91,7 +91,7 @@ def point_steps(problem: Problem, h: float, steps: int) -> PointSteps:
     impedance, onto = np.repeat(problem.impedance, 2), problem.incidence
     radiated = np.diag(onto**2 @ impedance)
     mass = np.diag(problem.mass)
-    prescribed = list(problem.prescribed)
+    prescribed = list(problem.prescribed_points)
     unit = np.eye(problem.points)
     times: Array = h * np.arange(steps + 2, dtype=np.float64)
     # over the step before and after: what a jump or a kink adds is the same then on odd and on even points

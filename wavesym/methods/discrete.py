@@ -77,7 +77,7 @@ class DiscreteModel:
         """What is stepped: the modes, then what follows the loads at once."""
         elements, size = self.elements, self.elements.size
         mass, damping, stiffness = (each.toarray() for each in (elements.mass, elements.damping, elements.stiffness))
-        prescribed = elements.problem.prescribed
+        prescribed = elements.problem.prescribed_points
         free = np.setdiff1d(np.arange(size), prescribed)
         influence, at_once = np.zeros((2, size, len(self._loaded_points), KEPT))
         dragged = np.zeros((size, len(self._loaded_points)))

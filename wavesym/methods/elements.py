@@ -126,7 +126,7 @@ class Elements:
         """What the strain that the bars have at the start does to the points: (points,)."""
         pull = self.each(self.problem.impedance * self.problem.speed * self.problem.start_strain)
         forces = -(self.stretch.T @ pull)[: self.problem.points]
-        forces[list(self.problem.prescribed)] = 0.0
+        forces[list(self.problem.prescribed_points)] = 0.0
         return np.asarray(forces)
 
     @cached_property
@@ -149,7 +149,7 @@ class Elements:
                 if at == here:
                     far, moved = int(problem.ends[bar, 1 - side]), ratio * shape[here]
                     shape[self.firsts[bar] : self.firsts[bar + 1]] = moved
-                    if shape[far] == 0 and far not in problem.prescribed:
+                    if shape[far] == 0 and far not in problem.prescribed_points:
                         shape[far] = moved / problem.ratios[bar, 1 - side]
                         reached.append(far)
         return shape
@@ -217,7 +217,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
     massless = mass.diagonal() == 0
     begin = splu(csc_array(mass + diags_array(massless.astype(float)))).solve
     force = np.append(loads[0], np.zeros(elements.size - problem.points)) - damping @ start
-    force[massless] *= np.isin(np.flatnonzero(massless), problem.prescribed) * 4 / h
+    force[massless] *= np.isin(np.flatnonzero(massless), problem.prescribed_points) * 4 / h
     kept, stencils = keep_places([_unknowns(elements, reading) for reading in problem.readings])
     has_damping = bool(damping.nnz)
 
@@ -245,7 +245,7 @@ def _solve(problem: Problem, resolution: float) -> Evaluate:
 def _prescribe_motion(elements: Elements) -> tuple[Matrix, Matrix, Matrix]:
     """Mass, damping and stiffness; where the motion is prescribed the velocity is the load."""
     free = np.ones(elements.size)
-    free[list(elements.problem.prescribed)] = 0.0
+    free[list(elements.problem.prescribed_points)] = 0.0
     mass, damping, stiffness = (
         diags_array(free) @ each for each in (elements.mass, elements.damping, elements.stiffness)
     )

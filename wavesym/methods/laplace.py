@@ -52,7 +52,7 @@ def _block(problem: Problem, s: Complex) -> Complex:
         matrix[:, at, opposite] -= 2 * ratio * impedance * delay
         matrix[:, at, at] += ratio**2 * impedance
         known[:, at] += 2 * ratio * impedance * earlier
-    for point in problem.prescribed:  # no force acts on it
+    for point in problem.prescribed_points:  # no force acts on it
         matrix[:, first + point, :] = 0.0
         matrix[:, first + point, first + point] = 1.0
         known[:, first + point] = 0.0

@@ -48,7 +48,7 @@ def network_problem(model: Model, kind: type[Stated]) -> Stated:
         damping=damping,
         stiffness=stiffness,
         velocity=velocity,
-        prescribed=prescribed,
+        prescribed_points=prescribed,
         ground=next((number for number in prescribed if points[number].motion != "fixed"), 0),
         ends=np.array([(bar.left, bar.right) for bar in bars], dtype=int).reshape(-1, 2),
         ratios=np.array([[nearest(ratio) for ratio in bar.ratios] for bar in bars]).reshape(-1, 2),

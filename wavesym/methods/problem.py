@@ -60,7 +60,7 @@ class Problem:
     """Bars, and points that their ends move with.
 
     `velocity` and `mass` have shape (points,), `damping` and `stiffness` (points, points). The velocity of a point
-    whose motion is `prescribed` is its load, at tau = 0, too; displacements relative to the `ground` are those beyond
+    of `prescribed_points` is its load, at tau = 0, too; displacements relative to the `ground` are those beyond
     that of this point. `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2);
     `speed`, `impedance`, `start_velocity`, `start_strain` (in the middle), `start_slope` (how fast the waves held at
     first grow as they come to an end) and `gravity` (along each bar, whose waves do not have it) have shape (bars,).
@@ -72,7 +72,7 @@ class Problem:
     damping: Array
     stiffness: Array
     velocity: Array
-    prescribed: tuple[int, ...]
+    prescribed_points: tuple[int, ...]
     ground: int
     ends: NDArray[np.int_]
     ratios: Array

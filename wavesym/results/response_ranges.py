@@ -86,21 +86,21 @@ class ResponseRanges:
 
 @dataclass(frozen=True)
 class _Box:
-    """A model, its numbers at the low ends of all ranges, and what each parameter adds to them."""
+    """A model, its numbers at the low ends of all ranges, and each parameter's `increments` of them."""
 
     model: Model
     low: Numbers
-    added: tuple[Numbers, ...]
+    increments: tuple[Numbers, ...]
 
     def amplitudes(self, load: HarmonicLoad, part: Part, w: arb) -> list[arb]:
         """Those of the outputs in a part of the box, at a frequency; what does not vary is exact."""
         numbers = []
         for k, low in enumerate(self.low):
             number = arb(low)
-            for (first, last), added in zip(part, self.added, strict=True):
+            for (first, last), added in zip(part, self.increments, strict=True):
                 if added[k] != 0:
                     number = number + arb(first * added[k]).union(arb(last * added[k]))
-            numbers.append(number if any(added[k] != 0 for added in self.added) else low)
+            numbers.append(number if any(added[k] != 0 for added in self.increments) else low)
         network = _with_numbers(self.model.network, numbers)
         return [abs(acb(each)) for each in Transfer(replace(self.model, network=network), load)(w)]
 
@@ -218,7 +218,7 @@ def _enclose(box: _Box, load: HarmonicLoad, frequency: float) -> tuple[list[floa
         def amplitudes(part: Part) -> list[arb]:
             return box.amplitudes(load, part, w)
 
-        whole: Part = (ends,) * len(box.added)
+        whole: Part = (ends,) * len(box.increments)
         corners = [amplitudes(tuple((t, t) for t in corner)) for corner in product(ends, repeat=len(whole))]
         reached = [(min(map(_lower, each)), max(map(_upper, each))) for each in zip(*corners, strict=True)]
         parts = {whole: amplitudes(whole)}

@@ -73,7 +73,7 @@ class Statistic:
         about: what it is, in words.
         value: the number, in the output's unit, None for what has none.
         when: the instant, None for what has none.
-        reached: whether the output takes the value, else it comes up to it and jumps.
+        is_reached: whether the output takes the value, else it comes up to it and jumps.
         runtime: whether programs with parameters at run time, and records of one structure, have it too.
     """
 
@@ -82,7 +82,7 @@ class Statistic:
     about: str
     value: Callable[[OutputSummary], float] | None = None
     when: Callable[[OutputSummary], OutputTime | None] | None = None
-    reached: Callable[[OutputSummary], bool] = lambda _: True
+    is_reached: Callable[[OutputSummary], bool] = lambda _: True
     runtime: bool = False
 
     @property
@@ -146,5 +146,5 @@ def cells(output: OutputSummary, jumps: str, digits: int = 7) -> tuple[str, ...]
         if each.when is not None:
             at = each.when(output)
             time = "never" if at is None else number_text(at.in_scene_time, digits=digits)
-            found.append(time + jumps * (not each.reached(output)))
+            found.append(time + jumps * (not each.is_reached(output)))
     return tuple(found)

@@ -42,19 +42,23 @@ class ModeSetResponses(NamedTuple):
 
     status: NDArray[np.int32]
     estimate: Array
-    rounded: Array
+    rounding_errors: Array
     peaks: Array
     values: Array
 
     def rows(self, some: NDArray[np.bool_]) -> ModeSetResponses:
         """Those of some sets."""
         return ModeSetResponses(
-            self.status[some], self.estimate[some], self.rounded[some], self.peaks[some], self.values[some]
+            self.status[some], self.estimate[some], self.rounding_errors[some], self.peaks[some], self.values[some]
         )
 
     def put(self, rows: NDArray[np.bool_], others: ModeSetResponses) -> None:
         """Take others for some sets."""
-        self.status[rows], self.estimate[rows], self.rounded[rows] = others.status, others.estimate, others.rounded
+        self.status[rows], self.estimate[rows], self.rounding_errors[rows] = (
+            others.status,
+            others.estimate,
+            others.rounding_errors,
+        )
         self.peaks[rows], self.values[rows] = others.peaks, others.values
 
 
@@ -151,14 +155,14 @@ class ModalSets:
         both by what rounding does to values, over the step. A parameter that may not be so much less is changed upwards
         alone.
         """
-        rounded, points, values = own.rounded.copy(), {0: given[:, parameter]}, {0: own.values}
+        rounded, points, values = own.rounding_errors.copy(), {0: given[:, parameter]}, {0: own.values}
 
         def value_at(times: int) -> None:
             other = given.copy()
             other[:, parameter] += times * step
             found = self._horizon_responses(other, tau, given)
             points[times], values[times] = other[:, parameter], found.values
-            np.fmax(rounded, found.rounded, out=rounded)
+            np.fmax(rounded, found.rounding_errors, out=rounded)
 
         def central(k: int) -> Array:
             return (values[k] - values[-k]) / (points[k] - points[-k])[:, None, None]

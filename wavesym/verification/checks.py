@@ -43,7 +43,7 @@ def invariants(known: ReferenceOutputs) -> list[Outcome]:
 
     try:
         books = Balancing(known.model, _MOST_VALUES)
-        if not books.struck:
+        if not books.balance_times:
             return no_balances("fronts come too often")
         exact = Reference(books.model)
         right = books.balances(lambda taus: np.array(exact.values(taus.tolist())), None)
@@ -58,11 +58,14 @@ def invariants(known: ReferenceOutputs) -> list[Outcome]:
         note = str(error)
     outcomes = []
     for exactly, found in zip(right, ours, strict=True):
-        cells = {"to": f"{float(books.struck[-1]):.4g}", "reference": format_error(exactly.error)}
-        cells |= {"allowed": format_error(exactly.allowed), "NumPy": format_error(found.error) if found else REFUSED}
-        cells |= {"its bound": format_error(found.allowed)} if found else {}
-        passed = all(each.error <= each.allowed for each in (exactly, found) if each)
-        coarse = "" if exactly.allowed <= FINE else too_coarse(name, "quadrature of the balances")
+        cells = {"to": f"{float(books.balance_times[-1]):.4g}", "reference": format_error(exactly.error)}
+        cells |= {
+            "allowed": format_error(exactly.error_bound),
+            "NumPy": format_error(found.error) if found else REFUSED,
+        }
+        cells |= {"its bound": format_error(found.error_bound)} if found else {}
+        passed = all(each.error <= each.error_bound for each in (exactly, found) if each)
+        coarse = "" if exactly.error_bound <= FINE else too_coarse(name, "quadrature of the balances")
         outcomes.append(Outcome(exactly.name, cells, passed, note or coarse))
     return outcomes
 

@@ -51,7 +51,7 @@ class Node(NamedTuple):
     """A point, and the links between it and the ground whose laws have corners."""
 
     point: Point
-    held: tuple[Link, ...] = ()
+    ground_links: tuple[Link, ...] = ()
 
 
 Row = Sequence[Point | Node | Span]
@@ -91,7 +91,7 @@ class Sketch:
             self.points.append(node.point)
             if node.point.name:
                 self.names[node.point.name] = here
-            held += [replace(link, right=here) for link in node.held]
+            held += [replace(link, right=here) for link in node.ground_links]
             for part in span:
                 before = spots[-1][1]
                 if isinstance(part, Link):

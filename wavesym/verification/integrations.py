@@ -118,7 +118,7 @@ class _Solutions:
                 why = undecided
                 continue
             if (found := match_changes(quarter, half)) is not None and match_changes(half, coarse) is not None:
-                self.struck = [(change, slack + _CLOSE) for change, slack in found]
+                self.corner_changes = [(change, slack + _CLOSE) for change, slack in found]
                 return
         raise why
 
@@ -177,7 +177,7 @@ def midpoints(known: ReferenceOutputs) -> list[Outcome]:
     start = coarsest_start(known, 1)
     if isinstance(start, str):
         return refused_outcomes(known, "to", start)
-    rule: Rule = "extrapolated" if start.grid.is_aligned and not start.struck else "wandering"
+    rule: Rule = "extrapolated" if start.grid.is_aligned and not start.corner_changes else "wandering"
     rule = "late" if start.grid.problem.laws else rule
     return start.outcomes(known, "midpoint rule", rule, MidpointGrid.integrate)
 
@@ -204,7 +204,7 @@ class Start:
 
     grid: MidpointGrid
     until: float
-    struck: Sequence[tuple[Change, float]]
+    corner_changes: Sequence[tuple[Change, float]]
     instants: Instants
 
     def outcomes(
@@ -312,7 +312,7 @@ def corner_changes(known: ReferenceOutputs) -> list[Outcome]:
     solved = _cached_solutions(known)
     seen: dict[str, CornerHistory | None] = {}
     if all(model.network.links[link].contact for link in model.network.corners):
-        seen["fronts"] = None if isinstance(solved, str) else CornerHistory(solved.struck, 0.0)
+        seen["fronts"] = None if isinstance(solved, str) else CornerHistory(solved.corner_changes, 0.0)
     notes = [f"{model.name}: {solved}"] if isinstance(solved, str) else []
     sharp = _SHARP if isinstance(solved, str) else inf  # nothing else is
     stepped = _grid(judged).resolve_changes(known.until, MOST_MOVED, sharp)

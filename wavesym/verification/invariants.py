@@ -57,14 +57,14 @@ _ROUNDINGS = 100
 
 @dataclass(frozen=True)
 class Balance:
-    """By how much a balance fails at most where it is struck, and by how much it may.
+    """By how much a balance fails at most where it is struck, and by how much it may: its `error_bound`.
 
     Energy relative to its largest value, momentum to the largest that all the mass can have with that energy.
     """
 
     name: str
     error: float
-    allowed: float
+    error_bound: float
 
 
 @dataclass(frozen=True)
@@ -117,16 +117,16 @@ class Balancing:
         )
         limit, until = most // ((_POINTS + _FEWER) * len(seen)), fraction(model.until)
         fronts, last = self._fronts(model.watching(seen), until, limit)
-        self.struck: list[Fraction] = []
+        self.balance_times: list[Fraction] = []
         for end, count in product([until / 2**k for k in range(_HALVED)], _STRUCK):
             struck = [end * k / count for k in range(1, count + 1)]
             if end <= last and len(self._cuts(fronts, struck)) <= limit:
-                self.struck = struck
+                self.balance_times = struck
                 break
-        self.cuts = np.array([float(cut) for cut in self._cuts(fronts, self.struck)])
+        self.cuts = np.array([float(cut) for cut in self._cuts(fronts, self.balance_times)])
         self.model = model.watching(seen)
-        if self.struck:
-            self.model = self.model.shorten(rational(self.struck[-1]))
+        if self.balance_times:
+            self.model = self.model.shorten(rational(self.balance_times[-1]))
 
     def balances(self, evaluate: Evaluate, errors: Sequence[float] | None = None) -> tuple[Balance, ...]:
         """The balances of momentum and energy, as `evaluate` has the watched model, and what contacts must keep.
@@ -153,7 +153,9 @@ class Balancing:
     @property
     def _rubs_on_motion(self) -> bool:
         """Whether friction may hold something on what moves: what that takes, and so the work, no output says."""
-        moving = [number for number in self.problem.prescribed if self.model.network.points[number].motion != "fixed"]
+        moving = [
+            number for number in self.problem.prescribed_points if self.model.network.points[number].motion != "fixed"
+        ]
         return any(law.friction and np.any(law.row[moving] != 0) for law in self.problem.laws)
 
     def _cuts(self, fronts: Iterable[Fraction], struck: Sequence[Fraction]) -> list[Fraction]:
@@ -221,7 +223,7 @@ class _Books:
     def __init__(self, balancing: Balancing, evaluate: Evaluate, errors: Sequence[float] | None, points: int) -> None:
         problem = self._problem = balancing.problem
         self._delays = np.array([float(delay) for delay in problem.delays])
-        self._struck = np.array([float(time) for time in balancing.struck])
+        self._struck = np.array([float(time) for time in balancing.balance_times])
         low, width, rule = balancing.cuts[:-1, np.newaxis], np.diff(balancing.cuts)[:, np.newaxis], gauss(points)
         self._times, self._weights = (low + width * rule.nodes).ravel(), (width * rule.weights).ravel()
         size, ends = problem.points, len(problem.end_points)

@@ -196,7 +196,7 @@ class _Motion:
         self._impedance = np.repeat(problem.impedance, 2)
         matrix: Array = np.diag(2 * problem.mass / h + problem.incidence**2 @ self._impedance)
         matrix += problem.damping + h / 2 * problem.stiffness
-        prescribed = list(problem.prescribed)
+        prescribed = list(problem.prescribed_points)
         matrix[prescribed] = np.eye(problem.points)[prescribed]
         self._inverse: Array = np.linalg.inv(matrix).astype(np.float64)
         self._links = LinkPulls(problem, self._inverse, h)
@@ -212,7 +212,7 @@ class _Motion:
         )
         acting = 2 * problem.mass / h * self._q - problem.stiffness @ u + self._loads[step]
         acting += 2 * problem.incidence @ (self._impedance * came)
-        prescribed = list(problem.prescribed)
+        prescribed = list(problem.prescribed_points)
         acting[prescribed] = self._loads[step, prescribed]
         self._q[prescribed] = self._begun[prescribed, step]  # it may jump there
         v = self._links.settle(self._inverse @ acting, self._q, u, step)

@@ -100,7 +100,7 @@ def _peaks(model: CompiledModel, name: str, given: ParameterSet) -> ProgramValue
             least, greatest = true[k]
         elif integral:
             least, greatest = min(low, np.min(integral.values)), max(high, np.max(integral.values))
-            off = integral.allowed / unit
+            off = integral.error_bound / unit
         there = [_nearest_value(model, k, *each) for each in pair]
         values.append(np.array([low, high, *there]) / unit)
         due.append(np.array([least, greatest, low, high]) / unit)

@@ -25,14 +25,14 @@ REFUSED = "refused"
 
 @dataclass(frozen=True)
 class IntegratedOutput:
-    """An output as an integration has it: `values` at `taus`, none wrong by more than `allowed`.
+    """An output as an integration has it: `values` at `taus`, none wrong by more than `error_bound`.
 
     Its instants may keep `clear` of fronts.
     """
 
     taus: Sequence[float]
     values: Array
-    allowed: float
+    error_bound: float
     clear: bool = False
 
     @property
@@ -49,7 +49,7 @@ class IntegratedOutput:
     @property
     def judges(self) -> bool:
         """Whether it is exact enough to judge the output by; what is 0 throughout has to be 0 but for rounding."""
-        return len(self.values) > 0 and self.allowed <= LOOSE * (self.size or 1.0)
+        return len(self.values) > 0 and self.error_bound <= LOOSE * (self.size or 1.0)
 
 
 Integrals = Sequence[IntegratedOutput | None]
@@ -171,14 +171,14 @@ class Refinement:
         return cls(errors, largest(best - right), between, solutions[-1].rounding / size, best, size)
 
     @property
-    def allowed(self) -> float:
+    def error_bound(self) -> float:
         """What the best error may be."""
         return self.method_error + self.rounding
 
     @property
     def is_right(self) -> bool:
         """Whether it is; never where something is NaN."""
-        return self.best <= self.allowed
+        return self.best <= self.error_bound
 
     def cells(self, steps: int) -> Mapping[str, str]:
         """The columns of a table, N = `steps`; the order is observed where errors are more than rounding."""
@@ -186,7 +186,7 @@ class Refinement:
         order = f"{math.log2(seen[-2] / seen[-1]):.1f}" if len(seen) > 1 else "-"
         cells = dict(zip(("at N", "at 2N", "at 4N"), map(format_error, self.errors), strict=True))
         best = {} if self.best == self.errors[-1] else {"extrapolated": format_error(self.best)}
-        return {"N": str(steps), **cells, "order": order, **best, "allowed": format_error(self.allowed)}
+        return {"N": str(steps), **cells, "order": order, **best, "allowed": format_error(self.error_bound)}
 
 
 @dataclass(frozen=True)
@@ -225,13 +225,13 @@ class Integration:
         steps, refined = self.refine(truths)
         outcomes = []
         for name, truth, taus, each in zip(names, truths, self.instants, refined, strict=True):
-            integral = IntegratedOutput(taus, each.values, each.allowed * each.scale, self.clear)
+            integral = IntegratedOutput(taus, each.values, each.error_bound * each.scale, self.clear)
             note = "" if each.method_error <= FINE else too_coarse(scene, self.name)
             right = integral.judges if truth is None else each.is_right
             lag = integral.steepest * self.late * self.coarsest / (4 * steps)
-            decided = right or each.method_error <= FINE or not each.best * each.scale <= integral.allowed + lag
+            decided = right or each.method_error <= FINE or not each.best * each.scale <= integral.error_bound + lag
             if not decided:
-                integral = replace(integral, allowed=integral.allowed + lag)
+                integral = replace(integral, error_bound=integral.error_bound + lag)
                 note = f"{scene}: the {self.name} does not decide {name}, as what happens at corners comes a step late"
             outcomes.append(
                 Outcome(name, {**cells, **each.cells(steps)}, right or not decided, note, integral, decided)

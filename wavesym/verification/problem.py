@@ -141,7 +141,7 @@ class CornerProblem(Problem):
     @cached_property
     def is_free(self) -> NDArray[np.bool_]:
         """Which points are free to move: (points,)."""
-        return np.asarray(~np.isin(np.arange(self.points), self.prescribed))
+        return np.asarray(~np.isin(np.arange(self.points), self.prescribed_points))
 
     @cached_property
     def worth(self) -> tuple[float, float]:

@@ -187,8 +187,8 @@ def _run_c(
         elif program.evaluator in ("stream", "modes", "mode_sets"):
             for stream in run_streams(scene, known, program, built, taus):
                 said = f"{model.name}: {name}, {stream.language}: a step returns {stream.status}"
-                wrong = f"{said}, lost is {stream.lost:.1e}" if stream.status else note
-                stated = bounds if program.has_equal_steps else [stream.lost] * len(bounds)
+                wrong = f"{said}, lost is {stream.stated_error:.1e}" if stream.status else note
+                stated = bounds if program.has_equal_steps else [stream.stated_error] * len(bounds)
                 close = _CLOSE if program.has_equal_steps else 0.0
                 values = stream.taus, stream.values, sizes, stated, 0.0, wrong
                 yield ProgramValues(f"{name}, {stream.language}", *values, close=close, refusal=stream.refusal)
@@ -217,7 +217,7 @@ def _with_parameters(
         return
     _, refined = method.refine([None] * len(program.outputs))
     sizes = [float(np.max(np.abs(each.values))) for each in refined]
-    judges = [IntegratedOutput(instants.tolist(), each.values, each.allowed * each.scale) for each in refined]
+    judges = [IntegratedOutput(instants.tolist(), each.values, each.error_bound * each.scale) for each in refined]
     yield from model_values(built, f"{name}, C, others", ParameterSet(others, sizes, judges), instants, known.until)
 
 
@@ -270,7 +270,7 @@ def _compare(known: ReferenceOutputs, integrals: Integrals, found: ProgramValues
             cells["error"] = format_error(error / unit)
         if integral and len(pairs := _pairs(found.taus, np.array(integral.taus), found.close)):
             error = _largest(found.values[k][pairs[:, 0]] - integral.values[pairs[:, 1]])
-            allowed = integral.allowed + found.late * integral.steepest
+            allowed = integral.error_bound + found.late * integral.steepest
             parts.append(_part(error, stated + allowed))
             cells |= {"difference": format_error(error / unit), "allowed": format_error(allowed / unit)}
         if (part := max(parts, default=inf)) > worst:

@@ -67,7 +67,7 @@ def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | 
 
 def _judges(integral: IntegratedOutput, truth: ReferenceOutputs) -> bool:
     """Whether it can tell what is wrong from what is right: of what is still 0 only at the end of the horizon."""
-    moves = integral.size > integral.allowed
+    moves = integral.size > integral.error_bound
     return integral.judges and (moves or integral.taus[-1] >= truth.whole.horizon() * (1 - _LATE))
 
 

@@ -35,7 +35,7 @@ class SteppedStream(NamedTuple):
     taus: Array
     values: Array
     status: int
-    lost: float
+    stated_error: float
     refusal: str = ""
 
 
