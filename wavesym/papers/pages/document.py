@@ -202,14 +202,15 @@ def document(findings: Findings, format: str) -> Document:
     )
 
 
-def _words(*texts: str) -> tuple[Cell, ...]:
+def word_cells(*texts: str) -> tuple[Cell, ...]:
+    """Cells of plain words."""
     return tuple(Cell((text,)) for text in texts)
 
 
 def counts(findings: Findings) -> Block:
     """How many records have each verdict."""
-    rows = [(Cell((name,), name), *_words(str(count), VERDICTS[name])) for name, count in findings.counts]
-    return Block(table=Table(_words("verdict", "records", "meaning"), tuple(rows), (2, 1, 7)))
+    rows = [(Cell((name,), name), *word_cells(str(count), VERDICTS[name])) for name, count in findings.counts]
+    return Block(table=Table(word_cells("verdict", "records", "meaning"), tuple(rows), (2, 1, 7)))
 
 
 def statistics(findings: Findings) -> Block:
@@ -218,8 +219,8 @@ def statistics(findings: Findings) -> Block:
     rows = []
     for name, records in by_place(findings.records).items():
         counts = Counter(record.verdict for record in records)
-        rows.append(_words(name, *(str(counts[verdict] or "") for verdict in used)))
-    return Block("By section and table", table=Table(_words("", *used), tuple(rows)))
+        rows.append(word_cells(name, *(str(counts[verdict] or "") for verdict in used)))
+    return Block("By section and table", table=Table(word_cells("", *used), tuple(rows)))
 
 
 def appendices(findings: Findings) -> list[Section]:
@@ -244,7 +245,7 @@ def appendices(findings: Findings) -> list[Section]:
         ("Faults that no case turns, and why", "survivors", ("id", "fault", "why"), survivors, (2, 4, 4)),
     ]
     return [
-        Section(title, anchor, (Block(table=Table(_words(*heads), rows, widths)),) if rows else ())
+        Section(title, anchor, (Block(table=Table(word_cells(*heads), rows, widths)),) if rows else ())
         for title, anchor, heads, rows, widths in parts
     ]
 
@@ -271,7 +272,7 @@ def _holding_blocks(records: Sequence[Record]) -> list[Block]:
                 )
                 for record in same
             ]
-            table = Table(_words("id", "source", "printed", "evidence"), tuple(rows), (2, 2, 3, 3))
+            table = Table(word_cells("id", "source", "printed", "evidence"), tuple(rows), (2, 2, 3, 3))
             blocks.append(Block(name, text=f"Compared with {against}:", table=table))
             name = ""
     return blocks

@@ -11,7 +11,6 @@ from textwrap import fill, indent
 
 from wavesym.papers.pages.document import (
     Block,
-    Cell,
     Field,
     Findings,
     Table,
@@ -21,6 +20,7 @@ from wavesym.papers.pages.document import (
     fields,
     reproduction,
     statistics,
+    word_cells,
 )
 from wavesym.papers.pages.lines import Code, Different, Formula, Inline, Line
 from wavesym.papers.pages.marks import mark
@@ -89,11 +89,8 @@ def text(findings: Findings) -> str:
     if is_list or findings.only:
         parts.append("\n".join([*_text_counts(findings), f"{tried} faults put in, {turned} turned by a case"]))
     if is_list:
-        rows = tuple(
-            tuple(Cell((word,)) for word in (record.id, record.verdict, str(record.cases), record.entry.where))
-            for record in shown
-        )
-        parts.append(_text_table(Table(tuple(Cell((head,)) for head in ("id", "verdict", "cases", "where")), rows)))
+        rows = tuple(word_cells(each.id, each.verdict, str(each.cases), each.entry.where) for each in shown)
+        parts.append(_text_table(Table(word_cells("id", "verdict", "cases", "where"), rows)))
     for record in shown:
         if record.verdict != "holds" or not whole:
             head = f"{record.id}: {record.verdict}, {VERDICTS[record.verdict]}"
@@ -101,11 +98,10 @@ def text(findings: Findings) -> str:
                 "\n".join([head, *(line for field in fields(record, findings) for line in _text_field(field))])
             )
     if whole:
-        blocks = [statistics(findings), *(block for section in appendices(findings) for block in section.blocks)]
-        titles = ["By section and table", *(section.title for section in appendices(findings) if section.blocks)]
-        parts += [
-            f"{title}:\n{_text_table(block.table)}" for title, block in zip(titles, blocks, strict=True) if block.table
-        ]
+        counted = statistics(findings)
+        tables = [(counted.title, counted.table)]
+        tables += [(section.title, block.table) for section in appendices(findings) for block in section.blocks]
+        parts += [f"{title}:\n{_text_table(table)}" for title, table in tables if table]
     return "\n\n".join(parts) + "\n"
 
 

@@ -77,10 +77,6 @@ class Exact:
         first = 1 if self.interval == 1 else 0
         return {x + first: fmpq(node.rate) for x, node in enumerate(self.chain.nodes) if node.inertia}
 
-    def alive(self, letter: str, rod: int, interval: int) -> bool:
-        """Whether a function changes at all in an interval."""
-        return any(self.increment(source, letter, rod, interval) for source in self.responses)
-
 
 @cache
 def collision(m: int) -> Exact:

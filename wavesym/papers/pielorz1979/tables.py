@@ -330,7 +330,11 @@ def rest(entry: PaperEntry) -> Test:
                             stated.add((*scope.indices(left.function), scope.value(right)))
             listed = [rod for letter, rod in functions("III", m) if letter == "g"]
             exact = EXACT["III"](m)
-            true = {(i, j, 0) for i in listed for j in range(1, _REST + 1) if not exact.alive("g", i, j)}
+            true = {
+                (i, j, 0)
+                for i, j in product(listed, range(1, _REST + 1))
+                if not any(exact.increment(source, "g", i, j) for source in exact.responses)
+            }
             yield Case({"m": m, "claim": "rod, interval and value of g' at rest"}, sorted(stated), sorted(true))
 
     return Test("what the functions g of Table 4 gain in exact tables with equal floors, m = 2 ... 5", cases)
