@@ -37,6 +37,11 @@ class Key(NamedTuple):
     rod: int
     interval: int
 
+    @property
+    def power(self) -> int:
+        """Of the time since the interval began, before which it stands."""
+        return self.lower[-1] if len(self.lower) > 1 else len(self.lower)
+
     def __str__(self) -> str:
         below = {0: "", 1: "_0"}.get(len(self.lower)) or (f"_({self.lower[0]},{self.lower[1]})" if self.lower else "")
         return f"{self.letter}{below}^({self.k},{self.rod},{self.interval})"
@@ -63,10 +68,10 @@ class TrueCoefficients:
 
     def __call__(self, key: Key) -> fmpq:
         """A coefficient: 0 before the first interval and where it does not exist; MeaninglessError."""
-        powers, power = self.family(key), key.lower[-1] if len(key.lower) > 1 else len(key.lower)
-        if power < 0:
+        if key.power < 0:
             raise MeaninglessError(f"there is no {key}")
-        return powers[power] if power < len(powers) else fmpq(0)
+        powers = self.family(key)
+        return powers[key.power] if key.power < len(powers) else fmpq(0)
 
     def family(self, key: Key) -> list[fmpq]:
         """The coefficients of all powers at the rate of one."""
@@ -90,9 +95,8 @@ class TrueCoefficients:
     def example(self, key: Key) -> Reproduction:
         """The tables of increments for units of both sources, of which a coefficient is made."""
         parts = " and ".join(f"{steps[key.k].weight} times source {name}" for name, steps in self.loads.items())
-        power = key.lower[-1] if len(key.lower) > 1 else len(key.lower)
         look = (
-            f"{key.letter} of rod {key.rod}, interval {key.interval}, rate {self._rate(key.lower)}, power {power}: "
+            f"{key.letter} of rod {key.rod}, interval {key.interval}, rate {self._rate(key.lower)}, power {key.power}: "
             f"{parts} is {self(key)}"
         )
         until = self.exact.interval * key.interval
