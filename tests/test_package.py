@@ -122,7 +122,7 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
     copy = tmp_path_factory.mktemp("checkout")
     for name in ("wavesym", "templates"):
         shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, copy)
     return copy
 
@@ -168,6 +168,10 @@ def test_the_wheel_has_what_belongs_into_it_and_works(checkout: Path, here: dict
     made = wheel(checkout, tmp_path)
     with ZipFile(made) as archive:
         assert set(archive.namelist()) == contents(checkout)
+        (metadata,) = (name for name in archive.namelist() if name.endswith("METADATA"))
+        described = archive.read(metadata).decode().partition("\n\n")[2]
+    assert "## A frame, from SI units to a page" in described
+    assert not re.search(r"\]\((?!https?:)", described), "a picture or a link that leads nowhere from there"
     venv.create(tmp_path / "fresh", with_pip=True)
     fresh = str(tmp_path / "fresh" / "bin" / "python")
     install = ("-m", "pip", "install", "--quiet", "--disable-pip-version-check")
