@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 
 import wavesym
 from wavesym import Scene, SceneError, ToleranceError, UnservedError
+from wavesym.cli import main
 from wavesym.mechanics.network import Bar
 from wavesym.mechanics.travel_times import FINEST, adjust_speeds, percent, speed_change
 from wavesym.numbers.doubles import common_measure
@@ -20,6 +22,22 @@ from wavesym.scene import lower
 from wavesym.scene.explicit_text import explicit_text
 
 LAYERS = (("12 m", 451, 902), ("7.3 m", 333, 632.7), ("5 m", 210, 357))  # m, m/s, kN s/m
+TWO_RODS = """
+name = "two"
+units = { kind = "shear" }
+[system]
+type = "chain"
+speed_adjustment = "1 %"
+parts = [{ rod = "12 m", speed = "451 m/s", impedance = "902 kN*s/m" },
+  { rod = "7.3 m", speed = "333 m/s", impedance = "633 kN*s/m" }, { mass = "3 t", name = "surface" }]
+[[load]]
+at = "0 m"
+times = ["0 s"]
+steps = ["1 kN"]
+[output]
+until = "0.1 s"
+velocity = ["surface"]
+"""
 ROCK = 2400.0  # kN s/m
 STEP = 0.02  # s
 SAMPLES = (0, *np.sin(np.arange(1, 60) ** 1.5 / 7).round(3).tolist(), 0)
@@ -170,3 +188,27 @@ def test_storeys_that_differ_take_a_speed_adjustment_too() -> None:
     assert common_measure(delays) * FINEST >= min(delays)
     written_out = [bar.delay for bar in lower(Scene.from_toml(explicit_text(building))).network.bars]
     assert [delay / delays[0] for delay in delays] == [delay / written_out[0] for delay in written_out]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [["tables"], ["formula", "--output", "velocity@surface"], ["modes"], ["frf", "--points", "3"], ["inspect"]],
+)
+def test_every_command_tells_that_speeds_were_changed(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Some gave values of the changed chain without a word."""
+    path = tmp_path / "two.toml"
+    path.write_text(TWO_RODS)
+    assert main([command[0], str(path), *command[1:]]) == 0
+    told = capsys.readouterr()
+    assert "speeds of waves are changed by" in (told.out if command == ["inspect"] else told.err)
+    assert "speeds of waves are changed by" not in told.out or command == ["inspect"]
+
+
+def test_a_result_says_that_speeds_were_changed() -> None:
+    found = Scene.from_toml(TWO_RODS).run(samples=3)
+    (note,) = found.notes
+    assert "speeds of waves are changed by" in note
+    assert note in found._repr_html_()
+    assert Scene.from_toml(TWO_RODS.replace("speed_adjustment", "# ")).run(samples=3).notes == ()

@@ -232,6 +232,11 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     return RuntimeModel(ModalSets(mode_parameters(lowered, runtime, loads)))
 
 
+def reading_notes(scene: Scene) -> list[str]:
+    """How the scene was read, where that may surprise: what was rounded, adjusted or understood."""
+    return list(lower(scene).labels.notes)
+
+
 def scene_notes(scene: Scene) -> list[str]:
     """How the scene was read where that may surprise, and a line for a scene in which nothing happens."""
     from wavesym.results.notices import without_load

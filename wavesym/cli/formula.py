@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, format_option, refuse_out
+from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, format_option, put_notes, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -56,4 +56,6 @@ def formula(scene: Scene, output: str, until: Fraction | None, symbolic: bool, f
     refuse_out(out)
     with progress(f"formula {scene.name}"):
         text = api.formula(scene, output, until, format, symbolic=symbolic)
+        notes = api.reading_notes(scene)
+    put_notes(scene, notes)
     deliver(text, out)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SceneParameter, format_option, is_drawn, put, refuse_out
+from wavesym.cli.parameters import PATH, SceneParameter, format_option, is_drawn, put, put_notes, refuse_out
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -74,5 +74,7 @@ def modes(
             api.plot_modes(scene, found, out)
         elif out is not None:
             write_whole({out: text})
+        notes = api.reading_notes(scene)
+    put_notes(scene, notes)
     if out is None or drawn:
         put(text)

@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, format_option, fragment_option, put, refuse_scene, written_format
+from wavesym.cli.parameters import (
+    PATH,
+    SCENE,
+    format_option,
+    fragment_option,
+    put,
+    put_notes,
+    refuse_scene,
+    written_format,
+)
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -51,6 +60,8 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, fra
             lines = table_lines(api.table(scene, intervals), scene.name, written)
         if out is not None:
             write_whole({out: lines})
+        notes = api.reading_notes(scene)
+    put_notes(scene, notes)
     for equation in equations:
         click.echo(equation, err=True)
     if out is None:

@@ -78,6 +78,11 @@ class Result:
         return self._response.events
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """How the scene was read, where that may surprise: what `wavesym run` says on standard error."""
+        return self._response.model.labels.notes
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """The outputs with their units, as in the header of `wavesym run`."""
         pairs = zip(self.outputs, self.units, strict=True)
@@ -143,7 +148,9 @@ class Result:
         """A table of the outputs, of long ones the start and the end."""
         rows = range(self.time.size)
         kept = list(rows) if len(rows) <= 2 * _SHOWN + 1 else [*rows[:_SHOWN], -1, *rows[-_SHOWN:]]
-        return html_table(repr(self), (self.time_label, *self.columns), map(self._cells, kept))
+        return html_table(
+            ". ".join([repr(self), *self.notes]), (self.time_label, *self.columns), map(self._cells, kept)
+        )
 
     def _cells(self, k: int) -> list[str]:
         if k < 0:

@@ -58,7 +58,8 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
     )
     if not rods.alike:
         yield _rods(physical)
-    yield Listing("remarks", "Remarks", [{"remark": line} for line in remarks(physical)], ("remark",))
+    found = [*remarks(physical), *model.labels.notes]
+    yield Listing("remarks", "Remarks", [{"remark": line} for line in found], ("remark",))
 
 
 def _exact_delay(rods: Rods) -> str:
