@@ -239,9 +239,9 @@ def test_pieces_take_no_longer_than_they_are_worth_where_a_closed_form_serves(mo
     parts = [{"rod": 1, "velocity": 1}, {"joint": True, "spring": 5000}, {"rod": "3/2"}, "fixed"]
     fields = {"system": {"type": "chain", "parts": parts}, "output": {"until": "3/4", "strain": ["3/4"]}}
     model = lower(wavesym.Scene(name="stiff", **fields))
-    monkeypatch.setattr(choice, "_OF_MANY", 0.05)
+    monkeypatch.setattr(choice, "_OF_MANY", 0.01)
     chosen = choice.choose(model)
     assert chosen.name == "closed"
-    assert "s, the limit where another program serves is 0.05 s (--evaluator pieces helps)" in chosen.reason
+    assert "s, the limit where another program serves is 0.01 s (--evaluator pieces helps)" in chosen.reason
     monkeypatch.setattr(choice, "_OF_MANY", 5)
     assert " expected where another program serves" not in choice.choose(model.shorten(fmpq(1, 100))).reason
