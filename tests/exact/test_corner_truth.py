@@ -207,3 +207,18 @@ def test_a_limit_that_is_slightly_off_is_seen(seed: int) -> None:
         for part in table["system"]["parts"]
     ]
     assert wrong(table, table | {"system": {"type": "chain", "parts": parts}})
+
+
+@pytest.mark.parametrize("friction", ["1/4", "3/10"])
+def test_what_turns_round_beyond_its_limit_slips_on(friction: str) -> None:
+    """It is pulled by 0.36 as it comes to rest: left vague, its friction hid on which side of 0 its velocity was."""
+    parts = [
+        {"mass": 1, "velocity": 1, "friction": friction, "name": "a"},
+        {"spring": 3, "yield": "1/2"},
+        {"mass": 2, "velocity": 0},
+        {"spring": 1, "dashpot": "1/4"},
+        {"rod": 1},
+        "absorbing",
+    ]
+    system = {"type": "chain", "parts": parts}
+    assert wrong({"name": "turning", "system": system, "output": {"until": 3, "displacement": ["a"]}}) == []

@@ -323,19 +323,26 @@ class Search:
         return doubt.high
 
     def _move_vague(self, course: Course, start: fmpq, length: fmpq) -> JointStretch:
-        """The motion, with all contacts vague that are not certainly open or closed all the time."""
+        """The motion, with all contacts vague that are not certainly open or closed all the time.
+
+        Friction of masses that is not certain to slide all the time is held: that is no further from the truth than
+        the energy that is lost by it, where what is vague may have any force.
+        """
         joint, arriving = self.waves.joints[course.number], self.waves.arriving(course.number, start, length)
         vague = frozenset(contact.link for contact in course.contacts if contact.is_unclear)
+        inert = {each.link for each in course.contacts if isinstance(each, Friction) and each.inert}
+        held, vague = vague & inert, vague - inert
         while True:
             others = [contact for contact in course.contacts if contact.link not in vague]
-            closed = frozenset(contact.link for contact in others if contact.is_held)
+            closed = held | frozenset(contact.link for contact in others if contact.is_held)
             sliding = frozenset((each.link, each.sign) for each in others if each.sign and each.link not in closed)
             moved = joint.move(arriving, start, length, closed, vague, sliding)
             steady = (contact for contact in course.contacts if contact.link not in vague)
             wrong = frozenset(contact.link for contact in steady if not contact.lasts(moved, length))
             if not wrong:
                 return moved
-            vague |= wrong
+            held |= wrong & inert
+            vague |= wrong - inert
 
 
 def lasting(changes: Iterable[Change], width: fmpq) -> list[Change]:
