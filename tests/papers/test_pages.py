@@ -16,6 +16,9 @@ from typing import Any
 import pytest
 
 from tests.papers.small import ENTRIES, PAPER, SCENE, entry, findings, records
+from tests.pictures.browser import axe, reported
+from tests.pictures.test_page import LOOK
+from wavesym.cli import main
 from wavesym.papers.pages.document import SIGNS, Findings, counts, fields, statistics
 from wavesym.papers.pages.formats import CHARACTERS, FORMATS, TEXT, as_json, as_latex, html, markdown, tex, text
 from wavesym.papers.pages.lines import Different, correction, readable, statement
@@ -371,3 +374,14 @@ def test_sentences_are_compared_word_by_word_and_their_formulas_are_read() -> No
 def test_passages_without_text_are_named_by_their_lines() -> None:
     assert re.search(r"^line 10, section 1 +a title$", text(findings()), re.MULTILINE)
     assert text(findings()).count("a name") == 2
+
+
+@pytest.mark.slow
+def test_axe_finds_nothing_on_a_page_of_records(tmp_path: Path) -> None:
+    """All records at once take it too long; these have formulas, a table and prose."""
+    page = tmp_path / "errata.html"
+    assert main(["verify", "--published", "4.10", "T3", "text.22", "--format", "html", "-o", str(page)]) == 0
+    made = page.read_text(encoding="utf-8")
+    assert made.count("<math") > 50
+    assert reported(made, axe() + LOOK, tmp_path) == []
+    assert reported(made.replace("<main>", "").replace("</main>", ""), axe() + LOOK, tmp_path) != []
