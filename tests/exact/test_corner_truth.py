@@ -222,3 +222,27 @@ def test_what_turns_round_beyond_its_limit_slips_on(friction: str) -> None:
     ]
     system = {"type": "chain", "parts": parts}
     assert wrong({"name": "turning", "system": system, "output": {"until": 3, "displacement": ["a"]}}) == []
+
+
+def test_the_middle_of_a_mirrored_chain_without_rods_stays_at_rest() -> None:
+    """What is 0 throughout is measured against the largest wave, and there is none."""
+    outer: dict[str, Any] = {"mass": 1, "friction": "1/4"}
+    spring = {"spring": 2, "yield": "1/2"}
+    middle = {"mass": 2, "velocity": 0, "name": "a"}
+    parts = [outer | {"velocity": -1, "name": "b"}, spring, middle, spring, outer | {"velocity": 1}]
+    table = {"name": "mirrored", "system": {"type": "chain", "parts": parts}}
+    assert wrong(table | {"output": {"until": 1, "displacement": ["a", "b"], "velocity": ["a"]}}) == []
+
+
+def test_what_friction_holds_throughout_beside_what_turns_round_stays_at_rest() -> None:
+    """As one mass turns round, what is not known of it may be in the other, which is 0 against no wave."""
+    parts = [
+        {"mass": "3/2", "velocity": 0, "name": "m0", "friction": "5/6"},
+        {"spring": "11/3", "only": "pull", "gap": "1/4", "friction": "1/2"},
+        {"mass": "2/5", "velocity": 0, "name": "m1", "spring": "11/3"},
+        {"spring": 1, "only": "push", "gap": "1/4"},
+        "fixed",
+    ]
+    load = [{"at": "m1", "times": [1, 4], "steps": [-2, "1/3"], "ramps": [0, "-4/3"]}]
+    output = {"until": 6, "displacement": ["m0", "m1"], "velocity": ["m0"]}
+    assert wrong({"name": "held", "system": {"type": "chain", "parts": parts}, "load": load, "output": output}) == []

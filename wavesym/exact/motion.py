@@ -140,17 +140,22 @@ class Motion:
 
     @cached_property
     def size(self) -> arb:
-        """A lower bound of the largest wave, as a velocity: from the starts and ends of the stretches of joints."""
-        joints, joint_of = self._breakpoints.joints, self._network.joint_of
+        """A lower bound of the largest wave, as a velocity, or velocity of what no wave shows: at points of stretches.
+
+        A chain without rods has no waves, and masses that slide back and forth may be at rest where stretches begin.
+        """
+        joints, network = self._breakpoints.joints, self._network
         with ctx.workprec(self.first_bits):
+            waves = self.waves(self.first_bits)
+            of_point = [(network.point_at(end), wave) for end, wave in waves.sent.items()] + [*waves.velocities.items()]
             return max(
                 (
                     abs(known.evaluate(w)).lower()
-                    for end, wave in self.waves(self.first_bits).sent.items()
-                    if (times := joints.get(joint_of[self._network.point_at(end)]))
+                    for point, wave in of_point
+                    if (times := joints.get(network.joint_of[point]))
                     for known, (start, stop) in zip(wave.stretches, pairwise([*wave.starts, times[-1]]), strict=True)
                     if start < stop
-                    for w in (fmpq(0), stop - start)
+                    for w in (fmpq(0), (stop - start) / 2, stop - start)
                 ),
                 default=arb(0),
             )
