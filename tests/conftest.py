@@ -70,6 +70,12 @@ def quick_builds(pytestconfig: pytest.Config) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session")
+def thorough(pytestconfig: pytest.Config) -> bool:
+    """Whether a test may take its time: with --run-slow it compares more, longer, or larger."""
+    return bool(pytestconfig.getoption("--run-slow"))
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_setup() -> Generator[None, None, None]:
     yield from _skip_without_compiler()

@@ -218,10 +218,10 @@ def test_an_acceleration_that_begins_at_the_end_of_the_horizon(until: str, zero:
         assert (program.outputs[1].bound == 0) is not seen
 
 
-def test_a_march_has_those_of_places_without_mass() -> None:
+def test_a_march_has_those_of_places_without_mass(thorough: bool) -> None:
     """As velocities under the derivatives of loads: within its bound of exact values; where these jump it says so."""
     served = 0
-    for seed in range(6):
+    for seed in range(12 if thorough else 6):
         model = lower(drawn(Random(seed))).tolerating(fmpq(1, 10**6))
         tried = attempt(model, "march")
         if tried.form is None:
@@ -233,7 +233,7 @@ def test_a_march_has_those_of_places_without_mass() -> None:
         exact = np.array(Reference(model).values(taus.tolist()))
         for values, truth, output in zip(program.evaluate(taus), exact, program.outputs, strict=True):
             assert np.max(np.abs(values - truth)) <= output.bound * np.max(np.abs(truth)) * (1 + 1e-9)
-    assert served >= 2
+    assert served >= (4 if thorough else 2)
 
 
 def test_an_acceleration_that_jumps_with_a_load_is_no_march() -> None:

@@ -19,7 +19,7 @@ from wavesym.scene import Scene, lower
 
 CHARACTERISTICS = (characteristics.SECOND, characteristics.FOURTH)
 REFUSED = dict.fromkeys(CHARACTERISTICS, ("springs and dashpots",))
-RESOLUTIONS = {discrete.MODAL: 32, laplace.METHOD: 1000}
+RESOLUTIONS = {discrete.MODAL: 40, laplace.METHOD: 1000}
 
 
 def scene(parts, branch=(), load=(), **output):

@@ -7,7 +7,7 @@ from math import exp, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import wavesym
@@ -42,7 +42,6 @@ def value(shape: str, pace: float, t: float) -> float:
     return (1 - 2 * a * a) * exp(-a * a)
 
 
-@settings(max_examples=45)
 @given(
     st.sampled_from(sorted(PACE)),
     st.sampled_from(["1/3", "1", "7/2", "0.3000001"]),

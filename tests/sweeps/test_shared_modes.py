@@ -25,7 +25,7 @@ FRAME: dict[str, Any] = {
     "system": {"type": "building", "base": "ground", "damping": "1/20", "storey": [{**STOREY, "count": 2}, STOREY]},
     "load": [{"spacing": "0.1 s", "samples": ["0", "1/4", "-3/10", "1/5", "-1/10", 0], "unit": "g"}],
     "output": {
-        "until": "1.5 s",
+        "until": "2 s",
         "tolerance": "1e-3",
         "drift": [1, 3],
         "acceleration": [3],
@@ -36,7 +36,7 @@ FRAME: dict[str, Any] = {
     },
 }
 NUMBERS = {
-    "system.storey[0].stiffness": ["500 MN/m", "711 MN/m"],
+    "system.storey[0].stiffness": ["500 MN/m", "600 MN/m", "711 MN/m"],
     "system.storey[1].floor_mass": ["250 t", "300 t"],
     "system.damping": ["0.02", "0.05"],
 }
@@ -63,9 +63,9 @@ def whole(made: SweepPlan) -> dict[tuple[int, ...], dict[str, Any]]:
     return found
 
 
-def assert_as_alone(made: SweepPlan, found: Mapping[tuple[int, ...], Mapping[str, Any]]) -> None:
-    """Extremes and histories of some cases are those of their scenes alone, within both bounds."""
-    for place, case in list(found.items())[::5]:
+def assert_as_alone(made: SweepPlan, found: Mapping[tuple[int, ...], Mapping[str, Any]], every: int) -> None:
+    """Extremes and histories of some cases, one of `every`, are those of their scenes alone, within both bounds."""
+    for place, case in list(found.items())[::every]:
         alone = single(made, made.scene(place)).arrays
         size = np.maximum(np.abs(alone["min"]), np.abs(alone["max"]))
         allowed = (case["bound"] + alone["bound"]) * size
@@ -78,7 +78,7 @@ def assert_as_alone(made: SweepPlan, found: Mapping[tuple[int, ...], Mapping[str
 
 
 @pytest.mark.parametrize("vary", [NUMBERS, COLUMNS], ids=["numbers of modes", "anything else"])
-def test_cases_side_by_side_are_what_they_are_alone(vary: Mapping[str, Any]) -> None:
+def test_cases_side_by_side_are_what_they_are_alone(vary: Mapping[str, Any], thorough: bool) -> None:
     made = planned(FRAME, vary, keep={"histories": 21})
     assert kind(made)[0] == "structures"
     first = shared_modes._first_structure(made)
@@ -86,7 +86,7 @@ def test_cases_side_by_side_are_what_they_are_alone(vary: Mapping[str, Any]) -> 
     assert (first.lanes is not None) is (vary is NUMBERS)
     found = whole(made)
     assert len({case["max"].tobytes() for case in found.values()}) == len(found)
-    assert_as_alone(made, found)
+    assert_as_alone(made, found, 3 if thorough else 6)
 
 
 def test_a_case_alone_has_the_same_bits() -> None:

@@ -33,7 +33,7 @@ def frame(**changes):
     system = {"type": "building", "m": 2, "kappa": ["1/4"] * 3, "base": "ground", "damping": "1/20", **changes}
     samples = [0, 3, 1, -4, 1, -5, 9, 2, -6, 5, 3, -5, 0]
     load = [{"spacing": "2.3", "samples": samples}]
-    output = {"until": 20, "tolerance": "1e-6", "strain": ["1/3"], "acceleration": [2], "force": [0]}
+    output = {"until": 40, "tolerance": "1e-6", "strain": ["1/3"], "acceleration": [2], "force": [0]}
     return Scene(name="frame", system=system, load=load, output=output)
 
 
