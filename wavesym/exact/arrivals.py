@@ -41,12 +41,14 @@ def identically_zero(model: Model, until: fmpq) -> list[bool]:
 
     Most outputs differ from 0 soon, and only those that do not are followed for longer.
     """
+    if model.network.corners:
+        return [False] * len(model.probes)
     still = dict(enumerate(model.probes))
     for part in (64, 8, 1):
-        if still and not model.network.corners:
+        if still:
             found = arrivals(model.watching([*still.values()]), until / part)
             still = {k: still[k] for k, first in zip(still, found, strict=True) if first is None}
-    return [k in still and not model.network.corners for k in range(len(model.probes))]
+    return [k in still for k in range(len(model.probes))]
 
 
 def smooth_starts(model: Model, until: fmpq) -> list[fmpq | None]:

@@ -331,7 +331,7 @@ class Search:
         joint, arriving = self.waves.joints[course.number], self.waves.arriving(course.number, start, length)
         vague = frozenset(contact.link for contact in course.contacts if contact.is_unclear)
         inert = {each.link for each in course.contacts if isinstance(each, Friction) and each.inert}
-        held, vague = vague & inert, vague - inert
+        held: frozenset[int] = frozenset()
         while True:
             others = [contact for contact in course.contacts if contact.link not in vague]
             closed = held | frozenset(contact.link for contact in others if contact.is_held)
