@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
-import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
 from itertools import count
@@ -16,8 +14,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from wavesym.errors import SceneError
-from wavesym.fields.loads import Load, SampledLoad, TimedLoad
-from wavesym.fields.numbers import decimal_text
+from wavesym.fields.loads import SampledLoad, TimedLoad
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
@@ -27,18 +24,15 @@ from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.travel_times import percent, speed_change
-from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.numbers.doubles import rational
 from wavesym.records.load import RecordedLoad
+from wavesym.scene.notes import damping_in_time, reading_notes, spacing_text
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
-from wavesym.systems import ExplicitChain
 from wavesym.systems.place import Place
 
 _KEPT = "lowered"  # beside the fields of a scene
-_MOST_NAMED = 5  # rods
-_USUAL_DAMPING = fmpq(1, 5)  # of critical; above it a ratio is more often a slip than meant
 
 
 def lower(scene: Scene, *, loads: bool = True) -> Model:
@@ -65,7 +59,7 @@ def lower(scene: Scene, *, loads: bool = True) -> Model:
         kept.models[loads] = _build_model(scene if loads else _without_loads(scene))
     model = kept.models.get(True) or kept.models[loads]
     if loads and any(bar.loss != 0 for bar in model.network.bars):
-        model.network.refuse_loss(_damping_in_time(scene, model.network))
+        model.network.refuse_loss(damping_in_time(scene, model.network))
     return model
 
 
@@ -152,13 +146,7 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
         loads=scene.physical.loads if scene.physical else tuple(load.description for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
-        notes=(
-            *_horizon_notes(scene),
-            *_damping_notes(scene),
-            *_speed_notes(scene),
-            *_record_notes(scene),
-            *_shape_notes(scene),
-        ),
+        notes=reading_notes(scene, _damping(scene)),
         kind=scene.scale.kind if scene.scale else "",
         size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
         dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",
@@ -166,79 +154,6 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         sources={source: load.label for load in scene.load for source in load.sources},
         titles={source: load.name for load in scene.load if load.name for source in load.sources},
     )
-
-
-def _horizon_notes(scene: Scene) -> Iterator[str]:
-    """A line where a scene with units says a horizon of tau: whoever writes a number may have meant seconds."""
-    until = scene.physical.fields_in_units.get("output", {}).get("until") if scene.physical else None
-    if until is not None and scene.scale and re.fullmatch(r"[\d./eE+-]+", written := str(until).strip()):
-        horizon = scene.scale.clock.format(rational(scene.output.until))
-        yield f'output.until: {written} is taken as tau, {horizon}; write "{written} s" if seconds are meant'
-
-
-def _damping_notes(scene: Scene) -> Iterator[str]:
-    """A line where a mode has more damping than structures have."""
-    damping = _damping(scene)
-    if damping and (largest := max(damping.ratios)) > _USUAL_DAMPING:
-        yield f"system.damping: {nearest(100 * largest):g} % of critical; structures have some percent"
-
-
-def _speed_notes(scene: Scene) -> Iterator[str]:
-    """A line where waves in rods are a little faster or slower than was written."""
-    if not isinstance(system := scene.system, ExplicitChain) or not system.speed_adjustment:
-        return
-    before, after = system.drawing_as_written.bars, system.drawing.bars
-    if change := speed_change(before, after):
-        yield (
-            f"system.speed_adjustment: speeds of waves are changed by {percent(change)} or less, so that travel times "
-            "have a common measure; impedances are as written"
-        )
-
-
-def _damping_in_time(scene: Scene, network: Network) -> str:
-    """What to write in place of losses for motions in time: damping, or beside dashpots a dashpot in each rod.
-
-    A rod of stiffness k = Z/T with a dashpot c between its ends loses as one with the loss c w/k at the frequency w,
-    the first of a column that is held at one end: a quarter of a turn while a wave goes through.
-    """
-    losses = [bar for bar in network.bars if bar.loss != 0]
-    if network.takes_modal_damping:
-        ratio = decimal_text(fraction(max(bar.loss for bar in losses)) / 2)
-        return f"for these write damping = {ratio} under [system] in its place"
-    turn = math.pi / 2 / nearest(sum((bar.delay for bar in network.bars), fmpq(0)))
-    size, unit = scene.scale.parts["dashpot"] if scene.scale else (1, "")
-    rods: list[str] = []
-    for number, bar in enumerate(network.bars, 1):
-        if bar.loss != 0 and len(rods) < _MOST_NAMED:
-            dashpot = float(f"{nearest(bar.loss * bar.impedance / bar.delay) / turn * float(size):.3g}")
-            written = f'"{dashpot:.15g} {unit}"' if unit else f"{dashpot:.15g}"
-            rods.append(f"dashpot = {written} in {bar.name or f'rod {number}'}")
-    others = ", ..." if len(losses) > len(rods) else ""
-    when = f"{turn / math.tau / float(scene.scale.seconds):.3g} Hz" if scene.scale else f"{turn:.3g} rad per tau"
-    return (
-        f"for these write in its place {', '.join(rods)}{others} (they lose as much at {when}, more above; in thin "
-        "rods), or multiply the spectrum of a record by `frf`, as in docs/tutorials/soil.md"
-    )
-
-
-def _record_notes(scene: Scene) -> Iterator[str]:
-    """A line for each record that begins later, so that it does not jump."""
-    for k, load in enumerate(scene.load):
-        if isinstance(load, RecordedLoad) and load.is_delayed:
-            yield (
-                f"load[{k}].record: the first sample is not 0, and modes take no jump: the load rises to it from 0 "
-                f"over one spacing, so that the record begins {_spacing(scene, load)} later"
-            )
-
-
-def _shape_notes(scene: Scene) -> Iterator[str]:
-    """A line for each load that has a shape: as what it acts."""
-    for k, load in enumerate(scene.load):
-        if isinstance(load, ShapedLoad):
-            yield f"load[{k}]: {load.shape} {load.sampling}, one every {_spacing(scene, load)}"
-
-
-_NOTES = (_horizon_notes, _damping_notes, _speed_notes, _record_notes, _shape_notes)
 
 
 def _loads(scene: Scene) -> tuple[AppliedLoad, ...]:
@@ -257,7 +172,7 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, AppliedLoad], ...]:
     for label, load in zip(load_names(scene), scene.load, strict=True):
         if not isinstance(load, TimedLoad):
             samples = AppliedRecord(load.sources[0], fmpq(0), fmpq(1), merge_loads(load.units()))
-            found.append((f"factor of the {label}, samples at {_spacing(scene, load)}", samples))
+            found.append((f"factor of the {label}, samples at {spacing_text(scene, load)}", samples))
             continue
         found += [
             (f"{name}[{k}] of the {label}, {_format_time(scene, load.times[k])}", unit)
@@ -272,11 +187,6 @@ def load_names(scene: Scene) -> tuple[str, ...]:
     labels = [load.label for load in scene.load]
     numbers = {label: count(1) for label, found in Counter(labels).items() if found > 1}
     return tuple(f"{label} ({next(numbers[label])})" if label in numbers else label for label in labels)
-
-
-def _spacing(scene: Scene, load: Load) -> str:
-    assert load.step is not None  # as it has samples
-    return scene.scale.clock.format(rational(load.step)) if scene.scale else str(load.step)
 
 
 def sources(scene: Scene) -> tuple[str, ...]:
