@@ -151,13 +151,14 @@ def test_loose_tolerances_stay_and_tight_ones_do_not_hinder() -> None:
 
 
 @pytest.mark.parametrize("name", ["drive_m1", "building_m2"])
-def test_labels_are_the_proved_extremes_to_their_digits(name: str) -> None:
+def test_labels_are_the_proved_extremes_to_their_digits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     short = Scene.from_toml(name)
     long = short.model_copy(update={"output": short.output.model_copy(update={"until": Fraction(40)})})
     proved, marked = extremes(lower(long)), histories(lower(long))
-    drawn = [replace(history, peaks=None).extremes for history in marked.outputs]
+    monkeypatch.setattr(made_of, "_with_peaks", lambda program, taus, _: (taus, program.evaluate(taus)))
+    plain = [history.extremes for history in histories(lower(long)).outputs]
     missed = 0
-    for pair, history, vertices in zip(proved, marked.outputs, drawn, strict=True):
+    for pair, history, vertices in zip(proved, marked.outputs, plain, strict=True):
         true = np.array([(each.tau, each.value) for each in pair])
         largest = np.max(np.abs(true[:, 1]))
         assert np.max(np.abs(history.extremes - true)[:, 1]) <= ALLOWED * largest

@@ -43,15 +43,13 @@ MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
 class History:
     """One output over tau, dimensionless.
 
-    `stretches` are polylines (n, 2) of tau and value; from one to the next the output jumps. What comes after
-    `formal` is the formal continuation of a contact that has opened. `peaks` are tau and value of the least and of the
-    greatest value that was looked for between the vertices, (2, 2).
+    `stretches` are polylines (n, 2) of tau and value, among them the least and the greatest one; from one to the next
+    the output jumps. What comes after `formal` is the formal continuation of a contact that has opened.
     """
 
     output: Probe
     stretches: tuple[Points, ...]
     formal: float = inf
-    peaks: Points | None = None
 
     @property
     def name(self) -> str:
@@ -70,8 +68,6 @@ class History:
     @property
     def extremes(self) -> Points:
         """Tau and value of its least and of its greatest value, (2, 2), in which nothing is formal."""
-        if self.peaks is not None:
-            return self.peaks
         return self.real[[np.argmin(self.real[:, 1]), np.argmax(self.real[:, 1])]]
 
     @property
@@ -103,17 +99,15 @@ def histories(model: Model, columns: int = 1, program: Program | None = None) ->
     dense = _dense(model)
     sudden = program.under_jumps(model)
     fronts = [[] if dense else arrivals(sudden, probe) for probe in model.probes]
-    taus = _instants(program, columns, fronts, formal)
-    values = program.evaluate(taus)
     names = [output.name for output in program.outputs]
     rows = [names.index(probe.name) for probe in model.probes]
     ends = np.full(len(names), program.tau_max)
     ends[rows] = np.minimum(ends[rows], formal)
-    peaks = _peaks(program, taus, values, ends)
+    taus, values = _with_peaks(program, _instants(program, columns, fronts, formal), ends)
     return Histories(
         model,
         tuple(
-            History(probe, _split_at_fronts(np.column_stack([taus, values[row]]), own), late, peaks[row])
+            History(probe, _split_at_fronts(np.column_stack([taus, values[row]]), own), late)
             for probe, row, own, late in zip(model.probes, rows, fronts, formal, strict=True)
         ),
         contacts,
@@ -192,15 +186,18 @@ def _instants(program: Program, columns: int, fronts: list[list[float]], formal:
     return np.unique(np.concatenate([program.instants(until / count), sudden, before, late]))
 
 
-def _peaks(program: Program, taus: Points, values: Points, ends: Points) -> Points:
-    """The tau and value of the least and the greatest value of each output until it `ends`, (outputs, 2, 2).
+def _with_peaks(program: Program, taus: Points, ends: Points) -> tuple[Points, Points]:
+    """Tau and values (outputs, n), with those at which an output is least or greatest until it `ends` between them.
 
-    They are looked for around the highest of the `values` (outputs, taus), as `summary` does.
+    They are looked for around the highest values at the other instants, as `summary` does.
     """
+    values = program.evaluate(taus)
     last = np.searchsorted(taus, ends, side="right") - 1
     held = np.take_along_axis(values, np.minimum(np.arange(taus.size), last[:, None]), axis=1)
-    found, when = sampled_extremes(taus, held, lambda tau: program.each(np.minimum(tau, ends[:, None])))
-    return np.stack([when, found], axis=2)
+    _, when = sampled_extremes(taus, held, lambda tau: program.each(np.minimum(tau, ends[:, None])))
+    more = np.setdiff1d(when, taus)
+    place = np.searchsorted(taus, more)
+    return np.insert(taus, place, more), np.insert(values, place, program.evaluate(more), axis=1)
 
 
 def _split_at_fronts(points: Points, fronts: list[float]) -> tuple[Points, ...]:
