@@ -14,6 +14,7 @@ from wavesym.exact.joints.joint_law import JointLaw
 from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.exact.joints.state_space import ElasticState, state_space
 from wavesym.mechanics.network import Bar, Link, Network, Point
+from wavesym.numbers.ratio import Ring
 
 SMALL = st.fractions(0, 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))
 POSITIVE = st.fractions("1/4", 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))
@@ -173,6 +174,21 @@ def test_springs_and_dashpots_between_masses(mass, dashpots, springs, stiff, ter
 def test_a_joint_without_rod_or_dashpot_has_no_law():
     with pytest.raises(ZeroDivisionError):
         _ = law([0], [[0]]).inverse
+
+
+def test_the_inverse_of_functions_is_that_of_their_numbers() -> None:
+    """Numbers are inverted by FLINT, functions by elimination."""
+    ring, numbers = Ring(("a", "b", "c")), {"a": fmpq(2, 3), "b": fmpq(7), "c": fmpq(1, 5)}
+
+    def inverse(values):
+        a, b, c = values["a"], values["b"], values["c"]
+        rows = ((a + b, -b, 0 * a), (-b, b + c, -c), (0 * a, -c, c))
+        return JointLaw((fmpq(0),) * 3, rows, ((fmpq(0),) * 3,) * 3, (None,) * 3).inverse
+
+    of_numbers = inverse(numbers)
+    assert {key: value.evaluate(numbers) for key, value in inverse(ring.symbols()).items()} == of_numbers
+    for place, value in {(0, 0): fmpq(3, 2), (1, 1): fmpq(3, 2) + fmpq(1, 7), (1, 2): fmpq(3, 2) + fmpq(1, 7)}.items():
+        assert of_numbers[place] == value  # dashpots in a row, one after the other to the ground
 
 
 @given(st.data())

@@ -13,7 +13,7 @@ from functools import cached_property
 from math import isqrt
 from typing import NamedTuple, TypeVar
 
-from flint import arb, fmpq, fmpq_poly
+from flint import arb, fmpq, fmpq_mat, fmpq_poly
 
 from wavesym.derivation.rules import joint_rule
 from wavesym.exact.joints.enclosure import Enclosure, Terms, scale_terms
@@ -174,6 +174,10 @@ class JointLaw:
         ZeroDivisionError where a point has neither rod nor dashpot. As no dashpot gives energy, no pivot is 0 else.
         """
         size = len(self.light)
+        damping = [self.damping[a][b] for a in self.light for b in self.light]
+        if all(isinstance(number, fmpq) for number in damping):  # FLINT is up to 20 times as fast
+            inverse = fmpq_mat(size, size, damping).inv()
+            return {(n, m): inverse[n, m] for n in range(size) for m in range(size)}
         rows = [
             [*(self.damping[a][b] for b in self.light), *(fmpq(int(n == k)) for n in range(size))]
             for k, a in enumerate(self.light)
