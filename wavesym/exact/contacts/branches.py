@@ -122,7 +122,7 @@ class Contact(Corner):
 
     def take(self, moved: JointStretch) -> None:
         """Be closed or open."""
-        self.closed = self.link in moved.closed
+        self.closed = self.link in moved.closed_links
 
     @property
     def wide(self) -> bool:
@@ -131,13 +131,13 @@ class Contact(Corner):
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether its force is not negative, or its gap grows, just after the start."""
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             return begins_bearable(moved.pushes[self.link])
         return self.wide or begins_to_grow(moved.rates[self.link])
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long its force, or its gap, is certainly not negative."""
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             return lasts_until(moved.pushes[self.link], low, moved.length, resolution)
         rate = moved.rates[self.link]
         if self.exact is not None and rate.exact is not None:
@@ -153,13 +153,13 @@ class Contact(Corner):
 
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether its branch is certainly right on all of a short stretch."""
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             return is_not_negative(moved.pushes[self.link], length)
         return bool(self.gap + arb(length) * value_range(moved.rates[self.link], length) > 0)
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Go to the end of a stretch on which its branch was right, or of a short one on which it was left open."""
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             self.gap, self.exact = arb(0), fmpq(0)
         elif self.link in moved.vague:
             self._advance_vague(moved, length)
@@ -199,7 +199,7 @@ class Friction(Corner):
     rate: arb
     sign: int
     closed: bool
-    _decided: Branch
+    _decision: Branch
 
     @classmethod
     def begin(cls, link: int, limit: fmpq, inert: bool, rate: arb) -> Friction:
@@ -235,7 +235,7 @@ class Friction(Corner):
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether its force is within its limits, or it goes the way it slides, just after the start."""
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             return all(map(begins_bearable, self._margins(moved)))
         forward = self._forward(moved)
         if self.inert and self.closed and forward.begins is None:
@@ -244,7 +244,7 @@ class Friction(Corner):
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long these are certainly not negative; what is inert sticks until its force is beyond its limits."""
-        if self.link not in moved.closed:
+        if self.link not in moved.closed_links:
             forward = self._forward(moved)
             if not self.inert or forward.begins is not None:
                 return lasts_until(forward, low, moved.length, resolution)
@@ -253,7 +253,7 @@ class Friction(Corner):
         guards = self._margins(moved)
         ends = [end for guard in guards if (end := lasts_until(guard, low, moved.length, resolution)) is not None]
         end = min(ends, key=lambda end: end.length, default=None)
-        if end is None or not self.inert or (end.spread is None and self.link in moved.known):
+        if end is None or not self.inert or (end.spread is None and self.link in moved.exact_contacts):
             return end
         late = 4 * ((end.spread or fmpq(0)) + resolution)
         length = fmpq(((end.length + late) / resolution).ceil() * resolution)
@@ -261,13 +261,13 @@ class Friction(Corner):
 
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether they are on all of a short stretch."""
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             return self.inert or all(is_not_negative(margin, length) for margin in self._margins(moved))
         return bool(value_range(self._forward(moved), length) > 0)
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Know how fast it slides at the end of a stretch."""
-        if self.link in moved.closed or self.link not in moved.rates:  # it may have done nothing but stick
+        if self.link in moved.closed_links or self.link not in moved.rates:  # it may have done nothing but stick
             self.rate, self.sign, self.closed = arb(0), 0, True
             return
         self.rate = moved.rates[self.link].evaluate(length)
@@ -277,12 +277,12 @@ class Friction(Corner):
     @property
     def branch(self) -> Branch:
         """It sticks, or slides one way, or that was left open."""
-        return self._decided
+        return self._decision
 
     def take(self, moved: JointStretch) -> None:
         """Stick, or slide one way."""
-        self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed
-        self._decided = Branch(self.closed, self.sign)
+        self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed_links
+        self._decision = Branch(self.closed, self.sign)
 
     def _margins(self, moved: JointStretch) -> list[Enclosure]:
         """What is left of the limit either way."""

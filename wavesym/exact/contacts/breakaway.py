@@ -33,16 +33,16 @@ _STUCK = frozenset({0})
 
 @dataclass
 class _Rest:
-    """A motion on which it sticks, and what is left of its limit either way; `since` its start some time has passed."""
+    """A motion on which it sticks, and what is left of its limit either way; `time` has passed since its start."""
 
     margins: dict[int, Enclosure]
     length: fmpq
-    since: fmpq = field(default_factory=fmpq)
+    time: fmpq = field(default_factory=fmpq)
 
     @property
     def is_over(self) -> bool:
         """Whether it certainly has broken away by now, where that motion is known."""
-        return self.since <= self.length and any(margin.evaluate(self.since) < 0 for margin in self.margins.values())
+        return self.time <= self.length and any(margin.evaluate(self.time) < 0 for margin in self.margins.values())
 
 
 @dataclass
@@ -55,7 +55,7 @@ class Breakaway(Corner):
     lightness: fmpq
     rate: arb
     possible: frozenset[int]
-    _decided: Branch
+    _decision: Branch
     _breaks: int = field(default=0)  # the way that it breaks away at once, as its last trial of sticking shows
     _rest: _Rest | None = field(default=None)  # the last such trial, while it may still stick
 
@@ -102,7 +102,7 @@ class Breakaway(Corner):
         """Whether N is within its limits, or it certainly slides, just after the start; not while it is unclear."""
         if self.is_unclear:
             return False
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             margins = self._margins(moved)
             self._rest = _Rest(margins, moved.length)
             falls = {way: add_terms([(fmpq(-1), margin)]) for way, margin in margins.items()}
@@ -115,7 +115,7 @@ class Breakaway(Corner):
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """Until when N is certainly within its limits, or it certainly goes the way it slides."""
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             self._rest = _Rest(self._margins(moved), moved.length)
             margins = self._rest.margins.values()
             ends = [lasts_until(margin, low, moved.length, resolution) for margin in margins]
@@ -131,7 +131,7 @@ class Breakaway(Corner):
 
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether it is on its branch on all of a short stretch."""
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             return all(is_not_negative(margin, length) for margin in self._margins(moved).values())
         sign = sliding_sign(self.link, moved.sliding)
         forward = add_terms([(fmpq(sign), moved.rates[self.link])])
@@ -140,10 +140,10 @@ class Breakaway(Corner):
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Go to the end of a stretch: where it was left open, on all branches that it can have come to."""
         if self._rest is not None:
-            self._rest.since += length
-            if not moved.closed | moved.vague <= {self.link} or moved.sliding:  # other corners, or it slides
+            self._rest.time += length
+            if not moved.closed_links | moved.vague <= {self.link} or moved.sliding:  # other corners, or it slides
                 self._rest = None
-        if self.link in moved.closed:
+        if self.link in moved.closed_links:
             self.rate = arb(0)
             return
         rate = moved.rates[self.link]
@@ -157,12 +157,12 @@ class Breakaway(Corner):
     @property
     def branch(self) -> Branch:
         """It sticks, or slides one way."""
-        return self._decided
+        return self._decision
 
     def take(self, moved: JointStretch) -> None:
         """Stick, or slide one way."""
-        closed, sign = self.link in moved.closed, sliding_sign(self.link, moved.sliding)
-        self.possible, self._decided = frozenset({sign}), Branch(closed, sign)
+        closed, sign = self.link in moved.closed_links, sliding_sign(self.link, moved.sliding)
+        self.possible, self._decision = frozenset({sign}), Branch(closed, sign)
 
     def _reachable_branches(self, holding: Enclosure, length: fmpq, after: arb) -> frozenset[int]:
         """The branches that it can be on at the end of a short stretch, whatever it did on it."""

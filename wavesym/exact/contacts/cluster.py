@@ -48,9 +48,9 @@ class Cluster:
 
     A contact pushes with N = sum over these of factor (C q + K u - s), of what is on one side of it. Where that has
     mass m, as it sticks to what moves as given, there is m times the acceleration of that too: `inertia`. Where it
-    sticks to another mass, M with its own, the sum over both sides, times m/M, is taken off. `stuck` are the points
-    with mass that stick, `springs` the links whose springs act in it. The `joint_law` is that of all points of the
-    joint, each on its own, with these springs.
+    sticks to another mass, M with its own, the sum over both sides, times m/M, is taken off. `stuck_points` are
+    those with mass that stick, `springs` the links whose springs act in it. The `joint_law` is that of all points of
+    the joint, each on its own, with these springs.
     """
 
     points: tuple[int, ...]
@@ -58,7 +58,7 @@ class Cluster:
     pushes: Mapping[int, Sequence[tuple[int, fmpq]]]
     joint_law: JointLaw
     inertia: Mapping[int, fmpq]
-    stuck: tuple[int, ...] = ()
+    stuck_points: tuple[int, ...] = ()
     springs: Closed = frozenset()
 
     @classmethod

@@ -36,7 +36,7 @@ class ClusterStates:
             return None
         together = all(
             known[k][0] == cluster.ratio(k) * known[leader][0]
-            for k in cluster.stuck
+            for k in cluster.stuck_points
             if cluster.law.motions[cluster.group(k)] is None and (leader := cluster.leader(cluster.group(k))) in known
         )
         return list(known.values()) if together else None
@@ -45,7 +45,7 @@ class ClusterStates:
         """The state of a cluster; what rounding loses of one that was exact is energy not known."""
         points = cluster.points
         state = [self.of_point[k] for k in points]
-        unknown = sum((self.of_point[each[0]].unknown for each in self._sets if each[0] in points), arb(0))
+        unknown = sum((self.of_point[each[0]].error_energy for each in self._sets if each[0] in points), arb(0))
         velocity, lost = self._joined_velocities(cluster, prescribed)
         displacement = [each.displacement for each in state]
         motion = JointMotion(cluster.law, velocity, [each.mid() for each in displacement], unknown, decays=True)
@@ -56,7 +56,7 @@ class ClusterStates:
 
     def held_masses(self, cluster: Cluster) -> list[int]:
         """The points with mass in groups of which some stick: what is not known of a group may be in one of them."""
-        groups = {cluster.group(k) for k in cluster.stuck}
+        groups = {cluster.group(k) for k in cluster.stuck_points}
         return [k for k in cluster.points if self._law.mass[k] != 0 and cluster.group(k) in groups]
 
     def unseen_rates(self, cluster: Cluster, later: Mapping[int, PointState]) -> dict[int, arb]:
@@ -65,7 +65,9 @@ class ClusterStates:
         `later` are states at the end of a stretch, where less is known.
         """
         held = self.held_masses(cluster)
-        rates = {k: (2 * later.get(k, self.of_point[k]).unknown / arb(self._law.mass[k])).sqrt().upper() for k in held}
+        rates = {
+            k: (2 * later.get(k, self.of_point[k]).error_energy / arb(self._law.mass[k])).sqrt().upper() for k in held
+        }
         for k in cluster.points:
             like = [j for j in held if cluster.group(j) == cluster.group(k)]
             if like and k not in held and self._law.motions[k] is None:
@@ -77,7 +79,7 @@ class ClusterStates:
         law = cluster.law
         velocity, lost = [self.of_point[cluster.leader(a)].velocity for a in range(len(law.mass))], arb(0)
         held = self.held_masses(cluster)
-        for a in {cluster.group(k) for k in cluster.stuck}:
+        for a in {cluster.group(k) for k in cluster.stuck_points}:
             among = [(k, arb(cluster.ratio(k)), arb(self._law.mass[k])) for k in held if cluster.group(k) == a]
             if law.motions[a] is not None:
                 velocity[a] = arb(prescribed[a](fmpq(0)))
@@ -90,7 +92,7 @@ class ClusterStates:
 
     def sticking_state(self, cluster: Cluster, prescribed: Sequence[fmpq_poly], length: fmpq) -> dict[int, PointState]:
         """What sticks, where nothing has a state: how fast it may be yet is energy not known of it."""
-        if not cluster.stuck:
+        if not cluster.stuck_points:
             return {}
         given = {k: cluster.ratio(k) * prescribed[cluster.group(k)] for k in self.held_masses(cluster)}
         if self.exact_state(cluster) is not None:
@@ -98,13 +100,13 @@ class ClusterStates:
                 k: PointState.from_exact(p(length), self.of_point[k].place + p.integral()(length))
                 for k, p in given.items()
             }
-        unknown = max(self.of_point[k].unknown for k in cluster.points)
+        unknown = max(self.of_point[k].error_energy for k in cluster.points)
         unknown = ((unknown.sqrt() + self._joined_velocities(cluster, prescribed)[1].sqrt()) ** 2).upper()
         return {k: PointState(arb(p(length)), self.of_point[k].displacement, None, unknown) for k, p in given.items()}
 
     def state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
         moving = {cluster.leader(a): each for a, each in enumerate(motion.velocity)}
-        moving |= {k: (arb(cluster.ratio(k)) * motion.velocity[cluster.group(k)]).mid() for k in cluster.stuck}
+        moving |= {k: (arb(cluster.ratio(k)) * motion.velocity[cluster.group(k)]).mid() for k in cluster.stuck_points}
         return {
             k: PointState(moving.get(k, arb(0)), motion.displacement[n], None, motion.unknown_energy)
             for n, k in enumerate(cluster.points)

@@ -23,7 +23,7 @@ class Doubt:
 
 @dataclass
 class Course:
-    """A joint, since when and how far its present stretch is known, and the breakpoints to come.
+    """A joint, its present stretch, which is known from its `start` to its `reach`, and the breakpoints to come.
 
     It is moved no further at a time than `shortest`: nobody reads what is sent before; and not beyond `end`, later than
     its `last` instant that matters: until then it is known what comes to it. `spread` is how far off the end of
@@ -35,9 +35,9 @@ class Course:
     end: fmpq
     shortest: fmpq
     contacts: tuple[Corner, ...]
-    since: fmpq
-    reached: fmpq
-    moved: JointStretch | None = None
+    start: fmpq
+    reach: fmpq
+    stretch: JointStretch | None = None
     doubt: Doubt | None = None
     spread: fmpq | None = None
     late: fmpq = field(default_factory=fmpq)

@@ -75,20 +75,20 @@ class JointSprings:
             assert displacements is not None
             spring, state = self.of_link[n], self._begin(n, points)
             moving = acting_motion(spring, self._stretch(spring, state, cluster.points, displacements))
-            result.strained[n] = moving
+            result.spring_motions[n] = moving
             result.springs[n] = replace(moving.at_end(result.length), shift=state.shift)
 
     def strain_others(self, result: JointStretch) -> None:
         """How those that do not act get longer, as the velocities of all points are known."""
         for n, spring in self.of_link.items():
-            if n not in result.closed:
+            if n not in result.closed_links:
                 left = scale_terms(result.velocities[spring.left], -spring.ratio)
                 rate = add_terms([*result.velocities[spring.right], *left])
                 sign, state = sliding_sign(n, result.sliding), self._state[n]
                 moving = idle_motion(spring, state, rate, result.length)
                 if sign:
                     moving = yielding_motion(spring, state, sign, rate, result.length)
-                result.strained[n], result.springs[n] = moving, moving.at_end(result.length)
+                result.spring_motions[n], result.springs[n] = moving, moving.at_end(result.length)
 
     @staticmethod
     def _stretch(
@@ -107,7 +107,7 @@ class JointSprings:
         """How wrong the force of each may be on a stretch, as the true motion may be on another branch."""
         found = {}
         for n, spring in self.of_link.items():
-            moving = moved.strained[n]
+            moving = moved.spring_motions[n]
             excess = moving.excess(moved.length)
             if sliding_sign(n, moved.sliding):
                 excess = excess * arb(moved.length) + moving.stretch.error
@@ -140,7 +140,7 @@ class JointSprings:
         root = arb(0)
         for n in cluster.springs:
             if self._state[n].shift is None:
-                root += (arb(self.of_link[n].stiffness) / 2).sqrt() * self._state[n].unknown
+                root += (arb(self.of_link[n].stiffness) / 2).sqrt() * self._state[n].error
         return (root**2).upper()
 
     def _begin(self, n: int, points: Mapping[int, PointState]) -> SpringState:

@@ -16,12 +16,12 @@ MOST_SWING = fmpq(20)
 
 @dataclass(frozen=True)
 class PointState:
-    """How fast a point is, and where: exact where that is known, and the energy of what is not known of its set."""
+    """How fast a point is, and where: exact where that is known, and the energy of the error of its set."""
 
     velocity: arb
     displacement: arb
     exact: tuple[fmpq, fmpq] | None
-    unknown: arb
+    error_energy: arb
 
     @property
     def place(self) -> fmpq:
@@ -36,23 +36,23 @@ class PointState:
 
     def lose(self, energy: arb) -> PointState:
         """The same, by so much energy less known."""
-        unknown = ((self.unknown.sqrt() + energy.sqrt()) ** 2).upper()
-        return PointState(self.velocity, self.displacement, None, unknown)
+        error_energy = ((self.error_energy.sqrt() + energy.sqrt()) ** 2).upper()
+        return PointState(self.velocity, self.displacement, None, error_energy)
 
 
 @dataclass
 class JointStretch:
     """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
-    `closed` are also the springs with a corner that act or hold, `springs` how they move and are at the end.
-    `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
-    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts, `known` the contacts whose two
-    sides begin in a state that is known exactly. Its series, where it is one, bears exp(`swing` length); it is
-    `fleeting` where what decays fast keeps it short, until that has died away.
+    `closed_links` are also the springs with a corner that act or hold, `spring_motions` how they move, `springs` how
+    they are at the end. `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`,
+    their ranges under every choice of closed contacts. `bare` are the ends beside contacts on which nothing acts,
+    `exact_contacts` the contacts whose two sides begin in a state that is known exactly. Its series, where it is one,
+    bears exp(`swing` length); it is `fleeting` where what decays fast keeps it short, until that has died away.
     """
 
     length: fmpq
-    closed: Closed
+    closed_links: Closed
     vague: Closed
     sliding: Sliding
     velocities: dict[int, Terms]
@@ -61,8 +61,8 @@ class JointStretch:
     rates: dict[int, Enclosure] = field(default_factory=dict)
     pushes: dict[int, Enclosure] = field(default_factory=dict)
     bare: set[int] = field(default_factory=set)
-    known: set[int] = field(default_factory=set)
-    strained: dict[int, SpringMotion] = field(default_factory=dict)
+    exact_contacts: set[int] = field(default_factory=set)
+    spring_motions: dict[int, SpringMotion] = field(default_factory=dict)
     springs: dict[int, SpringState] = field(default_factory=dict)
     swing: fmpq = field(default_factory=fmpq)
     fleeting: bool = False

@@ -140,7 +140,7 @@ def _whole(search: Search) -> Schedule:
         pass
     return Schedule(
         {number: course.stages for number, course in search.courses.items()},
-        {number: course.reached for number, course in search.courses.items()},
+        {number: course.reach for number, course in search.courses.items()},
         tuple(lasting(search.changes, _MOMENT * search.width)),
         search.width,
         search.waves,

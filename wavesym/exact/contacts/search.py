@@ -136,26 +136,28 @@ class Search:
             if time <= course.last:
                 self._advance(course, time)
                 yield
-                heappush(coming, (course.reached, number))
+                heappush(coming, (course.reach, number))
 
     def _advance(self, course: Course, time: fmpq) -> None:
         """From where a joint's motion is known up to the next limit, or to where a contact may change."""
         self._arriving = None
         breakpoint, limit = course.pass_breakpoints(time), course.limit(time)
-        if course.moved is not None:
+        if course.stretch is not None:
             if not breakpoint and self._extend(course, time, limit):
                 return
-            self._take(course, course.moved)
-            course.moved = None
+            self._take(course, course.stretch)
+            course.stretch = None
         self._begin(course, time, limit)
 
     def _extend(self, course: Course, time: fmpq, limit: fmpq) -> bool:
         """Go on with a stretch beyond `time`, unless its series would have to bear too much."""
-        assert course.moved is not None
-        since, known = course.since, time - course.since
-        if course.moved.swing * (limit - since) > MOST_SWING:
+        assert course.stretch is not None
+        since, known = course.start, time - course.start
+        if course.stretch.swing * (limit - since) > MOST_SWING:
             return False
-        moved = self._move(course, since, limit - since, course.moved.closed, course.moved.sliding, trial=True)
+        moved = self._move(
+            course, since, limit - since, course.stretch.closed_links, course.stretch.sliding, trial=True
+        )
         if moved.length <= known:
             return False
         trial = moved.length
@@ -193,7 +195,7 @@ class Search:
         if end is None and not self.waves.joints[course.number].springs:
             return moved, None
         length = moved.length if end is None else end.length
-        moved = self._move(course, start, length, moved.closed, moved.sliding)
+        moved = self._move(course, start, length, moved.closed_links, moved.sliding)
         return moved, end if moved.length == length else None
 
     def _end(self, course: Course, moved: JointStretch, low: fmpq) -> BranchEnd | None:
@@ -205,7 +207,7 @@ class Search:
         first = min(ends, key=lambda end: end.length)
         if first.spread is not None:  # an instant with a short denominator
             grid = self._resolution / 4
-            aligned = ((course.since + first.length) / grid).floor() * grid - course.since
+            aligned = ((course.start + first.length) / grid).floor() * grid - course.start
             if aligned > low:
                 return BranchEnd(fmpq(aligned), max(end.spread or first.spread for end in ends))
         return first
@@ -217,7 +219,7 @@ class Search:
         if begun is None and not self.waves.joints[course.number].touches:
             raise UndecidedError(course.contacts[0].link, course.contacts[0].closed, start)
         if begun is None:
-            course.reached = self._drift(course, start, limit, course.spread or fmpq(0))
+            course.reach = self._drift(course, start, limit, course.spread or fmpq(0))
             course.spread = None
             return
         moved, end = begun
@@ -228,8 +230,8 @@ class Search:
                 doubt = course.doubt
                 low = doubt.low if doubt is not None and doubt.high == start else start - course.late
                 self.changes.append(Change(contact.link, before, contact.branch, low, start))
-        course.since, course.late = start, fmpq(0)
-        self._add_stage(course, Stage(start, moved.closed, frozenset(), moved.sliding), moved)
+        course.start, course.late = start, fmpq(0)
+        self._add_stage(course, Stage(start, moved.closed_links, frozenset(), moved.sliding), moved)
         self._keep(course, moved, end)
 
     def _meet_jumps(self, course: Course, start: fmpq) -> None:
@@ -269,15 +271,15 @@ class Search:
 
     def _keep(self, course: Course, moved: JointStretch, end: BranchEnd | None) -> None:
         """A stretch all the way, or up to its `end`, where a contact may change."""
-        since = course.since
+        since = course.start
         if end is None:
-            course.moved, course.reached = moved, since + moved.length
+            course.stretch, course.reach = moved, since + moved.length
             self._send(course, since, moved)
             return
         if end.length > 0:
             self._send(course, since, moved)
             self._take(course, moved)
-        course.moved, course.reached = None, since + end.length
+        course.stretch, course.reach = None, since + end.length
         course.spread, course.late = end.spread, end.late
 
     def _take(self, course: Course, moved: JointStretch) -> None:
@@ -316,7 +318,7 @@ class Search:
         moved = self._move_vague(course, start, length)
         for contact in course.contacts:
             contact.advance(moved, length)
-        self._add_stage(course, Stage(start, moved.closed, moved.vague, moved.sliding), moved)
+        self._add_stage(course, Stage(start, moved.closed_links, moved.vague, moved.sliding), moved)
         self._send(course, start, moved)
         self.waves.joints[course.number].take(moved)
         doubt.high = start + length

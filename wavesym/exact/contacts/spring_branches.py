@@ -49,9 +49,9 @@ class _SpringCorner(Corner):
         What is not known of a force counts on all of a stretch: so those on which something is are short.
         """
         resolution = resolution / _FINER
-        falls = [certain_fall(each, low, moved.length, resolution) for each in moved.strained[self.link].guards]
+        falls = [certain_fall(each, low, moved.length, resolution) for each in moved.spring_motions[self.link].guards]
         first = min((fall for fall in falls if fall is not None), key=lambda fall: fall[1], default=None)
-        clears = moved.strained[self.link].clears if low == 0 else ()
+        clears = moved.spring_motions[self.link].clears if low == 0 else ()
         rises = [certain_rise(each, moved.length, resolution) for each in clears]
         clear = max((rise for rise in rises if rise is not None), default=fmpq(0))
         if 0 < clear < (moved.length if first is None else first[0]):
@@ -69,7 +69,7 @@ class _SpringCorner(Corner):
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Know its stretch at the end of one of time."""
-        self.stretch = moved.strained[self.link].stretch.evaluate(length)
+        self.stretch = moved.spring_motions[self.link].stretch.evaluate(length)
 
     @property
     def branch(self) -> Branch:
@@ -78,7 +78,7 @@ class _SpringCorner(Corner):
 
     def take(self, moved: JointStretch) -> None:
         """Be on the branch that a stretch begins with."""
-        self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed
+        self.sign, self.closed = sliding_sign(self.link, moved.sliding), self.link in moved.closed_links
 
 
 @dataclass
@@ -97,7 +97,7 @@ class OneSided(_SpringCorner):
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether its guard does not become negative just after the start."""
-        (guard,) = moved.strained[self.link].guards
+        (guard,) = moved.spring_motions[self.link].guards
         return _begins(guard, moved.length)
 
 
@@ -123,8 +123,8 @@ class Yielding(_SpringCorner):
 
     def begins(self, moved: JointStretch) -> bool:
         """Whether it is within its limits, or goes on the way that it yields, just after the start."""
-        guards = moved.strained[self.link].guards
-        if self.link not in moved.closed:
+        guards = moved.spring_motions[self.link].guards
+        if self.link not in moved.closed_links:
             return leaning(guards[0], moved.length) > 0
         return all(_begins(guard, moved.length) or leaning(guard, moved.length, 1, _TURNED) > 0 for guard in guards)
 

@@ -120,7 +120,7 @@ class SpringState:
         return self.shift
 
     @property
-    def unknown(self) -> arb:
+    def error(self) -> arb:
         """How far off the middle of its stretch may be."""
         return abs(self.stretch - self.stretch.mid()).upper()
 
@@ -177,7 +177,7 @@ def idle_motion(spring: CornerSpring, state: SpringState, rate: Enclosure, lengt
     if state.exact is not None and rate.exact is not None:
         stretch = Enclosure.from_polynomial(rate.exact.integral() + state.exact)
     else:
-        error = (rate.error * arb(length) + state.unknown).upper()
+        error = (rate.error * arb(length) + state.error).upper()
         stretch = Enclosure(rate.polynomial.integral() + state.stretch.mid(), error)
     return SpringMotion(stretch, (add_terms([(spring.gap, UNIT), (fmpq(-spring.side), stretch)]),))
 

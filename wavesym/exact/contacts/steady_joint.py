@@ -78,7 +78,7 @@ class SteadyJoint(ABC):
                 return None
             velocity = arb(self._loads[k].polynomial_from(start)(fmpq(0)))
             if motion is None:
-                unknown = (2 * self._states.of_point[k].unknown / arb(self.law.mass[k])).sqrt().upper()
+                unknown = (2 * self._states.of_point[k].error_energy / arb(self.law.mass[k])).sqrt().upper()
                 velocity = self._states.of_point[k].velocity + arb(0, unknown)
             total += arb(factor) * velocity
         return total
@@ -145,7 +145,7 @@ class SteadyJoint(ABC):
                 self._states.of_point[touch.left].exact is not None
                 and self._states.of_point[touch.right].exact is not None
             ):
-                result.known.add(n)
+                result.exact_contacts.add(n)
             if n not in closed and n not in vague:
                 result.rates[n] = add_terms(rate_terms(touch, result.velocities))
         for number, wave in enumerate(arriving):
@@ -258,7 +258,7 @@ class SteadyJoint(ABC):
         taus = [arb(0).union(arb(result.length))] if result.vague else [fmpq(0), result.length]
         for n in cluster.pushes:
             touch = self.touches[n]
-            for _ in {touch.left, touch.right} & set(cluster.stuck):
+            for _ in {touch.left, touch.right} & set(cluster.stuck_points):
                 excess = max(_excess(result.pushes[n], tau, touch.friction) for tau in taus)
                 if touch.friction == 0 or touch.breakaway != 0 or not excess > 0:
                     continue

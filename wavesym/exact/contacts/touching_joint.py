@@ -39,7 +39,7 @@ class TouchingJoint(SteadyJoint):
     ) -> None:
         law, points = cluster.law, cluster.points
         vague = frozenset(n for n in result.vague if self.touches[n].left in points)
-        closed = frozenset(n for n in result.closed & self.touches.keys() if self.touches[n].left in points)
+        closed = frozenset(n for n in result.closed_links & self.touches.keys() if self.touches[n].left in points)
         span = arb(0).union(arb(result.length))
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
         bounds = {n: arb(0) for n in vague}

@@ -25,7 +25,7 @@ class Stage:
     """A stretch of a joint: which of its contacts are closed, of which it is not known, and what slides which way."""
 
     start: fmpq
-    closed: Closed = frozenset()
+    closed_links: Closed = frozenset()
     vague: Closed = frozenset()
     sliding: Sliding = frozenset()
 
@@ -108,7 +108,7 @@ def replay(
         last = place + 1 == len(stages[number])
         length = (ends[number] if last else stages[number][place + 1].start) - start
         joint, arriving = waves.joints[number], waves.arriving(number, start, length)
-        moved = joint.move(arriving, start, length, stage.closed, stage.vague, stage.sliding)
+        moved = joint.move(arriving, start, length, stage.closed_links, stage.vague, stage.sliding)
         waves.record(number, start, moved)
         joint.take(moved)
         if not last:

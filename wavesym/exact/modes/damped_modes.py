@@ -124,11 +124,11 @@ def estimate_frequencies(stiffness: Stiffness, count: int) -> Complex:
 def _of_matrix(stiffness: Stiffness) -> Complex:
     """All of them without bars: eigenvalues of x' = A x, x the places of all points and the velocities of masses."""
     law, size = stiffness.doubles, len(stiffness.points)
-    k, c = np.diag(law.held), np.diag(law.slowed)
+    k, c = np.diag(law.stiffness), np.diag(law.damping)
     for row, parent in enumerate(stiffness.parents):
         if parent is not None:
-            k[row, parent] = k[parent, row] = law.across[row]
-            c[row, parent] = c[parent, row] = law.slowing[row]
+            k[row, parent] = k[parent, row] = law.coupling_stiffness[row]
+            c[row, parent] = c[parent, row] = law.coupling_damping[row]
     mass = np.array(law.mass)
     heavy, light = np.flatnonzero(mass > 0), np.flatnonzero(mass == 0)
     # how fast points are: masses as they are, the others as dashpots let them
@@ -154,7 +154,7 @@ def _pull(stiffness: Stiffness, w: Complex) -> Complex:
         diagonal, up = law.matrix(w, cot, csc, 1j * w)
         pulled = [c - a * s * s for c, s, a in zip(cot, csc, angles, strict=True)]
         shared = [a * s * c - s for c, s, a in zip(cot, csc, angles, strict=True)]
-        bent = replace(law, held=[0.0] * len(law.held), across=[0.0] * len(law.across))
+        bent = replace(law, stiffness=[0.0] * len(law.stiffness), coupling_stiffness=[0.0] * len(law.stiffness))
         slopes = bent.assemble(2 * w, pulled, shared, 1j)
         total = sum(n * (t * c - 1 / w) for n, t, c in zip(law.counts, law.delays, cot, strict=True))
         for row, parent in enumerate(stiffness.parents):

@@ -35,8 +35,8 @@ class Branch(NamedTuple):
     `ratios` say how far its near and its far end move when their points move by 1.
     """
 
-    near: int
-    far: int
+    near_point: int
+    far_point: int
     bar: int | None
     side: int
     ratios: tuple[fmpq, fmpq]
@@ -99,26 +99,29 @@ class HarmonicNetwork:
     def _branches_from(self, root: int) -> list[Branch]:
         beside: dict[int, list[Branch]] = {}
         for branch in self._every:
-            beside.setdefault(branch.near, []).append(branch)
+            beside.setdefault(branch.near_point, []).append(branch)
             back = branch._replace(
-                near=branch.far, far=branch.near, side=1 - branch.side, ratios=(branch.ratios[1], branch.ratios[0])
+                near_point=branch.far_point,
+                far_point=branch.near_point,
+                side=1 - branch.side,
+                ratios=(branch.ratios[1], branch.ratios[0]),
             )
-            beside.setdefault(back.near, []).append(back)
+            beside.setdefault(back.near_point, []).append(back)
         found: list[Branch] = []
         coming, met = [(root, -1)], {root}
         for point, before in coming:
             if point != root and self.network.points[point].motion is not None:
                 continue
             for branch in beside.get(point, ()):
-                if branch.far == before:
+                if branch.far_point == before:
                     continue
-                if branch.far in met and self.network.points[branch.far].motion is None:
+                if branch.far_point in met and self.network.points[branch.far_point].motion is None:
                     raise UnservedError(
                         "system.parts: a ring of parts is not supported by modes (write a chain with branches)"
                     )
-                met.add(branch.far)
+                met.add(branch.far_point)
                 found.append(branch)
-                coming.append((branch.far, point))
+                coming.append((branch.far_point, point))
         return found
 
     @property
@@ -162,13 +165,13 @@ class Amplitudes:
         self._turns: dict[int, Turn] = {}
         self._children: dict[int, list[Branch]] = {}
         for branch in self._branches:
-            self._children.setdefault(branch.near, []).append(branch)
+            self._children.setdefault(branch.near_point, []).append(branch)
         # of each point what it and all beyond resist by, A/B; of each branch N and D, by its far point
         self._beyond: dict[int, tuple[Quantity, Quantity]] = {}
         self._resistance: dict[int, tuple[Quantity, Quantity]] = {}
         for branch in reversed(self._branches):
-            self._beyond[branch.far] = self._sum_subtree(branch.far)
-            self._resistance[branch.far] = self._branch_fraction(branch)
+            self._beyond[branch.far_point] = self._sum_subtree(branch.far_point)
+            self._resistance[branch.far_point] = self._branch_fraction(branch)
         self._root = root
         self._moved: dict[int, Quantity] = {}
         self._scales: dict[int, tuple[Branch, Quantity]] = {}
@@ -184,7 +187,7 @@ class Amplitudes:
         if bar not in self._scales:
             return arb(0)
         branch, scale = self._scales[bar]
-        if branch.near == self._root and place == branch.side:  # as it is driven, whatever the rest does
+        if branch.near_point == self._root and place == branch.side:  # as it is driven, whatever the rest does
             return self._moved[self._root] * branch.ratios[0]
         a, b = self._at_far_end(branch)
         near, far = self._turns_to_ends(branch, place)
@@ -211,7 +214,7 @@ class Amplitudes:
         force: Quantity = arb(1)
         moved = self._network.points[root].motion is not None
         if moved and undivided:
-            self.divisor = prod((self._resistance[b.far][1] for b in self._children.get(root, ())), start=arb(1))
+            self.divisor = prod((self._resistance[b.far_point][1] for b in self._children.get(root, ())), start=arb(1))
             self._moved[root] = self.divisor
         elif moved:
             self._moved[root] = force
@@ -224,25 +227,27 @@ class Amplitudes:
             self._moved[root] = force * b
         share = {root: force}
         for branch in self._branches:
-            if branch.near == root and moved and not undivided:
-                scale = _inverse(self._resistance[branch.far][1])
+            if branch.near_point == root and moved and not undivided:
+                scale = _inverse(self._resistance[branch.far_point][1])
             else:
-                others = (self._resistance[b.far][1] for b in self._children[branch.near] if b is not branch)
-                scale = prod(others, start=share[branch.near])
+                others = (
+                    self._resistance[b.far_point][1] for b in self._children[branch.near_point] if b is not branch
+                )
+                scale = prod(others, start=share[branch.near_point])
             if branch.ratios[0] != 1:
                 scale = scale * branch.ratios[0]
             if branch.bar is not None:
                 self._scales[branch.bar] = branch, scale
-            share[branch.far] = scale * branch.ratios[1] * self._coupling(branch)
-            if self._network.points[branch.far].motion is None:
-                self._moved[branch.far] = share[branch.far] * self._beyond[branch.far][1]
+            share[branch.far_point] = scale * branch.ratios[1] * self._coupling(branch)
+            if self._network.points[branch.far_point].motion is None:
+                self._moved[branch.far_point] = share[branch.far_point] * self._beyond[branch.far_point][1]
 
     def _sum_subtree(self, number: int) -> tuple[Quantity, Quantity]:
         """A and B of a point with all that hangs on it."""
         point = self._network.points[number]
         if point.motion is not None:
             return arb(1), arb(0)
-        found = [self._resistance[branch.far] for branch in self._children.get(number, ())]
+        found = [self._resistance[branch.far_point] for branch in self._children.get(number, ())]
         own = self._own(point)
         if len(found) == 1:  # as along a line
             ((n, d),) = found
@@ -287,7 +292,7 @@ class Amplitudes:
 
     def _at_far_end(self, branch: Branch) -> tuple[Quantity, Quantity]:
         """A and B of what lies beyond it, seen by its far end."""
-        a, b = self._beyond[branch.far]
+        a, b = self._beyond[branch.far_point]
         return a, b if branch.ratios[1] == 1 else b * branch.ratios[1] ** 2
 
     def _parallel_resistance(self, branch: Branch) -> Quantity:

@@ -118,8 +118,8 @@ def trial(stiffness: Stiffness, law: HarmonicLaw, w: Quantity, root: int, rate: 
 
 def _resistance(law: HarmonicLaw, found: Sequence[Quantity], parents: Sequence[int | None]) -> Quantity:
     """What dashpots resist at velocities q, seen by q."""
-    total = sum((c * q * q for c, q in zip(law.slowed, found, strict=True)), arb(0))
-    for c, q, parent in zip(law.slowing, found, parents, strict=True):
+    total = sum((c * q * q for c, q in zip(law.damping, found, strict=True)), arb(0))
+    for c, q, parent in zip(law.coupling_damping, found, parents, strict=True):
         total += 2 * c * q * found[parent or 0]
     return total
 

@@ -38,16 +38,17 @@ Weights = list[tuple[int, Quantity]]
 class HarmonicLaw:
     """The numbers of K in one arithmetic; rows run from the tips to the root.
 
-    Of each row its mass, the springs that hold it, the dashpots, the bars that end there; of its coupling to its parent
-    the springs, the dashpots and the bars. `counts` are the numbers of bars of each of the `delays`.
+    Of each row its `mass`, what springs and dashpots are of it (`stiffness`, `damping`) and the bars that end there
+    (`ends`); of its coupling to its parent the same, and the `bars`. `counts` are the numbers of bars of each of the
+    `delays`.
     """
 
     mass: list[Quantity]
-    held: list[Quantity]
-    slowed: list[Quantity]
+    stiffness: list[Quantity]
+    damping: list[Quantity]
     ends: list[Weights]
-    across: list[Quantity]
-    slowing: list[Quantity]
+    coupling_stiffness: list[Quantity]
+    coupling_damping: list[Quantity]
     bars: list[Weights]
     delays: list[Quantity]
     counts: list[int]
@@ -65,17 +66,17 @@ class HarmonicLaw:
         self, square: Quantity, pulled: Sequence[Quantity], shared: Sequence[Quantity], rate: Quantity = None
     ) -> tuple[list[Any], list[Any]]:
         """The same from w^2, and for each delay from what a bar of impedance 1 adds at its ends, and across."""
-        diagonal = [k - square * mass for k, mass in zip(self.held, self.mass, strict=True)]
+        diagonal = [k - square * mass for k, mass in zip(self.stiffness, self.mass, strict=True)]
         for row, weights in enumerate(self.ends):
             for delay, weight in weights:
                 diagonal[row] = diagonal[row] + weight * pulled[delay]
-        up = list(self.across)
+        up = list(self.coupling_stiffness)
         for row, weights in enumerate(self.bars):
             for delay, weight in weights:
                 up[row] = up[row] + weight * shared[delay]
         if rate is not None:
-            diagonal = [k + rate * c for k, c in zip(diagonal, self.slowed, strict=True)]
-            up = [k + rate * c for k, c in zip(up, self.slowing, strict=True)]
+            diagonal = [k + rate * c for k, c in zip(diagonal, self.damping, strict=True)]
+            up = [k + rate * c for k, c in zip(up, self.coupling_damping, strict=True)]
         return diagonal, up
 
 
@@ -142,20 +143,22 @@ class Stiffness:
         network, rows = self.network, self.rows
         free = [network.points[point] for point in self.points]
         delays, delay_of = self.delays
-        held, across = [point.stiffness for point in free], list[Quantity]([self.ZERO] * len(free))
-        slowed, slowing = [point.damping for point in free], list[Quantity]([self.ZERO] * len(free))
+        stiffness, coupling_stiffness = [point.stiffness for point in free], list[Quantity]([self.ZERO] * len(free))
+        damping, coupling_damping = [point.damping for point in free], list[Quantity]([self.ZERO] * len(free))
         ends, bars = [dict[int, Quantity]() for _ in free], [dict[int, Quantity]() for _ in free]
         for link in network.links:
             left, right = rows.get(link.left), rows.get(link.right)
             if left is not None:
-                held[left] = held[left] + link.ratio**2 * link.stiffness
-                slowed[left] = slowed[left] + link.ratio**2 * link.damping
+                stiffness[left] = stiffness[left] + link.ratio**2 * link.stiffness
+                damping[left] = damping[left] + link.ratio**2 * link.damping
             if right is not None:
-                held[right] = held[right] + link.stiffness
-                slowed[right] = slowed[right] + link.damping
+                stiffness[right] = stiffness[right] + link.stiffness
+                damping[right] = damping[right] + link.damping
                 if left is not None:
-                    across[min(left, right)] = across[min(left, right)] - link.ratio * link.stiffness
-                    slowing[min(left, right)] = slowing[min(left, right)] - link.ratio * link.damping
+                    coupling_stiffness[min(left, right)] = (
+                        coupling_stiffness[min(left, right)] - link.ratio * link.stiffness
+                    )
+                    coupling_damping[min(left, right)] = coupling_damping[min(left, right)] - link.ratio * link.damping
         for bar, delay in zip(network.bars, delay_of, strict=True):
             pair = rows.get(bar.left), rows.get(bar.right)
             for row, ratio in zip(pair, bar.ratios, strict=True):
@@ -166,11 +169,11 @@ class Stiffness:
                 bars[row][delay] = bars[row].get(delay, self.ZERO) + bar.impedance * bar.ratios[0] * bar.ratios[1]
         return HarmonicLaw(
             [number(point.mass) for point in free],
-            [*map(number, held)],
-            [*map(number, slowed)],
+            [*map(number, stiffness)],
+            [*map(number, damping)],
             [[(delay, number(weight)) for delay, weight in each.items()] for each in ends],
-            [*map(number, across)],
-            [*map(number, slowing)],
+            [*map(number, coupling_stiffness)],
+            [*map(number, coupling_damping)],
             [[(delay, number(weight)) for delay, weight in each.items()] for each in bars],
             [*map(number, delays)],
             [delay_of.count(number) for number in range(len(delays))],
@@ -280,8 +283,8 @@ class Stiffness:
         if self.modes is None:
             return np.asarray((n + len(self.network.bars)) * np.pi / nearest(self.delay))
         law = self.doubles
-        pairs = zip(law.held, law.mass, strict=True)
-        return np.full(len(n), 2 * float(np.sqrt(sum(held / mass for held, mass in pairs if mass != 0)) or 1))
+        pairs = zip(law.stiffness, law.mass, strict=True)
+        return np.full(len(n), 2 * float(np.sqrt(sum(k / mass for k, mass in pairs if mass != 0)) or 1))
 
     def count_below(self, w: Vector) -> NDArray[np.int64]:
         """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
