@@ -192,8 +192,8 @@ _FIELDS_NAMED_OTHERWISE = {
     **dict.fromkeys(("computed", "done", "failed", "together", "written"), "a key of a sweep's files"),
 }
 _ROOMS_WITH_OTHER_FIELDS = (
-    *(f"wavesym/exact/{part}" for part in ("contacts/", "joints/state_space.py", "modes/")),
-    *(f"wavesym/programs/{part}" for part in ("closed_form.py", "march/", "modes/")),
+    "wavesym/exact/joints/state_space.py",
+    *(f"wavesym/programs/{part}" for part in ("closed_form.py", "march/")),
 )
 """Where fields are not yet named by the field's words."""
 

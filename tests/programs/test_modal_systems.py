@@ -142,10 +142,12 @@ def test_a_bound_can_fail():
     made = with_modes(model, 40)
     error = np.abs(values(model, made, taus) - exact).max()
     assert made.errors / 40 < error <= made.errors
-    without = made.system.moved.copy()
+    without = made.system.displacement_weights.copy()
     without[0, 6] = 0
     assert (
-        np.abs(values(model, replace(made, system=replace(made.system, moved=without)), taus) - exact).max()
+        np.abs(
+            values(model, replace(made, system=replace(made.system, displacement_weights=without)), taus) - exact
+        ).max()
         > made.errors
     )
     assert np.abs(values(model, with_modes(model, 12), taus) - exact).max() > made.errors

@@ -115,10 +115,10 @@ def test_a_bound_can_fail():
     error = np.abs(values(model, made, taus) - right).max(axis=1)
     assert np.all(error <= made.errors)
     assert np.all(made.errors <= 40 * error)
-    moved, moving = made.system.moved.copy(), made.system.moving.copy()
+    moved, moving = made.system.displacement_weights.copy(), made.system.velocity_weights.copy()
     moved[:, 0] *= 1.02
     moving[:, 0] *= 1.02
-    other = replace(made, system=replace(made.system, moved=moved, moving=moving))
+    other = replace(made, system=replace(made.system, displacement_weights=moved, velocity_weights=moving))
     assert np.all(np.abs(values(model, other, taus) - right).max(axis=1) > made.errors)
 
 

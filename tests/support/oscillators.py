@@ -113,5 +113,5 @@ def by_exponentials(system: ModalSystem, loads: LinearLoads, tau: float) -> np.n
             [float(s) for s in loads.slopes] if last else (samples[k + 1] - samples[k]) / (times[k + 1] - time)
         )
         state = expm(rates * (end - time)) @ state
-    outputs = system.moved @ state[y] + system.moving @ state[v]
+    outputs = system.displacement_weights @ state[y] + system.velocity_weights @ state[v]
     return outputs + np.einsum("ojk,kj->o", system.direct, state[np.stack([load, once, twice])])

@@ -87,8 +87,8 @@ def test_a_stream_gives_what_numpy_gives(precision, tmp_path):
 def test_a_stream_takes_loads_of_all_kinds_to_oscillators_of_all_kinds(tmp_path):
     """Rigid motion, damping on both sides of 1; outputs of displacements alone, of velocities, of loads."""
     system = oscillators([0, 0, 0.3, 1, 1, 4, 9], [0, 0.2, 1, 0.1, 1.7, 0, 0.5], loads=2, outputs=3)
-    moved, moving = system.moved * [[1], [0], [0]], system.moving * [[0], [1], [0]]
-    system = replace(system, moved=moved, moving=moving)
+    moved, moving = system.displacement_weights * [[1], [0], [0]], system.velocity_weights * [[0], [1], [0]]
+    system = replace(system, displacement_weights=moved, velocity_weights=moving)
     times = tuple(fmpq(k, 2) for k in range(60))
     rows = [(fmpq(0), fmpq(0)), *zip(SAMPLES, SAMPLES[::-1], strict=True)][:60]
     made = evaluator(system, LinearLoads(times, tuple(rows), (fmpq(0), fmpq(0))), 29.5)

@@ -33,7 +33,7 @@ class ComplexProjection:
     """Modes by columns, their rates (of exp(rate tau)), what outputs and loads are of them.
 
     `slow` (outputs, loads, 3) is what outputs have of second integrals, integrals and loads where all changes low;
-    `beside` (outputs, loads, modes + 1) what they have of loads beside the first 0, 1, 2, ... modes.
+    `load_remainders` (outputs, loads, modes + 1) what they have of loads beside the first 0, 1, 2, ... modes.
 
     `residuals` (outputs and then loads, powers, modes + 1) is what their states have without the first modes.
     """
@@ -42,7 +42,7 @@ class ComplexProjection:
     outputs: Complex
     shares: Complex
     slow: Numbers
-    beside: Numbers
+    load_remainders: Numbers
     residuals: Numbers
 
     @property
@@ -99,7 +99,7 @@ class ComplexModes(ModalModel[ComplexProjection]):
         direct = np.zeros((*known.slow.shape[:2], 3))
         for o, order in enumerate(orders.tolist()):
             direct[o, :, 1 : 3 - order] = known.slow[o, :, : 2 - order][:, ::-1]
-            direct[o, :, 0] = known.beside[o, :, min(count, len(known.rates))]
+            direct[o, :, 0] = known.load_remainders[o, :, min(count, len(known.rates))]
         # a mode is rate z + loads; of one load, z = y' - conj(rate) y, y an oscillator's
         read = known.outputs[:, :count] * rates ** orders[:, None]
         pushed = known.load_terms[:, :count]
@@ -152,7 +152,7 @@ def project_complex(
     beside = np.zeros((len(outputs), len(loads), len(found) + 1))
     for o, output in enumerate(outputs):
         for j, port in enumerate(loads):
-            read = low.response.read(output, port.moved)
+            read = low.response.read(output, port.point_motions)
             static = [arb(0)] * (2 - port.order) + [read[k] for k in range(port.order + 1)]
             slow[o, j] = [float(each) for each in static]
             parts = zip(losing.rates, values[o], shares[j], strict=True)
@@ -163,6 +163,6 @@ def project_complex(
         outputs=complexes(values, len(found)),
         shares=complexes(shares, len(found)),
         slow=slow,
-        beside=beside,
+        load_remainders=beside,
         residuals=losing.residual_norms([*map(low.output, outputs), *loads], [*values, *shares]),
     )

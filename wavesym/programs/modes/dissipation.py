@@ -43,7 +43,7 @@ _UNIT = 2.0**-53
 
 @dataclass(frozen=True)
 class ModeEnergies:
-    """Modes by columns: their `rates`, twice their energies, how fast dashpots of `size` are `extended` in them.
+    """Modes by columns: their `rates`, twice their energies, how fast dashpots of `size` are extended in them.
 
     `finer` is what imaginary parts of rates are beyond doubles, as they may differ by little. Modes that swing stand
     for themselves and their conjugates, and count twice.
@@ -53,7 +53,7 @@ class ModeEnergies:
     finer: Numbers
     energy: Numbers
     size: Numbers
-    extended: Complex
+    extension_rates: Complex
 
     @property
     def twice(self) -> Numbers:
@@ -64,17 +64,17 @@ class ModeEnergies:
         """All but the first ones."""
         later = slice(first, None)
         return ModeEnergies(
-            self.rates[later], self.finer[later], self.energy[later], self.size, self.extended[:, later]
+            self.rates[later], self.finer[later], self.energy[later], self.size, self.extension_rates[:, later]
         )
 
     def products(self) -> tuple[Complex, Complex]:
         """<X, Y> of all modes, and <X, conj Y>, each wrong by a few roundings for each dashpot."""
-        weighted = self.size[:, None] * self.extended
+        weighted = self.size[:, None] * self.extension_rates
         rates = self.rates
         with np.errstate(divide="ignore", invalid="ignore"):
             swing = (rates.imag[:, None] - rates.imag) + (self.finer[:, None] - self.finer)
-            same = -2 * (weighted.T @ self.extended.conj()) / (rates.real[:, None] + rates.real + 1j * swing)
-            other = -2 * (weighted.T @ self.extended) / (rates[:, None] + rates)
+            same = -2 * (weighted.T @ self.extension_rates.conj()) / (rates.real[:, None] + rates.real + 1j * swing)
+            other = -2 * (weighted.T @ self.extension_rates) / (rates[:, None] + rates)
         np.fill_diagonal(same, self.energy)
         return same, other
 
@@ -82,11 +82,11 @@ class ModeEnergies:
 @dataclass(frozen=True)
 class PortResponse:
     """What a port starts, in balls or in doubles: its shares in modes; |A^-q B|^2 for each q from the `least` on, and
-    <A^-q B, X> of all modes, (POWERS, modes)."""
+    the `mode_products` <A^-q B, X> of all modes, (POWERS, modes)."""
 
     shares: Any
     energies: Any
-    known: Any
+    mode_products: Any
     least: int
 
     def to_doubles(self, first: int) -> PortResponse:
@@ -94,7 +94,7 @@ class PortResponse:
         return PortResponse(
             np.array([complex(b) for b in self.shares[first:]], complex),
             np.array([max(float(each.upper()) * _ABOVE, 0.0) for each in self.energies]),
-            np.array([[complex(h) for h in row[first:]] for row in self.known], complex),
+            np.array([[complex(h) for h in row[first:]] for row in self.mode_products], complex),
             self.least,
         )
 
@@ -111,12 +111,12 @@ def residual_norms(energies: ModeEnergies, ports: Sequence[PortResponse]) -> Num
     for port, row in zip(ports, made, strict=True):
         for q in range(port.least, POWERS):
             x = energies.twice * port.shares / (2 * energies.rates ** (q + 1))
-            met = np.real(np.conj(x) * port.known[q])
+            met = np.real(np.conj(x) * port.mode_products[q])
             pairs = np.real(x * (lower @ x.conj() + lower2 @ x))
             alone = np.real(np.abs(x) ** 2 * same.diagonal() + x * x * other.diagonal()) / 2
             squares = port.energies[q] + np.cumsum(np.append(0.0, alone + pairs - 2 * met))
             size = np.abs(x)
-            terms = size * (rough @ size) + size**2 * own + 2 * size * np.abs(port.known[q])
+            terms = size * (rough @ size) + size**2 * own + 2 * size * np.abs(port.mode_products[q])
             wrong = roundings * (port.energies[q] + np.cumsum(np.append(0.0, terms)))
             row[q] = np.sqrt(np.maximum(squares, 0.0) + wrong)
     return made
@@ -166,7 +166,9 @@ class Dissipation:
         return acb(-2 * self._dissipation(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
 
     def _response(self, port: SlowPort, shares: Sequence[acb]) -> PortResponse:
-        moved = [[acb(_sum(dashpot, [q[k] for q in port.moved])) for dashpot in self._dashpots] for k in range(TERMS)]
+        moved = [
+            [acb(_sum(dashpot, [q[k] for q in port.point_motions])) for dashpot in self._dashpots] for k in range(TERMS)
+        ]
         zero = [acb(0)] * len(self._dashpots)
 
         def fast(q: int) -> list[acb]:
@@ -213,8 +215,8 @@ class Dissipation:
         for each in responses:
             energies, rows = [], []
             for q in range(POWERS):
-                row = [h - parts[n, column] for n, h in enumerate(each.known[q])]
-                mixed = zip(columns[column], each.known[q], row, strict=False)
+                row = [h - parts[n, column] for n, h in enumerate(each.mode_products[q])]
+                mixed = zip(columns[column], each.mode_products[q], row, strict=False)
                 taken = sum(((x.conjugate() * (h + rest)).real for x, h, rest in mixed), arb(0))
                 energies.append(each.energies[q] - taken)
                 rows.append(row)
@@ -229,7 +231,7 @@ class Dissipation:
             finer=np.array([float(a.imag - b.imag) for a, b in zip(self.rates, rates.tolist(), strict=True)]),
             energy=np.array([float(energy) for energy in self._energies]),
             size=np.array([nearest(dashpot.size) for dashpot in self._dashpots]),
-            extended=complexes([list(row) for row in zip(*self._fast, strict=True)], len(rates)),
+            extension_rates=complexes([list(row) for row in zip(*self._fast, strict=True)], len(rates)),
         )
 
 

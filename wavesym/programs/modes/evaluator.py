@@ -86,8 +86,8 @@ class ModesEvaluator(Form):
             "loads": len(self.inputs),
             "modes": padded_count(len(self.system.frequency)),
             "lanes": LANES,
-            "moved": len(rows_used(self.system.moved)),
-            "moving": len(rows_used(self.system.moving)),
+            "moved": len(rows_used(self.system.displacement_weights)),
+            "moving": len(rows_used(self.system.velocity_weights)),
             "spacing": self.real.nearest(self.spacing),
             "shortest": self.real.nearest(rational(spacing * (1 - off))),
             "longest": self.real.nearest(rational(spacing * (1 + off))),
@@ -96,7 +96,10 @@ class ModesEvaluator(Form):
     @property
     def bytes(self) -> int:
         """The size of the tables of a stream."""
-        rows = sum(padded_count(len(rows_used(weights))) for weights in (self.system.moved, self.system.moving))
+        rows = sum(
+            padded_count(len(rows_used(weights)))
+            for weights in (self.system.displacement_weights, self.system.velocity_weights)
+        )
         numbers = padded_count(len(self.system.frequency)) * (4 + 4 * len(self.inputs) + rows) + self.system.direct.size
         return self.real.bytes * numbers
 

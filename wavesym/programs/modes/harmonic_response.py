@@ -112,12 +112,12 @@ def dashpots(network: Network) -> list[Dashpot]:
 
 @dataclass(frozen=True)
 class SlowPort:
-    """How points move under it, and what it reads of this; `order` is 2 where it is an acceleration, twice integrated.
+    """How points move under a load, what it reads of it; `order` is 2 where it is an acceleration, twice integrated.
 
     `least` is the power of 1/s from which on what it starts has a finite energy; `impulse_energy` is that in 1/s^0.
     """
 
-    moved: Sequence[Series]
+    point_motions: Sequence[Series]
     reads: Series
     order: int
     least: int

@@ -153,18 +153,18 @@ class Roughness:
 
 @dataclass(frozen=True)
 class ScaledRoughness(Roughness):
-    """That of a load that is `by` times another one in as many times as long steps: what both share is found once."""
+    """That of a load like another one, `unit`, with kinks `factor` times as high, `spacing` apart in place of 1."""
 
     unit: Roughness
-    by: float
-    apart: float
+    factor: float
+    spacing: float
 
     @cached_property
     def in_step(self) -> float:
-        return self.unit.in_step * self.by * _MORE if self.kinks.any() else 0.0
+        return self.unit.in_step * self.factor * _MORE if self.kinks.any() else 0.0
 
     def _decay(self, rate: float, count: int) -> Numbers | float:
-        return float(np.exp(-rate * self.apart * count * (1 - 1e-12)))  # kinks are equally far apart
+        return float(np.exp(-rate * self.spacing * count * (1 - 1e-12)))  # kinks are equally far apart
 
 
 def sampled_roughness(samples: Numbers) -> Roughness:
@@ -185,7 +185,7 @@ def scaled_roughness(unit: Roughness, begin: float, spacing: float, factor: floa
     counted = times <= until
     kinks = by * unit.kinks[counted]
     steepest = by * unit.steepest if kinks.any() else 0.0
-    return ScaledRoughness(times[counted], kinks, unit.steps, steepest, unit=unit, by=by, apart=spacing)
+    return ScaledRoughness(times[counted], kinks, unit.steps, steepest, unit=unit, factor=by, spacing=spacing)
 
 
 def _partial(terms: Numbers) -> float:

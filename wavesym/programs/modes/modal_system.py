@@ -19,24 +19,30 @@ class ModalSystem:
     """Oscillators n with loads a_j, all at rest at tau = 0; dimensionless.
 
         y_n'' + 2 damping_n frequency_n y_n' + frequency_n^2 y_n = sum_j pushes[n, j] a_j(tau)
-        output_o = sum_n (moved[o, n] y_n + moving[o, n] y_n') + sum_j sum_k direct[o, j, k] I^k a_j
+        output_o = sum_n (displacement_weights[o, n] y_n + velocity_weights[o, n] y_n')
+                 + sum_j sum_k direct[o, j, k] I^k a_j
 
     I^k is the k-th integral from tau = 0, k = 0, 1, 2. `frequency` (modes,), `damping` (modes,), `pushes` (modes,
-    loads), `moved` and `moving` (outputs, modes), `direct` (outputs, loads, 3). A frequency may be 0.
+    loads), `displacement_weights` and `velocity_weights` (outputs, modes), `direct` (outputs, loads, 3). A frequency
+    may be 0.
     """
 
     frequency: Numbers
     damping: Numbers
     pushes: Numbers
-    moved: Numbers
-    moving: Numbers
+    displacement_weights: Numbers
+    velocity_weights: Numbers
     direct: Numbers
 
     def drop_outputs(self, zero: Sequence[bool]) -> ModalSystem:
         """The same with some outputs that are 0."""
         kept = ~np.array(zero)[:, None]
-        moved, moving, direct = self.moved * kept, self.moving * kept, self.direct * kept[:, :, None]
-        return replace(self, moved=moved, moving=moving, direct=direct)
+        return replace(
+            self,
+            displacement_weights=self.displacement_weights * kept,
+            velocity_weights=self.velocity_weights * kept,
+            direct=self.direct * kept[:, :, None],
+        )
 
 
 _BITS = 400  # of which cancellation takes at most 3 times those of frequency * spacing
@@ -128,7 +134,8 @@ class Stepper:
             weights = [
                 [*moved, *moving, *(part for load in direct for part in load)]
                 for moved, moving, direct in zip(
-                    *(_rows(each) for each in (system.moved, system.moving, system.direct)), strict=True
+                    *(_rows(each) for each in (system.displacement_weights, system.velocity_weights, system.direct)),
+                    strict=True,
                 )
             ]
             made = arb_mat(weights) * arb_mat(columns).transpose()
@@ -153,8 +160,8 @@ def scheme_tables(system: ModalSystem, loads: LinearLoads, real: Real) -> Tables
         "frequency": _as(real, system.frequency),
         "damping": _as(real, system.damping),
         "push": _as(real, system.pushes),
-        "moved": _as(real, system.moved),
-        "moving": _as(real, system.moving),
+        "moved": _as(real, system.displacement_weights),
+        "moving": _as(real, system.velocity_weights),
         "direct": _as(real, system.direct),
         "time": real.table(loads.times),
         "length": real.table(lengths),
@@ -177,7 +184,7 @@ def stream_tables(stepper: Stepper, real: Real) -> Tables:
     for name, values in stepper.tables().items():
         rows = [values[first : first + modes] for first in range(0, len(values), modes)]
         made[name] = tuple(x for row in rows for x in [*map(real.nearest, row), *[0.0] * (filled - modes)])
-    for name, weights in (("moved", system.moved), ("moving", system.moving)):
+    for name, weights in (("moved", system.displacement_weights), ("moving", system.velocity_weights)):
         used = rows_used(weights)
         lanes = np.zeros((padded_count(len(used)), filled))
         lanes[: len(used), :modes] = weights[used]

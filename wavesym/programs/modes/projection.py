@@ -134,14 +134,15 @@ _ULPS = 16 * 2.0**-53  # of a sum of squares, each of which is rounded a few tim
 class Projection:
     """Modes by columns: `w`, what outputs are of them (`outputs`), their shares in loads; and sums over all modes.
 
-    `imposed` and `static`, (outputs, loads): what an output is of the shape that a load imposes, and under it when it
-    does not change. `powers` of outputs and loads: sums of squares are over w^(2 power), `totals` over all modes.
+    `imposed_shape` and `static`, (outputs, loads): what an output is of the shape that a load imposes, and under it
+    when it does not change. `powers` of outputs and loads: sums of squares are over w^(2 power), `totals` over all
+    modes.
     """
 
     w: Numbers
     outputs: Numbers
     shares: Numbers
-    imposed: Numbers
+    imposed_shape: Numbers
     static: Numbers
     powers: tuple[Numbers, Numbers]
     totals: tuple[Numbers, Numbers]
@@ -191,7 +192,7 @@ def project(
             w=np.array([float(mode.frequency) for mode in found]),
             outputs=np.array([_column(each, found) for each in outputs]).reshape(len(outputs), len(found)),
             shares=_array([[share(network, each, mode) for mode in found] for each in drivers], len(found)),
-            imposed=_array(
+            imposed_shape=_array(
                 [
                     [arb(0) if s is None else each.value(s) * g for g, (s, _) in zip(gains, shapes, strict=True)]
                     for each in outputs

@@ -270,8 +270,8 @@ class RecordResponse:
         slope, value, once, twice = known[:, 2 * modes :].reshape(len(known), 4, loads).transpose(1, 0, 2)
         p11, p12, p21, p22, one, two = self._panels.turns(s)
         start, ramp = value @ system.pushes.T, slope @ system.pushes.T
-        made = np.einsum("cm,cm->c", p11 * y + p12 * v + one * start + two * ramp, system.moved[output])
-        made += np.einsum("cm,cm->c", p21 * y + p22 * v + p12 * start + one * ramp, system.moving[output])
+        made = np.einsum("cm,cm->c", p11 * y + p12 * v + one * start + two * ramp, system.displacement_weights[output])
+        made += np.einsum("cm,cm->c", p21 * y + p22 * v + p12 * start + one * ramp, system.velocity_weights[output])
         w = s[:, None]
         load, sum_, double = value + w * slope, value + w / 2 * slope, value + w / 3 * slope
         for k, part in enumerate((load, once + w * sum_, twice + w * (once + w / 2 * double))):

@@ -46,7 +46,7 @@ def rounding_errors(
     swift = (1 + 2 * system.damping) * w
     wrong = _sum_over_panels(system, lengths, swift, tau_max)
     made = unit * (_STEP * wrong * size + 4 * tau_max * (swift * size + force))
-    weight = np.abs(system.moved) * reach + np.abs(system.moving)
+    weight = np.abs(system.displacement_weights) * reach + np.abs(system.velocity_weights)
     errors = weight @ (2 * made + unit * (len(w) + 20) * size)
     errors += np.einsum("ojk,jk->o", np.abs(system.direct), _integrals(scheme, slopes, lengths, unit))
     at_times = np.abs(scheme.evaluate([tau for tau in times if tau <= tau_max])).max(axis=1, initial=0.0)

@@ -193,7 +193,7 @@ class UndampedModes(ModalModel[Projection]):
         damping = rule.ratios_at(w)
         direct = np.zeros((*rest.shape, 3))
         for order in range(3):
-            direct[:, :, 2 - order] += np.where(orders == order, known.imposed, 0.0)
+            direct[:, :, 2 - order] += np.where(orders == order, known.imposed_shape, 0.0)
         direct[:, :, 0] += np.where(orders == 2, values @ pushes.T, 0.0)
         if tail.lags:
             # the modes left out, each load's as one
