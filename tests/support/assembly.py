@@ -11,7 +11,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from flint import fmpq
+from flint import arb, fmpq
 
 from tests.support.laws import Corner, Law, Rubbing, Sided, Touching, Yielding
 
@@ -187,7 +187,8 @@ def laws(table: Mapping[str, Any]) -> list[tuple[str, Law]]:
     spring, dashpot, gap = exact(table.get("spring", 0)), exact(table.get("dashpot", 0)), table.get("gap", 0)
     if "yield" in table:
         limits = table["yield"] if isinstance(table["yield"], list) else [table["yield"]] * 2
-        found.append(("spring", Yielding("holds", spring, (exact(limits[0]), exact(limits[1])))))
+        plastic = arb(-exact(table.get("preload", 0)) / spring)
+        found.append(("spring", Yielding("holds", spring, (exact(limits[0]), exact(limits[1])), plastic)))
     elif "only" in table or "gap" in table:
         if isinstance(gap, list):
             sides = [(-1, -exact(gap[0])), (1, exact(gap[1]))]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from itertools import product
 
 from flint import arb, ctx
 
@@ -22,18 +23,20 @@ def wrong_events(
 ) -> Iterator[str]:
     """Where links with corners do something else than they should; those at places of one `name` are taken together.
 
-    What happens up to the `first` tau does not count.
+    What happens up to the `first` tau does not count, nor in which order contacts, springs and friction of one place
+    do it at one instant.
     """
     found = events(model)
     with ctx.workprec(BITS):
         last = arb(model.until) - CLOSE
-        ours = [(name(event.x), event.kind, event.tau) for event in found if arb(first) < event.tau < last]
-        true = [(name(e.place), e.kind, arb(e.tau)) for e in made.events if arb(first) < arb(e.tau) < last]
-        for place in {name(model.network.links[number].place) for number in model.contacts(model.until)}:
-            here, there = ([each[1:] for each in told if each[0] == place] for told in (ours, true))
+        ours = [(name(e.x), e.subject.split()[0], e.kind, e.tau) for e in found if arb(first) < e.tau < last]
+        true = [(name(e.place), e.subject, e.kind, arb(e.tau)) for e in made.events if arb(first) < arb(e.tau) < last]
+        places = {name(model.network.links[number].place) for number in model.contacts(model.until)}
+        for place, subject in product(places, ("contact", "spring", "friction")):
+            here, there = ([each[2:] for each in told if each[:2] == (place, subject)] for told in (ours, true))
             kinds = [kind for kind, _ in here] == [kind for kind, _ in there]
             if not kinds or any(abs(one - other) > CLOSE for (_, one), (_, other) in zip(here, there, strict=True)):
-                yield f"at {place}: {here}, not {there}"
+                yield f"{subject} at {place}: {here}, not {there}"
 
 
 def wrong_values(model: Model, made: PiecewiseChain, taus: Sequence[float]) -> Iterator[str]:

@@ -93,18 +93,21 @@ def shortfall(known: Enclosure, high: fmpq) -> arb:
     """How far below 0 a function may be on [0, high]: 0 where it is certainly not."""
     if known.exact is not None and first_fall(known.exact, fmpq(0), high) is None:
         return arb(0)
+    low = fmpq(0) if known.onset is None else known.onset.positive_until(high)
+    if low == high:
+        return arb(0)
     p, error, worst = known.polynomial, known.error, arb(0)
     course, finest = _Course(p, error, high), high / fmpq(2) ** ctx.prec  # what rises as a power does is flat at first
-    stack = [(fmpq(0), high)]
+    stack = [(low, high)]
     while stack:
         a, b = stack.pop()
         positive, way = course.sign_on(a, b)
         if positive:
             continue
         seen = p(arb(a)).min(p(arb(b)))
-        low = seen if way else _least_on(p, a, b)
-        if way or low >= (-TINY * error).min(2 * seen) or b - a <= finest:
-            worst = worst.max((error - low).upper())
+        least = seen if way else _least_on(p, a, b)
+        if way or least >= (-TINY * error).min(2 * seen) or b - a <= finest:
+            worst = worst.max((error - least).upper())
             continue
         half = (b - a) / 2
         stack += [(a + half, b), (a, a + half)]
@@ -146,6 +149,8 @@ def certain_rise(known: Enclosure, high: fmpq, resolution: fmpq) -> fmpq | None:
     """
     p, error = known.polynomial, known.error
     if known.exact is not None or p(arb(0)) > error:
+        return fmpq(0)
+    if known.onset is not None and (seen := known.onset.positive_until(high)) > 0 and p(arb(seen)) > error:
         return fmpq(0)
     at = _CLOSEST * resolution
     while at < high:

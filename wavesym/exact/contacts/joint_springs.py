@@ -10,7 +10,7 @@ from flint import arb, arb_poly, fmpq, fmpq_poly
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding
 from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, sliding_sign
 from wavesym.exact.contacts.springs import CornerSpring, SpringState, acting_motion, idle_motion, yielding_motion
-from wavesym.exact.joints.enclosure import UNIT, Enclosure, Terms, add_terms, scale_terms
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, Terms
 from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.mechanics.network import Network
 
@@ -74,7 +74,10 @@ class JointSprings:
         for n in cluster.springs:
             assert displacements is not None
             spring, state = self.of_link[n], self._begin(n, points)
-            moving = acting_motion(spring, self._stretch(spring, state, cluster.points, displacements))
+            stretch = self._stretch(spring, state, cluster.points, displacements)
+            if stretch.exact is None and state.exact is not None:
+                stretch = replace(stretch, onset=state.onset(spring.rate(result.velocities)))
+            moving = acting_motion(spring, stretch)
             result.spring_motions[n] = moving
             result.springs[n] = replace(moving.at_end(result.length), shift=state.shift)
 
@@ -82,8 +85,7 @@ class JointSprings:
         """How those that do not act get longer, as the velocities of all points are known."""
         for n, spring in self.of_link.items():
             if n not in result.closed_links:
-                left = scale_terms(result.velocities[spring.left], -spring.ratio)
-                rate = add_terms([*result.velocities[spring.right], *left])
+                rate = spring.rate(result.velocities)
                 sign, state = sliding_sign(n, result.sliding), self._state[n]
                 moving = idle_motion(spring, state, rate, result.length)
                 if sign:

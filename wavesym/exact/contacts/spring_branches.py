@@ -143,6 +143,8 @@ def leaning(known: Enclosure, length: fmpq, first: int = 0, tiny: int = TINY) ->
     """The sign just after the start: of the first power, from `first` on, of more than `tiny` errors; else 0."""
     if known.exact is not None:
         return sign_after(fmpq_poly([fmpq(0)] * first + known.exact.coeffs()[first:]), fmpq(0))
+    if first == 0 and known.onset is not None and (sign := known.onset.sign()):
+        return sign
     allowed, h = tiny * known.error, arb(length)
     for n, c in enumerate(known.polynomial.coeffs()[first:], first):
         if abs(c) * h**n > allowed:

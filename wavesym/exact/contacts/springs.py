@@ -19,7 +19,7 @@ from typing import Protocol
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.crossing import shortfall
-from wavesym.exact.joints.enclosure import UNIT, Enclosure, Terms, add_terms
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, scale_terms
 from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import middle
 
@@ -82,6 +82,10 @@ class CornerSpring:
             return right.exact[1] - self.ratio * left.exact[1], True
         return middle(right.displacement) - self.ratio * middle(left.displacement), False
 
+    def rate(self, velocities: Mapping[int, Terms]) -> Enclosure:
+        """How fast it gets longer."""
+        return add_terms([*velocities[self.right], *scale_terms(velocities[self.left], -self.ratio)])
+
     def add_pull(self, forces: list[Terms], terms: Terms) -> None:
         """Add what it does to the forces on points, where it pulls with the sum of some terms."""
         forces[self.right] = [*forces[self.right], *((-factor, known) for factor, known in terms)]
@@ -112,6 +116,10 @@ class SpringState:
         if self.exact is not None and exact:
             return SpringState(self.stretch, self.exact, self.exact - apart)
         return SpringState(self.stretch, None, middle(self.stretch) - apart)
+
+    def onset(self, rate: Enclosure) -> Onset | None:
+        """How the stretch goes on at a `rate`, where both are known exactly at first."""
+        return None if self.exact is None or rate.begins is None else rate.begins.integral(self.exact)
 
     @property
     def shift_known(self) -> fmpq:
@@ -178,7 +186,7 @@ def idle_motion(spring: CornerSpring, state: SpringState, rate: Enclosure, lengt
         stretch = Enclosure.from_polynomial(rate.exact.integral() + state.exact)
     else:
         error = (rate.error * arb(length) + state.error).upper()
-        stretch = Enclosure(rate.polynomial.integral() + state.stretch.mid(), error)
+        stretch = Enclosure(rate.polynomial.integral() + state.stretch.mid(), error, onset=state.onset(rate))
     return SpringMotion(stretch, (add_terms([(spring.gap, UNIT), (fmpq(-spring.side), stretch)]),))
 
 

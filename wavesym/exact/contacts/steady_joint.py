@@ -246,7 +246,8 @@ class SteadyJoint(ABC):
         for k, slow in self._states.unseen_rates(cluster, result.state).items():
             if k not in certain and slow != 0:
                 result.velocities[k] = [*result.velocities[k], (_ONE, Enclosure(arb_poly(), slow))]
-        result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places)
+        begun = self._states.exact_state(cluster)
+        result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places, begun)
         self.springs.strain(cluster, result, self._states.of_point, places if motion is None else motion)
         self._lose_excess(cluster, result)
 

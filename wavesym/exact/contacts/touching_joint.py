@@ -77,7 +77,7 @@ class TouchingJoint(SteadyJoint):
         result.pushes |= found.pushes
         result.pushes |= {
             n: force
-            for n, force in self.forces.of_cluster(cluster, result, forces, acting, motion).items()
+            for n, force in self.forces.of_cluster(cluster, result, forces, acting, motion, None).items()
             if n in vague
         }
         if cluster.stateless:

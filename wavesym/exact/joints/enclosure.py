@@ -62,6 +62,11 @@ class Onset:
             w /= 2
         return w
 
+    def integral(self, start: fmpq) -> Onset:
+        """That of what is `start` at first."""
+        rests = tuple((order + 1, (bound / (order + 1)).upper()) for order, bound in self.rests)
+        return Onset(self.powers.integral() + start, rests)
+
     def derivative(self, order: int, length: fmpq) -> arb:
         """A bound of a derivative; infinite where its order is higher than those that are known."""
         if order > self.order:
