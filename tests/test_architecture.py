@@ -191,11 +191,6 @@ _FIELDS_NAMED_OTHERWISE = {
     "marked": "a key of the papers' data: the text with its marks",
     **dict.fromkeys(("computed", "done", "failed", "together", "written"), "a key of a sweep's files"),
 }
-_ROOMS_WITH_OTHER_FIELDS = (
-    "wavesym/exact/joints/state_space.py",
-    *(f"wavesym/programs/{part}" for part in ("closed_form.py", "march/")),
-)
-"""Where fields are not yet named by the field's words."""
 
 
 def is_participle_or_preposition(name: str) -> bool:
@@ -248,7 +243,6 @@ def test_a_field_says_what_it_is() -> None:
     found = {
         f"{file}: {name}"
         for file, _, root in modules()
-        if not file.startswith(_ROOMS_WITH_OTHER_FIELDS)
         for name in fields(root)
         if is_participle_or_preposition(name) and name not in _FIELDS_NAMED_OTHERWISE
     }

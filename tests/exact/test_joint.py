@@ -212,8 +212,8 @@ def test_the_first_order_form_of_a_joint_balances_the_forces_at_each_point(data:
         x, s = (
             [fmpq(int(n == column - first)) for n in range(count)] for first, count in ((0, states), (states, size))
         )
-        q = [dot(space.shown[a], x) + dot(space.passed[a], s) for a in range(size)]
-        changes = [dot(space.rates[n], x) + dot(space.pushed[n], s) for n in range(states)]
+        q = [dot(space.state_velocities[a], x) + dot(space.feedthrough[a], s) for a in range(size)]
+        changes = [dot(space.rates[n], x) + dot(space.input_rates[n], s) for n in range(states)]
         assert [q[a] for a in joint.heavy] == x[:masses]
         assert changes[masses:] == [dot(row.values(), q) for row in springs]
         for a in range(size):

@@ -186,8 +186,8 @@ def test_the_bound_is_the_error_over_the_largest_value():
     arrivals = (arrival(0, 0, [fmpq(1, 100)]), arrival(1, 0, [fmpq(399, 100)]), arrival(2, 0, [-4]))
     (output,) = closed_form([Signal("made", arrivals)], 3.0).outputs
     assert output.largest == 4.0
-    assert output.bound == output.reached[-1]
-    for error, reached in zip(proved(arrivals, 3, DOUBLE), output.reached, strict=True):
+    assert output.bound == output.pulse_bounds[-1]
+    for error, reached in zip(proved(arrivals, 3, DOUBLE), output.pulse_bounds, strict=True):
         assert error <= 4 * arb(reached) <= error * fmpq(11, 10)
 
 

@@ -63,7 +63,10 @@ def test_a_state_space_is_the_law_of_its_joint() -> None:
         unit = fmpq_mat(
             made.states, made.states, [p * (a == b) for a in range(made.states) for b in range(made.states)]
         )
-        assert fmpq_mat(3, 3, rows).inv() == made.shown * (unit - made.rates).inv() * made.pushed + made.passed
+        assert (
+            fmpq_mat(3, 3, rows).inv()
+            == made.state_velocities * (unit - made.rates).inv() * made.input_rates + made.feedthrough
+        )
 
 
 def test_its_energy_is_lost_to_dashpots_and_ends_alone() -> None:
@@ -71,7 +74,7 @@ def test_its_energy_is_lost_to_dashpots_and_ends_alone() -> None:
     law, made = JointLaw.assemble(THREE, THREE.joints[0]), space()
     for n in range(5):
         x = fmpq_mat(made.states, 1, [Q((3 * n + 2 * k) % 7 - 3, k + 1) for k in range(made.states)])
-        moved, q = made.rates * x, made.shown * x
+        moved, q = made.rates * x, made.state_velocities * x
         gained = sum((w * x[k, 0] * moved[k, 0] for k, w in enumerate(made.weights)), Q(0))
         assert gained == -sum((law.damping[a][b] * q[a, 0] * q[b, 0] for a in range(3) for b in range(3)), Q(0))
         size = sum((w * moved[k, 0] ** 2 for k, w in enumerate(made.weights)), Q(0))
@@ -91,7 +94,7 @@ def test_a_block_misses_its_equation_as_it_says(degree: int, length: fmpq) -> No
     q = found[:size]
     left = np.pad(2 * q, (0, 1)) - half * cheb.chebint(given[:size] - q, lbnd=-1)
     left[0] -= 2 * given[size]
-    eps = (known.missed @ given)[0]
+    eps = (known.truncation_error @ given)[0]
     assert abs(eps) > 1e-4
     wanted = np.zeros(size + 1)
     wanted[[0, size]] = (-1) ** size, -1
@@ -106,7 +109,7 @@ def test_a_block_at_the_end_of_a_panel() -> None:
     s = fmpq_mat(3, 1, [Q(1), Q(0), Q(-2)])
     term, total = x, x
     for n in range(1, 60):
-        term = (made.rates * term + (made.pushed * s if n == 1 else fmpq_mat(made.states, 1))) * (length / n)
+        term = (made.rates * term + (made.input_rates * s if n == 1 else fmpq_mat(made.states, 1))) * (length / n)
         total += term
     size = degree + 1
     given = np.zeros(3 * size + made.states)
@@ -123,7 +126,10 @@ def test_a_scatterer_keeps_the_energy_that_its_dashpots_leave() -> None:
     bars = tuple(Bar(0, k, Q(k), Q(1), Q(k, 3), ratios=(Q(-2) if k == 2 else Q(1), Q(1))) for k in (1, 2, 3))
     made = joint_space(network := Network(points, bars), network.joints[0])
     a = fmpq_mat(4, 1, [Q(1), Q(-2, 3), Q(5), Q(0)])
-    sent, q = made.scattering * a, sum((made.passed[0, 0] * p.push * a[k, 0] for k, p in enumerate(made.ports)), Q(0))
+    sent, q = (
+        made.scattering * a,
+        sum((made.feedthrough[0, 0] * p.push * a[k, 0] for k, p in enumerate(made.ports)), Q(0)),
+    )
     lost = sum((p.impedance * (a[k, 0] ** 2 - sent[k, 0] ** 2) for k, p in enumerate(made.ports)), Q(0))
     assert lost == q**2 / 7 > 0
 
@@ -217,7 +223,7 @@ def without(part: slice, what: str) -> tuple[str, Callable[..., tuple[np.ndarray
 def proved(plan: MarchPlan, degree: int, real=DOUBLE) -> tuple[float, float]:
     """Of the norm of energy of the error what is truncated and rounded, at most, in the size of the loads."""
     verdict, size = judge(plan, degree, real), nearest(power_of_two([largest_number(plan)]))
-    return size * verdict.truncated, size * verdict.rounded
+    return size * verdict.truncation_error, size * verdict.rounding_error
 
 
 @KINDS
@@ -316,7 +322,7 @@ def test_a_point_that_no_rod_shows_moves_no_faster_than_its_size() -> None:
         model, network=replace(model.network, points=tuple(replace(p, velocity=Q(0)) for p in model.network.points))
     )
     plan = march_plan(model)
-    (track,) = {heard.track for heard in plan.outputs[0].heard}
+    (track,) = {term.track for term in plan.outputs[0].terms}
     assert plan.tracks[track].impedance == 0
     scheme, block = all_windows(plan, 26)
     energy = energies(plan, scheme, block.waves, block.starts[:, 0])
@@ -331,7 +337,7 @@ def test_a_heavy_point_that_no_rod_shows_moves_as_far_as_its_size_allows() -> No
     branch = {"from": "c", "name": "b", "parts": [{"spring": "1/1000"}, {"mass": 100, "velocity": 1, "name": "hung"}]}
     system = {"type": "chain", "parts": parts, "branch": [branch]}
     plan = march_plan(lower(Scene(name="heavy", system=system, output={"until": 4, "velocity": ["hung"]})))
-    (track,) = {heard.track for heard in plan.outputs[0].heard}
+    (track,) = {term.track for term in plan.outputs[0].terms}
     assert plan.tracks[track].impedance == 0
     scheme, block = all_windows(plan, 12)
     square = np.sum(squared(scheme, block.waves[scheme.deepest, track]))

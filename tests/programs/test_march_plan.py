@@ -72,11 +72,11 @@ def test_a_joint_is_a_body_where_it_is_one_mass_without_springs(middle, laws) ->
 def test_rods_begin_with_half_their_velocity_each_way() -> None:
     collision = {"type": "collision", "m": 4, "kappa": [3, "1/7"], "velocity": [2, "-1/3"]}
     made = planned(collision)
-    assert [track.held for track in made.tracks] == numbers(*[1] * 4, *["-1/6"] * 4, 0)
-    assert [value for joint in made.joints for value in joint.space.begun] == [2, fmpq(-1, 3)]
+    assert [track.initial_value for track in made.tracks] == numbers(*[1] * 4, *["-1/6"] * 4, 0)
+    assert [value for joint in made.joints for value in joint.space.initial_state] == [2, fmpq(-1, 3)]
     # what comes into the light cone is what is in the rods there
     cut = planned(collision, until="1/2", displacement=["5/2"])
-    assert [track.held for track in cut.tracks] == numbers(1, 1, *["-1/6"] * 4, 0)
+    assert [track.initial_value for track in cut.tracks] == numbers(1, 1, *["-1/6"] * 4, 0)
     assert len(cut.joints) == 2
 
 
@@ -90,7 +90,7 @@ def test_panels_begin_where_loads_do() -> None:
         LoadEvent(0, 1, 0, (fmpq(1, 2), *none), (fmpq(1, 2), *none)),
         LoadEvent(2, 2, 0, (fmpq(1, 4), *none), (fmpq(-1, 4), *none)),
     )
-    assert made.pushed == (0, 2)
+    assert made.loaded_points == (0, 2)
     assert [joint.forces for joint in made.joints] == [(0,), (-1,), (1,)]
     # what begins at the end of the horizon counts, what begins later does not
     assert len(planned(DRIVE, LOADS, until="5/2").events) == 3

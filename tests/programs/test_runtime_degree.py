@@ -62,7 +62,7 @@ def missed(plan, degree):
             arrived = [waves[first - (back := plan.tracks[t].steps) : len(waves) - back, t, p] for t in joint.arrive]
             speed = (waves[first:, joint.sends[0], p] + arrived[0]) / float(space.ports[0].ratio)
             acting = sum(float(port.push) * a for port, a in zip(space.ports, arrived, strict=True))
-            law = float(space.rates[0, 0]) * speed + float(space.pushed[0, 0]) * acting
+            law = float(space.rates[0, 0]) * speed + float(space.input_rates[0, 0]) * acting
             bent = float(panel.length) / 2 * chebyshev.chebint(law, axis=-1)
             # loads, which do not arrive, are parabolas
             np.testing.assert_allclose(bent[:, 4:-1], speed[:, 4:], rtol=0, atol=1e-13 * np.max(np.abs(waves)))

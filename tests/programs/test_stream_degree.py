@@ -35,7 +35,9 @@ def test_it_is_the_least_that_will_do_and_few_are_tried(name, monkeypatch) -> No
 
     def loses(degree: int) -> bool:
         verdict = judge(plan.march, degree, DOUBLE)
-        return 5 * verdict.truncated * max(verdict.bounds) > wanted * (verdict.truncated + verdict.rounded)
+        return 5 * verdict.truncation_error * max(verdict.bounds) > wanted * (
+            verdict.truncation_error + verdict.rounding_error
+        )
 
     assert not loses(degree)
     assert degree == first or loses(degree - 1)

@@ -145,7 +145,7 @@ def test_a_factor_is_a_factor(name: str) -> None:
 def test_what_a_load_does_is_read_on_its_own_panel() -> None:
     """A body that is pushed is accelerated at once, also where the push changes inside a window."""
     made = march(model("drive"))
-    assert {made.plan.tracks[heard.track].prescribed for heard in made.plan.outputs[0].heard} == {False, True}
+    assert {made.plan.tracks[term.track].prescribed for term in made.plan.outputs[0].terms} == {False, True}
     before, after = program(model("drive"), made).evaluate([np.nextafter(1.5, 0), 1.5])[0]
     assert after - before == pytest.approx(-0.5, rel=1e-12)
 
@@ -161,7 +161,7 @@ def test_a_program_that_drops_a_load_is_seen(monkeypatch: pytest.MonkeyPatch) ->
             made.plan,
             outputs=tuple(
                 replace(
-                    output, heard=tuple(each for each in output.heard if not made.plan.tracks[each.track].prescribed)
+                    output, terms=tuple(each for each in output.terms if not made.plan.tracks[each.track].prescribed)
                 )
                 for output in made.plan.outputs
             ),

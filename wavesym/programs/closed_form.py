@@ -59,10 +59,10 @@ class Pulse:
 
 @dataclass(frozen=True)
 class ClosedOutput(ProgramOutput):
-    """One output as a sum of pulses; `reached[n]` is its bound up to the end of pulse n."""
+    """One output as a sum of pulses; `pulse_bounds[n]` is its bound up to the end of pulse n."""
 
     pulses: tuple[Pulse, ...]
-    reached: tuple[float, ...]
+    pulse_bounds: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ class ClosedForm(Form):
         since = min(
             pulse.start
             for output in self.outputs
-            for pulse, reached in zip(output.pulses, output.reached, strict=True)
+            for pulse, reached in zip(output.pulses, output.pulse_bounds, strict=True)
             if not (math.isfinite(reached) and rational(reached) <= tolerance)
         )
         lost = math.log10(self.worst.bound / float(self.real.roundoff))

@@ -214,9 +214,9 @@ def _state_space(law: JointLaw) -> tuple[fmpq_mat, fmpq_mat, fmpq_mat, fmpq_mat]
 
     return (
         matrix(space.rates, states),
-        matrix(space.pushed, groups),
-        matrix(space.shown, states),
-        matrix(space.passed, groups),
+        matrix(space.input_rates, groups),
+        matrix(space.state_velocities, states),
+        matrix(space.feedthrough, groups),
     )
 
 

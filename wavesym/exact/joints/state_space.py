@@ -31,12 +31,12 @@ class ElasticState:
 
 @dataclass(frozen=True)
 class StateSpace:
-    """Rows: A (`rates`) and B (`pushed`) of each state, Q (`shown`) and S (`passed`) of each group of points."""
+    """Rows: A (`rates`), B (`input_rates`) of each state; Q (`state_velocities`), S (`feedthrough`) of each group."""
 
     rates: Rows
-    pushed: Rows
-    shown: Rows
-    passed: Rows
+    input_rates: Rows
+    state_velocities: Rows
+    feedthrough: Rows
 
 
 def state_space(law: JointLaw, elastic: Sequence[ElasticState]) -> StateSpace:
@@ -68,7 +68,7 @@ def state_space(law: JointLaw, elastic: Sequence[ElasticState]) -> StateSpace:
     rows += [add([(factor, velocity[a]) for a, factor in one.growth.items()]) for one in elastic]
     return StateSpace(
         rates=[row[:states] for row in rows],
-        pushed=[row[states:] for row in rows],
-        shown=[velocity[a][:states] for a in groups],
-        passed=[velocity[a][states:] for a in groups],
+        input_rates=[row[states:] for row in rows],
+        state_velocities=[velocity[a][:states] for a in groups],
+        feedthrough=[velocity[a][states:] for a in groups],
     )

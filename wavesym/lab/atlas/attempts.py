@@ -94,7 +94,7 @@ def _bounds_by_horizon(form: ClosedForm, taus: Array) -> Array:
     for output in form.outputs:
         starts = [pulse.start for pulse in output.pulses]
         here = np.searchsorted(starts, taus, side="right")
-        bounds = np.maximum(bounds, np.concatenate([[0.0], output.reached])[here])
+        bounds = np.maximum(bounds, np.concatenate([[0.0], output.pulse_bounds])[here])
     return bounds
 
 

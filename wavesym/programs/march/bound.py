@@ -58,16 +58,16 @@ class Verdict:
     """What a march at some degree is worth.
 
     `errors` and `sizes` are, for each output, a bound of its largest error and the largest value that was seen; of
-    the energy norm of the error, `truncated` is the part of the degree, `rounded` that of the arithmetic. Values of an
-    output do not exceed its `heights`, nor their slopes over tau its `slopes`. True waves are polynomials of degree
-    `smooth` on each panel, up to a tail.
+    the energy norm of the error, `truncation_error` is the part of the degree, `rounding_error` that of the arithmetic.
+    Values of an output do not exceed its `heights`, nor their slopes over tau its `slopes`. True waves are polynomials
+    of degree `smooth` on each panel, up to a tail.
     """
 
     degree: int
     errors: tuple[float, ...]
     sizes: tuple[float, ...]
-    truncated: float
-    rounded: float
+    truncation_error: float
+    rounding_error: float
     smooth: int = 0
     heights: tuple[float, ...] = ()
     slopes: tuple[float, ...] = ()
@@ -109,7 +109,7 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     reach = nearest(min(real.reach / scale, DOUBLE.reach))
     losses = Losses(plan, made, scheme, unit, smallest)
     outputs, step = len(plan.outputs), nearest(plan.step)
-    truncated, rounded, summed = 0.0, losses.begun, 0.0
+    truncated, rounded, summed = 0.0, losses.initial_error, 0.0
     largest, reading, sums, held, height, slope = (np.zeros(outputs) for _ in range(6))
     one, bent = np.ones(degree + 1), 2 / plan.shortest * np.arange(degree + 1.0) ** 2
     for block in _march_blocks(scheme, plan.windows):
@@ -143,10 +143,10 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
             error += _direct(losses, of) * step * plan.windows
         if of := output.part(summed=False):
             error += _influence(plan, of) * largest_wave(smooth, plan, truncated + rounded)
-            error += (READING + max(2, len(output.heard))) * unit * reading[o] + lost_reading * max(1, len(of) / 2)
+            error += (READING + max(2, len(output.terms))) * unit * reading[o] + lost_reading * max(1, len(of) / 2)
             error += _direct(losses, of)
-        if 0 < len(output.part(summed=True)) < len(output.heard):
-            error += len(output.heard) * unit * held[o]  # one is added to the other
+        if 0 < len(output.part(summed=True)) < len(output.terms):
+            error += len(output.terms) * unit * held[o]  # one is added to the other
         errors.append(MARGIN * float(error))
     # what rounding could have made may be nothing at all: programs then return exactly 0
     if any(size <= error for size, error in zip(largest, errors, strict=True)):
@@ -157,9 +157,9 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     return Verdict(degree, tuple(errors), sizes, truncated, rounded, smooth.degree, heights, slopes)
 
 
-def _size(block: WindowBlock, heard: Iterable[OutputTerm], weights: Array) -> float:
-    """The weighted absolute coefficients of what is heard, at most."""
-    return sum(abs(nearest(each.gain)) * float(np.max(np.abs(block.waves[:, each.track]) @ weights)) for each in heard)
+def _size(block: WindowBlock, terms: Iterable[OutputTerm], weights: Array) -> float:
+    """The weighted absolute coefficients of the terms of an output, at most."""
+    return sum(abs(nearest(each.gain)) * float(np.max(np.abs(block.waves[:, each.track]) @ weights)) for each in terms)
 
 
 def reading_weights(degree: int, displaced: bool) -> Array:
@@ -168,14 +168,14 @@ def reading_weights(degree: int, displaced: bool) -> Array:
     return k + 8 + degree / (k + 1.0) if displaced else (k + 1) * (k + 2.0) + degree
 
 
-def _influence(plan: MarchPlan, heard: Iterable[OutputTerm]) -> float:
-    """How large what is heard can be, in L2 over a window, where the norm of energy is 1."""
-    return sum(abs(nearest(each.gain)) * size_of(plan, each.track) for each in heard)
+def _influence(plan: MarchPlan, terms: Iterable[OutputTerm]) -> float:
+    """How large the terms of an output can be, in L2 over a window, where the norm of energy is 1."""
+    return sum(abs(nearest(each.gain)) * size_of(plan, each.track) for each in terms)
 
 
-def _direct(losses: Losses, heard: Iterable[OutputTerm]) -> float:
-    """How wrong what is heard may be by itself."""
-    return sum(abs(nearest(each.gain)) * float(losses.direct[each.track]) for each in heard)
+def _direct(losses: Losses, terms: Iterable[OutputTerm]) -> float:
+    """How wrong the terms of an output may be by themselves."""
+    return sum(abs(nearest(each.gain)) * float(losses.direct[each.track]) for each in terms)
 
 
 def _march_blocks(scheme: MarchScheme, windows: int) -> Iterator[WindowBlock]:
@@ -240,22 +240,24 @@ def _jumps(plan: MarchPlan, rate: float) -> Iterator[float]:
 def strength(joint: MarchedJoint, point: int, rate: float) -> float:
     """The jump of waves that a jump of what acts on a point counts as."""
     space = joint.space
-    state = sum((weight * space.pushed[n, point] ** 2 for n, weight in enumerate(space.weights)), fmpq(0))
-    sent = sum((port.impedance * (port.ratio * space.passed[port.point, point]) ** 2 for port in space.ports), fmpq(0))
+    state = sum((weight * space.input_rates[n, point] ** 2 for n, weight in enumerate(space.weights)), fmpq(0))
+    sent = sum(
+        (port.impedance * (port.ratio * space.feedthrough[port.point, point]) ** 2 for port in space.ports), fmpq(0)
+    )
     return _ABOVE * (sqrt(nearest(state) / rate) / 2 + sqrt(nearest(sent)))
 
 
 def start_jump(plan: MarchPlan, joint: MarchedJoint, rate: float) -> float:
     """The same for the start: as if what was held in joint until tau = 0 were let go."""
     space = joint.space
-    arriving = [plan.tracks[track].held for track in joint.arrive]
+    arriving = [plan.tracks[track].initial_value for track in joint.arrive]
     acting = [fmpq(0)] * space.points
     for port, a in zip(space.ports, arriving, strict=True):
         acting[port.point] += port.push * a
-    x, s = (fmpq_mat(len(values), 1, list(values)) for values in (space.begun, acting))
-    moved, q = space.rates * x + space.pushed * s, space.shown * x + space.passed * s
+    x, s = (fmpq_mat(len(values), 1, list(values)) for values in (space.initial_state, acting))
+    moved, q = space.rates * x + space.input_rates * s, space.state_velocities * x + space.feedthrough * s
     state = sum((weight * moved[n, 0] ** 2 for n, weight in enumerate(space.weights)), fmpq(0))
     sent = fmpq(0)
     for port, a, track in zip(space.ports, arriving, joint.sends, strict=True):
-        sent += port.impedance * (port.ratio * q[port.point, 0] - a - plan.tracks[track].held) ** 2
+        sent += port.impedance * (port.ratio * q[port.point, 0] - a - plan.tracks[track].initial_value) ** 2
     return _ABOVE * (sqrt(nearest(state) / rate) / 2 + sqrt(nearest(sent)))

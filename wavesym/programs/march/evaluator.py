@@ -124,11 +124,13 @@ def judge_march(model: Model, real: Real = DOUBLE, degree: int | None = None) ->
     while True:
         spent = refuse_long(plan, degree, spent, real)
         made, verdict = _march_of_degree(plan, degree, real)
-        if verdict.truncated <= verdict.rounded or _SETTLED * before <= made.error_bound < math.inf:
+        if verdict.truncation_error <= verdict.rounding_error or _SETTLED * before <= made.error_bound < math.inf:
             return made, verdict
         before = made.error_bound
         # each degree gains a factor of e or more
-        missing = math.log(verdict.truncated / verdict.rounded) if verdict.rounded > 0 else math.inf
+        missing = (
+            math.log(verdict.truncation_error / verdict.rounding_error) if verdict.rounding_error > 0 else math.inf
+        )
         degree += max(2, min(degree // 6, math.ceil(min(missing, 1e6)) + 2))
 
 

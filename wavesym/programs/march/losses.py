@@ -55,7 +55,7 @@ class Losses:
                 if isinstance(group, Bodies):
                     self._bodies[number, place] = self._body_losses(plan, made, group, panel)
         delays = nearest(plan.step) * scheme.steps
-        self.begun = unit * sqrt(
+        self.initial_error = unit * sqrt(
             delays * self._impedance @ scheme.held**2 + self._weights @ scheme.initial_state**2 / 2
         )
         self.direct = np.zeros(len(scheme.held))
@@ -124,9 +124,9 @@ class Losses:
         about = 4 * unit * (np.abs(sent[..., 0, -1]) + np.abs(a[..., 0, -1])) / turned[:, 0]
         missed = of.leak * (excess + about)
         # what rounding makes of the same counts as if the body were wrong by it at the end
-        ends += of.kept * of.leak * (q + (2 * self._pushes + 4) * unit * acting)
+        ends += of.end_error * of.leak * (q + (2 * self._pushes + 4) * unit * acting)
         single = sqrt(group.size) * wrong
-        return wrong**2, single, ends[..., None], np.asarray(np.sum(of.lost * missed**2, axis=-1))
+        return wrong**2, single, ends[..., None], np.asarray(np.sum(of.squared_loss * missed**2, axis=-1))
 
     def _of_blocks(
         self, group: Blocks, number: int, panel: int, a: Array, sent: Array, acting: Array, size: Array, x: Array
@@ -180,13 +180,15 @@ class Losses:
 
 @dataclass(frozen=True)
 class BodyLosses:
-    """Of bodies on a panel: their `roundings`, (joints, q or end, 3), leaks, and what a leak of 1 costs, squared, or as
-    an error of the velocity at the end."""
+    """Of bodies on a panel: their `roundings`, (joints, q or end, 3), leaks, and what a leak of 1 costs.
+
+    That is a `squared_loss` of energy, or an `end_error` of the velocity.
+    """
 
     roundings: Array
     leak: Array
-    lost: Array
-    kept: Array
+    squared_loss: Array
+    end_error: Array
 
 
 def _square(wrong: Array) -> Array:

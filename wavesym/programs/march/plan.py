@@ -83,12 +83,12 @@ class Stretch:
 class Track:
     """What is sent into one end of a bar (or a velocity or load that is watched): it arrives `steps` windows later.
 
-    `held` is what is on its way at tau = 0. `impedance` is 0 where no bar carries it. What is `prescribed` is a load,
-    or a velocity that loads give.
+    `initial_value` is what is on its way at tau = 0. `impedance` is 0 where no bar carries it. What is `prescribed` is
+    a load, or a velocity that loads give.
     """
 
     steps: int
-    held: fmpq
+    initial_value: fmpq
     impedance: fmpq
     prescribed: bool = False
 
@@ -121,11 +121,11 @@ class MarchOutput:
     """An output: a sum of waves and of integrals of waves over time."""
 
     name: str
-    heard: tuple[OutputTerm, ...]
+    terms: tuple[OutputTerm, ...]
 
     def part(self, *, summed: bool) -> tuple[OutputTerm, ...]:
         """The waves, or those of whose integrals it is the sum."""
-        return tuple(heard for heard in self.heard if heard.summed == summed)
+        return tuple(term for term in self.terms if term.summed == summed)
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ class MarchPlan:
     events: tuple[LoadEvent, ...]
     outputs: tuple[MarchOutput, ...]
     tau_max: float
-    pushed: tuple[int, ...]  # the point of each force
+    loaded_points: tuple[int, ...]  # the point of each force
 
     @property
     def windows(self) -> int:
@@ -191,10 +191,12 @@ class MarchPlan:
 
     def scale(self, factor: fmpq) -> MarchPlan:
         """The same with all that moves it `factor` times as large; every motion is, then."""
-        same = self.alter_joints(lambda _, space: replace(space, begun=tuple(factor * value for value in space.begun)))
+        same = self.alter_joints(
+            lambda _, space: replace(space, initial_state=tuple(factor * value for value in space.initial_state))
+        )
         return replace(
             same,
-            tracks=tuple(replace(track, held=factor * track.held) for track in self.tracks),
+            tracks=tuple(replace(track, initial_value=factor * track.initial_value) for track in self.tracks),
             events=tuple(event.times(factor) for event in self.events),
         )
 
@@ -348,14 +350,14 @@ def power_of_two(numbers: Iterable[fmpq]) -> fmpq:
 def largest_number(plan: MarchPlan) -> fmpq:
     """The largest of what moves it: about as large as its motion."""
     powers = (power for event in plan.events for power in event.powers)
-    begun = (value for joint in plan.joints for value in joint.space.begun)
-    return max(map(abs, (*(track.held for track in plan.tracks), *begun, *powers)), default=_ZERO)
+    begun = (value for joint in plan.joints for value in joint.space.initial_state)
+    return max(map(abs, (*(track.initial_value for track in plan.tracks), *begun, *powers)), default=_ZERO)
 
 
 def least_numbers(plan: MarchPlan) -> Iterator[fmpq]:
     """What programs read as numbers that must not be too small for their format."""
     for joint in plan.joints:
-        yield from joint.space.begun
+        yield from joint.space.initial_state
         drive = joint.space.drive or _ONE
         if joint.space.is_body:  # ratios are no smaller than this
             yield from (joint.space.rate * panel.length / (8 * HIGHEST_DEGREE) for panel in plan.panels)
@@ -365,8 +367,8 @@ def least_numbers(plan: MarchPlan) -> Iterator[fmpq]:
     for event in plan.events:
         yield from event.powers
     yield from (panel.length / 2 for panel in plan.panels)
-    yield from (track.held for track in plan.tracks)
-    yield from (heard.gain for output in plan.outputs for heard in output.heard)
+    yield from (track.initial_value for track in plan.tracks)
+    yield from (term.gain for output in plan.outputs for term in output.terms)
     yield plan.step
 
 

@@ -186,10 +186,10 @@ NEGLIGIBLE = 2.0**-100
 
 @dataclass(frozen=True)
 class BlockResponse:
-    """`matrix` as above; `missed`, in the norm of energy, from the same."""
+    """`matrix` as above; `truncation_error`, in the norm of energy, from the same."""
 
     matrix: Array
-    missed: Array
+    truncation_error: Array
 
 
 def block_response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse:
@@ -205,7 +205,7 @@ def _response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse | N
     """None where the working precision does not do."""
     states, points, size = space.states, space.points, degree + 1
     columns = points * size + states
-    rates, pushed = arb_mat(space.rates), arb_mat(space.pushed)
+    rates, pushed = arb_mat(space.rates), arb_mat(space.input_rates)
     unit = arb_mat(states, states, [arb(a == b) for a in range(states) for b in range(states)])
     # of coefficient k of `pushed s`, from the columns of the answer
     given = [_columns_at(pushed, columns, [p * size + k for p in range(points)]) for k in range(size)]
@@ -234,7 +234,7 @@ def _response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse | N
     start = _columns_at(unit, columns, range(points * size, columns))
     twice = turned.inv(nonstop=True) * (start - first)
     series = [half * twice, *(known[k] + follows[k] * twice for k in range(1, size))]
-    shown, passed = arb_mat(space.shown), arb_mat(space.passed)
+    shown, passed = arb_mat(space.state_velocities), arb_mat(space.feedthrough)
     rows = []
     velocities = [
         shown * series[k] + _columns_at(passed, columns, [p * size + k for p in range(points)]) for k in range(size)

@@ -47,20 +47,20 @@ class Port:
 
 @dataclass(frozen=True)
 class JointLaws(Generic[Matrix, Number]):
-    """The laws of a joint; `weights` are masses and springs, `begun` is x at tau = 0.
+    """The laws of a joint; `weights` are masses and springs, `initial_state` is x at tau = 0.
 
     A state is the velocity of the point that it `moves_with`, or, where that is -1, how much longer a spring has
     become: x' = `lengthening` q, with rows of 0 for velocities.
     """
 
     rates: Matrix
-    pushed: Matrix
-    shown: Matrix
-    passed: Matrix
+    input_rates: Matrix
+    state_velocities: Matrix
+    feedthrough: Matrix
     lengthening: Matrix
     moves_with: tuple[int, ...]
     weights: tuple[Number, ...]
-    begun: tuple[Number, ...]
+    initial_state: tuple[Number, ...]
     ports: tuple[Port, ...]
 
     @property
@@ -76,7 +76,7 @@ class JointSpace(JointLaws[fmpq_mat, fmpq]):
     @property
     def points(self) -> int:
         """How many points there are."""
-        return self.passed.nrows()
+        return self.feedthrough.nrows()
 
     @cached_property
     def is_body(self) -> bool:
@@ -96,11 +96,11 @@ class JointSpace(JointLaws[fmpq_mat, fmpq]):
     @property
     def drive(self) -> fmpq:
         """What acts on a body counts so much; of other joints 0."""
-        return self.pushed[0, 0] / self.rate if self.law == BODY else _ZERO
+        return self.input_rates[0, 0] / self.rate if self.law == BODY else _ZERO
 
     def speed_up(self, times: fmpq) -> JointSpace:
         """The same, so many times as fast."""
-        changes = {name: times * getattr(self, name) for name in ("rates", "pushed", "lengthening")}
+        changes = {name: times * getattr(self, name) for name in ("rates", "input_rates", "lengthening")}
         return replace(self, **changes)
 
     @cached_property
@@ -134,27 +134,27 @@ class JointSpace(JointLaws[fmpq_mat, fmpq]):
         rows = fmpq_mat(ends, ends + points)
         for i, port in enumerate(self.ports):
             for j, other in enumerate(self.ports):
-                rows[i, j] = port.ratio * self.passed[port.point, other.point] * other.push - (i == j)
+                rows[i, j] = port.ratio * self.feedthrough[port.point, other.point] * other.push - (i == j)
             for k in range(points):
-                rows[i, ends + k] = port.ratio * self.passed[port.point, k]
+                rows[i, ends + k] = port.ratio * self.feedthrough[port.point, k]
         return rows
 
     @cached_property
     def key(self) -> tuple[object, ...]:
         """Joints with the same one answer alike."""
-        matrices = (self.rates, self.pushed, self.shown, self.passed)
+        matrices = (self.rates, self.input_rates, self.state_velocities, self.feedthrough)
         return tuple(tuple(map(str, each.entries())) for each in matrices)
 
 
 SHOWN = JointSpace(
     rates=fmpq_mat(0, 0),
-    pushed=fmpq_mat(0, 1),
-    shown=fmpq_mat(1, 0),
-    passed=fmpq_mat(1, 1, [1]),
+    input_rates=fmpq_mat(0, 1),
+    state_velocities=fmpq_mat(1, 0),
+    feedthrough=fmpq_mat(1, 1, [1]),
     lengthening=fmpq_mat(0, 1),
     moves_with=(),
     weights=(),
-    begun=(),
+    initial_state=(),
     ports=(Port(0, _ZERO, fmpq(1), _ZERO),),
 )
 """A point that moves as a load says, and does nothing: where that load is read."""
@@ -167,7 +167,7 @@ class JointRows(JointLaws[Rows, Any]):
     @property
     def points(self) -> int:
         """How many points there are."""
-        return len(self.passed)
+        return len(self.feedthrough)
 
     @property
     def law(self) -> int:
@@ -180,13 +180,13 @@ def joint_space(network: Network, joint: Joint) -> JointSpace:
     rows = joint_rows(network, joint)
     return JointSpace(
         _matrix(rows.rates, rows.states),
-        _matrix(rows.pushed, rows.points),
-        _matrix(rows.shown, rows.states),
-        _matrix(rows.passed, rows.points),
+        _matrix(rows.input_rates, rows.points),
+        _matrix(rows.state_velocities, rows.states),
+        _matrix(rows.feedthrough, rows.points),
         _matrix(rows.lengthening, rows.points),
         rows.moves_with,
         rows.weights,
-        rows.begun,
+        rows.initial_state,
         rows.ports,
     )
 
@@ -204,9 +204,9 @@ def joint_rows(network: Network, joint: Joint) -> JointRows:
     growth: list[dict[int, fmpq]] = [*({} for _ in law.heavy), *(row for _, row in springs)]
     return JointRows(
         space.rates,
-        space.pushed,
-        space.shown,
-        space.passed,
+        space.input_rates,
+        space.state_velocities,
+        space.feedthrough,
         [[row.get(k, _ZERO) for k in range(len(joint.points))] for row in growth],
         (*law.heavy, *(-1 for _ in springs)),
         (*(law.mass[k] for k in law.heavy), *(stiffness for stiffness, _ in springs)),

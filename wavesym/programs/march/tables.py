@@ -49,13 +49,13 @@ class MarchTables:
             return np.zeros((0, 0))
         found = self.responses[response_key(joint, length)]
         assert isinstance(found, BlockResponse)
-        return found.missed
+        return found.truncation_error
 
     def tables(self, nothing: Sequence[bool]) -> dict[str, tuple[float, ...]]:
         """All tables, by name; `nothing` says of each output whether it is 0 throughout."""
         plan, real = self._plan, self._real
-        heard = [() if none else output.heard for output, none in zip(plan.outputs, nothing, strict=True)]
-        delays = sorted({one.delay for output in plan.outputs for one in output.heard})
+        terms = [() if none else output.terms for output, none in zip(plan.outputs, nothing, strict=True)]
+        delays = sorted({one.delay for output in plan.outputs for one in output.terms})
         stretches = [plan.stretches(delay) for delay in delays]
         flat = [stretch for group in stretches for stretch in group]
         begins = [n * plan.step for n in range(plan.cycle[0])]
@@ -64,7 +64,7 @@ class MarchTables:
         return {
             "steps": tuple(track.steps for track in plan.tracks),
             "ring": firsts(track.steps + 1 for track in plan.tracks),
-            "held": real.table(track.held for track in plan.tracks),
+            "held": real.table(track.initial_value for track in plan.tracks),
             **self.joints(),
             "half_length": real.table(panel.length / 2 for panel in plan.panels),
             "since": real.table(panel.start - other.start for panel in plan.panels for other in plan.panels),
@@ -72,11 +72,11 @@ class MarchTables:
             "event_panel": tuple(event.panel for event in plan.events),
             "event_force": tuple(event.force for event in plan.events),
             "event_power": real.table(power for event in plan.events for power in event.powers),
-            "first_term": firsts(map(len, heard)),
-            "track": tuple(one.track for of in heard for one in of),
-            "gain": real.table(one.gain for of in heard for one in of),
-            "summed": tuple(int(one.summed) for of in heard for one in of),
-            "delay": tuple(delays.index(one.delay) for of in heard for one in of),
+            "first_term": firsts(map(len, terms)),
+            "track": tuple(one.track for of in terms for one in of),
+            "gain": real.table(one.gain for of in terms for one in of),
+            "summed": tuple(int(one.summed) for of in terms for one in of),
+            "delay": tuple(delays.index(one.delay) for of in terms for one in of),
             "begin": tuple(map(real.not_below, begins)),
             "first_stretch": firsts(map(len, stretches)),
             "from": tuple(real.not_below(max(start, fmpq(0))) for start in starts),
@@ -101,7 +101,7 @@ class MarchTables:
             "drive": real.table(drives),
             "answer": where,
             "matrix": matrix,
-            "initial_state": real.table(value for space in spaces for value in space.begun),
+            "initial_state": real.table(value for space in spaces for value in space.initial_state),
             "push": real.table(pushes),
         }
 
@@ -198,7 +198,7 @@ def table_bytes(plan: MarchPlan, degree: int, real: Real) -> int:
         for panel in plan.panels:
             key = response_key(joint, panel.length)
             sizes[key] = matrix_size(joint.space, degree)
-    delays = {heard.delay for output in plan.outputs for heard in output.heard}
+    delays = {term.delay for output in plan.outputs for term in output.terms}
     stretches = sum(len(plan.stretches(delay)) for delay in delays) * 3 + 1
     return real.bytes * (sum(sizes.values()) + 6 * len(plan.events) + plan.cycle[0] * stretches)
 

@@ -87,7 +87,9 @@ def _initial_state(plan: MarchPlan, *, anew: bool) -> Iterator[MarchPlan]:
     """As the scene begins, and, where that is given `anew`, with bodies that do not move together."""
     yield plan
     if anew:
-        yield plan.alter_joints(lambda n, space: replace(space, begun=tuple(value - 1 - n for value in space.begun)))
+        yield plan.alter_joints(
+            lambda n, space: replace(space, initial_state=tuple(value - 1 - n for value in space.initial_state))
+        )
 
 
 def _front(plan: MarchPlan, rate: fmpq) -> float:

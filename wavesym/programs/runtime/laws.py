@@ -25,8 +25,8 @@ Function = Ratio | fmpq
 Product = tuple[fmpq_mpoly, ...]
 """Its factors, which are sums of products of symbols."""
 
-MATRICES = ("rates", "pushed", "shown", "passed")
-"""The laws of a joint that are matrices, as the fields of a `JointSpace` or of `JointRows`."""
+MATRICES = {"rates": "rates", "pushed": "input_rates", "shown": "state_velocities", "passed": "feedthrough"}
+"""The laws of a joint that are matrices: the name in tables, and the field of a `JointSpace` or of `JointRows`."""
 
 OPEN = 1e30
 """So many roundings where nothing is known: terms that may cancel."""
@@ -80,16 +80,18 @@ class RuntimeLaws:
 
 def matrix_laws(joints: Sequence[MarchedJoint]) -> dict[str, tuple[Function, ...]]:
     """The matrices of all joints, each by rows, one joint after the other."""
-    return {name: tuple(chain.from_iterable(_entries(joint, name) for joint in joints)) for name in MATRICES}
+    return {
+        name: tuple(chain.from_iterable(_entries(joint, field) for joint in joints)) for name, field in MATRICES.items()
+    }
 
 
 def matrix_places(joints: Sequence[MarchedJoint]) -> dict[str, tuple[int, ...]]:
     """Tables of where those of each joint begin, and where the last one ends."""
-    return {f"at_{name}": firsts(len(_entries(joint, name)) for joint in joints) for name in MATRICES}
+    return {f"at_{name}": firsts(len(_entries(joint, field)) for joint in joints) for name, field in MATRICES.items()}
 
 
-def _entries(joint: MarchedJoint, name: str) -> list[Function]:
-    matrix = getattr(joint.space, name)
+def _entries(joint: MarchedJoint, field: str) -> list[Function]:
+    matrix = getattr(joint.space, field)
     # where no parameter changes a joint its matrices are numbers
     return list(matrix.entries() if isinstance(matrix, fmpq_mat) else chain.from_iterable(matrix))
 

@@ -127,8 +127,8 @@ def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
     spaces = [joint.space for joint in made.plan.joints]
     functions = matrix_laws(made.plan.joints) | {
         "push": tuple(port.push for space in spaces for port in space.ports),
-        "initial_wave": tuple(track.held for track in made.plan.tracks),
-        "initial": tuple(value for space in spaces for value in space.begun),
+        "initial_wave": tuple(track.initial_value for track in made.plan.tracks),
+        "initial": tuple(value for space in spaces for value in space.initial_state),
         "weight": tuple(value for space in spaces for value in space.weights),
         "impedance": tuple(port.impedance for space in spaces for port in space.ports),
         "strength": _strengths(made),

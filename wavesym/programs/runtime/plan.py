@@ -134,7 +134,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
     output_terms = tuple(
         (number, replace(wave, gain=fmpq(0)) if is_zero[number] else wave)
         for number, output in enumerate(plan.outputs)
-        for wave in output.heard
+        for wave in output.terms
     )
     chosen = [unit.size for field in free.fields if field.name == "load" for unit in field.units]
     events = ordered_events(_events(plan, free, acting, chosen or [fmpq(1)] * len(loads)))
@@ -149,7 +149,7 @@ def free_march(model: Model, free: FreeNetwork, loads: tuple[AppliedLoad, ...], 
     plan = march_plan(replace(model, network=network, loads=loads), real, joint_rows, helps)
     factors: list[Any] = [free.factors.force if probe.quantity == "force" else fmpq(1) for probe in model.probes]
     outputs = (
-        replace(output, heard=tuple(replace(one, gain=one.gain * factor) for one in output.heard))
+        replace(output, terms=tuple(replace(one, gain=one.gain * factor) for one in output.terms))
         for output, factor in zip(plan.outputs, factors, strict=True)
     )
     return replace(plan, outputs=tuple(outputs))
@@ -159,7 +159,7 @@ def _events(
     plan: MarchPlan, free: FreeNetwork, acting: Sequence[Sequence[AppliedLoad]], sizes: Sequence[fmpq]
 ) -> Iterator[AmplitudeEvent]:
     """At each change of a load all that acts is said again, so that nothing adds up."""
-    for force, number in enumerate(plan.pushed):
+    for force, number in enumerate(plan.loaded_points):
         powers, size = _unit_loads(plan.model.network.points[number], free.network.points[number])
         gains: dict[tuple[fmpq, int], fmpq_poly] = defaultdict(fmpq_poly)
         for load, changes in enumerate(acting):

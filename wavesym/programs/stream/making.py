@@ -153,11 +153,11 @@ def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
 
 def _excess(verdict: Verdict, tolerance: float) -> float:
     """How much more polynomials lose than they may, as a logarithm: more than 0 where a degree is too low."""
-    worst, lost = max(verdict.bounds), _SPARE * verdict.truncated
+    worst, lost = max(verdict.bounds), _SPARE * verdict.truncation_error
     # what polynomials have in it; where nothing is left of an output, what rounding has says what matters
-    share = verdict.rounded
+    share = verdict.rounding_error
     if 0 < worst < inf:
-        share = tolerance * (verdict.truncated + verdict.rounded) / worst
+        share = tolerance * (verdict.truncation_error + verdict.rounding_error) / worst
     if lost <= share:
         return max(log(lost / share), -100.0) if lost > 0 else -100.0
     return log(lost / share) if share > 0 else 100.0

@@ -76,7 +76,7 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
     if any(point.motion is not None and isinstance(point.velocity, Ratio) for point in network.points):
         raise UnservedError("--runtime: velocity, but a motion prescribes that of an end; leave velocity out")
     march = free_march(model, free, steps_of(inputs), real, HELPS)
-    acting = acting_inputs(network, march.pushed, inputs, free.factors.load)
+    acting = acting_inputs(network, march.loaded_points, inputs, free.factors.load)
     return FreeStream(free.fields, march, tuple(acting))
 
 
@@ -132,12 +132,12 @@ def _laws(free: FreeStream) -> RuntimeLaws:
     functions: dict[str, Iterable[Function]] = {
         **matrix_laws(march.joints),
         "weight": (weight for space in spaces for weight in space.weights),
-        "initial_state": (value for space in spaces for value in space.begun),
+        "initial_state": (value for space in spaces for value in space.initial_state),
         "push": (port.push for space in spaces for port in space.ports),
-        "held": (track.held for track in march.tracks),
+        "held": (track.initial_value for track in march.tracks),
         "track_impedance": (track.impedance for track in march.tracks),
         "base": (force.base for force in free.acting),
         "strength": (gain for force in free.acting for gain in force.gains),
-        "gain": (one.gain for output in march.outputs for one in output.heard),
+        "gain": (one.gain for output in march.outputs for one in output.terms),
     }
     return RuntimeLaws(free.fields, {name: tuple(of) for name, of in functions.items()}, ())

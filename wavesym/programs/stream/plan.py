@@ -84,14 +84,14 @@ class StreamPlan:
             joint = self.march.joints[n]
             for port, track in zip(joint.space.ports, joint.sends, strict=True):
                 passing[track] = tuple(
-                    port.ratio * sum((joint.space.passed[port.point, k] * gain for k, gain in gains), _ZERO)
+                    port.ratio * sum((joint.space.feedthrough[port.point, k] * gain for k, gain in gains), _ZERO)
                     for gains in self._gains(joint)
                 )
         return tuple(
             tuple(
                 j
                 for j in range(len(self.inputs))
-                if sum((one.gain * passing[one.track][j] for one in output.heard if _acts_at_once(one, passing)), _ZERO)
+                if sum((one.gain * passing[one.track][j] for one in output.terms if _acts_at_once(one, passing)), _ZERO)
                 != 0
             )
             for output in self.march.outputs
@@ -151,7 +151,7 @@ def stream_plan(
         UnservedError: The model has contacts or damped modes.
     """
     march = march_plan(replace(model, loads=steps_of(inputs)), real)
-    acting = acting_inputs(model.network, march.pushed, inputs)
+    acting = acting_inputs(model.network, march.loaded_points, inputs)
     count = _panels(march, spacing, quicker)
     length = march.step / count
     march = replace(march, panels=tuple(Panel(k * length, length) for k in range(count)))

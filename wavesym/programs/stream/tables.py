@@ -41,8 +41,8 @@ class StreamTables:
         """All tables, by name."""
         plan, march, panel = self._plan, self._plan.march, self._plan.panel
         half = nearest(panel / 2)
-        heard = [one for output in march.outputs for one in output.heard]
-        late = [plan.late(one.delay) for one in heard]
+        terms = [one for output in march.outputs for one in output.terms]
+        late = [plan.late(one.delay) for one in terms]
         joints = self._march.joints()
         slips = [self.slips(joint) for joint in self._joints]
         spaces = [joint.space for joint in self._joints]
@@ -53,7 +53,7 @@ class StreamTables:
             "first_slot": firsts(self._slots),
             "entries": self._entries,
             "first_entry": firsts(self._entries),
-            "held": self._real.table(track.held for track in march.tracks),
+            "held": self._real.table(track.initial_value for track in march.tracks),
             "root_impedance": self._round(root for root, _ in weights),
             "state_gain": self._round(gain for _, gain in weights),
             **joints,
@@ -74,13 +74,13 @@ class StreamTables:
                 for order, errors in enumerate(kinks(self._degree))
                 for value, power in zip(errors, (0.0, 0.5), strict=True)
             ),
-            "first_term": firsts(len(output.heard) for output in march.outputs),
-            "track": tuple(one.track for one in heard),
-            "gain": self._real.table(one.gain for one in heard),
-            "summed": tuple(int(one.summed) for one in heard),
+            "first_term": firsts(len(output.terms) for output in march.outputs),
+            "track": tuple(one.track for one in terms),
+            "gain": self._real.table(one.gain for one in terms),
+            "summed": tuple(int(one.summed) for one in terms),
             "late": tuple(whole for whole, _ in late),
             "rest": self._real.table(rest for _, rest in late),
-            "shown_force": tuple(shown.get(one.track, -1) for one in heard),
+            "shown_force": tuple(shown.get(one.track, -1) for one in terms),
         }
 
     def constants(self, tolerance: float) -> dict[str, float]:
@@ -133,7 +133,7 @@ class StreamTables:
     def panel_operations(self) -> int:
         """Multiplications with addition when a panel begins and ends; without integrals as many for each breakpoint."""
         size = self._degree + 1
-        summed = sum(one.summed for output in self._plan.march.outputs for one in output.heard)
+        summed = sum(one.summed for output in self._plan.march.outputs for one in output.terms)
         total = 2 * 3 * 4 * size * summed
         total += sum(step_multiplications(joint.space, self._degree) for joint in self._joints)
         total += sum(len(self.slips(joint)) for joint in self._joints)
@@ -149,7 +149,7 @@ class StreamTables:
             total += 3 * space.points * wide if space.law == BLOCK else step_multiplications(space, self._degree)
             total += len(self.slips(joint)) + size * (space.states + len(space.ports))
         for output in self._plan.march.outputs:
-            total += sum((2 * 4 * 3 if one.summed else 3) * size for one in output.heard)
+            total += sum((2 * 4 * 3 if one.summed else 3) * size for one in output.terms)
         return total
 
     @cached_property
@@ -248,7 +248,7 @@ def _weight_at(joint: MarchedJoint, point: int) -> tuple[float, float]:
         return carried, 0.0
     moved = 1.4143 * sum(_motion_tables(joint, point))
     passing = sum(
-        abs(nearest(space.passed[point, port.point] * port.push)) / root
+        abs(nearest(space.feedthrough[point, port.point] * port.push)) / root
         for port, root in zip(space.ports, roots, strict=True)
         if root
     )
@@ -257,7 +257,7 @@ def _weight_at(joint: MarchedJoint, point: int) -> tuple[float, float]:
 
 def _motion_tables(joint: MarchedJoint, point: int) -> Iterator[float]:
     for a, weight in enumerate(joint.space.weights):
-        yield abs(nearest(joint.space.shown[point, a])) / sqrt(nearest(weight))
+        yield abs(nearest(joint.space.state_velocities[point, a])) / sqrt(nearest(weight))
 
 
 def slip_size(space: JointSpace, degree: int) -> int:
