@@ -42,8 +42,9 @@ def gallery(examples: Path) -> str:
         if pictures:
             lines += ["", f"## [{title[1]}]({link}/README.md)", ""]
         for picture in pictures:
-            name = picture.stem.replace("_", " ")
-            lines.append(f"[![{name}]({link}/{picture.name}){{ width=320 loading=lazy }}]({link}/README.md)")
+            name = picture.stem.replace("_", " ").capitalize()
+            shown = f"![]({link}/{picture.name}){{ loading=lazy }}"
+            lines += [f"[{shown}{name}]({link}/README.md){{ .thumbnail }}", ""]
     return "\n".join([*lines, ""])
 
 

@@ -57,7 +57,7 @@ def _lines(summary: Summary) -> Iterable[str]:
     if not all(peak.reached for peak in peaks):
         yield "-  it comes up to this value, and jumps then"
     if (drift := summary.largest_drift) is not None:
-        peak, when = drift.largest, number_text(drift.largest.at.in_scene_time)
+        peak, when = drift.largest, number_text(drift.largest.at.in_scene_time, summary.time_unit or "")
         yield f"largest drift: {drift.label}, {number_text(peak.value, drift.unit)} at {when}"
     if summary.drifts_cost_too_much:
         yield "the largest drift would cost too much (drifts as outputs help)"

@@ -10,7 +10,8 @@ from wavesym.mechanics.probe import Probe
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.pictures.units import unit_text
 
-_PLACE = re.compile(r"[\d./]+(?: .*)?[+-]?")  # a number, perhaps with a unit and a side
+_PLACE = re.compile(r"([\d./]+(?: .*?)?)([+-]?)")  # a number, perhaps with a unit, and a side
+_SIDES = {"": "at", "-": "just before", "+": "just after"}
 
 
 def with_titles(model: Model) -> Model:
@@ -46,7 +47,17 @@ def output_title(model: Model, probe: Probe) -> str:
     if quantity == "drift":
         return f"{'Twist' if model.labels.kind == 'torsional' else 'Deformation'} of rod {place}"
     line, colon, x = place.rpartition(":")
-    if _PLACE.fullmatch(x):
-        where = f"{line}{colon}{x}" if line or re.search("[ +-]", x) else f"x = {x}"
-        return f"{words.capitalize()} at {where}"
-    return f"{words.capitalize()} of {place}"
+    if found := _PLACE.fullmatch(x):
+        where = found[1] if " " in found[1] else f"x = {found[1]}"
+        return f"{words.capitalize()} {_SIDES[found[2]]} {where}{line and f' of {in_words(line)}'}"
+    return f"{words.capitalize()} of {in_words(line)}{colon}{in_words(x)}"
+
+
+def in_words(name: str) -> str:
+    """A name of a scene, with spaces."""
+    return name.replace("_", " ")
+
+
+def heading(name: str) -> str:
+    """The name of a scene as a title begins with it: "Steel frame" of steel_frame."""
+    return in_words(name[:1].upper() + name[1:])

@@ -19,6 +19,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.pictures.groups import PlotPanel, load_panel, notes, panels, restless
 from wavesym.pictures.histories import Histories, History, Points
 from wavesym.pictures.labels import Curve, label
+from wavesym.pictures.naming import heading
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.pictures.style import FONT, HALO, WIDTH, draw_grid, new_figure, with_style
 from wavesym.pictures.timescale import Timescale, timescale
@@ -60,7 +61,7 @@ def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     """The outputs of a scene under its loads; the same bytes from the same scene where `saving.save` writes it."""
     model = histories.model
     until, scale = nearest(model.until), timescale(model)
-    title = [f"{model.name}: outputs over time, to {scale.format(until)}"]
+    title = [f"{heading(model.name)}: outputs over time, to {scale.format(until)}"]
     title += [line for note in notes(histories) for line in wrap(note, CHARACTERS)]
     opened = [
         Instant(end.double, f"contact at x = {end.x} opens, {scale.format(end.double)}") for end in histories.contacts

@@ -19,6 +19,7 @@ from wavesym.mechanics.model import Model
 from wavesym.pictures.groups import axis_title, load_panel
 from wavesym.pictures.histories import History
 from wavesym.pictures.line_histories import Band, LineHistories, cells, envelope, extremes, limit
+from wavesym.pictures.naming import heading
 from wavesym.pictures.style import BETWEEN, GREATEST, HALO, LEAST, colours, draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.timescale import timescale
 
@@ -38,7 +39,7 @@ def draw_envelope(model: Model, found: Sequence[LineHistories]) -> Figure:
     """
     upright, scale = model.labels.system["type"] == "building", timescale(model)
     figure = new_figure(_ENVELOPE * len(found) + 0.4)
-    set_title(figure, f"{model.name}: least and greatest to {scale.format(float(found[0].taus[-1]))}")
+    set_title(figure, f"{heading(model.name)}: least and greatest to {scale.format(float(found[0].taus[-1]))}")
     lengths = [band.spots[-1].high for band in found[0].bands]
     widths = [max(length / lengths[0], _NARROWEST) for length in lengths]
     axes = figure.subplots(len(found), len(widths), squeeze=False, width_ratios=widths)
@@ -123,7 +124,7 @@ def draw_map(model: Model, found: Sequence[LineHistories], loads: Sequence[Histo
     until = float(found[0].taus[-1]) * scale.per_tau
     heights = [_LOAD] * bool(loads) + [_MAP] * sum(len(quantity.bands) for quantity in found)
     figure = new_figure(sum(heights) + 0.7)
-    set_title(figure, f"{model.name}: place over time")
+    set_title(figure, f"{heading(model.name)}: place over time")
     panels = iter(figure.subplots(len(heights), 1, squeeze=False, sharex=True, height_ratios=heights)[:, 0])
     if loads:
         axes = next(panels)

@@ -11,6 +11,7 @@ from wavesym.documents.record import RecordFacts
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
+from wavesym.pictures.naming import heading
 from wavesym.pictures.style import MAIN, OTHER, draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.units import unit_text
 from wavesym.records.record_file import RecordFile
@@ -74,7 +75,7 @@ def draw_modes(found: Modes, model: Model, lines: Lines) -> Figure:
     drawn = line_shapes(found.exact[:MOST_MODES], found.cut, model, lines, _POINTS)
     figure = new_figure(1.4 + _MODE * len(drawn))
     unit = "Hz" if found.time_unit else "per tau"
-    set_title(figure, f"{found.name}: shapes of the first {min(len(found), MOST_MODES)} modes")
+    set_title(figure, f"{heading(found.name)}: shapes of the first {min(len(found), MOST_MODES)} modes")
     for axes, each in zip(figure.subplots(len(drawn), 1, squeeze=False)[:, 0], drawn, strict=True):
         for row, moved in zip(found.modes, each.displacements, strict=False):
             axes.plot(each.x, moved.real, label=f"{row.number}: {row.hz:.4g} {unit}", linewidth=1.3)
@@ -137,5 +138,5 @@ def draw_frequency_response(found: FrequencyResponse) -> Figure:
     phase.set_xlabel("w [rad per tau]" if found.frequency_label == "omega" else found.frequency_label)
     phase.set_xlim(found.frequency[0], found.frequency[-1])
     draw_grid(phase)
-    set_title(figure, f"{found.name}: amplitudes{per}")
+    set_title(figure, f"{heading(found.name)}: amplitudes{per}")
     return figure

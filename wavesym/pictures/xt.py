@@ -25,6 +25,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.field import Field
+from wavesym.pictures.naming import heading
 from wavesym.pictures.stations import loose_times
 from wavesym.pictures.style import WIDTH, colours, new_figure, with_style
 from wavesym.pictures.timescale import timescale
@@ -77,7 +78,9 @@ def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> F
     above, gap = _LINE * (2.8 + len(notes) + names), _BELOW + _LINE * (1.5 + names)
     height = above + 2 * _PANEL + gap + _BELOW
     figure = new_figure(height, constrained=False)
-    figure.text(0.01, 1 - 0.4 * _LINE / height, f"{model.name}: waves over place and time", weight="bold", va="top")
+    figure.text(
+        0.01, 1 - 0.4 * _LINE / height, f"{heading(model.name)}: waves over place and time", weight="bold", va="top"
+    )
     for k, note in enumerate(notes):
         figure.text(0.01, 1 - _LINE * (1.5 + k) / height, note, color="0.3", va="top")
     for row, quantity in enumerate(("velocity", "force")):

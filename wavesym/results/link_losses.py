@@ -23,7 +23,11 @@ class MeasuredQuantity(NamedTuple):
     unit: str
 
     def __str__(self) -> str:
-        return number_text(self.value, self.unit)
+        return self.describe()
+
+    def describe(self, digits: int = 7) -> str:
+        """With its unit, to so many digits."""
+        return number_text(self.value, self.unit, digits)
 
 
 class LinkSummary(NamedTuple):
@@ -40,10 +44,19 @@ class LinkSummary(NamedTuple):
     set: MeasuredQuantity
     dissipated: MeasuredQuantity
 
-    def __str__(self) -> str:
+    @property
+    def where(self) -> str:
+        """Its place, with the names of its points."""
         names = ", ".join(name for name in self.between if name != _GROUND and not name.startswith(self.place))
-        where = f"{self.place} ({names})" if names else self.place
-        return f"{self.law} at {where}: set {self.set}, dissipated {self.dissipated}"
+        return f"{self.place} ({names})" if names else self.place
+
+    def __str__(self) -> str:
+        return self.describe()
+
+    def describe(self, digits: int = 7) -> str:
+        """A line that says what it lost, to so many digits."""
+        lost = f"set {self.set.describe(digits)}, dissipated {self.dissipated.describe(digits)}"
+        return f"{self.law} at {self.where}: {lost}"
 
 
 def _names(model: Model, link: Link) -> tuple[str, str]:

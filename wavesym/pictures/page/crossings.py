@@ -24,6 +24,7 @@ from wavesym.pictures.page.png import colour_image
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line
 from wavesym.pictures.stations import Loose, ground_links, loose_times, standing
 from wavesym.pictures.timescale import timescale
+from wavesym.results.presentation import number_text
 from wavesym.scene.physical.scale import Scale
 from wavesym.systems.station import Lines, Station
 
@@ -56,7 +57,7 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     image = colour_image(values, x, y, (-largest, largest), signed=True)
     formal = concatenate(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
     nodes = concatenate(*_nodes(model, stations, loose_times(model, field.events), x, scale.per_tau, y))
-    ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
+    ends = f"\u2264 {number_text(-largest, digits=3)}", f"\u2265 {number_text(largest, digits=3)}"
     words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
     bar = colour_bar(words, ends, TOP + _TALL + BELOW, signed=True)
     description = (

@@ -17,7 +17,7 @@ from wavesym.pictures.groups import load_panel, notes, panels
 from wavesym.pictures.histories import Histories, History, drawable, histories
 from wavesym.pictures.line_histories import LineHistories, chain_outputs, line_histories
 from wavesym.pictures.loads import load_histories
-from wavesym.pictures.naming import with_titles
+from wavesym.pictures.naming import heading, with_titles
 from wavesym.pictures.page.crossings import crossings
 from wavesym.pictures.page.headline import Figure, headline, longest_periods, neglected_effects, storeys
 from wavesym.pictures.page.load_spectrum import load_spectrum
@@ -111,10 +111,10 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     found, refused = _line_pictures(scene, model, None if searched else drawn_by, refusal)
     structured = structure(model, lines)
     block = scene.title_block
-    title = f"The structure of {model.name}"
+    title = f"The structure of {heading(model.name)}"
     report = Report(
         name=model.name,
-        project=(block and block.project) or model.name,
+        project=(block and block.project) or heading(model.name),
         credit=block.credit if block else "",
         headline=tuple(headline(scene, model, summary, found, loads, periods)),
         storeys=storeys(scene, found, scale),

@@ -15,7 +15,7 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.histories import History
 from wavesym.pictures.line_histories import LineHistories
 from wavesym.pictures.page.page_tables import PageTable
-from wavesym.pictures.timescale import Timescale
+from wavesym.pictures.timescale import Timescale, timescale
 from wavesym.pictures.units import unit_text
 from wavesym.results.modes import modes
 from wavesym.results.presentation import number_text
@@ -28,6 +28,7 @@ from wavesym.scene.outputs import Output, observables
 _PERIODS = 3
 _GRAVITY = 9.80665  # m/s^2
 _STOREYS = 60  # rows of the table
+_OUTPUTS, _LINKS = 3, 2  # of a scene that is no building, those that are listed first
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,8 @@ def headline(
     shear = outputs.get("force@0")
     if shear is not None and scene.system.type == "building":
         yield Figure("Base shear", _value(shear.largest.value, shear.unit), _of_the_weight(scene, model, shear))
+    if scene.system.type != "building" and not isinstance(summary, WavesymError):
+        yield from _largest_values(model, summary)
     yield from _largest_drift(scene, found)
     roof = outputs.get(f"acceleration@{len(model.network.bars)}")
     if roof is not None and scene.system.type == "building":
@@ -81,7 +84,7 @@ def headline(
         hertz = ", ".join(f"{1 / period:.3g}" for period in periods)
         yield Figure("Natural frequencies", f"{hertz} Hz", f"periods {', '.join(f'{each:.3g}' for each in periods)} s")
     elif periods:
-        unit = " s" if model.clock else ""
+        unit = "\u00a0s" if model.clock else ""
         values = ", ".join(f"{period:.3g}" for period in periods)
         yield Figure("Period" + "s" * (len(periods) > 1), f"{values}{unit}", "" if unit else "in tau")
 
@@ -112,7 +115,7 @@ def storeys(scene: Scene, found: Sequence[LineHistories], scale: Timescale) -> P
             row.insert(1, f"{heights[k]:.4g}")
             row.insert(3, f"{100 * abs(values[place]) * _metres(scene) / heights[k]:.3g}")
         rows.append(tuple(row))
-    return PageTable(head, tuple(rows), (f"The largest of {len(own.taus)} instants",))
+    return PageTable(head, tuple(rows), (f"The largest values at {len(own.taus)} instants",))
 
 
 def neglected_effects(model: Model) -> Iterator[str]:
@@ -134,6 +137,17 @@ def _outputs(scene: Scene, model: Model, summary: Summary | WavesymError) -> dic
         with suppress(WavesymError):
             found |= {each.name: each for each in summarise(model.watching(missing)).outputs}
     return found
+
+
+def _largest_values(model: Model, summary: Summary) -> Iterator[Figure]:
+    """The largest value of each output, with its sign and when it is there, and what links lost."""
+    scale = timescale(model)
+    for each in summary.outputs[:_OUTPUTS]:
+        peak = each.largest
+        when = f"at {scale.symbol} = {number_text(peak.at.in_scene_time, scale.unit, 4)}"
+        yield Figure(each.label, number_text(peak.value, unit_text(each.unit), 4), when)
+    for link in (summary.links or ())[:_LINKS]:
+        yield Figure(f"Set at {link.where}", link.set.describe(4), f"{link.dissipated.describe(4)} dissipated")
 
 
 def _largest_drift(scene: Scene, found: Sequence[LineHistories]) -> Iterator[Figure]:

@@ -51,7 +51,7 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
         * bool(contact_ends(model)),
         _drift(found.largest_drift, scale),
         "The largest drift would cost too much; drifts as outputs help" * found.drifts_cost_too_much,
-        *(f"{str(link)[:1].upper()}{str(link)[1:]}" for link in found.links or ()),
+        *(f"{line[:1].upper()}{line[1:]}" for line in (link.describe(_DIGITS) for link in found.links or ())),
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
         f"How: {found.how}; {found.certain}. Four figures are shown; the command summary writes more",
     ]

@@ -25,6 +25,7 @@ from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePict
 from wavesym.pictures.page.png import colour_image, colours
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line, polyline, text
 from wavesym.pictures.timescale import Timescale
+from wavesym.results.presentation import number_text
 
 _ALONG = 230.0  # pixels high
 _COLUMNS = 600  # of a map
@@ -120,7 +121,7 @@ def _map(
     rows = _evenly(band, values)
     image = colour_image(rows, x, y, (-largest, largest), signed=True)
     frame = Frame(x, y, scale.title, upward, places)
-    ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
+    ends = f"\u2264 {number_text(-largest, digits=3)}", f"\u2265 {number_text(largest, digits=3)}"
     bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), ends, TOP + tall + BELOW, signed=True)
     return concatenate(frame.draw(), image, bar), TOP + tall + BELOW + 34
 

@@ -15,6 +15,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.doubles import nearest
 from wavesym.pictures.loads import load_histories
+from wavesym.pictures.naming import in_words
 from wavesym.pictures.page import symbols
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line, polyline, text
 from wavesym.pictures.stations import ground_links, standing
@@ -177,7 +178,7 @@ class _Pen:
                 for point in new:
                     if what is self.network.points[point]:
                         self.positions[point] = x + width * shrink / 2, y
-                        self._write_above(x + width * shrink / 2, y - 36 - self.name_height, what.name, names)
+                        self._write_above(x + width * shrink / 2, y - 36 - self.name_height, in_words(what.name), names)
                 x += width * shrink
             self.positions.update({point: ((start + x) / 2, y) for point in new if point not in self.positions})
             held = any(any(self._supports(point)) for point in new)
@@ -234,7 +235,7 @@ class _Pen:
         if bar.velocity and length > _LETTER * len(moving):
             self.parts.append(text(x + length / 2, y + 4, moving, class_="act"))
         if bar.name and length > _LETTER * len(bar.name):
-            self.parts.append(text(x + length / 2, y - 18, bar.name, class_="name"))
+            self.parts.append(text(x + length / 2, y - 18, in_words(bar.name), class_="name"))
 
     def _ends(self) -> None:
         """What holds points to the ground, or moves them."""
