@@ -148,6 +148,20 @@ def test_adjusted_travel_times_are_whole_windows(delays: list, most) -> None:
     assert all(new.impedance == 3 and new.length == 2 for new in adjusted)
 
 
+def test_speeds_change_by_little_where_few_windows_are_enough_whatever_is_allowed() -> None:
+    """Under 20 % they changed by 18 %, to a window as long as the shortest travel time."""
+    before = lower(column()).network.bars
+    changes = [
+        speed_change(before, lower(column(speed_adjustment=allowed)).network.bars) for allowed in ("0.5 %", "20 %")
+    ]
+    assert 0 < changes[0] == changes[1] < fmpq(1, 200)
+    # 0.5 % takes more than 16 windows here: the least change of so few, which is less than is allowed
+    bars = [Bar(k, k + 1, fmpq(1), 1 / delay, fmpq(1)) for k, delay in enumerate(map(fmpq, (1757, 2875, 2236, 1970)))]
+    after = adjust_speeds(bars, fmpq(1, 5))
+    assert fmpq(1, 200) < speed_change(bars, after) < fmpq(1, 50)
+    assert min(bar.delay for bar in after) / common_measure([bar.delay for bar in after]) <= 16
+
+
 def test_percent_is_rounded_up() -> None:
     assert [percent(fmpq(*ratio)) for ratio in ((1, 200), (12345, 10**7), (9991, 10**6))] == ["0.5 %", "0.13 %", "1 %"]
 

@@ -24,6 +24,7 @@ FINEST = 64
 """The shortest travel time is no more windows than that."""
 
 _LITTLE = fmpq(1, 200)  # of a speed: as much is less than anyone knows of it
+_CHEAP = 16  # windows to the shortest travel time
 _KEPT = fmpq(9, 10)  # of what speeds may change
 _DIGITS = Context(prec=2, rounding=ROUND_CEILING)
 
@@ -50,7 +51,8 @@ def adjust_speeds(bars: Sequence[Bar], most: fmpq) -> tuple[Bar, ...]:
         most: how much of its speed that of a rod may change.
 
     Returns:
-        The rods, with the longest windows that `most` allows; unchanged where they have a common measure already.
+        The rods, changed by no more than 0.5 % where few windows are enough for that, whatever `most` allows;
+        unchanged where they have a common measure already.
 
     Raises:
         MeasureError: where no common measure is so near; it says which is.
@@ -77,21 +79,26 @@ def percent(ratio: fmpq) -> str:
 
 
 def _nearest(delays: Sequence[fmpq], most: fmpq) -> tuple[fmpq, list[fmpq]]:
-    """The fewest windows for which speeds change by `most` or less, else those for which they change least.
+    """The fewest windows for which speeds change by 0.5 % or less (by `most`, if that is less).
 
-    The first number is a change that is enough, with what is spared for a window that is a simple fraction: after as
-    many of them as its denominator instants are whole numbers again.
+    Where so few as are cheap do not get there, it is the least change of these, if `most` allows it; else the fewest
+    for which `most` does, else the least change of all. The first number is a change that is enough, with what is
+    spared for a window that is a simple fraction: after as many of them as its denominator instants are whole numbers
+    again.
     """
-    tried = []
+    little = min(most, _LITTLE)
+    best: tuple[fmpq, list[int], fmpq, fmpq] | None = None
     for parts in range(1, FINEST + 1):
         counts = [math.floor(fraction(delay * parts / min(delays)) + Fraction(1, 2)) for delay in delays]
         least, largest = min(rates := [delay / count for count, delay in zip(counts, delays, strict=True)]), max(rates)
         needed = (largest - least) / (largest + least) / _KEPT
-        tried.append((needed, counts, least, largest))
-        if needed <= most:
+        if best is None or needed < best[0]:
+            best = needed, counts, least, largest
+        if best[0] <= (little if parts < _CHEAP else most):
             break
-    needed, counts, least, largest = min(tried, key=lambda each: each[0])
-    allowed = max(most, needed)
+    assert best is not None  # there is a window
+    needed, counts, least, largest = best
+    allowed = max(little, needed)
     step = rational(_simplest(fraction(largest / (1 + allowed)), fraction(least / (1 - allowed))))
     return needed, [count * step for count in counts]
 
