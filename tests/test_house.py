@@ -97,7 +97,7 @@ WAYS: dict[str, tuple[Callable[[Scene, Path], object], dict[str, int]]] = {
     "run": (lambda scene, _: wavesym.run(scene, samples=9), {"exact values": 1}),
     "run as csv": (lambda scene, _: list(api.run_csv(scene, 9)), {"exact values": 1}),
     "evaluator": (lambda scene, _: api.evaluator(scene)([1.0]), {"exact values": 1}),
-    "summary": (lambda scene, _: (api.summary(scene), api.unexpected_lines(scene)), {"exact extremes": 1}),
+    "summary": (lambda scene, _: (api.summary(scene), api.scene_notes(scene)), {"exact extremes": 1}),
     "generate": (
         lambda scene, folder: (api.generate(scene, folder, "all"), api.scene_notes(scene)),
         {"closed": 1, "pieces": 1, "exact values": 1},
@@ -108,7 +108,7 @@ WAYS: dict[str, tuple[Callable[[Scene, Path], object], dict[str, int]]] = {
     "inspect": (lambda scene, _: api.inspect(scene, "program"), {"closed": 2, "pieces": 4}),
     # modes and a march for other models of the same scene, of which `advise` says how far they are off
     "report": (
-        lambda scene, folder: (api.report(scene, folder / "page.html"), api.unexpected_lines(scene)),
+        lambda scene, folder: (api.report(scene, folder / "page.html"), api.scene_notes(scene)),
         {"exact extremes": 1, "march": 2, "modes": 1},
     ),
     "verify": (lambda scene, _: api.verify([scene], "closed"), {"closed": 1, "exact values": 2}),

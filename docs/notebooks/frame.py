@@ -67,7 +67,7 @@ scene.plot()
 # %%
 spectrum = wavesym.spectrum(scene)
 figure, axes = plt.subplots(figsize=(7, 3.5), layout="constrained")
-axes.semilogx(spectrum.periods, spectrum.values[spectrum.names.index("acceleration@10")])
+axes.semilogx(spectrum.periods, spectrum["acceleration@10"])
 for mode in modes[:3]:
     axes.axvline(mode.period, color="0.7", linewidth=0.8)
     axes.annotate(f"T{mode.number}", (mode.period, 1), xycoords=("data", "axes fraction"), va="top")

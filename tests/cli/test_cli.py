@@ -49,11 +49,8 @@ class Door(SimpleNamespace):
         self.asked.append(options)
         return self.difference
 
-    def unexpected_lines(self, scene: object) -> list[str]:
+    def scene_notes(self, scene: object, *, values: bool = True) -> list[str]:
         return ["a contact opens"]
-
-    def scene_notes(self, scene: object) -> list[str]:
-        return []
 
     def run_csv(self, scene: object, samples: int, at: list[float] | None, tell: Callable[[str], object]) -> list[str]:
         self.asked.append((samples, at))
@@ -74,7 +71,7 @@ class Door(SimpleNamespace):
 @pytest.fixture
 def door(monkeypatch: pytest.MonkeyPatch) -> Door:
     stand_in = Door()
-    for name in ("write", "check", "unexpected_lines", "scene_notes", "run_csv", "plot_with_notes", "verify"):
+    for name in ("write", "check", "scene_notes", "run_csv", "plot_with_notes", "verify"):
         monkeypatch.setattr(api, name, lambda *given, name=name, **named: getattr(stand_in, name)(*given, **named))
     return stand_in
 

@@ -86,7 +86,8 @@ def test_a_floor_of_a_scene(damping):
     def acceleration(t):
         return (np.exp(-t / mass) - np.where(t >= 5 / 3, 2 * np.exp(-(t - 5 / 3) / mass), 0)) / mass
 
-    assert found.names == ("acceleration@floor",)
+    assert found.outputs == tuple(found) == ("acceleration@floor",)
+    assert found["acceleration@floor"].tolist() == found.values[0].tolist()
     assert found.change < 2e-3
     for k in (0, len(found.periods) // 2, len(found.periods) - 1):
         w = 2 * pi / found.periods[k]

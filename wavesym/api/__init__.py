@@ -33,9 +33,9 @@ from wavesym.api.pictures import (
     report,
     scene_html,
 )
-from wavesym.api.programs import check, fmu_notes, generate, model, program, reading_notes, scene_notes, write
+from wavesym.api.programs import check, fmu_notes, generate, model, program, write
 from wavesym.api.sweeps import run_sweep, sweep, sweep_report, sweep_status, sweep_table
-from wavesym.api.values import evaluator, peaks, run, run_csv, spectrum, spectrum_notes, summary, unexpected_lines
+from wavesym.api.values import evaluator, peaks, run, run_csv, scene_notes, spectrum, spectrum_notes, summary
 from wavesym.api.verdicts import advise, inspect, inspect_lines, verify, verify_derivation, verify_published
 from wavesym.api.vibration import frf, modes
 
@@ -60,7 +60,6 @@ __all__ = [
     "plot_spectra",
     "plot_with_notes",
     "program",
-    "reading_notes",
     "record",
     "report",
     "run",
@@ -78,7 +77,6 @@ __all__ = [
     "symbolic_tables",
     "table",
     "tables",
-    "unexpected_lines",
     "verify",
     "verify_derivation",
     "verify_published",

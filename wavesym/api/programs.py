@@ -232,19 +232,6 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     return RuntimeModel(ModalSets(mode_parameters(lowered, runtime, loads)))
 
 
-def reading_notes(scene: Scene) -> list[str]:
-    """How the scene was read, where that may surprise: what was rounded, adjusted or understood."""
-    return list(lower(scene).labels.notes)
-
-
-def scene_notes(scene: Scene) -> list[str]:
-    """How the scene was read where that may surprise, and a line for a scene in which nothing happens."""
-    from wavesym.results.notices import without_load
-
-    lowered = lower(scene)
-    return [*lowered.labels.notes, *without_load(lowered)]
-
-
 def fmu_notes(path: Path) -> list[str]:
     """What to know of an FMU that was made."""
     from wavesym.running.fmu import describe_fmu

@@ -92,13 +92,13 @@ def run_csv(
     Raises:
         ToleranceError, CostError: where no program will do, or it would take minutes to know what contacts do.
     """
-    from wavesym.results.notices import event_lines, outside_lines, warning_lines
+    from wavesym.results.notes import event_notes, horizon_notes, value_notes
     from wavesym.results.response import Response
     from wavesym.results.rows import csv_lines
 
     model = lower(scene)
     response = Response(model)
-    for line in (*outside_lines(model, at or ()), *warning_lines(model), *event_lines(response)):
+    for line in (*horizon_notes(model, at or ()), *value_notes(model), *event_notes(response)):
         tell(line)
     lines = csv_lines(response, samples, at)
     if made := response.program:
@@ -175,8 +175,8 @@ def spectrum(scene: Scene, damping: float = 0.05) -> Spectra:
         damping: the ratio of the oscillators' damping, from 0 to below 1.
 
     Returns:
-        `periods` (n,) in `time_unit`, `values` (outputs, n), pseudo-accelerations in `units`, and `names`; `change` is
-        how much half as many steps change them, relative to each spectrum's largest value.
+        `periods` (n,) in `time_unit`, `values` (outputs, n), pseudo-accelerations in `units` of `outputs`; `[NAME]` is
+        one of them. `change` is how much half as many steps change them, relative to each spectrum's largest value.
 
     Raises:
         WavesymError: for a scene without such outputs, or a horizon that is too short.
@@ -184,7 +184,7 @@ def spectrum(scene: Scene, damping: float = 0.05) -> Spectra:
 
     >>> import wavesym
     >>> scene = wavesym.Scene.from_toml("building_m2").with_({"output.acceleration": [1, 2], "output.until": 40})
-    >>> wavesym.spectrum(scene, damping=0.02).names
+    >>> wavesym.spectrum(scene, damping=0.02).outputs
     ('acceleration@1', 'acceleration@2')
     """
     from wavesym.results.spectrum import spectra
@@ -193,16 +193,23 @@ def spectrum(scene: Scene, damping: float = 0.05) -> Spectra:
 
 
 def spectrum_notes(scene: Scene, found: Spectra) -> list[str]:
-    """What to know of response spectra: what `unexpected_lines` has, and how far the steps of their values matter."""
+    """What to know of response spectra: what `scene_notes` has, and how far the steps of their values matter."""
     from wavesym.results.stepping import describe_step
 
     damping, step = f"damping {found.damping:g}", describe_step(lower(scene), found.step)
     change = f"with half as many spectra change by {found.change:.1e}"
-    return [*unexpected_lines(scene), f"{damping}, values {step}; {change}"]
+    return [*scene_notes(scene), f"{damping}, values {step}; {change}"]
 
 
-def unexpected_lines(scene: Scene) -> list[str]:
-    """What a user might not expect: how the scene was read, no load, contacts that open early enough to matter."""
-    from wavesym.results.notices import warning_lines
+def scene_notes(scene: Scene, *, values: bool = True) -> list[str]:
+    """What a user might not expect of a scene, a line for each: what was rounded, adjusted or understood.
 
-    return warning_lines(lower(scene))
+    Args:
+        scene: what was read.
+        values: whether its outputs are of interest: a line, too, where there is no load, and for each contact that
+            opens early enough to matter.
+    """
+    from wavesym.results.notes import value_notes
+
+    model = lower(scene)
+    return value_notes(model) if values else list(model.labels.notes)

@@ -45,5 +45,5 @@ def advise(scene: Scene, tolerance: float, format: str, out: Path | None) -> Non
     with progress(f"advise {scene.name}"):
         found = api.advise(scene, tolerance)
     with suppress(WavesymError):  # when contacts open may be dear to know, or not be known
-        put_notes(scene, api.unexpected_lines(scene))
+        put_notes(scene, api.scene_notes(scene))
     deliver(found.json() if format == "json" else found.text(), out)

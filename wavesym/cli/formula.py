@@ -56,6 +56,6 @@ def formula(scene: Scene, output: str, until: Fraction | None, symbolic: bool, f
     refuse_out(out)
     with progress(f"formula {scene.name}"):
         text = api.formula(scene, output, until, format, symbolic=symbolic)
-        notes = api.reading_notes(scene)
+        notes = api.scene_notes(scene, values=False)
     put_notes(scene, notes)
     deliver(text, out)

@@ -88,6 +88,6 @@ def frf(
             api.plot_frf(found, out)
         elif out is not None:
             write_whole({out: text})
-    put_notes(scene, [*api.reading_notes(scene), *notes])
+    put_notes(scene, [*api.scene_notes(scene, values=False), *notes])
     if out is None or (drawn and peaks):
         put(text)

@@ -74,7 +74,7 @@ def modes(
             api.plot_modes(scene, found, out)
         elif out is not None:
             write_whole({out: text})
-        notes = api.reading_notes(scene)
+        notes = api.scene_notes(scene, values=False)
     put_notes(scene, notes)
     if out is None or drawn:
         put(text)

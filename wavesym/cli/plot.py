@@ -53,7 +53,7 @@ def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
         with progress(f"plot {scene.name}"):
             from wavesym import api
 
-            lines = [*api.unexpected_lines(scene), *api.plot_with_notes(scene, out, kind)[1]]
+            lines = [*api.scene_notes(scene), *api.plot_with_notes(scene, out, kind)[1]]
         put_notes(scene, lines)
     elif published:
         with progress("plot --published"):

@@ -54,6 +54,6 @@ def report(scene: Scene | Path, out: Path) -> None:
     with progress(f"report {scene.name}"):
         from wavesym import api
 
-        warnings = api.unexpected_lines(scene)
+        warnings = api.scene_notes(scene)
         api.report(scene, out)
     put_notes(scene, warnings)

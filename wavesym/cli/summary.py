@@ -40,8 +40,8 @@ def summary(scene: Scene, at_samples: bool, format: str, out: Path | None) -> No
         from wavesym.documents.summary import summary_text
 
         found = api.summary(scene, at_samples=at_samples)
-        lines = api.unexpected_lines(scene)
+        lines = api.scene_notes(scene)
     if format == "json" and not found.proved:
-        lines.append(f"{found.how}: {found.certain}")
+        lines.append(f"{found.how}: {found.accuracy}")
     put_notes(scene, lines)
     deliver(summary_text(found, format), out)

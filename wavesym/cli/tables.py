@@ -60,7 +60,7 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, fra
             lines = table_lines(api.table(scene, intervals), scene.name, written)
         if out is not None:
             write_whole({out: lines})
-        notes = api.reading_notes(scene)
+        notes = api.scene_notes(scene, values=False)
     put_notes(scene, notes)
     for equation in equations:
         click.echo(equation, err=True)

@@ -64,7 +64,7 @@ def _lines(summary: Summary) -> Iterable[str]:
     yield from map(str, summary.links or ())
     if summary.links is None:
         yield "sets and what is dissipated would cost too much (a shorter horizon helps)"
-    yield f"{summary.how}: {summary.certain}"
+    yield f"{summary.how}: {summary.accuracy}"
 
 
 def _row(output: OutputSummary) -> tuple[str, ...]:

@@ -96,8 +96,8 @@ def draw_spectra(found: Spectra) -> Figure:
     """A line for each output, over the period on a logarithmic axis."""
     figure = new_figure(4.6)
     axes = figure.add_subplot()
-    for k, (name, values) in enumerate(zip(found.names, found.values, strict=True)):
-        shade = f"C{k}" if len(found.names) <= 10 else str(0.75 * k / (len(found.names) - 1))
+    for k, (name, values) in enumerate(zip(found.outputs, found.values, strict=True)):
+        shade = f"C{k}" if len(found.outputs) <= 10 else str(0.75 * k / (len(found.outputs) - 1))
         axes.semilogx(found.periods, values, label=name, color=shade, linewidth=1.2)
     axes.set_xlabel("period in tau" if found.time_unit is None else f"period in {found.time_unit}")
     unit = next(iter(found.units))
@@ -108,7 +108,7 @@ def draw_spectra(found: Spectra) -> Figure:
     axes.set_xlim(found.periods[0], found.periods[-1])
     axes.set_ylim(bottom=0)
     draw_grid(axes)
-    axes.legend(ncols=1 + len(found.names) // 12)
+    axes.legend(ncols=1 + len(found.outputs) // 12)
     return figure
 
 

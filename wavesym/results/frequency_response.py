@@ -23,7 +23,7 @@ from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.optional import require_packages
 from wavesym.results.presentation import csv_line, output_number
-from wavesym.results.resonance import Peaks, peaks
+from wavesym.results.resonance import AmplitudePeaks, peaks
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class FrequencyResponse:
         """By how much each output is ahead of the load, in degrees from -180 to 180, (outputs, n)."""
         return np.degrees(np.angle(self.values))
 
-    def peaks(self) -> Peaks:
+    def peaks(self) -> AmplitudePeaks:
         """The greatest amplitude of each output between the least frequency and the last, enclosed.
 
         WavesymError where there are no two. CostError where too many intervals would be needed.
@@ -106,15 +106,15 @@ class FrequencyResponse:
         return peaks(self._model, self._load, *map(float, band))
 
     @property
-    def notes(self) -> list[str]:
+    def notes(self) -> tuple[str, ...]:
         """How good values are, and where there are none: lines for people."""
         unit = "Hz" if self.frequency_label.endswith("[Hz]") else "rad per tau"
         poles = ", ".join(f"{pole:g}" for pole in self.poles)
-        return [
+        return (
             f"per unit of {self.load}{self.load_unit and ' '}{self.load_unit}; right to {self.bound:.1e} of each "
             "output's largest amplitude here, proved",
             *([f"no value at {poles} {unit}: there is none, or nothing limits it"] if poles else []),
-        ]
+        )
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame: a complex column for each output over the frequency. WavesymError without pandas."""

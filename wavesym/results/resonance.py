@@ -22,7 +22,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, upper_double
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
-from wavesym.results.presentation import csv_line
+from wavesym.results.presentation import csv_line, output_number
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
 _BITS = 256
@@ -41,7 +41,7 @@ Transfers = Callable[[Quantity], list[Quantity]]
 
 
 @dataclass(frozen=True)
-class Peak:
+class AmplitudePeak:
     """The greatest amplitude of one output in the band.
 
     Attributes:
@@ -61,24 +61,24 @@ class Peak:
 
 
 @dataclass(frozen=True)
-class Peaks:
-    """The peaks of all outputs; `wavesym.frf(..., peaks=True)` makes it."""
+class AmplitudePeaks:
+    """The peaks of all outputs; `wavesym.frf(...).peaks()` makes it; `peaks[NAME]` is that of one output."""
 
     name: str
     load: str
     load_unit: str
     frequency_label: str
     band: tuple[float, float]
-    peaks: tuple[Peak, ...]
+    peaks: tuple[AmplitudePeak, ...]
 
-    def __iter__(self) -> Iterator[Peak]:
+    def __iter__(self) -> Iterator[AmplitudePeak]:
         return iter(self.peaks)
 
     def __len__(self) -> int:
         return len(self.peaks)
 
-    def __getitem__(self, name: str) -> Peak:
-        return next(peak for peak in self.peaks if peak.name == name)
+    def __getitem__(self, name: str) -> AmplitudePeak:
+        return self.peaks[output_number(name, [peak.name for peak in self.peaks], self.name)]
 
     def csv(self) -> str:
         """A line for each output."""
@@ -103,7 +103,7 @@ class Peaks:
         return json.dumps({"name": self.name, **about, "band": list(self.band), "peaks": peaks}, indent=2) + "\n"
 
 
-def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Peaks:
+def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> AmplitudePeaks:
     """The greatest amplitude of each output from one frequency to another.
 
     Args:
@@ -130,7 +130,7 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Peaks:
                 break
         per = angular(model, 1.0)
         made = [
-            Peak(
+            AmplitudePeak(
                 name=probe.name,
                 unit=probe.unit,
                 frequency=low if each.at is None else min(max(midpoint(each.at / per), low), high),
@@ -141,7 +141,7 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Peaks:
             for probe, each in zip(model.probes, found, strict=True)
         ]
     label = "omega" if model.clock is None else "frequency [Hz]"
-    return Peaks(model.name, load.label, load.unit, label, (low, high), tuple(made))
+    return AmplitudePeaks(model.name, load.label, load.unit, label, (low, high), tuple(made))
 
 
 class _Search:

@@ -78,10 +78,10 @@ class ResponseRanges:
         return json.dumps(found, indent=2) + "\n"
 
     @property
-    def notes(self) -> list[str]:
+    def notes(self) -> tuple[str, ...]:
         """What the numbers are, in a line for people."""
         box = ", ".join(f"{path} from {low} to {high}" for path, (low, high) in self.box.items())
-        return [f"amplitudes over {box}: enclosed, and no more than {_WIDER:.0%} of the largest wider than is reached"]
+        return (f"amplitudes over {box}: enclosed, and no more than {_WIDER:.0%} of the largest wider than is reached",)
 
 
 @dataclass(frozen=True)

@@ -79,7 +79,7 @@ class Result:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """How the scene was read, where that may surprise: what `wavesym run` says on standard error."""
+        """How the scene was read, where that may surprise: a line for each, as `wavesym run` says them."""
         return self._response.model.labels.notes
 
     @property

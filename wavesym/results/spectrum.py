@@ -16,7 +16,7 @@ is told is about a third of that change.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, factorial, floor, log10, pi, sqrt
@@ -31,7 +31,7 @@ from wavesym.mechanics.probe import with_unit
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
-from wavesym.results.presentation import csv_line
+from wavesym.results.presentation import csv_line, output_number
 from wavesym.results.stepping import jumps, just_before, sample_program
 
 Numbers = NDArray[np.float64]
@@ -47,15 +47,17 @@ _EACH = 4  # of so many periods one tells how much the step matters
 _TOP = 0.8  # a parabola adds at most a quarter to the largest of its three values
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False, eq=False)
 class Spectra:
-    """`values[k]` is the pseudo-acceleration of output `names[k]` at `periods`, in its unit; periods in `time_unit`.
+    """Response spectra of a scene; `wavesym.spectrum` makes them. `spectra[NAME]` is that of one output, (n,).
 
-    `step` is how far values of the accelerations are apart, in tau, at most, and `change` what half as many of them
-    change in any spectrum, relative to its largest value.
+    `values[k]` is the pseudo-acceleration of `outputs[k]` at `periods`, in its unit; periods in `time_unit`. `step` is
+    how far values of the accelerations are apart, in tau, at most, and `change` what half as many of them change in any
+    spectrum, relative to its largest value.
     """
 
-    names: tuple[str, ...]
+    name: str
+    outputs: tuple[str, ...]
     units: tuple[str, ...]
     time_unit: str | None
     damping: float
@@ -64,9 +66,25 @@ class Spectra:
     step: float
     change: float
 
+    def __getitem__(self, name: str) -> Numbers:
+        return np.asarray(self.values[output_number(name, self.outputs, self.name)])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.outputs)
+
+    def __len__(self) -> int:
+        return len(self.outputs)
+
+    def __repr__(self) -> str:
+        count, unit = len(self), self.time_unit or "tau"
+        return (
+            f"Spectra({self.name!r}, {count} output{'s' * (count != 1)} at {len(self.periods)} periods from "
+            f"{self.periods[0]:g} to {self.periods[-1]:g} {unit}, damping {self.damping:g})"
+        )
+
     def csv(self) -> list[str]:
         """Lines of CSV: one for each period, in the header each output with its unit."""
-        names = map(with_unit, self.names, self.units)
+        names = map(with_unit, self.outputs, self.units)
         header = csv_line([with_unit("period", self.time_unit or ""), *names])
         rows = np.vstack([self.periods, self.values]).T.tolist()
         return [header, *map(csv_line, rows)]
@@ -101,6 +119,7 @@ def spectra(model: Model, damping: float) -> Spectra:
     coarse = _peaks([a[:, ::2] for a in accelerations], [2 * h for h in lengths], some, damping)
     largest = np.maximum(fine.max(axis=1, keepdims=True), np.finfo(float).tiny)
     return Spectra(
+        model.name,
         tuple(probe.name for probe in probes),
         tuple(probe.unit for probe in probes),
         None if model.clock is None else model.clock.unit,

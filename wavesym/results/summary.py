@@ -61,7 +61,7 @@ class Summary:
 
     def __repr__(self) -> str:
         count = len(self.outputs)
-        return f"Summary({self.name!r}, {count} output{'s' * (count != 1)}, {self.how}: {self.certain})"
+        return f"Summary({self.name!r}, {count} output{'s' * (count != 1)}, {self.how}: {self.accuracy})"
 
     def _rows(self) -> list[dict[str, Any]]:
         """A row for each output, by the names of columns."""
@@ -89,8 +89,8 @@ class Summary:
         return html_table(repr(self), rows[0], (map(_cell, row.values()) for row in rows))
 
     @property
-    def certain(self) -> str:
-        """What is known of the values, in a few words."""
+    def accuracy(self) -> str:
+        """How right values are, in a few words."""
         if self.proved:
             return f"right to {self.bound:g} of each output's largest, proved"
         return f"an estimate (values are right to {self.bound:g} of each output's largest; higher tops may be missed)"

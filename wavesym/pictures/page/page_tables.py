@@ -53,7 +53,7 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
         "The largest drift would cost too much; drifts as outputs help" * found.drifts_cost_too_much,
         *(f"{line[:1].upper()}{line[1:]}" for line in (link.describe(_DIGITS) for link in found.links or ())),
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
-        f"How: {found.how}; {found.certain}. Four figures are shown; the command summary writes more",
+        f"How: {found.how}; {found.accuracy}. Four figures are shown; the command summary writes more",
     ]
     return PageTable(head, tuple(rows), tuple(filter(None, notes)))
 

@@ -1,4 +1,4 @@
-"""What a user might not expect of a scene, and what its contacts do: a line for each."""
+"""What to know of the values of a scene: what is not as one might expect, what its contacts do; a line for each."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ if TYPE_CHECKING:
     from wavesym.results.response import Response
 
 
-def warning_lines(model: Model) -> list[str]:
+def value_notes(model: Model) -> list[str]:
     """How the scene was read, no load, contacts that open early enough to matter to an output."""
-    return [*model.labels.notes, *without_load(model), *_formal(model)]
+    return [*model.labels.notes, *_load_notes(model), *_formal_notes(model)]
 
 
-def without_load(model: Model) -> list[str]:
+def _load_notes(model: Model) -> list[str]:
     """A line for a scene in which nothing happens."""
     network = model.network
     moving = any(bar.velocity or bar.strain for bar in network.bars) or any(point.velocity for point in network.points)
     return [] if model.loads or moving else ["no load, so that all outputs are 0"]
 
 
-def outside_lines(model: Model, at: Sequence[float]) -> list[str]:
+def horizon_notes(model: Model, at: Sequence[float]) -> list[str]:
     """A line where some of the instants that are asked for are not on the horizon."""
     from wavesym.results.rows import instants
 
@@ -35,7 +35,7 @@ def outside_lines(model: Model, at: Sequence[float]) -> list[str]:
     return [f"{count} of {len(at)} {what} are outside 0 to {end}, where values are nan"] * bool(count)
 
 
-def event_lines(response: Response) -> list[str]:
+def event_notes(response: Response) -> list[str]:
     """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
     return [
         f"{each.subject} {each.kind} at tau = {each.digits}{_in_time(response.model, each.double)}"
@@ -43,7 +43,7 @@ def event_lines(response: Response) -> list[str]:
     ]
 
 
-def _formal(model: Model) -> list[str]:
+def _formal_notes(model: Model) -> list[str]:
     return [
         f"contact at x = {end.x} opens at tau = {end.digits}{_in_time(model, end.double)}: what that can reach is "
         "computed as if it stayed closed"
