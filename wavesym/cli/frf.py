@@ -83,7 +83,8 @@ def frf(
         else:
             found = api.frf(scene, frequencies, load, low=low, high=high, points=points or few)
             table = found.peaks() if peaks else found
-            text, notes = table.json() if format == "json" else "".join(table.csv()), found.notes
+            text = table.json() if format == "json" else "".join(table.csv())
+            notes = (*found.notes, *table.notes) if peaks else found.notes
         if drawn and out is not None:
             api.plot_frf(found, out)
         elif out is not None:

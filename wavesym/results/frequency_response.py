@@ -52,7 +52,8 @@ class FrequencyResponse:
         outputs: the names, in the order of the scene; `units` that of each, per unit of the load.
         values: (outputs, n), complex; nan at a natural frequency that nothing damps.
         bound: what a value is wrong by at most, relative to its output's largest amplitude here: proved.
-        poles: the natural frequencies met.
+        poles: the natural frequencies met: there is no value, or nothing limits it.
+        possible_poles: of these the ones at which an output may have a value.
 
     `response[NAME]` is one output, (n,).
     """
@@ -67,6 +68,7 @@ class FrequencyResponse:
     values: NDArray[np.complex128]
     bound: float
     poles: tuple[float, ...]
+    possible_poles: tuple[float, ...]
     _model: Model = field(repr=False)
     _load: HarmonicLoad = field(repr=False)
 
@@ -109,11 +111,12 @@ class FrequencyResponse:
     def notes(self) -> tuple[str, ...]:
         """How good values are, and where there are none: lines for people."""
         unit = "Hz" if self.frequency_label.endswith("[Hz]") else "rad per tau"
-        poles = ", ".join(f"{pole:g}" for pole in self.poles)
+        poles, undecided = (", ".join(f"{each:g}" for each in found) for found in (self.poles, self.possible_poles))
         return (
             f"per unit of {self.load}{self.load_unit and ' '}{self.load_unit}; right to {self.bound:.1e} of each "
             "output's largest amplitude here, proved",
             *([f"no value at {poles} {unit}: there is none, or nothing limits it"] if poles else []),
+            *([f"not decided at {undecided} {unit}: the load may not excite it"] if undecided else []),
         )
 
     def to_pandas(self) -> Any:
@@ -169,11 +172,13 @@ def frequency_response(model: Model, load: HarmonicLoad, frequencies: ArrayLike)
     errors = np.zeros(len(model.probes))
     if model.damping is not None and model.damping.modes is None and model.damping.acts:
         errors = _modal(model, load, given, values)
+        undecided = given[np.isnan(values.real).any(axis=0)].tolist()
     else:
         points = _Points(Transfer(model, load))
         for k, f in enumerate(given.tolist()):
             values[:, k], radii = points.solve(f)
             errors = np.fmax(errors, radii)
+        undecided = points.possible_poles
     largest = np.nanmax(np.abs(values), axis=1, initial=0.0)
     relative = np.divide(errors, largest, out=np.zeros_like(errors), where=largest > 0)
     if relative.max(initial=0.0) > nearest(model.tolerance):
@@ -192,6 +197,7 @@ def frequency_response(model: Model, load: HarmonicLoad, frequencies: ArrayLike)
         values=values,
         bound=float(relative.max(initial=0.0)) + _ROUNDING,
         poles=tuple(given[missing].tolist()),
+        possible_poles=tuple(undecided),
         _model=model,
         _load=load,
     )
@@ -233,6 +239,8 @@ class _Points:
 
     transfer: Transfer
     bits: int = _BITS
+    possible_poles: list[float] = field(default_factory=list)
+    """Where an output has no value, as its numerator may be 0, too."""
 
     def solve(self, frequency: float) -> tuple[list[complex], list[float]]:
         """The outputs at a frequency, both parts as the nearest doubles, and what these are wrong by before rounding.
@@ -255,10 +263,24 @@ class _Points:
                 before = radii
             bits = bits * 3 // 2
         if enough:
+            self._take_lowest_terms(frequency, found, radii)
             return [_nearest(each) for each in found], [upper_double(r) if r.is_finite() else nan for r in radii]
         raise CostError(
             f"frequency: more than {_MOST_BITS} bits at {frequency:g}, the limit is {_MOST_BITS} (fewer parts help)"
         )
+
+    def _take_lowest_terms(self, frequency: float, found: list[acb], radii: list[arb]) -> None:
+        """Fill in values where numerator and divisor are both 0, in place."""
+        for k in (k for k, each in enumerate(found) if not each.is_finite()):
+            with ctx.workprec(_BITS_OF_ZERO):
+                w, terms = angular(self.transfer.model, frequency), self.transfer.lowest_terms(k)
+                if terms is not None:
+                    found[k] = acb(terms(w)[0])
+                    radii[k] = max(found[k].real.rad(), found[k].imag.rad())
+                elif frequency not in self.possible_poles:
+                    parts = self.transfer.parts(w)
+                    if parts is None or acb(parts[0][k]).contains(0):
+                        self.possible_poles.append(frequency)
 
 
 def _nearest(value: acb) -> complex:

@@ -84,6 +84,21 @@ class ModalTransfer:
                     made[k] = made[k] + self._acting(each, rate, order - 2) * each.imposed_shape[k]
         return made
 
+    def has_pole(self, k: int, low: arb, high: arb) -> bool:
+        """Whether output k is proved to have a pole between two frequencies: one of an undamped mode."""
+        for number, (n, ratio) in enumerate(zip(self._frequencies, self._ratios, strict=True)):
+            if ratio == 0 and low < n < high:
+                driven = (self._acting(each, n * _I) * each.shares[k][number] for each in self._drives)
+                if not sum(driven, start=acb(0)).contains(0):
+                    return True
+        return False
+
+    def parts(self, w: Quantity) -> None:
+        """It is no fraction, but a sum."""
+
+    def lowest_terms(self, k: int) -> None:
+        """It is no fraction, but a sum."""
+
     def truncation_error(self, w: arb) -> list[arb]:
         """What all modes after the first `count` can add to the amplitude of each output; None where that is open.
 

@@ -4,21 +4,27 @@ On an interval about m of half width r a function is its Taylor polynomial about
 derivative on the whole interval bounds: h(m) + h'(m) s + h''(interval)/2 s^2, |s| <= r, all of it in balls. Intervals
 whose amplitudes may exceed the greatest one found so far, L, are halved until none is left. An amplitude |N/D| that
 hardly changes stays near L: then |N|^2 - L^2 |D|^2 is taken as one polynomial, in which what is alike cancels.
+
+Where no half has a bound, D is 0. That is a pole if it is proved to be one: D is real and has two signs, and N is not
+0. Where both are, N/D is searched once more in lowest terms, which have no common zeros (exact/modes/lowest_terms.py).
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import comb, inf
+from math import comb, inf, isfinite, isnan, nan
+from typing import Protocol
 
 from flint import acb, acb_series, arb, arb_poly, ctx
 
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.modes.harmonic import Quantity
+from wavesym.exact.modes.lowest_terms import LowestTerms
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import midpoint, upper_double
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
@@ -28,7 +34,8 @@ from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 _BITS = 256
 _SHARE = arb(2) ** -33  # of the greatest amplitude: what peaks are enclosed to
 _NOISE = arb(2) ** -128  # of an amplitude: one that is no higher than by so much is the same
-_LEAST = arb(2) ** -40  # of the band: an interval in which amplitudes are still not bounded has a pole
+_LEAST = arb(2) ** -40  # of the band: in an interval in which amplitudes are still not bounded a pole is sought
+_SHORTEST = arb(2) ** -80  # of the band: it is given up where there may be one, or none
 _GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole at 0, where it is 4 or 16
 _MOST = 600_000  # intervals times parts
 _NEWTON = 3
@@ -37,7 +44,21 @@ _ROUNDED = arb(2) ** -20  # of a radius: what rounding adds to it, in a few prod
 _PARTS = 64  # of the band at first
 _FIRST_MODES, _MOST_MODES = 32, 2048
 
-Transfers = Callable[[Quantity], list[Quantity]]
+
+class Transfers(Protocol):
+    """Amplitudes of some outputs as functions of the frequency."""
+
+    def __call__(self, w: Quantity) -> list[Quantity]:
+        """Those at a frequency, or on all of a ball."""
+
+    def parts(self, w: Quantity) -> tuple[list[Quantity], Quantity] | None:
+        """The same as numerators and one divisor without poles, where that can be."""
+
+    def has_pole(self, k: int, low: arb, high: arb) -> bool:
+        """Whether it is proved that output k has one between two frequencies."""
+
+    def lowest_terms(self, k: int) -> LowestTerms | None:
+        """Output k without common factors, where that can be and is more than it has."""
 
 
 @dataclass(frozen=True)
@@ -48,8 +69,9 @@ class AmplitudePeak:
         name: the output; `unit` its unit, per unit of the load.
         frequency: where it is, in Hz, or in rad per tau without [units]; of places that are equally high one, the lower
             end of the band if that is.
-        amplitude: what it is there, to the nearest double; inf at a natural frequency that nothing damps.
-        low: proved: it is at least this, and at most `high`.
+        amplitude: what it is there, to the nearest double; inf at a natural frequency that nothing damps; nan where it
+            is not decided whether there is a greatest one: at a natural frequency that the load may not excite.
+        low: proved: it is at least this, and at most `high`, inf where amplitude is inf or nan.
     """
 
     name: str
@@ -80,6 +102,16 @@ class AmplitudePeaks:
     def __getitem__(self, name: str) -> AmplitudePeak:
         return self.peaks[output_number(name, [peak.name for peak in self.peaks], self.name)]
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is not decided: lines for people."""
+        return tuple(
+            f"{p.name}: not decided whether it has a greatest amplitude: the load may not excite what is natural at "
+            f"{p.frequency:g}"
+            for p in self.peaks
+            if isnan(p.amplitude)
+        )
+
     def csv(self) -> str:
         """A line for each output."""
         head = f"output,{self.frequency_label},amplitude,low,high\n"
@@ -93,7 +125,7 @@ class AmplitudePeaks:
                 "name": p.name,
                 "unit": p.unit,
                 "frequency": p.frequency,
-                "amplitude": None if p.amplitude == inf else p.amplitude,
+                "amplitude": p.amplitude if isfinite(p.amplitude) else None,
                 "low": p.low,
                 "high": None if p.high == inf else p.high,
             }
@@ -128,20 +160,30 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Amplitud
             _search(transfer, found, first, last, len(model.network.points))
             if all(each.rest**2 <= each.square * arb(model.tolerance) ** 2 for each in found):
                 break
+        for k, each in enumerate(found):
+            terms = transfer.lowest_terms(k) if each.is_open else None
+            if terms is not None:
+                found[k] = _Search(each.rest)
+                _search(terms, found[k : k + 1], first, last, len(model.network.points))
         per = angular(model, 1.0)
         made = [
-            AmplitudePeak(
-                name=probe.name,
-                unit=probe.unit,
-                frequency=low if each.at is None else min(max(midpoint(each.at / per), low), high),
-                amplitude=inf if each.pole else midpoint(each.square.sqrt()),
-                low=-upper_double(each.rest - each.square.sqrt()) if each.square > each.rest**2 else 0.0,
-                high=inf if each.pole else upper_double((each.square * (1 + _SHARE)).sqrt() + each.rest),
-            )
+            _peak(probe, each, low if each.at is None else min(max(midpoint(each.at / per), low), high))
             for probe, each in zip(model.probes, found, strict=True)
         ]
     label = "omega" if model.clock is None else "frequency [Hz]"
     return AmplitudePeaks(model.name, load.label, load.unit, label, (low, high), tuple(made))
+
+
+def _peak(probe: Probe, search: _Search, frequency: float) -> AmplitudePeak:
+    square, rest, bounded = search.square, search.rest, not (search.pole or search.is_open)
+    return AmplitudePeak(
+        name=probe.name,
+        unit=probe.unit,
+        frequency=frequency,
+        amplitude=midpoint(square.sqrt()) if bounded else inf if search.pole else nan,
+        low=-upper_double(rest - square.sqrt()) if square > rest**2 else 0.0,
+        high=upper_double((square * (1 + _SHARE)).sqrt() + rest) if bounded else inf,
+    )
 
 
 class _Search:
@@ -154,6 +196,8 @@ class _Search:
         """The square of the greatest amplitude found, without the rest."""
         self.at: arb | None = None
         self.pole = False
+        self.is_open = False
+        """Whether there is a place where it has no bound, and no pole that is proved."""
 
     def amplitude_squared(self, w: arb, square: arb) -> None:
         """An amplitude, squared, at a frequency."""
@@ -220,12 +264,15 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
                 value, slope, _ = squares[k]
                 rest = value + abs(slope) * half + abs(whole[k][2]) * half * half
                 most = (whole[k][0] if _reaches_zero(ball) else rest).upper()
-                if found[k].pole or (most.is_finite() and found[k].excludes(most)):
+                if found[k].pole or found[k].is_open or (most.is_finite() and found[k].excludes(most)):
                     continue
                 if fractions is not None and fractions.stays_below(k, found[k].square * (1 + _SHARE), half):
                     continue
-                if each.high - each.low < (last - first).min(each.high) * _LEAST:
+                width, wide = each.high - each.low, (last - first).min(each.high)
+                if width < wide * _LEAST and transfer.has_pole(k, each.low - width, each.high + width):
                     found[k].pole, found[k].at = True, each.middle
+                elif width < wide * (_SHORTEST if transfer.lowest_terms(k) is None else _LEAST):
+                    found[k].is_open, found[k].at = True, each.middle
                 else:
                     open_for.append(k)
             if open_for:
@@ -238,7 +285,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
 def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb) -> None:
     """Go to the top that the greatest amplitude found lies beside, by Newton's method."""
     for _ in range(_NEWTON):
-        if search.pole or search.at is None or search.at.contains(0):
+        if search.pole or search.is_open or search.at is None or search.at.contains(0):
             return
         _, slope, bend = _squares(transfer, search.at)[k]
         if not bend < 0:
@@ -285,8 +332,8 @@ def _square_of(powers: Sequence[acb]) -> arb_poly:
 
 
 def _fractions(transfer: Transfers, w: arb) -> _Fractions | None:
-    """None of points, and where transfer functions are no such fractions."""
-    if _reaches_zero(w) or w.rad() < w * _SHARE or not isinstance(transfer, Transfer):
+    """None near 0, and where transfer functions are no such fractions."""
+    if _reaches_zero(w):
         return None
     middle = acb_series([acb(w.mid()), 1], prec=_TERMS)
     near, around = transfer.parts(middle), transfer.parts(acb_series([acb(w), 1], prec=_TERMS + 1))
@@ -324,10 +371,10 @@ def _squares(transfer: Transfers, w: arb, fractions: _Fractions | None = None) -
 def _power_series(transfer: Transfers, w: arb, fractions: _Fractions | None) -> list[Quantity]:
     """The transfer functions, their slopes and half their second derivatives on all of a ball, as power series."""
     series = acb_series([acb(w), 1], prec=3)
-    if fractions is None or not isinstance(transfer, Transfer):
+    if fractions is None:
         return transfer(series)
     found = fractions.quotients(arb(0, w.rad()))
-    if transfer.imposed_outputs:
+    if isinstance(transfer, Transfer) and transfer.imposed_outputs:
         direct = transfer(series)
         for k in transfer.imposed_outputs:
             found[k] = direct[k]

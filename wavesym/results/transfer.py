@@ -11,7 +11,7 @@ so their sum needs no modes. What a prescribed motion imposes is not damped, nor
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import factorial
@@ -20,15 +20,17 @@ from flint import acb, arb, fmpq
 
 from wavesym.errors import WavesymError, did_you_mean
 from wavesym.exact.modes.frequencies import Spectrum
-from wavesym.exact.modes.harmonic import Amplitudes, HarmonicNetwork, Quantity
+from wavesym.exact.modes.harmonic import Amplitudes, BallFrequency, HarmonicNetwork, Quantity
+from wavesym.exact.modes.lowest_terms import Laurent, LowestTerms, PolynomialFrequency
 from wavesym.exact.modes.shape import rigid
 from wavesym.mechanics.gauge import Gauge, ReadingTerm, readings
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Network
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import common_measure, rational
 
 _I = acb(0, 1)
+_MOST_TERMS = 8000  # of the polynomials of one output
 ORDERS = {"velocity": 1, "acceleration": 2}
 """How often a displacement is differentiated in time for an output."""
 
@@ -91,10 +93,10 @@ def drive(coefficients: tuple[fmpq, ...], rate: Quantity, order: int = 0) -> Qua
 
     It is differentiated `order` times, or integrated: at rate 0 it is finite where no integral is left of it.
     """
-    made: Quantity = acb(0)
+    made = rate * 0
     for power, c in enumerate(coefficients):
         if c != 0:
-            part: Quantity = acb(c * factorial(power))
+            part = rate * 0 + c * factorial(power)
             for _ in range(abs(order - power)):  # one by one: a ball that 0 is not in may have squares that it is in
                 part = part * rate if order > power else part / rate
             made = made + part
@@ -111,6 +113,7 @@ class Transfer:
 
     model: Model
     load: HarmonicLoad
+    _lowest_terms: dict[int, LowestTerms | None] = field(default_factory=dict, repr=False, compare=False)
 
     def __call__(self, w: Quantity) -> list[Quantity]:
         """The complex amplitudes of the outputs.
@@ -140,13 +143,54 @@ class Transfer:
         if len(self.load.drives) != 1 or self._rayleigh is not None:
             return None
         ((point, coefficients),) = self.load.drives
-        amplitudes = self._harmonic.driven_amplitudes(point, w, undivided=True)
+        amplitudes = self._harmonic.driven_amplitudes(point, BallFrequency(w), undivided=True)
         motion = ORDERS.get(self.model.network.points[point].motion or "", 0)
         made = []
         for probe in self.model.probes:
             driven = drive(coefficients, w * _I, ORDERS.get(probe.quantity, 0) - motion)
             made.append(driven * output_amplitude(self.model.network, probe, amplitudes))
         return made, amplitudes.divisor
+
+    def has_pole(self, k: int, low: arb, high: arb) -> bool:
+        """Whether output k is proved to have a pole between two frequencies.
+
+        As its divisor is real and changes sign, and its numerator is not 0; or by its lowest terms.
+        """
+        found = self.parts(low.union(high))
+        if found is not None and not acb(found[0][k]).contains(0) and acb(found[1]).imag == 0:
+            first, last = (acb(each[1]).real for each in (self.parts(low), self.parts(high)) if each is not None)
+            return bool(first * last < 0)
+        terms = self.lowest_terms(k)
+        return terms is not None and terms.has_pole(0, low, high)
+
+    def lowest_terms(self, k: int) -> LowestTerms | None:
+        """Output k as one fraction without common factors.
+
+        None where modes are damped, a rod has a loss, or delays have so small a common measure that it is too long.
+        """
+        if k not in self._lowest_terms:
+            self._lowest_terms[k] = self._reduce(k)
+        return self._lowest_terms[k]
+
+    def _reduce(self, k: int) -> LowestTerms | None:
+        network, probe = self.model.network, self.model.probes[k]
+        if self._rayleigh is not None or any(bar.loss != 0 for bar in network.bars):
+            return None
+        inside = [
+            network.bars[each.rod - 1].delay * each.place for _, each in _motion_readings(network, probe) if each.rod
+        ]
+        measure = common_measure([bar.delay for bar in network.bars] + inside)
+        steps = sum(bar.delay / measure for bar in network.bars)
+        if (1 + 2 * steps) * (2 * len(network.points) + len(network.bars)) > _MOST_TERMS:
+            return None
+        w, total, divisor = PolynomialFrequency(measure), Laurent.constant(0), Laurent.constant(1)
+        for point, coefficients in self.load.drives:
+            amplitudes = self._harmonic.driven_amplitudes(point, w, undivided=True)
+            order = ORDERS.get(probe.quantity, 0) - ORDERS.get(network.points[point].motion or "", 0)
+            moved = output_amplitude(network, probe, amplitudes) * drive(coefficients, w.rate, order)
+            total = total * amplitudes.divisor + moved * divisor
+            divisor = divisor * amplitudes.divisor
+        return LowestTerms(total, divisor, measure)
 
     @cached_property
     def imposed_outputs(self) -> frozenset[int]:
@@ -181,7 +225,7 @@ class Transfer:
         return [u + (each - u) * share_of_w for each, u in zip(moved, imposed, strict=True)]
 
     def _undamped_outputs(self, point: int, w: Quantity) -> list[Quantity]:
-        amplitudes = self._harmonic.driven_amplitudes(point, w)
+        amplitudes = self._harmonic.driven_amplitudes(point, BallFrequency(w))
         return [output_amplitude(self.model.network, probe, amplitudes) for probe in self.model.probes]
 
     @cached_property
@@ -238,7 +282,7 @@ def _point_of(network: Network, reading: Gauge) -> int | None:
 
 def output_amplitude(network: Network, probe: Probe, amplitudes: Amplitudes) -> Quantity:
     """What an output is of amplitudes, its factor included, but not differentiated in time."""
-    total: Quantity = acb(0)
+    total = amplitudes.zero
     for weight, reading in _motion_readings(network, probe):
         number, bar = reading.rod - 1, network.bars[reading.rod - 1] if reading.rod else None
         if bar is None:

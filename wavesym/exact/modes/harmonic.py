@@ -7,8 +7,11 @@ by A/B, and a spring and a dashpot beside the bar by k. With c = cos w T and S =
     near : far = D : B (Z + k S),   D = A S + B (Z c + k S),   N = A (Z c + k S) + B (2 Z k (c - 1) - Z^2 w^2 S)
 
 So w = 0 is no exception, and the whole tree is divided by one number alone, which is 0 at its natural frequencies.
-The arithmetic is that of w: balls, or power series of them about a frequency. Masses, springs and dashpots may be
-balls, too, that reach down to 0: what is not exactly 0 is there.
+Branches of one point that are equal in all parts share one D: what they do against each other no force on that point
+or before it moves, and their frequencies are not among those that the tree is divided by.
+
+The arithmetic is that of a `Frequency`: balls, power series of them about one frequency, or polynomials
+(lowest_terms.py). Masses, springs and dashpots may be balls, too, that reach down to 0: what is not exactly 0 is there.
 """
 
 from __future__ import annotations
@@ -16,17 +19,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import prod
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from flint import acb, acb_series, arb, fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.network import Network, Point
 
-# balls, complex balls, or power series of them
+# balls, complex balls, power series of them, or polynomials
 Quantity = Any
 
-_I, _UNKNOWN = acb(0, 1), acb(arb("nan"), arb("nan"))
+_I, UNKNOWN = acb(0, 1), acb(arb("nan"), arb("nan"))
 
 
 class Branch(NamedTuple):
@@ -51,6 +54,42 @@ class Turn(NamedTuple):
     cosine: Quantity
 
 
+class Frequency(Protocol):
+    """A frequency w in one arithmetic."""
+
+    @property
+    def square(self) -> Quantity:
+        """w^2."""
+
+    @property
+    def rate(self) -> Quantity:
+        """i w."""
+
+    def number(self, value: Any) -> Quantity:
+        """A number that does not depend on it."""
+
+    def turn(self, delay: Quantity) -> Turn:
+        """Those of a delay."""
+
+
+class BallFrequency:
+    """A frequency that is a ball, or a power series of complex ones that does not begin with 0."""
+
+    def __init__(self, w: Quantity) -> None:
+        self._w = w
+        self.square, self.rate = w * w, w * _I
+
+    def number(self, value: Any) -> arb:
+        """As a ball."""
+        return arb(value)
+
+    def turn(self, delay: Quantity) -> Turn:
+        """In balls, or power series of them."""
+        angle = self._w * delay
+        sine = angle.sin() * inverse(self._w) if isinstance(angle, acb_series) else angle.sinc() * delay
+        return Turn(sine, angle.cos())
+
+
 class _Medium(NamedTuple):
     """What waves feel of a bar: `root` is that of 1 + i loss."""
 
@@ -68,6 +107,7 @@ class HarmonicNetwork:
 
     network: Network
     _branches: dict[int, list[Branch]] = field(default_factory=dict, compare=False)
+    _twins: dict[int, dict[int, int]] = field(default_factory=dict, compare=False)
 
     @cached_property
     def equals(self) -> list[int]:
@@ -77,12 +117,12 @@ class HarmonicNetwork:
         keys = ([int(n) for each in (bar.delay, bar.loss) for n in (each.p, each.q)] for bar in bars)
         return [first.setdefault(tuple(key), number) for number, key in enumerate(keys)]
 
-    def driven_amplitudes(self, root: int, w: Quantity, *, undivided: bool = False) -> Amplitudes:
+    def driven_amplitudes(self, root: int, w: Frequency, *, undivided: bool = False) -> Amplitudes:
         """The amplitudes under a unit force on a point, or, where its motion is prescribed, a unit displacement.
 
         Args:
             root: the point.
-            w: the frequency, per tau; a power series must not begin with 0.
+            w: the frequency, per tau.
             undivided: whether amplitudes are those times the `divisor`: of both w is no pole anywhere.
 
         Returns:
@@ -95,6 +135,34 @@ class HarmonicNetwork:
         if root not in self._branches:
             self._branches[root] = self._branches_from(root)
         return self._branches[root]
+
+    def twins(self, root: int) -> dict[int, int]:
+        """Of each branch that is reached from a point, by its far point, the first one beside it that is its equal."""
+        if root not in self._twins:
+            children: dict[int, list[Branch]] = {}
+            for branch in self.branches(root):
+                children.setdefault(branch.near_point, []).append(branch)
+            kinds: dict[tuple[object, ...], int] = {}
+            kind_of: dict[int, int] = {}
+            first: dict[tuple[int, int], int] = {}
+            for branch in reversed(self.branches(root)):
+                beyond = sorted(kind_of[each.far_point] for each in children.get(branch.far_point, ()))
+                key = (*self._kind(branch), *beyond)
+                kind_of[branch.far_point] = kinds.setdefault(key, len(kinds))
+            for branch in self.branches(root):
+                first.setdefault((branch.near_point, kind_of[branch.far_point]), branch.far_point)
+            self._twins[root] = {b.far_point: first[b.near_point, kind_of[b.far_point]] for b in self.branches(root)}
+        return self._twins[root]
+
+    def _kind(self, branch: Branch) -> tuple[object, ...]:
+        """All numbers of a branch and of its far point; balls are equal to nothing but themselves."""
+        point, numbers = self.network.points[branch.far_point], [*branch.ratios, branch.stiffness, branch.damping]
+        if branch.bar is not None:
+            bar = self.network.bars[branch.bar]
+            numbers += [bar.impedance, bar.delay, bar.loss]
+        rests = point.motion is not None
+        numbers += [] if rests else [point.mass, point.stiffness, point.damping]
+        return (branch.bar is None, rests, *(each if isinstance(each, fmpq) else id(each) for each in numbers))
 
     def _branches_from(self, root: int) -> list[Branch]:
         beside: dict[int, list[Branch]] = {}
@@ -156,16 +224,19 @@ class HarmonicNetwork:
 class Amplitudes:
     """The complex amplitudes of a network one point of which is driven; whatever no branch leads to is at rest.
 
-    `divisor` is what they are to be divided by where they are `undivided`, else 1.
+    `divisor` is what they are to be divided by where they are `undivided`, else 1; `zero` is 0 in their arithmetic.
     """
 
-    def __init__(self, harmonic: HarmonicNetwork, root: int, w: Quantity, undivided: bool) -> None:
+    def __init__(self, harmonic: HarmonicNetwork, root: int, w: Frequency, undivided: bool) -> None:
         self._network, self._w, self._equals = harmonic.network, w, harmonic.equals
-        self._square, self._branches = w * w, harmonic.branches(root)
+        self._branches, self._twins = harmonic.branches(root), harmonic.twins(root)
+        self.zero, self._one = w.number(0), w.number(1)
         self._turns: dict[int, Turn] = {}
-        self._children: dict[int, list[Branch]] = {}
+        # of each point the branches that differ, by their far points, and how many there are of each
+        self._children: dict[int, dict[int, int]] = {}
         for branch in self._branches:
-            self._children.setdefault(branch.near_point, []).append(branch)
+            beside, far = self._children.setdefault(branch.near_point, {}), self._twins[branch.far_point]
+            beside[far] = beside.get(far, 0) + 1
         # of each point what it and all beyond resist by, A/B; of each branch N and D, by its far point
         self._beyond: dict[int, tuple[Quantity, Quantity]] = {}
         self._resistance: dict[int, tuple[Quantity, Quantity]] = {}
@@ -175,17 +246,17 @@ class Amplitudes:
         self._root = root
         self._moved: dict[int, Quantity] = {}
         self._scales: dict[int, tuple[Branch, Quantity]] = {}
-        self.divisor: Quantity = arb(1)
+        self.divisor: Quantity = self._one
         self._drive(root, undivided)
 
     def point(self, number: int) -> Quantity:
         """How far a point moves."""
-        return self._moved.get(number, arb(0))
+        return self._moved.get(number, self.zero)
 
     def displacement(self, bar: int, place: fmpq) -> Quantity:
         """How far a place of a bar moves, counted in lengths of the bar from its left end."""
         if bar not in self._scales:
-            return arb(0)
+            return self.zero
         branch, scale = self._scales[bar]
         if branch.near_point == self._root and place == branch.side:  # as it is driven, whatever the rest does
             return self._moved[self._root] * branch.ratios[0]
@@ -198,12 +269,12 @@ class Amplitudes:
     def slope(self, bar: int, place: fmpq) -> Quantity:
         """The strain of a place of a bar times the bar's speed."""
         if bar not in self._scales:
-            return arb(0)
+            return self.zero
         branch, scale = self._scales[bar]
         a, b = self._at_far_end(branch)
         near, far = self._turns_to_ends(branch, place)
         medium = self._medium(bar)
-        slope = a * far.cosine - b * medium.impedance * self._square * far.sine
+        slope = a * far.cosine - b * medium.impedance * self._w.square * far.sine
         beside = self._parallel_resistance(branch)
         if beside is not None:
             slope = slope + b * beside * (far.cosine - near.cosine)
@@ -211,10 +282,10 @@ class Amplitudes:
 
     def _drive(self, root: int, undivided: bool) -> None:
         """Find how far each point moves, and what the amplitudes on each branch are scaled by."""
-        force: Quantity = arb(1)
+        force = self._one
         moved = self._network.points[root].motion is not None
         if moved and undivided:
-            self.divisor = prod((self._resistance[b.far_point][1] for b in self._children.get(root, ())), start=arb(1))
+            self.divisor = self._product(root)
             self._moved[root] = self.divisor
         elif moved:
             self._moved[root] = force
@@ -223,17 +294,14 @@ class Amplitudes:
             if undivided:
                 self.divisor = a
             else:
-                force = _inverse(a)
+                force = inverse(a)
             self._moved[root] = force * b
         share = {root: force}
         for branch in self._branches:
             if branch.near_point == root and moved and not undivided:
-                scale = _inverse(self._resistance[branch.far_point][1])
+                scale = inverse(self._resistance[branch.far_point][1])
             else:
-                others = (
-                    self._resistance[b.far_point][1] for b in self._children[branch.near_point] if b is not branch
-                )
-                scale = prod(others, start=share[branch.near_point])
+                scale = share[branch.near_point] * self._product(branch.near_point, but=self._twins[branch.far_point])
             if branch.ratios[0] != 1:
                 scale = scale * branch.ratios[0]
             if branch.bar is not None:
@@ -246,26 +314,26 @@ class Amplitudes:
         """A and B of a point with all that hangs on it."""
         point = self._network.points[number]
         if point.motion is not None:
-            return arb(1), arb(0)
-        found = [self._resistance[branch.far_point] for branch in self._children.get(number, ())]
-        own = self._own(point)
-        if len(found) == 1:  # as along a line
-            ((n, d),) = found
-            return (n if own is None else own * d + n), d
-        b = prod((d for _, d in found), start=arb(1))
-        a = b * (arb(0) if own is None else own)
-        for k, (n, _) in enumerate(found):
-            a = a + prod((d for j, (_, d) in enumerate(found) if j != k), start=n)
+            return self._one, self.zero
+        own, b = self._own(point), self._product(number)
+        a = self.zero if own is None else own * b
+        for far, count in self._children.get(number, {}).items():
+            a = a + self._resistance[far][0] * self._product(number, but=far) * count
         return a, b
+
+    def _product(self, number: int, but: int | None = None) -> Quantity:
+        """Of all D of the branches of a point that differ, but for one."""
+        found = [self._resistance[far][1] for far in self._children.get(number, ()) if far != but]
+        return prod(found[1:], start=found[0]) if found else self._one
 
     def _own(self, point: Point) -> Quantity:
         """How a point resists by itself; None where it does not."""
         if point.mass == point.damping == point.stiffness == 0:
             return None
-        own: Quantity = arb(point.stiffness)
+        own = self._w.number(point.stiffness)
         if not _is_zero(point.mass):
-            own = own - self._square * point.mass
-        return own if point.damping == 0 else own + self._w * (_I * point.damping)
+            own = own - self._w.square * point.mass
+        return own if point.damping == 0 else own + self._w.rate * point.damping
 
     def _branch_fraction(self, branch: Branch) -> tuple[Quantity, Quantity]:
         """N and D of a branch, seen from its near point."""
@@ -274,7 +342,7 @@ class Amplitudes:
             return self._scale_by_gear(branch, a * beside), a + b * beside
         z, (sine, cosine) = self._medium(branch.bar).impedance, self._whole_turn(branch.bar)
         across = z * cosine if beside is None else z * cosine + beside * sine
-        held = sine * (-z * z) * self._square
+        held = sine * (-z * z) * self._w.square
         if beside is not None:
             held = held + 2 * z * beside * (cosine - 1)
         return self._scale_by_gear(branch, a * across + b * held), a * sine + b * across
@@ -288,7 +356,7 @@ class Amplitudes:
         if branch.bar is None:
             return beside
         z = self._medium(branch.bar).impedance
-        return z * arb(1) if beside is None else z + beside * self._whole_turn(branch.bar).sine
+        return self._one * z if beside is None else z + beside * self._whole_turn(branch.bar).sine
 
     def _at_far_end(self, branch: Branch) -> tuple[Quantity, Quantity]:
         """A and B of what lies beyond it, seen by its far end."""
@@ -298,34 +366,29 @@ class Amplitudes:
     def _parallel_resistance(self, branch: Branch) -> Quantity:
         """How a spring and a dashpot resist; None where there are none."""
         if not _is_zero(branch.damping):
-            return self._w * (_I * branch.damping) + branch.stiffness
-        return None if _is_zero(branch.stiffness) else arb(branch.stiffness)
+            return self._w.rate * branch.damping + branch.stiffness
+        return None if _is_zero(branch.stiffness) else self._w.number(branch.stiffness)
 
     def _turns_to_ends(self, branch: Branch, place: fmpq) -> tuple[Turn, Turn]:
         """From a place of its bar to the near and to the far end."""
         assert branch.bar is not None  # which the place lies on
         delay = self._medium(branch.bar).delay
         part = 1 - place if branch.side else place
-        return self._turn(delay * part), self._turn(delay * (1 - part))
+        return self._w.turn(delay * part), self._w.turn(delay * (1 - part))
 
     def _whole_turn(self, bar: int) -> Turn:
         first = self._equals[bar]
         if first not in self._turns:
-            self._turns[first] = self._turn(self._medium(first).delay)
+            self._turns[first] = self._w.turn(self._medium(first).delay)
         return self._turns[first]
 
     def _medium(self, bar: int) -> _Medium:
         """A bar's impedance and delay, complex where it has a loss."""
         z, delay, loss = (getattr(self._network.bars[bar], key) for key in ("impedance", "delay", "loss"))
         if loss == 0:
-            return _Medium(z, delay, arb(1))
+            return _Medium(z, delay, 1)
         root = acb(1, arb(loss)).sqrt()
         return _Medium(root * z, delay / root, root)
-
-    def _turn(self, delay: Quantity) -> Turn:
-        angle = self._w * delay
-        sine = angle.sin() * _inverse(self._w) if isinstance(angle, acb_series) else angle.sinc() * delay
-        return Turn(sine, angle.cos())
 
 
 def _is_zero(number: Quantity) -> bool:
@@ -333,8 +396,8 @@ def _is_zero(number: Quantity) -> bool:
     return bool(number == 0)
 
 
-def _inverse(value: Quantity) -> Quantity:
+def inverse(value: Quantity) -> Quantity:
     """1 over a value: not finite where that may be 0."""
     if isinstance(value, acb_series) and acb(value[0]).contains(0):
-        return acb_series([_UNKNOWN, _UNKNOWN, _UNKNOWN], prec=value.prec)
+        return acb_series([UNKNOWN, UNKNOWN, UNKNOWN], prec=value.prec)
     return 1 / value
