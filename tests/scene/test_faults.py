@@ -206,3 +206,25 @@ def test_a_mass_at_the_end_of_a_chain_needs_no_free_end() -> None:
     with pytest.raises(SceneError, match='or leave "free" out, as a chain may end with a node'):
         Scene(name="end", system={"type": "chain", "parts": parts}, output={"until": 1, "velocity": ["1"]})
     Scene(name="end", system={"type": "chain", "parts": parts[:-1]}, output={"until": 1, "velocity": ["1"]})
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "said"),
+    [
+        ("output.stress", [0], "output.stress: unknown key; write force, and divide by the area of the rod there"),
+        ("output.moment", [0], "output.moment: unknown key; write force, which is a moment in shafts"),
+        ("units.pressure", "MPa", "units.pressure: unknown key; write force: stress is no output"),
+    ],
+)
+def test_what_people_look_for_is_answered_with_what_there_is(path: str, value: object, said: str) -> None:
+    table, key = path.split(".")
+    parts = [{"rod": "1 m", "speed": "5000 m/s", "impedance": "1 kN*s/m"}, "fixed"]
+    fields = {
+        "units": {},
+        "output": {"until": "1 ms", "velocity": ["0 m"]},
+        "system": {"type": "chain", "parts": parts},
+    }
+    fields[table] = fields[table] | {key: value}
+    with pytest.raises(SceneError) as caught:
+        Scene(name="bar", **fields)
+    assert said in str(caught.value)

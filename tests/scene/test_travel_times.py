@@ -220,6 +220,17 @@ def test_every_command_tells_that_speeds_were_changed(
     assert "speeds of waves are changed by" not in told.out or command == ["inspect"]
 
 
+def test_generated_programs_say_by_how_much_speeds_were_changed(tmp_path: Path) -> None:
+    (tmp_path / "two.toml").write_text(TWO_RODS)
+    scene = Scene.from_toml(tmp_path / "two.toml")
+    written = wavesym.generate(scene, tmp_path / "two")
+    assert any(path.suffix == ".h" for path in written)
+    bars = (lower(Scene.from_toml(text)).network.bars for text in (TWO_RODS.replace("speed_adj", "# "), TWO_RODS))
+    change = percent(speed_change(*bars))
+    for path in (tmp_path / "two").glob("two.[hj]*"):
+        assert re.search(rf"speeds_changed_by\W+{change} or less", path.read_text()), path
+
+
 def test_a_result_says_that_speeds_were_changed() -> None:
     found = Scene.from_toml(TWO_RODS).run(samples=3)
     (note,) = found.notes

@@ -180,6 +180,17 @@ def test_labelled_arrays_are_the_summaries_of_their_scenes(tmp_path: Path) -> No
                 assert row["arrival"] == output.arrival.tau
 
 
+def test_a_sweep_says_that_speeds_are_adjusted_case_by_case(tmp_path: Path, capsys: Any) -> None:
+    system = 'speed_adjustment = "1 %", parts = ["free", { rod = 1 }, { rod = "1.2345678" }, "fixed"]'
+    scene = f'name = "two"\nsystem = {{ type = "chain", {system} }}\noutput = {{ until = 1, velocity = [0] }}\n'
+    for name, text in (("adjusted", scene), ("plain", scene.replace('speed_adjustment = "1 %",', ""))):
+        (tmp_path / f"{name}.toml").write_text(text + "[[load]]\nat = 0\ntimes = [0]\nsteps = [1]\n")
+        sweep = tmp_path / f"{name}_sweep.toml"
+        sweep.write_text(f'scene = "{name}.toml"\n[vary]\n"load[0].steps[0]" = [1, 2]\n')
+        assert main(["sweep", str(sweep), "-o", str(tmp_path / name)]) == 0
+        assert ("changed in each case by itself" in capsys.readouterr().err) == (name == "adjusted")
+
+
 @pytest.mark.slow
 def test_a_case_that_refuses_leaves_its_reason_and_the_others_go_on(tmp_path: Path, capsys: Any) -> None:
     sweep = tmp_path / "sweep.toml"
@@ -200,6 +211,7 @@ def test_a_case_that_refuses_leaves_its_reason_and_the_others_go_on(tmp_path: Pa
                 "reason": "scene: system.kappa[0]: -1 is not positive; write a number above 0",
             }
         ],
+        "notes": [],
     }
     assert main(["sweep", str(sweep), "-o", out]) == 1
     assert main(["sweep", str(sweep), "-o", out, "--retry-failed"]) == 1

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Number
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic.functional_validators import ModelWrapValidatorHandler
@@ -154,6 +154,9 @@ class SceneTable(BaseModel):
     # built when it is first used: most scenes have few kinds of tables
     model_config = ConfigDict(extra="forbid", frozen=True, serialize_by_alias=True, defer_build=True)
 
+    instead: ClassVar[Mapping[str, str]] = {}
+    """What to write for keys that people look for here."""
+
     @model_validator(mode="wrap")
     @classmethod
     def _keys(cls, value: object, handler: ModelWrapValidatorHandler[Self]) -> Self:
@@ -164,7 +167,10 @@ class SceneTable(BaseModel):
         fields = {field.alias or name: field for name, field in cls.model_fields.items()}
         others = [str(key) for key in value if key not in fields]
         known = list(fields)
-        unknown = [Fault(_unknown_key(key, known, guess=k < MOST_FAULTS), (key,)) for k, key in enumerate(others)]
+        unknown = [
+            Fault(f"unknown key; {cls.instead.get(key) or _known_keys(key, known, guess=k < MOST_FAULTS)}", (key,))
+            for k, key in enumerate(others)
+        ]
         missing = [
             Fault(f"missing; write {field.description}", (key,))
             for key, field in fields.items()
@@ -179,8 +185,8 @@ class SceneTable(BaseModel):
         return handler(value)
 
 
-def _unknown_key(key: str, known: Sequence[str], *, guess: bool) -> str:
+def _known_keys(key: str, known: Sequence[str], *, guess: bool) -> str:
     *others, last = known
     choice = f"{', '.join(others)} or {last}" if others else last
     meant = guess and did_you_mean(key[:_SHOWN], known)
-    return f"unknown key; write {choice}{meant and f'. {meant}'}"
+    return f"write {choice}{meant and f'. {meant}'}"

@@ -26,7 +26,7 @@ from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.records.load import RecordedLoad
-from wavesym.scene.notes import damping_in_time, reading_notes, spacing_text
+from wavesym.scene.notes import changed_speeds, damping_in_time, reading_notes, spacing_text
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
@@ -142,8 +142,11 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
     if scene.scale is not None:
         fields["units"] = scene.scale.canonical
     canonical = json.dumps(fields, sort_keys=True, separators=(",", ":"))
+    system = {"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)}
+    if change := changed_speeds(scene):
+        system["speeds_changed_by"] = change
     return Labels(
-        system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
+        system=system,
         loads=scene.physical.loads if scene.physical else tuple(load.description for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
         notes=reading_notes(scene, _damping(scene)),

@@ -53,15 +53,20 @@ def _damping_notes(damping: Damping | None) -> Iterator[str]:
         yield f"system.damping: {nearest(100 * largest):g} % of critical; structures have some percent"
 
 
-def _speed_notes(scene: Scene) -> Iterator[str]:
-    """A line where waves in rods are a little faster or slower than was written."""
+def changed_speeds(scene: Scene) -> str:
+    """By how much waves in rods are faster or slower than was written, at most; empty where they are not."""
     if not isinstance(system := scene.system, ExplicitChain) or not system.speed_adjustment:
-        return
-    before, after = system.drawing_as_written.bars, system.drawing.bars
-    if change := speed_change(before, after):
+        return ""
+    change = speed_change(system.drawing_as_written.bars, system.drawing.bars)
+    return f"{percent(change)} or less" if change else ""
+
+
+def _speed_notes(scene: Scene) -> Iterator[str]:
+    """A line where speeds are not those that were written."""
+    if change := changed_speeds(scene):
         yield (
-            f"system.speed_adjustment: speeds of waves are changed by {percent(change)} or less, so that travel times "
-            "have a common measure; impedances are as written"
+            f"system.speed_adjustment: speeds of waves are changed by {change}, so that travel times have a common "
+            "measure; impedances are as written"
         )
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import (
     BeforeValidator,
@@ -70,6 +70,12 @@ Drifts = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(_drifts)]
 
 class Output(SceneTable):
     """The outputs, the horizon (in tau), and the largest error allowed relative to an output's largest value."""
+
+    instead: ClassVar[Mapping[str, str]] = {
+        "stress": "write force, and divide by the area of the rod there",
+        **dict.fromkeys(("moment", "torque"), "write force, which is a moment in shafts"),
+        "rotation": "write displacement, which is an angle in shafts",
+    }
 
     until: Positive = Field(description="the horizon, a positive number")
     tolerance: Exact = Fraction(1, 10**10)

@@ -13,21 +13,28 @@ from wavesym.sweeps.manifest import Manifest
 from wavesym.sweeps.marks import BatchMark, Marks
 from wavesym.sweeps.sealed_files import DamagedError, NoFileError
 
+_ADJUSTED = "speeds of waves are changed in each case by itself, by system.speed_adjustment at most"
+
 
 @dataclass(frozen=True)
 class SweepStatus:
-    """How many cases there are, are done, have failed and are left; of each that failed its values and the reason."""
+    """How many cases there are, are done, have failed and are left; of each that failed its values and the reason.
+
+    `notes` say what was changed of each case.
+    """
 
     cases: int
     done: int
     failed: int
     left: int
     reasons: tuple[dict[str, Any], ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def line(self) -> str:
-        """The counts."""
-        return f"{self.cases} cases: {self.done} done, {self.failed} failed, {self.left} left"
+        """The counts, and the notes."""
+        counts = f"{self.cases} cases: {self.done} done, {self.failed} failed, {self.left} left"
+        return "; ".join([counts, *self.notes])
 
     def text(self) -> str:
         """The counts, and a line for each case that failed."""
@@ -52,7 +59,8 @@ def status_of(manifest: Manifest, marks: Mapping[int, BatchMark]) -> SweepStatus
     """The state of a sweep with some marks."""
     reasons = tuple(failure.model_dump() for mark in marks.values() for failure in mark.failed)
     met = sum(mark.cases - len(mark.left) for mark in marks.values())
-    return SweepStatus(manifest.cases, met - len(reasons), len(reasons), manifest.cases - met, reasons)
+    notes = (_ADJUSTED,) * ("speed_adjustment" in manifest.scene["system"])
+    return SweepStatus(manifest.cases, met - len(reasons), len(reasons), manifest.cases - met, reasons, notes)
 
 
 def marks_of(folder: Path, manifest: Manifest) -> dict[int, BatchMark]:

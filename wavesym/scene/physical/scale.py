@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 from wavesym.fields.quantity import unit
 from wavesym.fields.table import Faults, SceneTable, refusal, show
@@ -32,6 +32,10 @@ _DEFAULTS = {
 
 class UnitsTable(SceneTable):
     """`[units]`: how waves move the rods of a chain, and the units of results. In torsion velocities are angular."""
+
+    instead: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("stress", "pressure"), "write force: stress is no output; it is force, divided by the area of the rod there"
+    )
 
     kind: object = None
     time: object = None
