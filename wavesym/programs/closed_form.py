@@ -32,7 +32,7 @@ from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.form import Form
-from wavesym.programs.program import ProgramOutput, firsts
+from wavesym.programs.program import ProgramOutput, Tables, firsts
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
@@ -117,7 +117,7 @@ class ClosedForm(Form):
         return sorted(points)
 
     @property
-    def tables(self) -> dict[str, tuple[float, ...]]:
+    def tables(self) -> Tables:
         """Of output o the pulses first_pulse[o] ... in order of their start; of each its families, of these the powers.
 
         `coefficient` has the powers of a family, lowest first.

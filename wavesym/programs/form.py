@@ -11,7 +11,7 @@ from flint import fmpq
 from wavesym.exact.reference import Reference, beginning
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
-from wavesym.programs.program import BoundedOutputs, Program, Provenance, ReferenceValues, SteppedValues
+from wavesym.programs.program import BoundedOutputs, Program, Provenance, ReferenceValues, SteppedValues, Tables
 
 _MOST_POINTS = 2000
 _MOST_VALUES = 40_000
@@ -51,7 +51,7 @@ class Form(BoundedOutputs, ABC):
 
     @property
     @abstractmethod
-    def tables(self) -> dict[str, tuple[float, ...]]:
+    def tables(self) -> Tables:
         """The numbers of its program, flat, by name."""
 
     @property

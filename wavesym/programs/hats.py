@@ -26,7 +26,7 @@ from wavesym.programs.form import Form
 from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judge_march
 from wavesym.programs.march.plan import readable
-from wavesym.programs.program import Program, ProgramOutput, Provenance
+from wavesym.programs.program import Program, ProgramOutput, Provenance, Tables
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
 
@@ -158,7 +158,7 @@ class HatMarch(Form):
         return max(march.degree for march in self.marches)
 
     @cached_property
-    def tables(self) -> dict[str, tuple[float, ...]]:
+    def tables(self) -> Tables:
         """The numbers of its program, those of all marches one after the other."""
         marches = [march.tables for march in self.marches]
         made = {name: tuple(number for one in marches for number in one[name]) for name in MarchScheme.TABLES}

@@ -11,7 +11,7 @@ from flint import fmpq
 
 from wavesym.numbers.reals import Real
 from wavesym.programs.form import Form
-from wavesym.programs.program import ProgramOutput, firsts
+from wavesym.programs.program import ProgramOutput, Tables, firsts
 
 # The numbers from 0 on that C has for the widest vectors (templates/c/pieces/pieces.c).
 _OFFSETS = 16
@@ -102,7 +102,7 @@ class Pieces(Form):
         return sorted(points)
 
     @property
-    def tables(self) -> dict[str, tuple[float, ...]]:
+    def tables(self) -> Tables:
         """Of grid g its outputs first_member[g] ..., and pieces; at first_piece[g] + g their starts and the last end.
 
         The polynomials of piece p of all grids start at first_power[p] in `coefficient`: highest power first, of each

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 from math import ceil
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from flint import fmpq
 
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
     from wavesym.programs.runtime.laws import RuntimeLaws
     from wavesym.programs.schemes import Scheme
+
+
+Tables: TypeAlias = "dict[str, tuple[float, ...]]"
+"""The tables of a program by name: flat, each number as it is written, indices as ints."""
 
 
 def firsts(counts: Iterable[int]) -> tuple[int, ...]:
@@ -138,7 +142,7 @@ class Program(BoundedOutputs):
     real: Real
     tau_max: float
     outputs: tuple[ProgramOutput, ...]
-    tables: dict[str, tuple[float, ...]]
+    tables: Tables
     constants: dict[str, float]
     bytes: int
     provenance: Provenance

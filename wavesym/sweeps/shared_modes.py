@@ -19,9 +19,10 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.mode_sets.making import ModeSetsTables, Tables
+from wavesym.programs.mode_sets.making import ModeSetsTables
 from wavesym.programs.mode_sets.parameters import ModeParameters
 from wavesym.programs.modes.loads import Numbers
+from wavesym.programs.program import Tables
 from wavesym.results.near_zero import zero_within
 from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.running.mode_sets import ModalSets

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.plan import MarchedJoint, MarchPlan
+from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm
 from wavesym.programs.march.responses import BlockResponse, BodyOperator, block_response, body_operator
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
-from wavesym.programs.program import firsts
+from wavesym.programs.program import Tables, firsts
 
 
 class MarchTables:
@@ -51,7 +51,7 @@ class MarchTables:
         assert isinstance(found, BlockResponse)
         return found.truncation_error
 
-    def tables(self, nothing: Sequence[bool]) -> dict[str, tuple[float, ...]]:
+    def tables(self, nothing: Sequence[bool]) -> Tables:
         """All tables, by name; `nothing` says of each output whether it is 0 throughout."""
         plan, real = self._plan, self._real
         terms = [() if none else output.terms for output, none in zip(plan.outputs, nothing, strict=True)]
@@ -72,11 +72,8 @@ class MarchTables:
             "event_panel": tuple(event.panel for event in plan.events),
             "event_force": tuple(event.force for event in plan.events),
             "event_power": real.table(power for event in plan.events for power in event.powers),
-            "first_term": firsts(map(len, terms)),
-            "track": tuple(one.track for of in terms for one in of),
-            "gain": real.table(one.gain for of in terms for one in of),
-            "summed": tuple(int(one.summed) for of in terms for one in of),
-            "delay": tuple(delays.index(one.delay) for of in terms for one in of),
+            **term_tables(terms, real),
+            "delay": tuple(delays.index(term.delay) for each in terms for term in each),
             "begin": tuple(map(real.not_below, begins)),
             "first_stretch": firsts(map(len, stretches)),
             "from": tuple(real.not_below(max(start, fmpq(0))) for start in starts),
@@ -88,7 +85,7 @@ class MarchTables:
             "panel_of": tuple(stretch.panel for stretch in flat),
         }
 
-    def joints(self) -> dict[str, tuple[float, ...]]:
+    def joints(self) -> Tables:
         """Those of the joints and their ports."""
         plan, real = self._plan, self._real
         spaces = [joint.space for joint in plan.joints]
@@ -156,7 +153,7 @@ class MarchTables:
                 yield from joint.space.scattering.transpose().entries()
 
 
-def port_tables(joints: Sequence[MarchedJoint], real: Real) -> dict[str, tuple[float, ...]]:
+def port_tables(joints: Sequence[MarchedJoint], real: Real) -> Tables:
     """Where points, states and ports of joints begin, and the ports; joints may be functions of parameters."""
     spaces = [joint.space for joint in joints]
     ports = [port for space in spaces for port in space.ports]
@@ -169,6 +166,17 @@ def port_tables(joints: Sequence[MarchedJoint], real: Real) -> dict[str, tuple[f
         "ratio": real.table(port.ratio for port in ports),
         "arrive": tuple(track for joint in joints for track in joint.arrive),
         "send": tuple(track for joint in joints for track in joint.sends),
+    }
+
+
+def term_tables(outputs: Sequence[Sequence[OutputTerm]], real: Real) -> Tables:
+    """The terms of outputs, one output after the other."""
+    every = [term for terms in outputs for term in terms]
+    return {
+        "first_term": firsts(map(len, outputs)),
+        "track": tuple(term.track for term in every),
+        "gain": real.table(term.gain for term in every),
+        "summed": tuple(int(term.summed) for term in every),
     }
 
 

@@ -30,8 +30,8 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.modes.loads import Numbers, Roughness, linear_loads, sampled_roughness
 from wavesym.programs.modes.truncation import truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
-from wavesym.programs.request import OF_MODES, alternatives, refuse_others
-from wavesym.programs.runtime.network import PLAIN, ParameterUnit, RuntimeField, field_of, unit_of_load
+from wavesym.programs.request import OF_MODES, alternatives
+from wavesym.programs.runtime.network import PLAIN, ParameterUnit, RuntimeField, runtime_fields
 
 _MORE = 1.1  # times as many modes as one set of numbers needs
 
@@ -118,17 +118,9 @@ def mode_parameters(
     """
     _refuse_dashpots(model.network)
     _refuse_jumps(model, names)
-    known = {name: numbers for name, numbers in _numbers(model) if numbers}
-    refuse_others("runtime", names, [*known, *(["load"] if model.loads else [])])
-    fields = [
-        field_of(name, [(n.label, n.value, _unit(model, name)) for n in numbers], [n.about for n in numbers])
-        for name, numbers in known.items()
-        if name in names
-    ]
-    if "load" in names:
-        fields.append(field_of("load", [(about, load.weight, unit_of_load(model, load)) for about, load in amplitudes]))
-        return ModeParameters(model, tuple(fields), tuple(load for _, load in amplitudes))
-    return ModeParameters(model, tuple(fields), ())
+    numbers = {name: every for name, every in _numbers(model) if every}
+    fields = runtime_fields(model, names, numbers, _unit, amplitudes)
+    return ModeParameters(model, fields, tuple(load for _, load in amplitudes) if "load" in names else ())
 
 
 def _refuse_dashpots(network: Network) -> None:

@@ -28,7 +28,7 @@ from wavesym.programs.modes.modal_system import (
 from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
-from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, SteppedRow, SteppedValues
+from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, SteppedRow, SteppedValues, Tables
 from wavesym.programs.schemes.modes import ModesScheme
 
 _CHECKED = 40  # samples of a self-test
@@ -72,7 +72,7 @@ class ModesEvaluator(Form):
         return Stepper(system, self.spacing)
 
     @cached_property
-    def tables(self) -> dict[str, tuple[float, ...]]:
+    def tables(self) -> Tables:
         """The numbers of its program, in NumPy and as a stream."""
         stream = stream_tables(self._stepper, self.real)
         return scheme_tables(self.system, self.loads, self.real) | stream

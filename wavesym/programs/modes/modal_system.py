@@ -12,6 +12,7 @@ from flint import arb, arb_mat, ctx, fmpq
 from wavesym.numbers.doubles import middle, rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.modes.loads import LinearLoads, Numbers
+from wavesym.programs.program import Tables
 
 
 @dataclass(frozen=True)
@@ -149,8 +150,6 @@ def _rows(values: Numbers) -> list[list[object]]:
 
 LANES = 8
 """Modes and outputs of a stream come in groups of so many, the last one filled up with zeros."""
-
-Tables = dict[str, tuple[float, ...]]
 
 
 def scheme_tables(system: ModalSystem, loads: LinearLoads, real: Real) -> Tables:

@@ -15,7 +15,7 @@ from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.form import reference_values
 from wavesym.programs.march.space import BLOCK, BODY, JointRows
 from wavesym.programs.march.tables import port_tables
-from wavesym.programs.program import Program, ProgramOutput, Provenance, firsts
+from wavesym.programs.program import Program, ProgramOutput, Provenance, Tables, firsts
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places, most_roundings
@@ -172,7 +172,7 @@ def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, fl
     }
 
 
-def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[float, ...]]:
+def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> Tables:
     """Joints and their ends, rings, panels, changes of loads, sections, strands and the waves they are made of."""
     plan, events = made.plan, made.events
     spaces = [joint.space for joint in plan.joints]

@@ -8,7 +8,7 @@ so does a load: 5 N*m are 5 N*m.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import sha256
 
@@ -18,7 +18,7 @@ from wavesym.errors import UnservedError
 from wavesym.mechanics.loads import AppliedLoad, AppliedRecord
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
-from wavesym.mechanics.parameters import Factors
+from wavesym.mechanics.parameters import Factors, ModelParameter
 from wavesym.numbers.ratio import Ring
 from wavesym.programs.request import OF_MODES, POSITIVE, refuse_others
 
@@ -90,25 +90,20 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
             raise UnservedError(
                 f"--runtime: the end at {point.place} moves at tau = 0, which is not supported; write one at rest"
             )
-    loaded = amplitudes or any(load.source != "impact" for load in model.loads)
-    refuse_others("--runtime", names, [*parameters.numbers, *(["load"] if loaded else [])])
-    fields: list[RuntimeField] = []
-    sizes: dict[str, fmpq] = {}
-    for name, numbers in parameters.numbers.items():
-        if name in names:
-            unit = unit_of(model, name)
-            sizes |= {one.label: unit.size for one in numbers}
-            about = [one.about for one in numbers]
-            fields.append(field_of(name, [(one.label, one.value, unit) for one in numbers], about))
-    if "load" in names:
-        fields.append(field_of("load", [(about, load.weight, unit_of_load(model, load)) for about, load in amplitudes]))
+    fields = runtime_fields(model, names, parameters.numbers, unit_of, amplitudes)
+    sizes = {
+        label: unit.size
+        for field in fields
+        for label, unit in zip(field.labels, field.units, strict=True)
+        if field.name != "load"
+    }
     ring = Ring(tuple(sizes))
     free, some = (
         {label: values[label] / size for label, size in sizes.items()}
         for values in (ring.symbols(), draw_numbers(fields))
     )
     return FreeNetwork(
-        tuple(fields),
+        fields,
         ring,
         parameters.network(free),
         replace(model, network=parameters.network(some), preset=None),
@@ -116,11 +111,39 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     )
 
 
-def field_of(name: str, numbers: Sequence[tuple[str, fmpq, ParameterUnit]], told: Sequence[str] = ()) -> RuntimeField:
-    """A field of numbers, each with its label and unit; `told` says what each is, where labels do not."""
-    labels, values, units = zip(*numbers, strict=True)
-    sized = tuple(value * unit.size for value, unit in zip(values, units, strict=True))
-    return RuntimeField(name, labels, sized, units, tuple(told) or labels)
+def runtime_fields(
+    model: Model,
+    names: Sequence[str],
+    numbers: Mapping[str, Sequence[ModelParameter]],
+    unit: Callable[[Model, str], ParameterUnit],
+    amplitudes: Sequence[tuple[str, AppliedLoad]],
+) -> tuple[RuntimeField, ...]:
+    """The fields that are requested, in the order of the scene.
+
+    Args:
+        names: of fields.
+        numbers: all that can be given, dimensionless, by the name of their field.
+        unit: that of a field.
+        amplitudes: those of loads, each with what it is called.
+
+    Raises:
+        WavesymError: for a name that is none of these, and one that stands twice.
+    """
+    loaded = amplitudes or any(load.source != "impact" for load in model.loads)
+    refuse_others("--runtime", names, [*numbers, *(["load"] if loaded else [])])
+    chosen = {
+        name: [(each.label, each.value, unit(model, name), each.about) for each in every]
+        for name, every in numbers.items()
+        if name in names
+    }
+    if "load" in names:
+        chosen["load"] = [(about, load.weight, unit_of_load(model, load), about) for about, load in amplitudes]
+    fields = []
+    for name, rows in chosen.items():
+        labels, values, units, captions = zip(*rows, strict=True)
+        sized = tuple(value * each.size for value, each in zip(values, units, strict=True))
+        fields.append(RuntimeField(name, labels, sized, units, captions))
+    return tuple(fields)
 
 
 def unit_of(model: Model, name: str) -> ParameterUnit:

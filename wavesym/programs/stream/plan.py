@@ -78,7 +78,7 @@ class StreamPlan:
 
     @property
     def direct(self) -> tuple[tuple[int, ...], ...]:
-        """Of each output the inputs that act on it at once: where a loaded point without mass is heard, or a load."""
+        """Of each output the inputs that act on it at once: where a loaded point without mass is read, or a load."""
         passing: dict[int, tuple[fmpq, ...]] = {}
         for n in self.loaded:
             joint = self.march.joints[n]

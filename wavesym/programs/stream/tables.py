@@ -15,8 +15,8 @@ from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.evaluator import step_multiplications
 from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.march.space import BLOCK, BODY, SHOWN, JointSpace
-from wavesym.programs.march.tables import MarchTables
-from wavesym.programs.program import firsts
+from wavesym.programs.march.tables import MarchTables, term_tables
+from wavesym.programs.program import Tables, firsts
 from wavesym.programs.stream.interpolation import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
 
@@ -37,12 +37,12 @@ class StreamTables:
         self._march = MarchTables(plan.march, degree, real)
         self._joints = plan.march.joints
 
-    def tables(self) -> dict[str, tuple[float, ...]]:
+    def tables(self) -> Tables:
         """All tables, by name."""
         plan, march, panel = self._plan, self._plan.march, self._plan.panel
         half = nearest(panel / 2)
-        terms = [one for output in march.outputs for one in output.terms]
-        late = [plan.late(one.delay) for one in terms]
+        terms = [term for output in march.outputs for term in output.terms]
+        late = [plan.late(term.delay) for term in terms]
         joints = self._march.joints()
         slips = [self.slips(joint) for joint in self._joints]
         spaces = [joint.space for joint in self._joints]
@@ -74,13 +74,10 @@ class StreamTables:
                 for order, errors in enumerate(kinks(self._degree))
                 for value, power in zip(errors, (0.0, 0.5), strict=True)
             ),
-            "first_term": firsts(len(output.terms) for output in march.outputs),
-            "track": tuple(one.track for one in terms),
-            "gain": self._real.table(one.gain for one in terms),
-            "summed": tuple(int(one.summed) for one in terms),
+            **term_tables([output.terms for output in march.outputs], self._real),
             "late": tuple(whole for whole, _ in late),
             "rest": self._real.table(rest for _, rest in late),
-            "shown_force": tuple(shown.get(one.track, -1) for one in terms),
+            "shown_force": tuple(shown.get(term.track, -1) for term in terms),
         }
 
     def constants(self, tolerance: float) -> dict[str, float]:
