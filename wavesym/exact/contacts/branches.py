@@ -107,13 +107,18 @@ class Contact(Corner):
 
     @property
     def may_close(self) -> bool:
+        """Its gap is 0; or it was closed, and it is not known whether it has a gap by now."""
+        return self.is_held or (self.closed and not self.wide)
+
+    @property
+    def is_held(self) -> bool:
         """Its gap is 0."""
         return self.exact is not None and self.exact == 0
 
     @property
     def is_unclear(self) -> bool:
         """It is not known whether it has a gap."""
-        return not self.may_close and not self.wide
+        return not self.is_held and not self.wide
 
     @property
     def branch(self) -> Branch:
@@ -130,15 +135,22 @@ class Contact(Corner):
         return self.exact > 0 if self.exact is not None else bool(self.gap > 0)
 
     def begins(self, moved: JointStretch) -> bool:
-        """Whether its force is not negative, or its gap grows, just after the start."""
+        """Whether its force is not negative, or its gap grows, just after the start.
+
+        Where it is not known whether it has a gap, its force has to be 0 throughout: then the gap stays as it is.
+        """
         if self.link in moved.closed_links:
-            return begins_bearable(moved.pushes[self.link])
+            force = moved.pushes[self.link]
+            return begins_bearable(force) if self.is_held else force.is_zero
         return self.wide or begins_to_grow(moved.rates[self.link])
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
         """How long its force, or its gap, is certainly not negative."""
         if self.link in moved.closed_links:
-            return lasts_until(moved.pushes[self.link], low, moved.length, resolution)
+            force = moved.pushes[self.link]
+            if not self.is_held:
+                return None if force.is_zero else BranchEnd(low, None)
+            return lasts_until(force, low, moved.length, resolution)
         rate = moved.rates[self.link]
         if self.exact is not None and rate.exact is not None:
             gap = Enclosure.from_polynomial(rate.exact.integral() + self.exact)
@@ -160,8 +172,8 @@ class Contact(Corner):
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Go to the end of a stretch on which its branch was right, or of a short one on which it was left open."""
         if self.link in moved.closed_links:
-            self.gap, self.exact = arb(0), fmpq(0)
-        elif self.link in moved.vague:
+            return
+        if self.link in moved.vague:
             self._advance_vague(moved, length)
         else:
             self._grow(moved.rates[self.link], length)
@@ -243,7 +255,10 @@ class Friction(Corner):
         return begins_to_grow(forward)
 
     def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
-        """How long these are certainly not negative; what is inert sticks until its force is beyond its limits."""
+        """How long these are certainly not negative; what is inert sticks until its force is beyond its limits.
+
+        Where it has just stopped, until it certainly is at rest: from then on it is known exactly how fast it is.
+        """
         if self.link not in moved.closed_links:
             forward = self._forward(moved)
             if not self.inert or forward.begins is not None:
@@ -253,6 +268,10 @@ class Friction(Corner):
         guards = self._margins(moved)
         ends = [end for guard in guards if (end := lasts_until(guard, low, moved.length, resolution)) is not None]
         end = min(ends, key=lambda end: end.length, default=None)
+        if not self.rate.is_zero() and low == 0 < (rest := moved.rests.get(self.link, fmpq(0))):
+            length = fmpq((rest / resolution).ceil() * resolution)
+            if length < (moved.length if end is None else end.length):
+                return BranchEnd(length, None)
         if end is None or not self.inert or (end.spread is None and self.link in moved.exact_contacts):
             return end
         late = 4 * ((end.spread or fmpq(0)) + resolution)

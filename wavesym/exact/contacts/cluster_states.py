@@ -23,6 +23,7 @@ class ClusterStates:
         self, law: JointLaw, springs: JointSprings, sets: Sequence[Sequence[int]], of_point: Mapping[int, PointState]
     ) -> None:
         self.of_point = dict(of_point)
+        self.resting: set[int] = set()  # masses that certainly do not move, held on the ground
         self._law, self._springs, self._sets = law, springs, sets
 
     def take(self, moved: JointStretch) -> None:
@@ -62,9 +63,9 @@ class ClusterStates:
     def unseen_rates(self, cluster: Cluster, later: Mapping[int, PointState]) -> dict[int, arb]:
         """How fast the points of such groups may be besides: one without mass as fast as some mass of its group.
 
-        `later` are states at the end of a stretch, where less is known.
+        What is resting is known. `later` are states at the end of a stretch, where less is known.
         """
-        held = self.held_masses(cluster)
+        held = [k for k in self.held_masses(cluster) if k not in self.resting]
         rates = {
             k: (2 * later.get(k, self.of_point[k]).error_energy / arb(self._law.mass[k])).sqrt().upper() for k in held
         }
@@ -103,6 +104,14 @@ class ClusterStates:
         unknown = max(self.of_point[k].error_energy for k in cluster.points)
         unknown = ((unknown.sqrt() + self._joined_velocities(cluster, prescribed)[1].sqrt()) ** 2).upper()
         return {k: PointState(arb(p(length)), self.of_point[k].displacement, None, unknown) for k, p in given.items()}
+
+    def after(
+        self, cluster: Cluster, motion: JointMotion, prescribed: Sequence[fmpq_poly], length: fmpq
+    ) -> dict[int, PointState]:
+        """That of a cluster after a stretch."""
+        return (
+            self.sticking_state(cluster, prescribed, length) if cluster.stateless else self.state_after(cluster, motion)
+        )
 
     def state_after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
         moving = {cluster.leader(a): each for a, each in enumerate(motion.velocity)}

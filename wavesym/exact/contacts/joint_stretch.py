@@ -48,7 +48,9 @@ class JointStretch:
     they are at the end. `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`,
     their ranges under every choice of closed contacts. `bare` are the ends beside contacts on which nothing acts,
     `exact_contacts` the contacts whose two sides begin in a state that is known exactly. Its series, where it is one,
-    bears exp(`swing` length); it is `fleeting` where what decays fast keeps it short, until that has died away.
+    bears exp(`swing` length); it is `fleeting` where what decays fast keeps it short, until that has died away. `rests`
+    is when friction of masses on the ground certainly has stopped them, if it holds them from then on; what it bears
+    may be beyond its limit in `excesses`.
     """
 
     length: fmpq
@@ -64,6 +66,8 @@ class JointStretch:
     exact_contacts: set[int] = field(default_factory=set)
     spring_motions: dict[int, SpringMotion] = field(default_factory=dict)
     springs: dict[int, SpringState] = field(default_factory=dict)
+    rests: dict[int, fmpq] = field(default_factory=dict)
+    excesses: set[int] = field(default_factory=set)
     swing: fmpq = field(default_factory=fmpq)
     fleeting: bool = False
 

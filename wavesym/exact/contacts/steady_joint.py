@@ -27,10 +27,12 @@ from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.exact.joints.network_waves import LoadPolynomial
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
+from wavesym.numbers.doubles import middle
 
 _ONE = fmpq(1)
 _ROUNDS = 4  # in which a bound of springs' forces must hold
 _SHORTER = 4  # where it does not, as a spring answers to its own force
+_LATER = 2  # times: when friction has stopped a mass is not known closely
 _MISSED = 16  # bits: what has died away is that much more than rounding errors, at most
 
 
@@ -66,6 +68,7 @@ class SteadyJoint(ABC):
         """Go on to the end of a stretch."""
         self._states.take(moved)
         self.springs.take(moved)
+        self._states.resting = {self._mass_on_ground(n) for n in moved.rests.keys() - moved.excesses}
 
     def rate_on_motion(self, n: int, start: fmpq) -> arb | None:
         """How fast a mass slides on what moves as is given, from an instant on; None of other friction."""
@@ -234,6 +237,8 @@ class SteadyJoint(ABC):
                 rate, terms = law.fastest, series_terms(law.fastest * result.length, longest)
                 moving = motion.move(waves, prescribed, result.length, terms)
             q = [[(_ONE, each)] for each in self._add_onsets(cluster, pushed, prescribed, moving, result.length)]
+            for group, given in prescribed_terms(law, prescribed).items():
+                q[group] = given
             result.state |= self._states.state_after(cluster, motion)
             if rate > result.swing:
                 result.swing = rate
@@ -250,6 +255,45 @@ class SteadyJoint(ABC):
         result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places, begun)
         self.springs.strain(cluster, result, self._states.of_point, places if motion is None else motion)
         self._lose_excess(cluster, result)
+        self._find_rests(cluster, result)
+
+    def _mass_on_ground(self, n: int) -> int:
+        """The mass that rubs on the ground; -1 of other friction."""
+        touch = self.touches[n]
+        for k, other in (touch.sides, touch.sides[::-1]):
+            if self.law.motions[other] == "fixed" and self.law.motions[k] is None and self.law.mass[k] != 0:
+                return k
+        return -1
+
+    def _find_rests(self, cluster: Cluster, result: JointStretch) -> None:
+        """When what friction holds on the ground has certainly stopped: beside what it bears at rest, it has some left.
+
+        The rate r of its right side then has |r|' <= -(R - |N|) w, with w its `lightness`. Nothing else may rub on it.
+        """
+        rates = self._states.unseen_rates(cluster, result.state)
+        for n in cluster.pushes:
+            touch, k = self.touches[n], self._mass_on_ground(n)
+            rubs = [m for m, each in self.touches.items() if each.friction != 0 and k in each.sides]
+            if touch.friction == 0 or touch.breakaway != 0 or rubs != [n]:
+                continue
+            if [j for j in self._states.held_masses(cluster) if cluster.group(j) == cluster.group(k)] != [k]:
+                continue
+            rate = rates.get(k, arb(0)) * arb(1 if k == touch.right else touch.ratio)
+            since = self._stops(result, n, rate)
+            if since is not None:
+                result.rests[n] = since
+
+    def _stops(self, result: JointStretch, n: int, rate: arb) -> fmpq | None:
+        """When a mass on the ground that is this fast at most has stopped; None where that is not certain."""
+        if rate == 0:
+            return fmpq(0)
+        stopping = (arb(self.touches[n].friction) - abs(result.pushes[n].evaluate(fmpq(0)))) * self.forces.lightness(n)
+        if not stopping > 0:
+            return None
+        since = min(middle((_LATER * rate / stopping.lower()).upper()), result.length)
+        worst = abs(result.pushes[n].evaluate_on(arb(0).union(arb(since))))
+        stopping = (arb(self.touches[n].friction) - worst) * self.forces.lightness(n)
+        return since if rate < stopping * arb(since) else None
 
     def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
         """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it.
@@ -260,13 +304,23 @@ class SteadyJoint(ABC):
         for n in cluster.pushes:
             touch = self.touches[n]
             for _ in {touch.left, touch.right} & set(cluster.stuck_points):
-                excess = max(_excess(result.pushes[n], tau, touch.friction) for tau in taus)
-                if touch.friction == 0 or touch.breakaway != 0 or not excess > 0:
+                excess = max(self.excess(n, result.pushes[n], tau) for tau in taus)
+                if not excess > 0:
                     continue
+                result.excesses.add(n)
                 lightness = sum(1 / self.law.mass[j] for j in (touch.left, touch.right) if self.law.mass[j] != 0)
                 more = (excess * arb(result.length)) ** 2 * arb(lightness) / 2
                 for j in cluster.points:
                     result.state[j] = result.state.get(j, self._states.of_point[j]).lose(more)
+
+    def excess(self, n: int, force: Enclosure, tau: fmpq | arb) -> arb:
+        """By how much what sticks bears more than its limit at an instant, or anywhere in a span, at most."""
+        touch = self.touches[n]
+        if touch.friction == 0 or touch.breakaway != 0:
+            return arb(0)
+        if isinstance(tau, fmpq) and force.exact is not None:
+            return arb(abs(force.exact(tau)) - touch.friction).upper()
+        return (abs(force.evaluate_on(arb(tau))) - arb(touch.friction)).upper()
 
     def _relax(
         self,
@@ -343,13 +397,6 @@ def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
     for k, (group, ratio) in zip(cluster.points, cluster.law.moves, strict=True):
         terms[group] += scale_terms(forces[k], ratio)
     return terms
-
-
-def _excess(force: Enclosure, tau: fmpq | arb, limit: fmpq) -> arb:
-    """By how much a force is beyond its limit at an instant, or anywhere in a span, at most."""
-    if isinstance(tau, fmpq) and force.exact is not None:
-        return arb(abs(force.exact(tau)) - limit).upper()
-    return (abs(force.evaluate_on(arb(tau))) - arb(limit)).upper()
 
 
 def prescribed_terms(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:

@@ -15,7 +15,7 @@ from itertools import product
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, subsets
-from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
+from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, sliding_sign
 from wavesym.exact.contacts.steady_joint import SteadyJoint, group_forces, prescribed_terms, rate_terms, series_terms
 from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, one_at_each_instant, scale_terms, with_bounds
 from wavesym.exact.joints.joint_law import JointLaw, exact_sum, scatter
@@ -49,6 +49,7 @@ class TouchingJoint(SteadyJoint):
             if (touch := self.touches[n]).friction != 0
         }
         pressing = [n for n in vague if self.touches[n].friction == 0]
+        slow: dict[int, arb] = {}
         for tried in range(_ROUNDS):
             motion = self._states.balls(cluster, prescribed)
             pushes = self._add_pushes(forces, {n: bounds[n] for n in pressing}, taken)
@@ -57,6 +58,9 @@ class TouchingJoint(SteadyJoint):
             q = motion.move(pushed, prescribed, result.length, terms)
             known = {cluster.leader(a): [(_ONE, q[a])] for a in law.heavy}
             known |= {cluster.leader(a): each for a, each in prescribed_terms(law, prescribed).items()}
+            for k, rate in slow.items():
+                leader, besides = cluster.leader(cluster.group(k)), (rate / arb(abs(cluster.ratio(k)))).upper()
+                known[leader] = [*known.get(leader, []), (_ONE, Enclosure(arb_poly(), besides))]
             pulls = list(forces)
             for k in points:
                 pulls[k] = [*forces[k], (fmpq(-1), self.forces.of_springs(cluster, motion, k))]
@@ -65,8 +69,13 @@ class TouchingJoint(SteadyJoint):
                 taken |= takes
                 continue
             largest = {n: found.pushes[n].evaluate_on(span).upper().max(arb(0)) for n in pressing}
-            if all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
+            after = self._states.after(cluster, motion, prescribed, result.length)
+            faster = self._hidden_rates(cluster, after, found.pushes, result.length)
+            seen = all(rate <= slow.get(k, arb(0)) for k, rate in faster.items())
+            if seen and all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
                 break
+            if not seen:
+                slow = {k: (2 * rate).upper() for k, rate in faster.items()}
             bounds |= {n: (largest[n] * arb(1 + _SLACK)).upper() for n in pressing}
         else:
             raise ArithmeticError("the force of a contact has no bound")
@@ -80,12 +89,24 @@ class TouchingJoint(SteadyJoint):
             for n, force in self.forces.of_cluster(cluster, result, forces, acting, motion, None).items()
             if n in vague
         }
-        if cluster.stateless:
-            result.state |= self._states.sticking_state(cluster, prescribed, result.length)
-        else:
-            result.state |= self._states.state_after(cluster, motion)
+        result.state |= after
         self.springs.strain(cluster, result, self._states.of_point, motion)
         self._lose_excess(cluster, result)
+        self._find_rests(cluster, result)
+
+    def _hidden_rates(
+        self, cluster: Cluster, after: Mapping[int, PointState], pushes: Mapping[int, Enclosure], length: fmpq
+    ) -> dict[int, arb]:
+        """How fast masses that stick may be on a stretch, besides: by what is not known of them, or pulled to slide."""
+        rates = {k: rate for k, rate in self._states.unseen_rates(cluster, after).items() if self.law.mass[k] != 0}
+        for n in cluster.pushes:
+            touch = self.touches[n]
+            excess = self.excess(n, pushes[n], arb(0).union(arb(length)))
+            for k, factor in ((touch.right, _ONE), (touch.left, abs(touch.ratio))) if excess > 0 else ():
+                if self.law.mass[k] != 0 and self.law.motions[k] is None:
+                    gained = excess * arb(length * factor / self.law.mass[k])
+                    rates[k] = (rates.get(k, arb(0)) + gained).upper()
+        return rates
 
     def _bound_sends(
         self,

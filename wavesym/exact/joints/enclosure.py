@@ -94,6 +94,11 @@ class Enclosure:
     most: fmpq_poly | None = None
 
     @property
+    def is_zero(self) -> bool:
+        """Whether it is certainly 0 throughout."""
+        return self.exact is not None and self.exact.length() == 0
+
+    @property
     def has_bounds(self) -> bool:
         """Whether such bounds are known."""
         return self.least is not None or self.most is not None
