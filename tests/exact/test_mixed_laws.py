@@ -41,7 +41,7 @@ BESIDE, AT = ([law for law in LAWS if law != without] for without in ("breakaway
 PAGE = Path(__file__).parents[2] / "docs" / "contacts.md"
 
 # a contact opens and closes while what it touches sticks and slips; a joint without mass; a spring that yields there
-CONTACTS = (3, 8, 14, 33, 44, 46)
+CONTACTS = (3, 8, 14, 33, 44, 46, 4, 52, 54)
 LIGHT = (2, 11, 17)
 
 
@@ -143,7 +143,7 @@ def test_drawn_mixes_do_as_they_should(draw: Mix, start: int) -> None:
             assert wrong_mix(draw(seed)) == [], seed
         except (GrazingError, Unclear):
             refused += 1
-    assert refused <= 5
+    assert refused <= 2
 
 
 def test_friction_of_a_mass_beside_a_contact_that_is_slightly_off_is_seen() -> None:

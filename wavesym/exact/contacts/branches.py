@@ -278,6 +278,16 @@ class Friction(Corner):
         length = fmpq(((end.length + late) / resolution).ceil() * resolution)
         return BranchEnd(length, None, late + 2 * resolution) if low < length < moved.length else None
 
+    def leaving(self, moved: JointStretch) -> int:
+        """Which way it leaves rest at once, as it certainly bears more than its limit on all of a short stretch, or 0.
+
+        It is inert, and its rate is 0 but for what is not known of it.
+        """
+        if not self.inert or not self.rate.is_zero() or self.link not in moved.closed_links:
+            return 0
+        force = value_range(moved.pushes[self.link], moved.length)
+        return int(force < -self.limit) - int(force > self.limit)
+
     def lasts(self, moved: JointStretch, length: fmpq) -> bool:
         """Whether they are on all of a short stretch."""
         if self.link in moved.closed_links:

@@ -105,7 +105,7 @@ class ClusterStates:
         unknown = ((unknown.sqrt() + self._joined_velocities(cluster, prescribed)[1].sqrt()) ** 2).upper()
         return {k: PointState(arb(p(length)), self.of_point[k].displacement, None, unknown) for k, p in given.items()}
 
-    def after(
+    def state_at_end(
         self, cluster: Cluster, motion: JointMotion, prescribed: Sequence[fmpq_poly], length: fmpq
     ) -> dict[int, PointState]:
         """That of a cluster after a stretch."""

@@ -328,18 +328,24 @@ class Search:
         """The motion, with all contacts vague that are not certainly open or closed all the time.
 
         Friction of masses that is not certain to slide all the time is held: that is no further from the truth than
-        the energy that is lost by it, where what is vague may have any force.
+        the energy that is lost by it, where what is vague may have any force. What has come to rest and is certainly
+        pulled beyond its limit goes on from rest that way, as it is.
         """
         joint, arriving = self.waves.joints[course.number], self.waves.arriving(course.number, start, length)
         vague = frozenset(contact.link for contact in course.contacts if contact.is_unclear)
         inert = {each.link for each in course.contacts if isinstance(each, Friction) and each.inert}
         held: frozenset[int] = frozenset()
+        turned: dict[int, int] = {}
         while True:
-            others = [contact for contact in course.contacts if contact.link not in vague]
+            others = [contact for contact in course.contacts if contact.link not in vague | turned.keys()]
             closed = held | frozenset(contact.link for contact in others if contact.is_held)
             sliding = frozenset((each.link, each.sign) for each in others if each.sign and each.link not in closed)
-            moved = joint.move(arriving, start, length, closed, vague, sliding)
-            steady = (contact for contact in course.contacts if contact.link not in vague)
+            moved = joint.move(arriving, start, length, closed, vague, sliding | turned.items())
+            turning = {each.link: each.leaving(moved) for each in others if isinstance(each, Friction)}
+            if any(turning.values()):
+                turned |= {link: sign for link, sign in turning.items() if sign}
+                continue
+            steady = (contact for contact in course.contacts if contact.link not in vague | turned.keys())
             wrong = frozenset(contact.link for contact in steady if not contact.lasts(moved, length))
             if not wrong:
                 return moved

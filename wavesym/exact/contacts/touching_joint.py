@@ -69,7 +69,7 @@ class TouchingJoint(SteadyJoint):
                 taken |= takes
                 continue
             largest = {n: found.pushes[n].evaluate_on(span).upper().max(arb(0)) for n in pressing}
-            after = self._states.after(cluster, motion, prescribed, result.length)
+            after = self._states.state_at_end(cluster, motion, prescribed, result.length)
             faster = self._hidden_rates(cluster, after, found.pushes, result.length)
             seen = all(rate <= slow.get(k, arb(0)) for k, rate in faster.items())
             if seen and all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
