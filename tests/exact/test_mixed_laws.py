@@ -143,7 +143,7 @@ def test_drawn_mixes_do_as_they_should(draw: Mix, start: int) -> None:
             assert wrong_mix(draw(seed)) == [], seed
         except (GrazingError, Unclear):
             refused += 1
-    assert refused <= 2
+    assert refused <= 3
 
 
 def test_friction_of_a_mass_beside_a_contact_that_is_slightly_off_is_seen() -> None:
@@ -177,3 +177,23 @@ def test_what_friction_has_stopped_bears_on_a_rod_with_just_0(name: str) -> None
     output = {"until": 14, "displacement": ["m"], "velocity": ["m"]}
     table = {"name": "rest", "system": {"type": "chain", "parts": RESTS[name]}, "output": output}
     assert wrong(table) == []
+
+
+@pytest.mark.slow
+def test_three_masses_that_rub_between_two_contacts_come_to_rest() -> None:
+    """As two of them stop, no number of bits told what the contacts bear."""
+    parts = [
+        *["absorbing", {"rod": 1}, "contact", {"mass": "1/3", "velocity": "5/3", "name": "m0", "friction": "3/2"}],
+        {"spring": "12/5", "only": "push", "gap": "1/8"},
+        {"mass": "1/4", "velocity": "-5/3", "name": "m1", "friction": "3/2"},
+        {"spring": "6/5", "yield": 1},
+        {"mass": "3/5", "velocity": "1/2", "name": "m2", "friction": "2/3", "dashpot": "1/4"},
+        *["contact", {"rod": 1, "impedance": 3}, "absorbing"],
+    ]
+    loads = [
+        {"at": "m2", "times": [0, 4], "steps": [1, -2]},
+        {"at": 2, "times": [2, 4], "steps": [0, "1/3"], "ramps": ["-1/3", 0]},
+    ]
+    output = {"until": 10, "displacement": ["m0", "m1", "m2"], "velocity": ["m0", "m1", "m2"]}
+    table = {"name": "three", "system": {"type": "chain", "parts": parts}, "load": loads, "output": output}
+    assert wrong(table, first="0") == []
