@@ -37,9 +37,16 @@ _T = 0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357 % _PRIME  # drawn once, so that the 
 
 
 def identically_zero(model: Model, until: fmpq) -> list[bool]:
-    """Whether each output is 0 on all of [0, until]. False where contacts open and close: no transform tells then.
+    """Whether each output is 0 on all of [0, until].
 
     Most outputs differ from 0 soon, and only those that do not are followed for longer.
+
+    Args:
+        model: a scene's model.
+        until: the end of the interval, in tau.
+
+    Returns:
+        One for each output, in its order. False where contacts open and close: no transform decides it then.
     """
     if model.network.corners:
         return [False] * len(model.probes)

@@ -72,7 +72,7 @@ def with_dead_loads(network: Network, gravity: fmpq = _ZERO, *, static: bool = F
 
 
 def dead_loads(network: Network) -> tuple[AppliedLoad, ...]:
-    """What acts on it from tau = 0 on, and never changes."""
+    """The loads of a network that act from tau = 0 on and never change, such as weights: unit steps, one for each."""
     units = (unit for point in network.points for unit in point.loads)
     return tuple(AppliedLoad(unit.source, _ZERO, _ONE) for unit in units if unit.kind.endswith(DEAD))
 

@@ -2,7 +2,7 @@
 
     force                 impedance * speed * strain
     drift of a rod        displacement of its far end less that of its near one
-    relative              displacement less that of the foundation, or of the end that moves as it is told
+    relative              displacement less that of the foundation, or of the prescribed end
     acceleration          all that acts on a mass, over the mass: rods, spring and dashpot to the ground, links, loads;
                           where nothing has mass the derivative of the velocity
 
@@ -139,7 +139,7 @@ def positions(reads: Sequence[Gauge]) -> tuple[list[tuple[int, fmpq]], list[int]
 
 
 def ground(network: Network) -> int:
-    """The point that relative displacements count from: the only one that moves as it is told, or the first one."""
+    """The point that relative displacements count from: the only one whose motion is prescribed, or the first one."""
     prescribed = [number for number, point in enumerate(network.points) if point.motion in ("velocity", "acceleration")]
     return prescribed[0] if len(prescribed) == 1 else 0
 

@@ -26,7 +26,7 @@ class Timescale:
         return "t" if self.unit else "tau"
 
     def format(self, tau: float) -> str:
-        """A tau as it is told in a sentence: `tau = 8.902`, `t = 2.04 s`."""
+        """A tau as a sentence writes it: `tau = 8.902`, `t = 2.04 s`."""
         return f"{self.symbol} = {self.time_text(tau)}"
 
     def time_text(self, tau: float) -> str:

@@ -49,7 +49,7 @@ class Drawing:
     contacts: Mapping[int, tuple[str, Fraction]]
 
     def network(self, sources: Mapping[int, Sequence[UnitLoad]], length: LengthUnit | None = None) -> Network:
-        """With unit loads on its points; its places are told in a unit of length."""
+        """With unit loads on its points; its places are in a unit of length."""
         places = self._places(length)
         points = (
             replace(point, loads=tuple(sources.get(k, ())), place=places.get(k, "ground"))
@@ -186,7 +186,7 @@ class _Pen:
             raise refusal("not of what turns with the node of a branch; write it at the node", *at, key)
         square, here = rational(ratio) ** 2, self.points[point]
         if here.motion is not None:
-            raise refusal("a mass on an end that moves as it is told; write what holds the branch to it", *at)
+            raise refusal("a mass on an end whose motion is prescribed; write what holds the branch to it", *at)
         mass, damping, spring = (square * rational(each) for each in (part.inertia, part.dashpot, part.spring))
         self.points[point] = replace(
             here, mass=here.mass + mass, damping=here.damping + damping, stiffness=here.stiffness + spring

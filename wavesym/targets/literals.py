@@ -65,7 +65,15 @@ def c_literals(values: Iterable[float], real: Real) -> Lines:
 
 
 def c_tables(tables: Mapping[str, Iterable[float]], real: Real) -> dict[str, Lines]:
-    """Tables as C writes them, by name; a lone 0 for none, as C has no empty array."""
+    """Tables as C writes them, each number in the shortest decimal that reads back to the same bits.
+
+    Args:
+        tables: numbers by name; integers are indices, and stay whole.
+        real: the type of all other numbers, double or float.
+
+    Returns:
+        Lines by name; a lone 0 for an empty table, as C has no empty array.
+    """
     return {name: c_literals(values, real) for name, values in tables.items()}
 
 

@@ -99,7 +99,7 @@ def joint_laws(model: Model) -> Listing:
     parted = ", with all contacts open" if model.network.corners else ""
     return Listing(
         "joints",
-        f"Joints in the light cone, with a knot for each start of a stretch without fronts{parted}:\n{LAW}",
+        f"Joints in the light cone, with a breakpoint for each start of a stretch without fronts{parted}:\n{LAW}",
         rows,
         ("M", "C", "K", "polynomial", "refusal"),
     )

@@ -42,9 +42,16 @@ class _Course:
 
 
 def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq | None:
-    """Up to where p - error > 0 is certain from `low` on, within `resolution` of the last such point; None: `high`.
+    """Up to where p - error > 0 is certain, from `low` on.
 
-    It is `low` itself where nothing can be said there.
+    Args:
+        p: a polynomial in the time w since some instant.
+        error: what p is wrong by at most, everywhere.
+        low, high: between which w it is looked for, dimensionless.
+        resolution: how near the last such w is found.
+
+    Returns:
+        None where it is so up to `high`; `low` itself where nothing can be said there.
     """
     course = _Course(p, error, high)
     stack = [(low, high)]
@@ -143,9 +150,15 @@ def certain_fall(known: Enclosure, low: fmpq, high: fmpq, resolution: fmpq) -> t
 
 
 def certain_rise(known: Enclosure, high: fmpq, resolution: fmpq) -> fmpq | None:
-    """From where on, about, a function that is not certainly positive at 0 is; None where that is nowhere soon.
+    """From where on, about, a function that is not certainly positive at w = 0 is.
 
-    0 where it is at once, or nothing of it is unknown.
+    Args:
+        known: the function of the time w since some instant, and its error.
+        high: up to where it is known, dimensionless.
+        resolution: the first w that is tried is a part of it.
+
+    Returns:
+        0 where it is so at once, or nothing of it is unknown; None where it is not so before `high`.
     """
     p, error = known.polynomial, known.error
     if known.exact is not None or p(arb(0)) > error:

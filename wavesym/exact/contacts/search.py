@@ -354,7 +354,15 @@ class Search:
 
 
 def lasting(changes: Iterable[Change], width: fmpq) -> list[Change]:
-    """As one each what a link does within so long, where its branch was left open; nothing where that is taken back."""
+    """Join the changes of a link that lie close together, where its branch was left open, into one.
+
+    Args:
+        changes: in order of time.
+        width: what counts as close, in tau.
+
+    Returns:
+        In order of time; nothing of a link that is back on its branch within `width`.
+    """
     kept: dict[int, list[Change]] = {}
     for change in changes:
         of_link = kept.setdefault(change.link, [])

@@ -27,9 +27,18 @@ _BETWEEN = 100  # bits that a force is nearer to the cluster than others are
 
 
 def prove_cluster(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> list[Mode] | None:
-    """The modes from the n-th on whose frequencies are w but for 2^-560 of it; None where that is not so.
+    """Modes whose frequencies are equal, but for 2^-560 of them, with their shapes.
 
-    In the precision that is set, of twice as many bits and more.
+    The precision that is set has twice as many bits and more.
+
+    Args:
+        stiffness: how the network resists a harmonic motion.
+        law: its numbers, as balls.
+        n: the number of the first of these modes, from 1 on.
+        w: their frequency, in rad per tau.
+
+    Returns:
+        None where that is not proved: no frequency is certain to lie there, or others may be as near.
     """
     ball = arb(w, (w * arb(2) ** -WIDE).upper())
     below, above = stiffness.proved_count(law, ball.lower()), stiffness.proved_count(law, ball.upper())

@@ -132,7 +132,15 @@ def moved_mass(
     cot: Sequence[Quantity],
     csc: Sequence[Quantity],
 ) -> Quantity:
-    """The sum of M q^2, and of the integrals of Z u^2 over the delays of the bars."""
+    """The generalised mass of a shape: the sum of M q^2, and of the integrals of Z u^2 over the delays of the bars.
+
+    Args:
+        law: masses, and the impedances of bars by rows.
+        w: the frequency, in rad per tau.
+        found: the displacement q of each row.
+        parents: the row that each row hangs on; None for the root.
+        cot, csc: cot and 1/sin of w times each delay of the law.
+    """
     # u = (left sin w(T - s) + right sin w s)/sin w T, so that its square has the integral
     # (left^2 + right^2) same + 2 left right other
     same = [(t * s * s - c / w) / 2 for t, c, s in zip(law.delays, cot, csc, strict=True)]

@@ -121,7 +121,7 @@ class Statics:
         return total
 
     def imposed_shape(self, point: int) -> Shape:
-        """The shape that the unit motion of a point imposes that moves as it is told."""
+        """The shape that the unit motion of a point imposes whose motion is prescribed."""
 
         def per_delay(bar: Bar) -> Quantity:
             return 1 / self.number(bar.delay)

@@ -106,7 +106,7 @@ def _masses(lengths: Sequence[Fraction], until: int) -> Scene:
 
 
 def _incommensurable(until: float) -> Scene:
-    """Three lengths without a common measure to speak of, and so with ever more knots."""
+    """Three lengths without a common measure to speak of, and so with ever more breakpoints."""
     return _masses([Fraction(1), Fraction("1.414213562"), Fraction("1.732050808")], int(until))
 
 
@@ -130,7 +130,7 @@ REFUSALS: Mapping[str, tuple[Callable[[float], Scene], Sequence[float]]] = {
 def refusals(
     progress: Progress, panels: Mapping[str, tuple[Callable[[float], Scene], Sequence[float]]] = REFUSALS
 ) -> CurveFamily:
-    """What each program proves, or that it refuses: by knots, common steps, springs and contact events."""
+    """What each program proves, or that it refuses: by breakpoints, common steps, springs and contact events."""
     points = []
     for panel, (scene, places) in panels.items():
         for name in EVALUATORS:

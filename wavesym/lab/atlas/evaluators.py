@@ -223,28 +223,30 @@ def nearly_equal(gap: Fraction) -> Scene:
 
 
 def lengths(progress: Progress, gaps: Sequence[Fraction] = LENGTH_GAPS) -> CurveFamily:
-    """Knots, steps, and the error of pieces, as the lengths come together."""
+    """Breakpoints, steps, and the error of pieces, as the lengths come together."""
     models = {float(gap): lower(nearly_equal(gap)) for gap in gaps}
-    knots = [AtlasPoint("", "knots, the most at one joint", x, most_breakpoints(model)) for x, model in models.items()]
+    breakpoints = [
+        AtlasPoint("", "breakpoints, the most at one joint", x, most_breakpoints(model)) for x, model in models.items()
+    ]
     steps = [
         AtlasPoint("", "steps of the common measure to the horizon", x, common_steps(m)) for x, m in models.items()
     ]
     places = ((float(gap), nearly_equal(gap)) for gap in gaps)
     return CurveFamily(
         "lengths",
-        "Rods of lengths 1 and 1 + gap: a common grid would need ever more steps; knots and errors stay as they are",
+        "Rods of lengths 1 and 1 + gap: a common grid would need ever more steps; breakpoints and errors stay",
         Axis("gap", zero=1e-20, falling=True),
         "a number; of pieces largest error / largest value",
-        (*knots, *steps, *_errors(progress, "", places, per_unit=4, names=["pieces"])),
+        (*breakpoints, *steps, *_errors(progress, "", places, per_unit=4, names=["pieces"])),
         least=1e-17,
         most=1e21,
     )
 
 
 def most_breakpoints(model: Model) -> int:
-    """How many knots the joint with most of them has by the horizon."""
+    """How many breakpoints the joint with most of them has by the horizon."""
     joints = Breakpoints(model, rational(model.horizon())).joints
-    return max(sum(knot <= model.until for knot in times) for times in joints.values())
+    return max(sum(time <= model.until for time in times) for times in joints.values())
 
 
 def common_steps(model: Model) -> float:

@@ -27,7 +27,7 @@ def tokens(text: str) -> list[Token]:
 
 
 def differences(one: Sequence[Hashable], other: Sequence[Hashable]) -> tuple[frozenset[int], frozenset[int]]:
-    """The places in each of two sequences of what the other does not have."""
+    """The places in each of two sequences of what the other does not have, by the longest common blocks."""
     blocks = [block for block in SequenceMatcher(a=one, b=other, autojunk=False).get_opcodes() if block[0] != "equal"]
     return (
         frozenset(place for _, start, end, _, _ in blocks for place in range(start, end)),

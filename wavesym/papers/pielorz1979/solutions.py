@@ -152,7 +152,7 @@ def acting_moments(words: Words) -> Iterator[Case]:
 
 
 def missing_function(words: Words) -> Iterator[Case]:
-    """The functions without a row in Table 4."""
+    """The functions without a row in Table 4, for each m that is tried, against those that a sentence names."""
     call = read_formula(words["function"])
     assert isinstance(call, Call)
     for m in (2, 3, 4):

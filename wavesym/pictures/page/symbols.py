@@ -71,7 +71,7 @@ def ground_link(x: float, y: float, *, elastic: bool, damped: bool) -> Svg:
 
 
 def motion_arrow(x: float, y: float, words: str) -> Svg:
-    """An arrow both ways: what moves as it is told."""
+    """An arrow both ways: an end whose motion is prescribed."""
     arrow = polyline([(x - 12, y - 3), (x - 17, y), (x - 12, y + 3)], "act")
     other = polyline([(x + 12, y - 3), (x + 17, y), (x + 12, y + 3)], "act")
     return concatenate(line(x - 17, y, x + 17, y, "act"), arrow, other, text(x, y + 16, words, class_="act"))

@@ -163,7 +163,15 @@ def _size(block: WindowBlock, terms: Iterable[OutputTerm], weights: Array) -> fl
 
 
 def reading_weights(degree: int, displaced: bool) -> Array:
-    """What each coefficient of a wave adds to the rounding of a value, or to that of a displacement on a window."""
+    """What each Chebyshev coefficient of a wave adds to the error of an output, in units of rounding.
+
+    Args:
+        degree: that of the wave on a panel.
+        displaced: whether the output is an integral of the wave, a displacement.
+
+    Returns:
+        (degree + 1,)
+    """
     k = np.arange(degree + 1)
     return k + 8 + degree / (k + 1.0) if displaced else (k + 1) * (k + 2.0) + degree
 

@@ -135,7 +135,17 @@ def judge_march(model: Model, real: Real = DOUBLE, degree: int | None = None) ->
 
 
 def judge_degree(plan: MarchPlan, degree: int, real: Real, what: str = "march") -> Verdict:
-    """What a plan at some degree is worth; CostError where the joints of `what` it is take too many bits."""
+    """What a plan is worth at some degree: its proved errors.
+
+    Args:
+        plan: a model made ready to march.
+        degree: that of the polynomials on panels.
+        real: the type of the numbers that it is computed in.
+        what: the program that is made of it, for messages.
+
+    Raises:
+        CostError: where its joints take too many bits.
+    """
     try:
         return judge(plan, degree, real)
     except OverflowError:  # of the numbers' format, which costs have nothing to do with

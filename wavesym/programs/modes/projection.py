@@ -62,7 +62,7 @@ class ModalOutput:
 
 @dataclass(frozen=True)
 class Driver:
-    """A load: `gain` times a force on a point, or times the acceleration of one that moves as it is told."""
+    """A load: `gain` times a force on a point, or times the acceleration of one whose motion is prescribed."""
 
     point: int
     gain: fmpq
@@ -71,7 +71,7 @@ class Driver:
 
 
 def drivers_of(network: Network) -> list[Driver]:
-    """All loads that a network can have: pairs of a step and a ramp. UnservedError for a velocity that is told."""
+    """All loads that a network can have: pairs of a step and a ramp. UnservedError for a prescribed velocity."""
     found: list[Driver] = []
     for number, point in enumerate(network.points):
         if point.motion == "fixed":

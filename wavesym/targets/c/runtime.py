@@ -74,7 +74,17 @@ class CRuntimeField:
 
 
 def files(scene: Description, program: Program) -> dict[str, str]:
-    """NAME.h, NAME.c and NAME_selftest.c of a program; work is `inside` of models where it is too much for a stack."""
+    """The C of a program whose parameters come at run time.
+
+    Its work space is in models where it is too large for a stack.
+
+    Args:
+        scene: what headers say of it, and its name, the prefix of all.
+        program: with laws, functions of the parameters.
+
+    Returns:
+        NAME.h, NAME.c and NAME_selftest.c, the texts by name of the file.
+    """
     assert program.laws is not None
     fields = tuple(parameter_fields(program.laws, program.real))
     structs = partial(
