@@ -47,10 +47,12 @@ TUTORIALS = [page for page in PAGES if page.startswith("docs/tutorials/")]
 EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("*.md"))
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "llms.txt", *PAGES, *EXAMPLES)
 QUICK = [name for name in DOCUMENTS if name not in EXAMPLES and name not in TUTORIALS]
+SECONDS = {f"docs/guide/{page}.md" for page in ("bound", "chains", "pictures", "results")}  # whose commands others have
 READ_ELSEWHERE = {"order", "exceptions", "exact", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(
-    r"(sed .*= 1e4.* \| )?wavesym (chart|verify|plot --published|plot \S+ --kind xt|generate \S+ --target|inspect -)"
+    r"sed .*= 1e7.* \| wavesym run"
+    r"|(sed .*= 1e4.* \| )?wavesym (chart|verify|plot --published|plot \S+ --kind xt|generate \S+ --target|inspect -)"
 )  # seconds and more; what is only inspected on standard input is far too long a scene
 ELSEWHERE = re.compile(r"wavesym stability\b")  # minutes: slow tests in tests/lab draw the same curves
 COMPILED = "wavesym.model("  # of a block of Python: it waits for a compiler
@@ -287,7 +289,9 @@ def assert_spelt(words: list[str]) -> None:
     assert {word for word in words if word.startswith("-") and word != "-"} <= options(command(words[1]))
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in QUICK]
+)
 def test_what_a_document_says_works(name: str, tmp_path: Path) -> None:
     assert reader(name, tmp_path, patience=False).read(document(name)) == document(name).count("```") // 2
 

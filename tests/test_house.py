@@ -116,6 +116,7 @@ WAYS: dict[str, tuple[Callable[[Scene, Path], object], dict[str, int]]] = {
 """What people do, and how many engines that takes; a scene is lowered once, whatever it is."""
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("way", WAYS)
 def test_each_stage_is_taken_once(stages: Counter[str], way: str, tmp_path: Path) -> None:
     scene = Scene.from_toml("drive_m1")
@@ -164,7 +165,7 @@ strain = ["0.7"]
 """Fronts between its layers make a million stretches."""
 
 
-@pytest.mark.quick(5)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("way", [each for each in WAYS if each not in ("inspect", "verify")])
 def test_what_corners_do_is_searched_for_once(searches: list[object], way: str, tmp_path: Path) -> None:
     """Also for the largest drift, and for pictures of all of the chain. (`inspect` has two precisions, so two ends of

@@ -139,6 +139,7 @@ def chebyshev(value, centre: Fraction, half: Fraction, terms: int) -> list[arb]:
     return [c / arb(rational(half)) ** k for k, c in enumerate(powers)]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_polynomials_are_those_of_the_exact_tables(name: str, record_property) -> None:
     pieces = kept(name)

@@ -135,6 +135,7 @@ def test_response() -> None:
     assert wavesym.evaluator(Scene.from_toml("collision_m4")).events == ()
 
 
+@pytest.mark.slow
 def test_where_no_contact_can_open_nothing_is_said_of_events() -> None:
     for name in ("collision_m4", "stepped_shaft"):
         short = Scene.from_toml(name).with_({"output.until": 5})

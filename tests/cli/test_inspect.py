@@ -177,6 +177,7 @@ def value(linear: dict[str, str], at: Fraction | int) -> Fraction:
     return Fraction(linear["constant"]) + Fraction(linear["slope"]) * at
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", NAMED)
 def test_the_recurrences_hold_for_the_table(name: str) -> None:
     """Every coefficient that `tables` prints fits the recurrences in numbers, and so do the jumps."""
@@ -234,6 +235,7 @@ def tables_in(source: str) -> dict[str, tuple[str, int]]:
     return {name: (kind, len(re.findall(r"[^\s,]+", body))) for kind, name, body in found}
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", ["building_m2", "collision_m4", "drive_m1"])
 def test_tables_are_as_long_as_those_in_c(name: str, tmp_path: Path) -> None:
     given = short(name)

@@ -151,6 +151,7 @@ def test_a_scene_to_start_from_works_and_is_explained(kind: str, capsys: pytest.
     assert np.all(np.isfinite(scene.run(samples=3).values))
 
 
+@pytest.mark.slow
 def test_the_soil_of_the_pile_to_start_from_yields(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["init", "pile"]) == 0
     Path("first.toml").write_text(capsys.readouterr().out, encoding="utf-8")

@@ -92,7 +92,7 @@ def test_a_changed_line_breaks_the_theorem(line):
     assert list(residuals(e, wrong, 2))[2] != 0
 
 
-@pytest.mark.quick(5)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(("system", "pattern"), CASES)
 def test_what_is_printed_solves_the_delay_equations(system, pattern):
     laws = recurrence(system, pattern.parameters)

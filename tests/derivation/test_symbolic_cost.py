@@ -18,7 +18,7 @@ def counted(chain, intervals):
     return sum(len(factor) for v in values if isinstance(v, Ratio) for factor, _ in v.factorization.numerator)
 
 
-@pytest.mark.quick(5)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("system", "interval", "m", "intervals"),
     [

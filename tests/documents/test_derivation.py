@@ -84,7 +84,7 @@ def test_the_smallest_written_out(system, m):
         assert len(statement["families"]) == 2
 
 
-@pytest.mark.quick(len([*SYSTEMS, *NAMED]))
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("source", [*SYSTEMS, *NAMED])
 @pytest.mark.parametrize("m", [None, 4])
 def test_latex_and_text_say_as_much(source, m):
@@ -107,6 +107,7 @@ def test_json_keeps_the_keys_it_had():
     assert statement["recurrences"][0].keys() == {"of", "formulas"}
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("system", ["collision", "drive"])
 def test_written_out_no_index_is_left(system):
     (statement,) = json.loads(derivation(system, 6, "json"))

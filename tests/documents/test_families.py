@@ -156,6 +156,7 @@ def test_lists_run_to_the_exact_tables(system, m, pattern, numbers):
         assert runner(one, laws, found).run(source) == exact(one, source)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("system", [COLLISION, DRIVE, BUILDING_FORCE], ids=lambda system: system.name)
 def test_the_general_list_holds_where_rates_are_equal_too(system):
     one = chain(system, 4, EQUAL, GENERIC)
@@ -228,7 +229,7 @@ SCENES = [
 ]
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("one", SCENES, ids=lambda one: f"{one.system.name}-{one.m}")
 def test_the_lists_of_a_scene_run_to_its_tables(one):
     symbols = symbolic(one)

@@ -66,7 +66,7 @@ def worst_integral(scene: Scene) -> float:
     return float(np.max(np.abs(summed - gained)) / np.max(np.abs(acceleration)))
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", [2, 3, 4, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (0, 1, 5))])
 def test_the_integral_of_an_acceleration_is_what_the_velocity_gains(seed: int) -> None:
     assert worst_integral(drawn(Random(seed))) < 1e-12
@@ -228,6 +228,8 @@ def test_a_march_has_those_of_places_without_mass(thorough: bool) -> None:
             assert "no place without mass is supported where" in tried.refusal or "common measure" in tried.refusal
             continue
         served += 1
+        if served > 2 and not thorough:
+            break
         program = make(model, Request("march"))
         taus = np.linspace(0, program.tau_max, 101)
         exact = np.array(Reference(model).values(taus.tolist()))

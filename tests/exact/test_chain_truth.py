@@ -107,6 +107,7 @@ def missed(table: dict[str, Any], tolerance: str = "1e-10") -> float:
     return worst
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("table", [STEPPED, FLOORS], ids=["stepped", "floors"])
 def test_a_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
     assert wrong_values(table, most=8) == []

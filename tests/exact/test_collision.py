@@ -34,6 +34,7 @@ def test_the_papers_collision():
     assert end.digits == "8.9018784785056660529"  # numerics, section 8; the paper reads 8.85 off its figure
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("kappa", [["1/7", "1/5", "2/3"], ["1/5", "1000001/5000000", "1/5"]])
 def test_the_strain_is_zero_there_and_negative_before(kappa):
     scene = collision(kappa, [1, "1/4", -1], until=12, strain=[2, 4])
@@ -193,6 +194,7 @@ def test_a_contact_that_was_only_just_met_has_not_opened():
 TOUCHES = Fraction("1.9728944693640106904700")
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("digits", [4, 6])
 def test_a_strain_that_nearly_touches_zero_is_told_from_one_that_crosses_it(digits):
     little = Fraction(1, 10**digits)

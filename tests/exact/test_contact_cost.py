@@ -51,6 +51,7 @@ def test_what_comes_near_the_limit_is_served(until: str, least: int) -> None:
     assert least < sum(map(len, known.stages.values())) <= cost.MOST_STAGES
 
 
+@pytest.mark.slow
 def test_layers_with_a_common_measure_are_served() -> None:
     assert events(layered("3", ["1/400", "1/200"]))
 
@@ -156,6 +157,7 @@ def summed_fronts(until: float) -> tuple[NDArray[np.float64], NDArray[np.float64
 MATERIALS = ((314.16, 200e9, 7800), (200, 70e9, 2700), (200, 3e9, 1200))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("until", "stretches"), [("340 us", 800), pytest.param("480 us", 25_000, marks=pytest.mark.slow)]
 )

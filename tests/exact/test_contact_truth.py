@@ -38,7 +38,7 @@ def instants(made: PiecewiseChain, until: Fraction) -> list[float]:
     )
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("seed", KEPT)
 def test_contacts_open_and_close_as_they_should(seed: int) -> None:
     assert wrong(seeded(seed)) == []
@@ -83,6 +83,7 @@ def beside_a_light_mass(until: str, where: str = "2.8", **mass: Any) -> dict[str
     return {"name": "light", "system": {"type": "chain", "parts": parts}, "output": output}
 
 
+@pytest.mark.slow
 def test_what_a_light_mass_sends_later_than_it_matters_hides_no_contact() -> None:
     """Up to the horizon its last series would have to bear exp(520); a shorter horizon asks for less."""
     (soon,) = events(lower(Scene(**beside_a_light_mass("4.9"))))

@@ -198,12 +198,14 @@ def test_a_contact_that_never_opens_or_never_closes_changes_nothing():
     assert same(moved(apart, TAUS, [seen(0, "1/2")]), moved([body(2, velocity=1), rod()], TAUS, [seen(0, "1/2")]))
 
 
+@pytest.mark.slow
 def test_splitting_a_rod_changes_nothing():
     split = [*STRIKING[:2], rod("1/3"), rod("2/3"), *STRIKING[3:]]
     whole = moved(STRIKING, TAUS, [seen(0, 0), seen(1, "1/2")])
     assert same(whole, moved(split, TAUS, [seen(0, 0), seen(2, "1/2")]))
 
 
+@pytest.mark.slow
 def test_a_mirror_changes_only_signs():
     mirrored = [FIXED, rod("3/2", 2), contact("1/5"), body("1/2"), rod(), contact(), body(2, velocity=-1)]
     one = moved(STRIKING, TAUS, [seen(0, "1/3"), seen(1, "1/2")])
@@ -211,6 +213,7 @@ def test_a_mirror_changes_only_signs():
     assert same(one, [[-value for value in row] for row in other])
 
 
+@pytest.mark.slow
 def test_outputs_of_single_precision_and_fields_know_of_contacts():
     from wavesym.numbers.reals import SINGLE
 
@@ -296,6 +299,7 @@ def test_what_swings_too_fast_is_foretold(monkeypatch):
         events(line(parts, 8))
 
 
+@pytest.mark.slow
 def test_a_cap_with_hardly_any_mass_is_served():
     """It answers at a rate of 1.25e6, and dies away: no stretch is cut for it then."""
     for mass in ("1e-6", 0, "1e-2"):

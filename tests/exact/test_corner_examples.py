@@ -40,6 +40,7 @@ def test_a_drill_string_that_is_a_torsional_pendulum_sticks_and_slips_in_its_per
     )
 
 
+@pytest.mark.slow
 def test_the_teeth_of_a_pinion_on_a_rigid_shaft_part_and_strike_as_it_swings_and_flies() -> None:
     """It swings on its teeth by K, flies across the play under the torque, and swings on the other flank."""
     table, inertia, stiffness, torque, play, turn = table_of("gears_with_backlash"), 0.5, 200e3, 500, 0.01, 0.02

@@ -23,7 +23,7 @@ from wavesym.scene import Scene, lower
 KEPT = (82, 16, 29, 89, 118)
 
 # springs of one side, with gaps on both, that yield: beside rods, between masses, to the ground
-SPRUNG = (5, 8, 10, 19, 22, 25)
+SPRUNG = (8, 5, 10, 19, 22, 25)
 
 # the instant at which another node sticks arrives, and what rubs stays as it is: no event
 LASTING = 72
@@ -45,7 +45,7 @@ RESTING = (7, 22, 37, 44)
 RUBBING = (4, 38, 49, 51)
 
 # a mass that breaks away at once, at a front, turning round; masses on a belt and beside rods
-BREAKING = (3, 9, 11, 33, 38)
+BREAKING = (9, 3, 11, 33, 38)
 
 
 def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None, first: str = "-1") -> list[str]:
@@ -71,29 +71,31 @@ def drawn(seed: int) -> dict[str, Any]:
     return seeded(seed, ["linear"])
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", KEPT)
 def test_what_rubs_slips_and_sticks_as_it_should(seed: int) -> None:
     assert wrong(drawn(seed)) == []
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", SPRUNG)
 def test_springs_with_laws_change_branches_as_they_should(seed: int) -> None:
     assert wrong(seeded(seed)) == []
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", DAMPED)
 def test_dashpots_beside_springs_that_yield_act_all_the_time(seed: int) -> None:
     assert wrong(damped_chain(seed)) == []
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", TOUCHING)
 def test_contacts_beside_springs_open_and_close_as_they_should(seed: int) -> None:
     assert wrong(touching_chain(seed)) == []
 
 
+@pytest.mark.slow
 def test_springs_beside_contacts_that_nothing_makes_yield_are_linear() -> None:
     def scene(law: dict[str, Any]) -> Scene:
         parts = [{"rod": 1, "velocity": 1, "impedance": 2}, "contact", {"joint": True, "dashpot": "1/10"}]
@@ -107,12 +109,13 @@ def test_springs_beside_contacts_that_nothing_makes_yield_are_linear() -> None:
     assert Reference(linear).values(taus) == Reference(yielding).values(taus)
 
 
-@pytest.mark.quick(4)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", [*SLIDING, *RESTING])
 def test_what_rubs_on_another_part_slips_and_sticks_as_it_should(seed: int) -> None:
     assert wrong(sliding_chain(seed), first="0") == []
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", RUBBING)
 def test_friction_beside_springs_slips_and_sticks_as_it_should(seed: int) -> None:
     assert wrong(rubbing_masses(seed)) == []
@@ -128,14 +131,14 @@ def test_what_comes_to_rest_on_two_masses_that_stick_goes_back(mass: str) -> Non
     assert wrong({"name": "three", "system": {"type": "chain", "parts": parts}, "output": output}) == []
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", BREAKING)
 def test_friction_that_bears_more_at_rest_breaks_away_as_it_should(seed: int) -> None:
     assert wrong(breaking_chain(seed), first="0") == []
 
 
 def test_a_limit_at_rest_that_is_slightly_off_is_seen() -> None:
-    table = breaking_chain(BREAKING[0])
+    table = breaking_chain(3)
     parts = [
         {**part, "breakaway": str(Fraction(part["breakaway"]) + Fraction(1, 10**16))} if "breakaway" in part else part
         for part in table["system"]["parts"]

@@ -202,6 +202,7 @@ def test_what_is_no_zero_is_not_proved(monkeypatch):
     assert not len(complex_frequencies(DAMPED["a mass"], 2))
 
 
+@pytest.mark.slow
 def test_modes_of_many_rows_do_not_wait_for_those_far_away(monkeypatch):
     """They are those of all rounds, in a quarter of them, and proved with half of the bits."""
     parts = ["free", *({"rod": f"{3 + k % 5}/100", "impedance": f"{100 + k}/100"} for k in range(40)), "absorbing"]

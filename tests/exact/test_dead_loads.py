@@ -143,7 +143,7 @@ def test_a_preload_of_a_linear_spring_is_a_pair_of_loads() -> None:
         assert np.array_equal(loaded[name], strained[name])
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("preload", ["1/4", "-1/2", "1", "-2"])
 def test_a_preload_of_a_spring_that_yields_moves_its_limits(preload: str) -> None:
     def parts(pull: Fraction, push: Fraction, more: dict[str, Any]) -> list[Any]:
@@ -227,6 +227,7 @@ PILE: list[Any] = [
 ]
 
 
+@pytest.mark.slow
 def test_a_heavy_pile_moves_as_lumps_that_just_fall() -> None:
     system = {"type": "chain", "gravity": "9.81 m/s^2", "initial": "static", "parts": PILE}
     output = {"until": "30 ms", "displacement": ["ram", "toe-"], "force": ["3 m"]}
@@ -276,6 +277,7 @@ def _lumps(cells: int, times: Array) -> tuple[Array, Array, Array]:
     return moved[:, 0], moved[:, 1], moved[:, 2]
 
 
+@pytest.mark.slow
 def test_a_blow_that_dies_away_under_weight_leaves_its_contact_closed() -> None:
     """All falls alike, and the contact pushes with exp(-tau) until its wave is back: more bits follow it further."""
     parts = [{"mass": 1, "velocity": 1, "name": "a"}, "contact", {"rod": 500}, {"mass": 10**9}]

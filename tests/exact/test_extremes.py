@@ -354,6 +354,7 @@ def test_what_is_trimmed_is_in_the_radius(seed):
             assert abs(polynomial(arb(t)) - arb_poly(middles)(arb(t))) <= more - radius
 
 
+@pytest.mark.slow
 def test_a_light_mass_beside_a_stiff_rod_does_not_wait():
     """Each of its pieces has thousands of bits, of which an extreme needs few: took minutes."""
     parts = [{"rod": 1}, {"mass": "1/300", "name": "n", "velocity": 1}, {"rod": "1/10", "impedance": 10}, {"mass": 1}]

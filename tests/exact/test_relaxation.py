@@ -187,7 +187,7 @@ def stretches(table: dict[str, Any]) -> int:
     return sum(map(len, known.stages.values()))
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("dashpot", "cap"),
     [("1/100", {}), ("1/10000", {}), pytest.param("1/100", {"mass": "1/10000"}, marks=pytest.mark.slow)],
@@ -220,6 +220,7 @@ def test_a_body_that_presses_ever_less_still_presses() -> None:
     assert events(lower(Scene(**table))) == ()
 
 
+@pytest.mark.slow
 def test_more_bits_are_had_from_the_stretches_that_were_found() -> None:
     model = lower(Scene(**cushioned(200, "1/100", "2")))
     known = contact_schedule(model, model.until)

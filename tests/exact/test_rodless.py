@@ -109,7 +109,7 @@ def expm(matrix: Array) -> Array:
     return total
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("seed", range(6))
 def test_motions_are_exponentials_of_a_matrix(seed: int) -> None:
     dense = Dense(Random(seed), damped=seed % 2 == 1)

@@ -47,7 +47,7 @@ def until(made: dict[str, Any]) -> fmpq:
     return fmpq(*Fraction(str(made["output"]["until"])).as_integer_ratio())
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("stiffness", [10**4, 10**6])
 @pytest.mark.parametrize("middle", [GROUND, BETWEEN], ids=["to ground", "between"])
 def test_stiff_springs_are_right_to_the_last_bit(middle: list[dict[str, Any]], stiffness: int) -> None:
@@ -125,6 +125,7 @@ def settling(stiffness: int, until: object) -> dict[str, Any]:
 SETTLING = [table(LIGHT, 50_000, ("1", "1"), "7/4"), table(LIGHT, 10**12, ("1", "1"), "7/4"), settling(50_000, "7/4")]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("made", SETTLING, ids=["massless", "stiffest", "body"])
 def test_what_dies_away_early_in_a_window_is_followed_no_longer(made: dict[str, Any]) -> None:
     """A minute of series on thousands of stretches before; the bound holds against a solver that knows no joints."""

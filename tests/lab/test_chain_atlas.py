@@ -62,6 +62,7 @@ def test_a_spring_swings_as_it_should(ratio):
     np.testing.assert_allclose(program.evaluate(taus)[1:], truth, rtol=0, atol=3e-10)
 
 
+@pytest.mark.slow
 def test_stiffness():
     family = evaluators.stiffness(quietly, exponents=(-6, 0, 3))
     assert len(served(family)) == 3

@@ -251,6 +251,7 @@ def test_curves_differ_without_their_colour():
     assert len(set(looks)) == len(looks)
 
 
+@pytest.mark.slow
 def test_other_formats_and_what_is_none(drawn, tmp_path):
     from wavesym.errors import SceneError
     from wavesym.pictures.saving import save

@@ -135,6 +135,7 @@ ORDERS = {
 }
 
 
+@pytest.mark.slow
 def test_orders_of_the_limit_of_masses_and_springs():
     check_orders(other_methods.springs(quietly, kappas=other_methods.KAPPAS[2:4]))
 
@@ -253,6 +254,7 @@ FAMILY = CurveFamily(
 )
 
 
+@pytest.mark.slow
 def test_the_same_numbers_make_the_same_bytes(tmp_path):
     for name in ("first.svg", "second.svg"):
         save(draw(FAMILY), tmp_path / name)

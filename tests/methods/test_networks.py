@@ -146,9 +146,11 @@ def test_elements_converge_where_nothing_jumps(name, method, coarse, order):
     ],
     ids=["delays", "springs", "links", "gears", "strain"],
 )
-def test_a_fault_is_seen(method, name, broken):
+def test_a_fault_is_seen(method, name, broken, thorough):
     if name in REFUSED.get(method, ()):
         pytest.skip("the method does not take it")
+    if not thorough and method is discrete.MODAL and name == "springs and dashpots":
+        pytest.skip("seconds, which the other scenes do not take")
     resolution = RESOLUTIONS.get(method, 100)
     right, wrong = np.median(errors(method, name, resolution)), np.max(errors(method, name, resolution, broken))
     assert right < 0.05

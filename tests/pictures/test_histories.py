@@ -90,6 +90,7 @@ def test_some_of_these_scenes_jump() -> None:
     assert sum(len(sizes) for name in SCENES for sizes in exact_jumps(lower(scene(name)))) > 40
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_both_sides_of_a_jump_are_those_of_the_reference(name: str) -> None:
     made = histories(lower(scene(name)))
@@ -240,6 +241,7 @@ def test_a_notebook_shows_a_figure_before_pyplot_is_there(figure: Figure) -> Non
     assert figure._repr_png_()[:4] == b"\x89PNG"
 
 
+@pytest.mark.slow
 def test_same_histories_same_bytes(tmp_path: Path) -> None:
     for suffix in ("svg", "png"):
         for name in "ab":
@@ -307,6 +309,7 @@ def swinging(count: int, outputs: int) -> Histories:
     return Histories(lower(THIRDS), tuple(made), (), dense=True)
 
 
+@pytest.mark.slow
 def test_many_curves_that_turn_often_have_strips_on_one_axis() -> None:
     made = swinging(50, 30)
     strips = panels.panels(made)

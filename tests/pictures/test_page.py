@@ -320,7 +320,7 @@ def test_the_animation_moves_with_the_cursor(tmp_path: Path) -> None:
     last, places = reported(text, script, tmp_path)  # type: ignore[misc]
     moved = [float(place[10:].split(" ")[0]) / 90 for place in places]
     response = wavesym.evaluator(scene.with_({"output.displacement": [0, 1, 2]}))
-    taus = np.linspace(0, response.tau_max, 20001)
+    taus = np.linspace(0, response.tau_max, 2001)
     rows = [response.outputs.index(f"displacement@{k}") for k in range(3)]
     values = response(taus)[rows]
     now = response([900 / float(last) * response.tau_max])[rows, 0] / np.max(np.abs(values))
@@ -416,6 +416,7 @@ def test_the_cursor_reads_values_off(building: str, tmp_path: Path) -> None:
             assert float(said[name]) == pytest.approx(value, abs=0.006 * size)
 
 
+@pytest.mark.slow
 def test_curves_are_zoomed_around_the_cursor(building: str, tmp_path: Path) -> None:
     script = """
       const slider = document.getElementById("cursor"), zoom = document.getElementById("zoom");
@@ -447,7 +448,8 @@ def test_axe_finds_what_is_wrong(building: str, tmp_path: Path) -> None:
     assert {"label", "aria-valid-attr-value"} & set(reported(broken, axe() + LOOK, tmp_path))  # type: ignore[call-overload]
 
 
-@pytest.mark.parametrize("name", ["collision_m4", "drive_m1"])
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("name", ["drive_m1", "collision_m4"])
 def test_other_systems_have_pages(name: str) -> None:
     text = page(Scene.from_toml(name))
     assert faults(text) == []

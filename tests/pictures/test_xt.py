@@ -51,6 +51,7 @@ def test_lines_are_the_chain_and_its_branches():
     assert [station.points for station in drive[""]] == [(0,), (1,)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["building_m2"])
 def test_the_same_picture_again(name, tmp_path):
     pytest.importorskip("matplotlib")

@@ -140,6 +140,7 @@ def test_what_was_asked_for_says_why_it_is_refused(makers):
 RECORDS = {"31.37": (60, 1900, 60), "1/200": (400, 200, 200)}
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("spacing", RECORDS)
 def test_of_a_record_that_is_too_much_all_the_causes_are_told(spacing):
     """Modes and a march of one hat take what does not jump; nothing takes so many jumps."""

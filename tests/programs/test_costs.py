@@ -82,10 +82,11 @@ def test_numbers_of_99_characters_are_generated_and_run():
 )
 def test_a_long_record_is_not_for_closed_forms_nor_large_ones_for_pieces(samples, outputs, idle):
     scene = record(samples, outputs)
+    model = lower(scene)
     for asked in (choice._WORTH_TRYING, 1e5):
         with pytest.raises(CostError, match=r"^load: .* increments would arrive at the outputs, the limit"):
-            choice.refuse_many(lower(scene), asked)
-    assert Reference(lower(scene)).signals is None
+            choice.refuse_many(model, asked)
+    assert Reference(model).signals is None
     with pytest.raises(pieces._TooLarge if outputs == 2000 else Begun):
         choose(lower(scene), "pieces")
 

@@ -72,6 +72,7 @@ def looked_at(found: HatMarch, most: int = 40) -> np.ndarray:
     return np.unique([*some, *np.random.default_rng(1).uniform(0, found.tau_max, most // 2)])
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("first", [0, 7], ids=["from nothing", "a jump first"])
 def test_a_record_that_no_window_takes(first: int) -> None:
     model = shaken([first, *SAMPLES])

@@ -173,6 +173,7 @@ def test_long_horizons_agree_with_direct_integration() -> None:
         assert np.abs(row - expected).max() <= error + 1e-12 * np.abs(expected).max()
 
 
+@pytest.mark.slow
 def test_the_degree_grows_with_the_horizon_and_suffices() -> None:
     degrees = [march(lower(building(until, SHORT_PULSE))).degree for until in (20, 200, 2000)]
     assert degrees == sorted(degrees)
@@ -247,6 +248,7 @@ def test_springs_soft_and_stiff(stiffness) -> None:
     check(chain_of(parts, 3, velocity=["1-", 0]), 6, 1e-8)
 
 
+@pytest.mark.slow
 def test_a_spring_of_a_million() -> None:
     """It swings 160 times a unit of tau; a Laplace expansion has it in closed form."""
     parts = [{"rod": 1, "velocity": 1}, {"mass": 1, "velocity": 0, "spring": 10**6}, {"rod": "7/6"}]
@@ -260,6 +262,7 @@ def test_a_spring_of_a_million() -> None:
     assert np.all(missed(model, made, taus=taus, true=by_laplace(table, model, taus)) <= 1)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("times", [["1e-9"], ["1/2", "0.5000001"], ["1/3", "2/3", "0.7", "1.1"]])
 def test_loads_at_nasty_times(times) -> None:
     """Panels that are very short, which cost much of the bound, and many."""

@@ -148,7 +148,7 @@ def norms(q, end):
     return np.array([coefficients, (np.linalg.norm(end.error[:-1] / twice), end.error[-1], end.underflow)])
 
 
-@pytest.mark.quick(4)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("count", [5, 8])
 @STEPS
 def test_roundings_are_no_less_than_a_count_and_little_more(step, degree, count) -> None:

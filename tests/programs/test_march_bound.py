@@ -159,6 +159,7 @@ def test_energy_never_grows(table) -> None:
         assert np.allclose(energy, energy[0], rtol=1e-6, atol=0)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     "system",
     [
@@ -469,6 +470,7 @@ def gathered(c, t, start, half):
     return Rounded.wrong(half) * difference
 
 
+@pytest.mark.quick(1)
 @STRETCHES
 def test_integrating_a_wave_costs_no_more_than_said(start, half) -> None:
     """It costs a good deal less: an error of the local variable is not multiplied by the degree."""

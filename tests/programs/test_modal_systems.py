@@ -164,7 +164,7 @@ DAMPED = {
 }
 
 
-@pytest.mark.quick(4)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("name", DAMPED)
 def test_damped_modes_beyond_those_taken_are_within_the_bound(name):
     model = replace(building(["1", "1/4", "3/5"], [samples(9)], **ALL, **MORE), damping=DAMPED[name])

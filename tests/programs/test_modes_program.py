@@ -86,7 +86,7 @@ def wrong(model, real, right, taus):
     return made, errors, np.array([output.bound * output.largest for output in made.outputs])
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_modes_are_within_their_bounds_and_motion_is_nearly_exact(name):
     given = scene(name)

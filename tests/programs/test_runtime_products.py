@@ -60,6 +60,7 @@ def accepted(given, derived):
     return bool(np.all((sizes >= np.finfo(np.float64).tiny) & np.isfinite(sizes)))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("derived", [False, True])
 def test_no_law_has_lost_digits_that_is_not_refused(derived):
     """Numbers from anywhere, and all about as large."""

@@ -89,7 +89,7 @@ def test_a_record_is_its_samples_joined_and_0_before_and_after(samples, spacing,
         assert value(made, at) == drawn_through([*before, *points, after], at)
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("damping", [0.05, "5 %", {"modes": [1, 2], "ratio": 0.05}])
 @pytest.mark.parametrize("given", [{}, {"start": 0}])
 def test_a_damped_record_rises_to_its_first_sample(damping, given):

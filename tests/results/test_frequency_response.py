@@ -181,14 +181,14 @@ def test_the_comparison_finds_what_is_missing(lost: str, monkeypatch: pytest.Mon
     assert np.max(np.abs(found.values[:, 0] - moved[1:])) > 1e-7 * np.max(np.abs(moved))
 
 
-def test_it_is_the_transform_of_a_history() -> None:
+def test_it_is_the_transform_of_a_history(thorough: bool) -> None:
     """A pulse that is linear between samples, and what it does, which dies away: both as Fourier integrals."""
     until, spacing = 40, 0.5
     samples = [0, 1, 3, 2, -1, 0]
     base = rod(dashpot="4/5")
     load = [{"at": "tip", "spacing": spacing, "samples": samples}]
     scene = Scene(name="rod", system=base.system, load=load, output={"until": until, "displacement": ["1/2"]})
-    fine = 4000
+    fine = 4000 if thorough else 1000
     times = np.linspace(0, until, fine * until + 1)
     history = scene.run(times)["displacement@1/2"]
     pulse = np.interp(times, spacing * np.arange(len(samples)), samples)
@@ -225,8 +225,9 @@ def elements(scene: Scene, count: int) -> tuple[NDArray[np.float64], NDArray[np.
     return np.sqrt(squares), shapes, shares
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
-    "damping", [["1/20"], ["1/10", "1/50", "1/5"], {"modes": [1, 2], "ratio": "1/20"}], ids=["one", "list", "rayleigh"]
+    "damping", [{"modes": [1, 2], "ratio": "1/20"}, ["1/20"], ["1/10", "1/50", "1/5"]], ids=["rayleigh", "one", "list"]
 )
 def test_damped_modes_answer_as_those_of_finite_elements(damping: object) -> None:
     count, scene = 60, frame(damping)
@@ -434,6 +435,7 @@ def test_the_command_writes_tables(tmp_path: Path, capsys: pytest.CaptureFixture
     assert list(found.to_pandas().columns) == list(found.outputs)
 
 
+@pytest.mark.slow
 def test_a_picture_has_a_panel_for_each_quantity(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out.svg"
     assert main(["frf", "building_m2", "-o", str(out)]) == 0

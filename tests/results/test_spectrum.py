@@ -77,6 +77,7 @@ def floor(until=40, **changes):
     return Scene(**fields, output={"until": until, "acceleration": ["floor"]} | changes)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("damping", [0.05, 0.2])
 def test_a_floor_of_a_scene(damping):
     """Its jump is no ramp of one step; every spectrum is within the change that is told of it."""

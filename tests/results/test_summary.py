@@ -157,7 +157,7 @@ def unproved(monkeypatch):
     monkeypatch.setattr(summary, "extremes_and_averages", refused)
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_samples_find_what_is_proved(name, unproved):
     scene = Scene.from_toml(name)

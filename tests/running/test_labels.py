@@ -67,6 +67,7 @@ def test_more_that_vary_are_coordinates_of_the_sets(model: RuntimeModel) -> None
     assert own.shape == (1, len(model.outputs), 2, 1)
 
 
+@pytest.mark.slow
 def test_times_are_those_of_results(tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.mktemp("bar") / "bar.toml"
     path.write_text(BAR)

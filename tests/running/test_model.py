@@ -54,6 +54,7 @@ def test_each_set_is_its_scene(model, tau):
     assert np.all(estimate < 1e-9)
 
 
+@pytest.mark.slow
 def test_errors_are_within_bounds(model):
     tau = np.linspace(0, 3, 25)
     bounds = model.bounds(kappa=[KAPPA[0], -KAPPA[0]])

@@ -160,6 +160,7 @@ def test_records_that_are_refused(changes, expected, monkeypatch):
     assert str(refused.value).startswith(expected)
 
 
+@pytest.mark.slow
 def test_the_factor_of_a_record_has_no_unit():
     storeys = {"count": 2, "height": "3.5 m", "stiffness": "277 MN/m", "column_mass": "11 t", "floor_mass": "350 t"}
     scene = wavesym.Scene(

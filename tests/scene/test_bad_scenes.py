@@ -388,6 +388,7 @@ def test_decimals_are_no_dotted_keys():
     assert len(parse_text("x", f"parts = [{parts}]")["parts"]) == 15_000
 
 
+@pytest.mark.slow
 def test_strings_and_comments_are_not_counted(tmp_path):
     """What looks like deep keys, tables and values there."""
     noise = "a.b.c.d.e.f.g.h.i.j.k.l [[{," * 40_000

@@ -61,6 +61,7 @@ def test_parts_of_a_preset_are_the_network_of_its_nodes(system) -> None:
 BUILT_IN = [pytest.param(scene, marks=pytest.mark.slow) for scene in map(Scene.from_toml, NAMED)]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("scene", [*BUILT_IN, *others()], ids=lambda scene: scene.name)
 def test_the_same_network_and_the_same_values_to_the_last_bit(scene: Scene, tmp_path) -> None:
     explicit = written(scene, tmp_path)

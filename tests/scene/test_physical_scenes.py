@@ -777,6 +777,7 @@ def test_programs_without_units_do_not_speak_of_them(tmp_path: Path) -> None:
         assert '"unit"' not in text
 
 
+@pytest.mark.slow
 def test_inspections_speak_of_the_structure() -> None:
     scene = Scene.from_toml(FRAMES / "steel.toml").with_({"output.until": "20 ms"})
     units = json.loads(api.inspect(scene, format="json"))["units"]
@@ -874,6 +875,7 @@ def test_colours_of_pictures_have_units() -> None:
     assert {each.get_ylabel() for each in figure.axes} >= {"t in s"}
 
 
+@pytest.mark.slow
 def test_scenes_without_units_do_not_wait_for_pint() -> None:
     code = "import sys, wavesym; wavesym.tables(wavesym.Scene.from_toml('drive_m1')); assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=FRAMES.parents[1])

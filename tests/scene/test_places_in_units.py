@@ -70,6 +70,7 @@ def test_events_where_they_are_told(bar: Path, capsys: pytest.CaptureFixture[str
         assert not any(place in text for place in RODS)
 
 
+@pytest.mark.slow
 def test_the_page_speaks_of_lengths(bar: Path) -> None:
     text = page(Scene.from_toml(bar))
     assert "<dt>Contact</dt><dd>at x = 2500 mm: opens" in text

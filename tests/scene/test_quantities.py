@@ -214,6 +214,7 @@ def test_usual_units_mean_what_pint_says() -> None:
         assert quantity._unit_of_pint(name) == meaning, name
 
 
+@pytest.mark.slow
 def test_modes_of_a_frame_in_usual_units_do_not_wait_for_pint() -> None:
     """Half a second of a command that takes less."""
     scene = Path(__file__).parents[2] / "examples" / "frames" / "concrete.toml"

@@ -146,7 +146,7 @@ def test_a_shape_is_kept_as_it_was_written() -> None:
     assert wavesym.run(louder, tau).values == pytest.approx(2 * wavesym.run(made, tau).values)
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", sorted(PACE))
 def test_drives_and_buildings_take_shapes(shape: str) -> None:
     drive = Scene.from_toml("drive_m1").model_dump()

@@ -92,14 +92,14 @@ def by_transfer_function(times: np.ndarray) -> np.ndarray:
     return np.asarray(np.interp(times, t, velocities))
 
 
-def test_layers_as_measured_run_under_a_record_once_speeds_may_change_a_little() -> None:
+def test_layers_as_measured_run_under_a_record_once_speeds_may_change_a_little(thorough: bool) -> None:
     """Refused with what to write; written so it answers as the layers do by their transfer function."""
     with pytest.raises(ToleranceError, match="travel times of the rods have no common measure") as caught:
         wavesym.summary(column(until="20 s"))
     (written,) = re.findall(r'speed_adjustment = "([^"]*)" under \[system\]', str(caught.value))
     assert written == "0.5 %"
     scene = column(speed_adjustment=written)
-    result = wavesym.run(scene, samples=801)
+    result = wavesym.run(scene, samples=801 if thorough else 201)
     expected = by_transfer_function(result.time)
     assert np.abs(result["velocity@24.3 m"] - expected).max() < 0.01 * np.abs(expected).max()
     (note,) = lower(scene).labels.notes
@@ -166,13 +166,18 @@ def test_percent_is_rounded_up() -> None:
     assert [percent(fmpq(*ratio)) for ratio in ((1, 200), (12345, 10**7), (9991, 10**6))] == ["0.5 %", "0.13 %", "1 %"]
 
 
-def test_a_loss_is_refused_in_time_with_what_does_run() -> None:
+def test_a_loss_is_refused_in_time_with_what_does_run(thorough: bool) -> None:
     """Beside a dashpot: one in each rod; else damping. As it is written there the scene runs."""
     lossy = column(rod={"loss": "5 %"}, speed_adjustment="0.5 %")
     with pytest.raises(UnservedError, match="for these write in its place dashpot = ") as caught:
         wavesym.summary(lossy)
     said = re.findall(r'dashpot = ("[^"]*") in rod (\d)', str(caught.value))
     assert [number for _, number in said] == ["1", "2", "3"]
+    held = column(base=(), rod={"loss": "5 %"})
+    with pytest.raises(UnservedError, match=r"for these write damping = 0.025 under"):
+        wavesym.summary(held)
+    if not thorough:
+        return
     damped = column(speed_adjustment="0.5 %").with_(
         {f"system.parts[{int(number) + 1}].dashpot": dashpot.strip('"') for dashpot, number in said}
     )
@@ -185,9 +190,6 @@ def test_a_loss_is_refused_in_time_with_what_does_run() -> None:
     assert lost[0] == pytest.approx(lost[1], rel=0.2)
     assert lost[0] > 0.005
 
-    held = column(base=(), rod={"loss": "5 %"})
-    with pytest.raises(UnservedError, match=r"for these write damping = 0.025 under") as caught:
-        wavesym.summary(held)
     wavesym.summary(column(base=(), damping="0.025", until="2 s"))
 
 

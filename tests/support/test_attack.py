@@ -24,12 +24,14 @@ def test_a_drawn_scene_can_be_drawn_again_and_written_down(number, tmp_path):
     assert Scene.from_toml(tmp_path / "scene.toml") == scene
 
 
+@pytest.mark.slow
 def test_every_program_of_a_plain_scene_holds():
     outcomes = list(attack.attack(SCENE, "double"))
     assert len(outcomes) == 9
     assert all(outcome.values > 500 and 0 < outcome.worst <= 1 for outcome in outcomes)
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("language", ["c", "numpy"])
 @pytest.mark.parametrize("wrong", ["bound", "zero"])
 def test_a_wrong_program_is_found(monkeypatch, language, wrong):

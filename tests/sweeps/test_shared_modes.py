@@ -77,6 +77,7 @@ def assert_as_alone(made: SweepPlan, found: Mapping[tuple[int, ...], Mapping[str
             assert np.all(np.abs(case["history"] - alone["history"]) <= allowed[:, None])
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("vary", [NUMBERS, COLUMNS], ids=["numbers of modes", "anything else"])
 def test_cases_side_by_side_are_what_they_are_alone(vary: Mapping[str, Any], thorough: bool) -> None:
     made = planned(FRAME, vary, keep={"histories": 21})
@@ -98,6 +99,7 @@ def test_a_case_alone_has_the_same_bits() -> None:
     }
 
 
+@pytest.mark.slow
 def test_structures_without_units_and_of_other_shapes_share_what_they_can() -> None:
     """A spring, a mass on it, and whether another mass stands on top."""
     top = [{"spring": 3}, {"mass": "1/2"}]

@@ -79,6 +79,7 @@ strain = [0.5]
     capsys.readouterr()
 
 
+@pytest.mark.slow
 def test_long_loads_take_a_line():
     record = [{"spacing": "1/100", "samples": [0, *(k % 7 - 3 for k in range(250))]}]
     header = files(lower(building(record, strain=["0.5"])), evaluator="pieces")["made.h"]

@@ -67,7 +67,7 @@ def scene_of(name) -> Scene:
     return SCENES.get(name) or every(3, tolerance="1e-3")
 
 
-@pytest.mark.quick(1 + len(SCENES))
+@pytest.mark.quick(1)
 @EACH
 @pytest.mark.parametrize("how", SELFTESTS, ids=lambda how: "-".join(each.name for each in how))
 def test_c_passes_its_self_test(name, how, monkeypatch) -> None:
@@ -78,6 +78,7 @@ def test_c_passes_its_self_test(name, how, monkeypatch) -> None:
         assert program.selftest() == 0
 
 
+@pytest.mark.quick(1)
 @EACH
 def test_c_is_numpy_and_sample_is_eval(name) -> None:
     model = lower(scene_of(name))
@@ -142,7 +143,7 @@ def evaluated(library: ctypes.CDLL, of: Scene, taus: np.ndarray) -> np.ndarray:
     return out.T.astype(np.float64)
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("language", ["c99", "c++17"])
 def test_it_is_strict_c_and_cpp(language: str, precision: str, tmp_path: Path) -> None:
@@ -242,6 +243,7 @@ BREAKS = {
 }
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize("what", BREAKS)
 def test_what_is_broken_is_seen(what: str, tmp_path: Path) -> None:
     of, (right, wrong) = chain("double"), BREAKS[what]

@@ -20,6 +20,7 @@ from wavesym.programs.mode_sets.parameters import mode_parameters, names_of
 from wavesym.programs.modes.evaluator import modes
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.programs.request import Request
+from wavesym.running import mode_sets
 from wavesym.running.mode_sets import ModalSets
 from wavesym.running.native import address, library, struct_size
 from wavesym.running.toolchain import compiler
@@ -81,7 +82,7 @@ def drawn_rows(parameters, sets, wide=0.3):
     return rows
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", MODELS)
 def test_sets_are_what_proved_modes_say(name):
     """For chains of all kinds: held, free, with gears, springs and branches, damped or not."""
@@ -175,6 +176,7 @@ def test_an_output_that_symmetry_alone_makes_0_is_not_0_for_all_sets():
     assert parameters_of(model).zero_outputs == (False, False)
 
 
+@pytest.mark.slow
 def test_sets_that_need_more_modes_get_them():
     """A storey that is 400 times softer needs more modes than the scene has; the others stay what they are."""
     model = wavesym.model(FRAME, NUMBERS)
@@ -233,7 +235,7 @@ def test_its_selftest_passes(tmp_path, scene):
 def loaded(scene, **options):
     texts = program_files(scene, **options)
     header = f"{scene.name}.h"
-    found = library(texts[f"{scene.name}.c"], header=(header, texts[header]))
+    found = library(texts[f"{scene.name}.c"], mode_sets.FAST, (header, texts[header]))
     getattr(found, f"{scene.name}_error_estimate").restype = ctypes.c_double
     return found
 
@@ -272,7 +274,7 @@ def test_a_stream_of_the_scenes_loads_gives_its_histories(scene):
     streamed = program(scene, request)
     texts = files(streamed)
     header = f"{scene.name}.h"
-    found = library(texts[f"{scene.name}.c"], header=(header, texts[header]))
+    found = library(texts[f"{scene.name}.c"], mode_sets.FAST, (header, texts[header]))
     lowered = lower(scene)
     parameters = parameters_of(lowered)
     row = drawn_rows(parameters, 2)[1]
@@ -316,6 +318,7 @@ def test_what_modes_do_not_have_is_refused(options, error, message):
         program_files(FRAME, **options)
 
 
+@pytest.mark.slow
 def test_the_same_modes_serve_a_finer_tolerance():
     """Values differ from those of a tolerance a hundredth by no more than the estimate."""
     coarse = parameters_of(lower(FRAME))

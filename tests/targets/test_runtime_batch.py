@@ -165,7 +165,7 @@ def test_a_set_is_what_it_is_alone(tmp_path):
     assert check_building(made, own("building")[:4]) == [1, 2, 1]
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("of_caller", [["-O1"], ["-O1", "-march=native"]])
 @pytest.mark.parametrize("flags", [["-O1", "-DNAME_PLAIN"], ["-O1"], ["-O1", "-march=native"]])
 def test_who_calls_may_be_compiled_with_other_flags(flags, of_caller, tmp_path):

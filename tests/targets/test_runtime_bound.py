@@ -88,7 +88,7 @@ def test_what_is_computed_wrong_is_in_the_bound(change, case, tmp_path):
     assert np.all(bound >= wrong)
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     "changes",
     [

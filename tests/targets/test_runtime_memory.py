@@ -59,7 +59,7 @@ def stated(folder, name):
     ]
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("case", CASES)
 def test_a_header_states_the_sizes_of_its_structs(case, tmp_path):
     name = made(case, tmp_path)

@@ -46,6 +46,7 @@ def functions(text, name):
     return set(re.findall(rf"\b{name}_(\w+)\(", re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("case", SCENES)
 def test_there_is_what_is_asked_for_and_nothing_else(case):
     scene, runtime = SCENES[case]

@@ -110,6 +110,7 @@ def test_what_is_straight_on_panels_is_exact(case):
     assert ran.lost[-1] < 1e-10  # worst cases of all steps, added up
 
 
+@pytest.mark.slow
 @cases("base force")
 def test_a_step_may_be_many_panels_long(case):
     """Loads that jump at whole numbers, and steps to the next one."""

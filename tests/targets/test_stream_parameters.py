@@ -53,6 +53,7 @@ def gears(program):
     return StreamModel(program, ("-O1",))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("scene", ["building_m2", "geared_drive"])
 def test_a_stream_is_the_same_in_whatever_memory_it_is_built(scene):
     model = lower(wavesym.Scene.from_toml(scene))

@@ -87,6 +87,7 @@ def combined(*quick):
     return pytest.mark.parametrize(("system", "sampling", "held"), marked)
 
 
+@pytest.mark.quick(1)
 @combined(("drive", "golden", False), ("base force", "changing", True))
 def test_any_sampling_meets_the_tolerance(system, sampling, held):
     """An output that hears a load at once, or a moment later, is as exact as all others."""
@@ -100,6 +101,7 @@ def test_any_sampling_meets_the_tolerance(system, sampling, held):
     assert max(record.status) == 0 or (sampling in ("tiny", "a tenth") and not held)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("room", [0, pytest.param(5, marks=pytest.mark.slow)])
 @combined(("drive", "changing", False), ("base force", "golden", True))
 def test_no_more_is_lost_than_is_said(system, sampling, held, room):
@@ -165,6 +167,7 @@ def shaken(spacing):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "spacing", ["0.001", pytest.param("0.0002", marks=pytest.mark.slow), pytest.param("0.02", marks=pytest.mark.slow)]
 )
@@ -209,6 +212,7 @@ BAR = {
 }
 
 
+@pytest.mark.slow
 def test_instants_of_which_nothing_is_left_are_free_again():
     """Waves leave the bar: room for few instants is enough for any number of them."""
     scene, truth = made(BAR, [{"at": "disc"}], {"velocity": ["disc"], "strain": ["2"]})

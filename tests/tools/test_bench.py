@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 from flint import fmpq
 
 from tools.bench import equal_degree, frames, record_response, report
@@ -16,6 +17,7 @@ FOLDER = Path(__file__).parents[2] / "bench"
 CHAINS = report.scenes(FOLDER, report.CHAINS)
 
 
+@pytest.mark.slow
 def test_the_chains_have_what_they_are_for():
     lengths, spring, wagons = (lower(CHAINS[label]) for label in "LSE")
     assert len({bar.delay for bar in lengths.network.bars}) == 3
@@ -40,6 +42,7 @@ def test_three_lengths_cost_their_knots():
     assert {knot for knot in knots if knot <= fmpq(39, 2)} == {way for way in ways if way <= fmpq(39, 2)}
 
 
+@pytest.mark.slow
 def test_a_chain_is_fitted_to_a_degree(monkeypatch):
     monkeypatch.setattr(equal_degree, "_DIGITS", (4, 6, 8))
     aim = fit_pieces(CHAINS["S"], fmpq(1, 10**6))
@@ -55,6 +58,7 @@ def test_a_scene_takes_as_long_as_itself():
     assert all(0 < ratio < 100 for ratio in ratios(one, one, FAST))
 
 
+@pytest.mark.slow
 def test_a_record_has_rows_of_modes_and_elements(monkeypatch):
     monkeypatch.setattr(record_response, "SAMPLES", 120)
     monkeypatch.setattr(record_response, "medians", lambda ways, **_: [1.0] * len(ways))

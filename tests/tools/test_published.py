@@ -15,6 +15,7 @@ def found() -> dict[tuple[str, int], list[ComparedNumber]]:
     }
 
 
+@pytest.mark.slow
 def test_the_page_is_what_is_computed_now(found: dict[tuple[str, int], list[ComparedNumber]]) -> None:
     text = "".join(page(lambda case, numbers: found[case["scene"], case["numbers"].index(numbers)]))
     assert PAGE.read_text(encoding="utf-8") == text

@@ -102,6 +102,7 @@ def test_published_rebounds():
         assert rebound < min(before, after)  # no force any more
 
 
+@pytest.mark.slow
 def test_delays_without_a_common_measure_and_long_horizons_are_no_trouble():
     """Against twice as many points, and a record of many samples, whose panels end at each."""
     parts = [{"mass": 1, "name": "hammer"}, {"rod": 1}, {"rod": "1.414213562"}, {"mass": 2, "name": "anvil"}]
@@ -156,7 +157,7 @@ def turned(loads):
     return tuple(replace(load, coefficients=tuple(-c for c in load.coefficients)) for load in loads)
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("scene", "change"),
     [

@@ -74,7 +74,7 @@ def test_drawn_chains_pass_every_check(seed: int) -> None:
         assert all(outcome.passed for outcome in outcomes)
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [9, 11, 23, 38])
 def test_friction_that_bears_more_at_rest_passes_every_check(seed: int) -> None:
     seen = known(breaking_chain(seed))
@@ -82,7 +82,7 @@ def test_friction_that_bears_more_at_rest_passes_every_check(seed: int) -> None:
         assert all(outcome.passed for outcome in judged(check(seen)))
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [16, 42])
 def test_belts_that_jump_pass_every_check(seed: int) -> None:
     seen = known(sliding_chain(seed))
@@ -98,6 +98,7 @@ def test_contacts_beside_springs_pass_every_check(seed: int) -> None:
         assert all(outcome.passed for outcome in judged(check(seen)))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(("draw", "seed"), [(friction_beside_contacts, 14), (light_friction, 2)])
 def test_friction_beside_other_laws_keeps_its_balances(draw: Mix, seed: int) -> None:
     assert all(outcome.passed for outcome in judged(checks.invariants(known(draw(seed)))))
@@ -170,6 +171,7 @@ FALSE = [
 ]
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("check", [integrations.midpoints, integrations.differences])
 @pytest.mark.parametrize(("table", "key"), FALSE)
 def test_another_law_is_seen_by_both_integrators(table: dict[str, Any], key: str, check: Any) -> None:
@@ -177,7 +179,7 @@ def test_another_law_is_seen_by_both_integrators(table: dict[str, Any], key: str
 
 
 @pytest.mark.quick(1)
-@pytest.mark.parametrize("check", [integrations.midpoints, integrations.differences])
+@pytest.mark.parametrize("check", [integrations.differences, integrations.midpoints])
 def test_another_limit_at_rest_is_seen_by_both_integrators(check: Any) -> None:
     parts = [{"motion": "velocity", "velocity": "1/4"}, {"rod": 1}, {"mass": 1, "name": "m", "velocity": 0}]
     parts[2] |= {"friction": "1/2", "breakaway": "0.99"}
@@ -198,6 +200,7 @@ def test_an_event_that_is_told_late_is_seen(monkeypatch: pytest.MonkeyPatch) -> 
     assert not any(outcome.passed for outcome in judged(integrations.corner_changes(seen)))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(("table", "key"), FALSE)
 def test_energy_that_another_law_takes_is_missed(table: dict[str, Any], key: str) -> None:
     table, other = changed(table, key)
@@ -213,6 +216,7 @@ def test_energy_that_another_law_takes_is_missed(table: dict[str, Any], key: str
     assert not balances(wrong)["energy"]
 
 
+@pytest.mark.slow
 def test_the_midpoint_rule_is_of_order_two_where_friction_turns() -> None:
     """What slides stops, and goes back, inside a step."""
     model = lower(Scene(**damped_chain(38)))

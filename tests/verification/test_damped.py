@@ -79,6 +79,7 @@ def test_what_has_no_program_is_not_verified(monkeypatch):
     assert text.count("cannot be met") == 1
 
 
+@pytest.mark.slow
 def test_an_output_that_elements_do_not_judge_is_not_verified(monkeypatch):
     """Elements that do not agree with each other."""
 

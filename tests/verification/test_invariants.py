@@ -133,7 +133,7 @@ def test_the_force_at_the_base_pushes_the_building():
     assert momentum == pytest.approx(-2 / 0.25, rel=1e-13)
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @FOUR
 def test_another_system_is_seen(scene):
     """The books of one system and the motion of another, whose second kappa is larger by 1e-9."""

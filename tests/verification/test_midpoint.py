@@ -51,7 +51,7 @@ def with_cells(model, cells):
     return MidpointGrid(corner_problem(model), Fraction(1, cells))
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @FOUR
 def test_what_is_extrapolated_is_of_order_four(scene):
     assert all(outcome.passed for outcome in integrations.midpoints(known_outputs(lower(scene))))
@@ -100,6 +100,7 @@ def test_a_front_is_as_sharp_as_it_is():
         assert {*around} <= set(with_cells(lower(scene), cells).instants(1.0))
 
 
+@pytest.mark.slow
 def test_fronts_off_the_grid_are_kept_away_from_and_allowed_for():
     scene = building({"times": ["517/1009"], "a": [1], "b": [0]}, base="force", strain=["1/2"], velocity=[1], until=5)
     first = integrations._grid(lower(scene))
@@ -121,7 +122,7 @@ def test_places_off_the_grid_are_read_off_lines():
         assert "extrapolated" not in outcome.cells
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("scene", "change"),
     [

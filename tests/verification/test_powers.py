@@ -49,7 +49,7 @@ SOON = [
 ]
 
 
-@pytest.mark.quick(4)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(("system", "family"), SOON)
 def test_upper_bounds_by_induction(system, family):
     proof = list(steps(system, family))
@@ -162,6 +162,7 @@ def test_leading_coefficients_between_equal_floors_count_walks(system):
                 assert abs(coefficient) in fibonacci
 
 
+@pytest.mark.slow
 def test_leading_coefficients_between_equal_discs_count_walks():
     told = 0
     for m in range(3, 8):
