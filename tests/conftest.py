@@ -116,8 +116,8 @@ def _without_compiler() -> str:
 
 
 def quick_examples(every: int) -> int:
-    """How many examples are drawn without --run-slow: a sixth, but as many as 3 where there are so many."""
-    return max(min(every, 3), every // 6)
+    """How many examples are drawn without --run-slow: a sixth, but as many as 2 where there are so many."""
+    return max(min(every, 2), every // 6)
 
 
 class ProcessorSeconds:

@@ -222,11 +222,14 @@ def fields(root: ast.Module) -> Iterator[str]:
                         yield name
 
 
-def modules() -> Iterator[tuple[str, Path, ast.Module]]:
+@cache
+def modules() -> list[tuple[str, Path, ast.Module]]:
     """Every file of the package and of tools: its name in the tree, its path, and what stands in it."""
-    for folder in (PACKAGE, PACKAGE.parent / "tools"):
-        for path in sorted(folder.rglob("*.py")):
-            yield path.relative_to(PACKAGE.parent).as_posix(), path, ast.parse(path.read_text(encoding="utf-8"))
+    return [
+        (path.relative_to(PACKAGE.parent).as_posix(), path, ast.parse(path.read_text(encoding="utf-8")))
+        for folder in (PACKAGE, PACKAGE.parent / "tools")
+        for path in sorted(folder.rglob("*.py"))
+    ]
 
 
 def test_what_is_named_says_what_it_is_or_does() -> None:

@@ -94,6 +94,7 @@ def test_a_law_of_derivatives_that_is_wrong_is_seen(monkeypatch: pytest.MonkeyPa
     assert worst_integral(scene) < 1e-12
 
 
+@pytest.mark.slow
 def test_programs_are_within_their_bounds() -> None:
     model = lower(drawn(Random(4)))
     form = attempt(model, "pieces").form

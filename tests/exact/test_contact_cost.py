@@ -108,6 +108,7 @@ def test_a_hopkinson_specimen_in_layers_is_refused_before_it_is_computed() -> No
     assert events(lower(Scene(**specimen("250 us")))) == ()
 
 
+@pytest.mark.slow
 def test_a_train_of_rods_whose_events_multiply_is_refused_early() -> None:
     """There are few fronts, as all delays are equal, and many openings at other instants."""
     parts = [rod(1, [1, "3/2"][k % 2], velocity=int(k == 0)) for k in range(30)]

@@ -57,6 +57,7 @@ LIFTED = {
 }
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("where", [pytest.param(k, marks=pytest.mark.slow) if k == "rod" else k for k in LIFTED])
 def test_a_cushion_without_mass_lifts_off_as_it_should(where: str) -> None:
     parts = LIFTED[where]

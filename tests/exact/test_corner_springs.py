@@ -169,6 +169,7 @@ def test_a_toe_that_takes_no_pull_is_known_closely() -> None:
     assert change.high - change.low < fmpq(1, 2**400)
 
 
+@pytest.mark.slow
 def test_what_begins_at_once_arrives_at_once(thorough: bool) -> None:
     """Not after the moment in which it is left open what the spring does."""
     rod = {"rod": "12 m", "A": "0.09 m^2", "E": "30 GPa", "rho": "2500 kg/m^3"}

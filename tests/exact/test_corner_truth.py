@@ -121,6 +121,7 @@ def test_friction_beside_springs_slips_and_sticks_as_it_should(seed: int) -> Non
     assert wrong(rubbing_masses(seed)) == []
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("mass", ["11/5", "1/3"])
 def test_what_comes_to_rest_on_two_masses_that_stick_goes_back(mass: str) -> None:
     """Their common velocity was rounded as they were parted from the third one, which then slid the wrong way."""
@@ -212,6 +213,7 @@ def test_a_limit_that_is_slightly_off_is_seen(seed: int) -> None:
     assert wrong(table, table | {"system": {"type": "chain", "parts": parts}})
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("friction", ["1/4", "3/10"])
 def test_what_turns_round_beyond_its_limit_slips_on(friction: str) -> None:
     """It is pulled by 0.36 as it comes to rest: left vague, its friction hid on which side of 0 its velocity was."""

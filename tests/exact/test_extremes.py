@@ -321,6 +321,7 @@ def test_too_long_a_horizon_is_refused_in_one_line():
 # seen to fail
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("name", "value"), [("_POINTS", (3, 3)), ("_NEWTON", 1), ("_EQUAL", arb(2) ** -1), ("_NEGLIGIBLE", arb(2) ** -2)]
 )

@@ -375,6 +375,7 @@ def test_what_takes_nearly_its_limit_at_rest_is_held_below_and_slips_above_it(
         assert (abs(moves) > 0.2) == (more < 0)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("digits", [30, 49, 90])
 def test_a_rest_known_to_be_below_the_limit_is_one_however_near(digits: int) -> None:
     """A mass of 1 - 2 a with a velocity of 3 (1 + a) comes to rest below 2, by 4.15 a^2."""

@@ -103,7 +103,7 @@ DRAWN = [(friction_beside_contacts, CONTACTS[0]), (light_friction, LIGHT[0])]
 DRAWN += [*((friction_beside_contacts, seed) for seed in CONTACTS[1:]), *((light_friction, seed) for seed in LIGHT[1:])]
 
 
-@pytest.mark.quick(4)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(("draw", "seed"), DRAWN)
 def test_mixed_laws_do_as_they_should(draw: Mix, seed: int) -> None:
     assert wrong(draw(seed), first="0") == []

@@ -79,6 +79,7 @@ def test_frequency_equation_of_buildings_is_the_derived_law(m):
         assert sympy.cancel(sympy.together(rows[x].subs(q[0], 0) - row)) == 0
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", range(4))
 def test_frequency_equation_of_drawn_chains_is_the_derived_law(seed):
     draw = np.random.default_rng(seed)

@@ -214,6 +214,7 @@ def polynomials_split(table: Mapping[str, Any]) -> bool:
         return False
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("table", [STEPPED, LINKED], ids=["stepped", "linked"])
 def test_to_twenty_digits(table: dict[str, Any]) -> None:
     until = table["output"]["until"]

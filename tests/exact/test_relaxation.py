@@ -77,9 +77,9 @@ def begun(law: JointLaw, decaying: int) -> tuple[JointMotion, list[fmpq_poly]]:
     return motion, [force(fmpq_poly([time, 1])) for force in forces]
 
 
-@pytest.mark.quick(6)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("law", STIFF, ids=["open", "closed", "light", "light closed", "body"])
-@pytest.mark.parametrize("decaying", [40, 1200])
+@pytest.mark.parametrize("decaying", [1200, 40])
 def test_the_slow_motion_encloses_what_steps_find(law: JointLaw, decaying: int) -> None:
     """Also where not all has died away: then the bound has what is left."""
     motion, forces = begun(law, decaying)

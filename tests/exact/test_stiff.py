@@ -58,6 +58,7 @@ def test_a_massless_point_on_a_stiff_spring_is_right_to_the_last_bit() -> None:
     assert wrong_values(table(LIGHT, 2000, ("1", "1"), "5/4"), most=3) == []
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("lengths", [("1", "1"), ("3/4", "0.707")])
 def test_programs_of_stiff_springs_keep_their_bound(lengths: tuple[str, str]) -> None:
     assert missed(table(GROUND, 10**6, lengths, 1), "1e-9") <= 1
@@ -133,6 +134,7 @@ def test_what_dies_away_early_in_a_window_is_followed_no_longer(made: dict[str, 
     assert missed(made, "1e-9") <= 1
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("made", SETTLING[:2], ids=["massless", "stiffest"])
 def test_values_are_right_to_the_last_bit_where_what_is_fast_has_died_away(made: dict[str, Any]) -> None:
     assert wrong_values(made, most=3) == []
@@ -164,6 +166,7 @@ UNEQUAL = [
 ]
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("made", UNEQUAL, ids=["longer", "shorter", "no measure", "stiffest", "massless"])
 def test_between_unequal_rods_cuts_end_when_what_is_fast_has_died_away(made: dict[str, Any]) -> None:
     """A front that no cut has made is followed by cuts for a while; half a minute of cuts throughout before."""
@@ -171,6 +174,7 @@ def test_between_unequal_rods_cuts_end_when_what_is_fast_has_died_away(made: dic
     assert missed(made, "1e-9") <= 1
 
 
+@pytest.mark.slow
 def test_values_between_unequal_rods_are_right_to_the_last_bit() -> None:
     assert wrong_values(UNEQUAL[0], most=3) == []
 

@@ -28,6 +28,7 @@ def test_every_pattern_has_cases() -> None:
     assert names == STATEMENTS.keys() | SOLUTIONS.keys()
 
 
+@pytest.mark.quick(9)
 @pytest.mark.parametrize(
     ("id", "before", "after"),
     [

@@ -18,6 +18,7 @@ def verdict(id, **changes):
     return judge(entry, ADAPTERS[entry.kind](entry)).verdict
 
 
+@pytest.mark.quick(9)
 @pytest.mark.parametrize(
     ("id", "wrong"),
     [

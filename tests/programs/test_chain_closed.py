@@ -68,6 +68,7 @@ def test_numpy_keeps_its_bound(table: dict[str, Any], precision: str) -> None:
     assert worst(table, form, import_text(text, "made").evaluate(np.array(taus)), taus) <= 1
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("table", [STEPPED, LINKED], ids=["stepped", "linked"])
 def test_c_keeps_its_bound_and_its_self_test(table: dict[str, Any]) -> None:
     short = {**table, "output": {**table["output"], "until": "5/2", "tolerance": "1e-9"}}

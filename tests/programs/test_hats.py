@@ -159,6 +159,7 @@ def test_drawn_records(spacing: str, samples: list[int], until: object) -> None:
     assert np.all(in_bounds(found, found.scheme.evaluate(taus), exact) <= 1)
 
 
+@pytest.mark.slow
 def test_instants_of_one_phase_and_others_have_the_same_values(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a Fourier transform, one by one, and where the march is not kept."""
     model = chain([{"at": "a", "spacing": "0.31", "samples": [1, 2, -1, 3, 0, 1, 5]}], 9)

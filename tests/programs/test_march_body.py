@@ -162,6 +162,7 @@ def test_roundings_are_no_less_than_a_count_and_little_more(step, degree, count)
         assert (claimed[:, 2] <= 12 * np.maximum(c, numpy)[:, 2]).all()
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("step", ["1/10", "1"])
 def test_roundings_of_what_acts_that_are_not_counted_are_seen(step) -> None:
     """Where p has as many as a joint of 60 rods."""

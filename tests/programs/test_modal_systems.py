@@ -94,7 +94,7 @@ def with_modes(model, count):
     return ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", UNDAMPED)
 def test_outputs_are_those_of_waves_but_for_what_is_left_out(name):
     """With few modes and with enough, errors are within the bound, which meets the tolerance."""
@@ -164,7 +164,7 @@ DAMPED = {
 }
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", DAMPED)
 def test_damped_modes_beyond_those_taken_are_within_the_bound(name):
     model = replace(building(["1", "1/4", "3/5"], [samples(9)], **ALL, **MORE), damping=DAMPED[name])
@@ -175,6 +175,7 @@ def test_damped_modes_beyond_those_taken_are_within_the_bound(name):
         assert np.all(np.abs(values(model, few, taus) - many).max(axis=1) <= few.errors)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", ["a ratio", pytest.param("a list", marks=pytest.mark.slow), "Rayleigh"])
 def test_damped_outputs_are_those_of_finite_elements(name):
     """Linear elements, extrapolated; each of their modes is damped and stepped by SciPy."""

@@ -128,6 +128,7 @@ def test_a_frequency_that_is_off_is_beyond_the_bounds(monkeypatch):
     assert not np.all(errors <= bounds)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("ratio", ["1/20", "3/2"])
 def test_a_damped_building_is_what_elements_ever_finer_come_to(ratio):
     """Of consistent mass, modally damped, stepped by exponentials of matrices; errors fall with the fourth power."""
@@ -294,6 +295,7 @@ PHYSICAL = {
 }
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", PHYSICAL)
 def test_a_stream_takes_loads_in_units_of_results(name):
     """What a scene says in one unit, in another."""

@@ -148,6 +148,7 @@ def test_what_rounded_times_do_is_bounded(turn, damping, count, fast):
     assert wrong <= bound <= 15 * wrong
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("period", "at_samples", "between"),
     [(0.5, 2.67389, 2.68706), (1, 5.96616, 5.96716), (2, 7.46497, 7.46629)],

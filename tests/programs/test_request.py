@@ -17,6 +17,7 @@ def model():
     return lower(scene("made", "1e-4"))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_small_is_smaller_and_fast_is_shorter(model, precision):
     """Of the same kind: less bytes of tables, and a higher degree of polynomials to be evaluated."""

@@ -99,6 +99,7 @@ def missed(values: Values, reference: Reference, taus: Values, bounds: list[floa
     return worst
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize(("name", "kind"), KINDS)
 def test_every_program_keeps_its_bounds(name: str, kind: str) -> None:
     given = model(name, fmpq(10**9, 7))
@@ -128,6 +129,7 @@ def test_c_and_numpy_are_one(name: str, kind: str) -> None:
     assert "strains, velocities, displacements, accelerations, forces, drifts" in header
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_a_factor_is_a_factor(name: str) -> None:
     """Values are rounded once, and errors relative to largest values are what they were."""

@@ -245,6 +245,7 @@ def test_what_modes_cannot_give_is_refused_in_one_line(sprung):
         wavesym.model(stepped, ["mass"])
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", ["drive_m1", "building_m2"])
 def test_numbers_of_modes_under_a_jump_name_numbers_that_are_served(name):
     jumping = wavesym.Scene.from_toml(name)
