@@ -21,15 +21,29 @@ typedef slice pack;
 enum { packed = LANES };
 static const pack nothing = {0};
 
-static real total_of(const pack *x)
+/* Lanes from `half` on are added to those before, of twice as many. */
+WITHIN void fold(real *sum, int half)
 {
-    real sum[LANES];
-    *(pack *)sum = *x;
-    for (int half = LANES / 2; half > 0; half /= 2) {
-        for (int lane = 0; lane < half; ++lane) {
+    UNROLLED
+    for (int lane = 0; lane < half; ++lane) {
+        if (half < LANES) {
             sum[lane] += sum[lane + half];
         }
     }
+}
+
+/* Of vectors up to 16 lanes, none of which goes through memory. */
+static real total_of(const pack *x)
+{
+    real sum[LANES];
+    UNROLLED
+    for (int lane = 0; lane < LANES; ++lane) {
+        sum[lane] = AT(*x, lane);
+    }
+    fold(sum, 8);
+    fold(sum, 4);
+    fold(sum, 2);
+    fold(sum, 1);
     return sum[0];
 }
 

@@ -106,7 +106,8 @@ typedef struct {
     int window, strand, more;
 } strands_read;
 
-/* `width` vectors of samples of so many strands from k on. What lies behind the last sample is left as it is. */
+/* `width` vectors of samples of so many strands from k on. One alone may be the last: what lies behind its samples is left
+ * as it is. */
 WITHIN void read_vectors(int count, int width, const strands_read *r, const samples *s, size_t k)
 {
     const size_t size = (size_t)r->m->degree[r->window] + 2;
@@ -127,7 +128,7 @@ WITHIN void read_vectors(int count, int width, const strands_read *r, const samp
         UNROLLED
         for (int j = 0; j < width; ++j) {
             const size_t to = k + (size_t)j * LANES;
-            if (to + LANES <= s->count) {
+            if (width > 1 || to + LANES <= s->count) {
                 slice now_there = sum[i * width + j];
                 if (r->more) {
                     now_there += *slice_at(row, to);
@@ -135,10 +136,11 @@ WITHIN void read_vectors(int count, int width, const strands_read *r, const samp
                 *(slice *)(row + to) = now_there;
                 continue;
             }
-            real rest[LANES];
-            *(slice *)rest = sum[i * width + j];
-            for (size_t lane = 0; to + lane < s->count; ++lane) {
-                row[to + lane] = (r->more ? row[to + lane] : (real)0) + rest[lane];
+            UNROLLED
+            for (size_t lane = 0; lane < LANES; ++lane) {
+                if (to + lane < s->count) {
+                    row[to + lane] = (r->more ? row[to + lane] : (real)0) + AT(sum[i * width + j], lane);
+                }
             }
         }
     }
@@ -147,10 +149,10 @@ WITHIN void read_vectors(int count, int width, const strands_read *r, const samp
 /* Samples k ... end - 1 of so many strands. */
 WITHIN void read_strands(int count, const strands_read *r, const samples *s, size_t k, size_t end)
 {
-    for (; count == 1 && ABREAST == 4 && end > k + 2 * LANES; k += 4 * LANES) {
+    for (; count == 1 && ABREAST == 4 && end > k + 2 * LANES && s->count - k >= 4 * LANES; k += 4 * LANES) {
         read_vectors(count, ABREAST, r, s, k);
     }
-    for (; ABREAST > 1 && end > k + LANES; k += 2 * LANES) {
+    for (; ABREAST > 1 && end > k + LANES && s->count - k >= 2 * LANES; k += 2 * LANES) {
         read_vectors(count, 2, r, s, k);
     }
     for (; end > k; k += LANES) {
