@@ -38,7 +38,7 @@ _TO_THE_END = (
 _REFUSED_IS_REFUSED = ("-eva-split-return-function", "check_laws:0,check_batch:0")
 _WITH_ITS_DEGREE = "integrate,empty,clear_part,add_series,add_series_batch,acting_again,gather"
 _AT_ONCE = ("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals")
-_ONE_BY_ONE = "main:100,name_build_with:100,sampled:100,run:100,output_block:100"
+_ONE_BY_ONE = "main:100,name_build_with:100,sample_series:100,run:100,output_block:100"
 _EFFORTS = {
     "usual": ("-eva-precision", "2", *_FOR_EVER),
     "more": ("-eva-precision", "3", *_FOR_EVER),
