@@ -107,3 +107,7 @@ def test_extremes_are_labelled_and_show_themselves_in_a_line(model: RuntimeModel
     for name in ("min", "max", "tau_min", "tau_max"):
         np.testing.assert_array_equal(labelled[name], getattr(found, name))
     assert labelled["max"].sel(kappa=2, output="strain@0") == found.max[2, model.outputs.index("strain@0")]
+
+
+def test_a_model_shows_what_it_is_of(model: RuntimeModel) -> None:
+    assert repr(model) == "RuntimeModel('drive_m1', 1 of kappa, 2 of inertia, 5 outputs, until tau = 10)"

@@ -275,6 +275,12 @@ class RuntimeModel:
         found = self._engine.values(self._parameter_rows(parameters), np.empty(0))
         return SetChecks(found.status, found.estimate)
 
+    def __repr__(self) -> str:
+        fields = ", ".join(f"{len(values)} of {name}" for name, values in self.parameters.items())
+        count, clock = len(self.outputs), self._model.clock
+        until = clock.format(self._model.until) if clock else f"tau = {self.tau_max:g}"
+        return f"RuntimeModel({self._model.name!r}, {fields}, {count} output{'s' * (count != 1)}, until {until})"
+
     def __reduce__(self) -> NoReturn:
         raise TypeError("a model is compiled where it is: in another process, wavesym.model(scene, runtime) makes one")
 
