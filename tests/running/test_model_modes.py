@@ -258,7 +258,10 @@ def test_numbers_of_modes_under_a_jump_name_numbers_that_are_served(name):
 
 @pytest.mark.parametrize(
     ("between", "remedy"),
-    [({"spring": 3, "dashpot": "1/10"}, "take a sweep"), ({"rod": 1}, "take mass, dashpot, spring, impedance or load")],
+    [
+        ({"spring": 3, "dashpot": "1/10"}, "(write a sweep"),
+        ({"rod": 1}, "(take mass, dashpot, spring, impedance, velocity or load, of a march, or write a sweep"),
+    ],
     ids=["without rods", "with rods"],
 )
 def test_dashpots_beside_numbers_of_modes_say_who_takes_them(between, remedy):
@@ -267,9 +270,11 @@ def test_dashpots_beside_numbers_of_modes_say_who_takes_them(between, remedy):
     scene = wavesym.Scene(
         name="tuned", system={"type": "chain", "parts": parts}, load=load, output={"until": 4, "displacement": ["m"]}
     )
-    with pytest.raises(UnservedError, match=remedy):
+    with pytest.raises(UnservedError, match=re.escape(remedy)):
         wavesym.model(scene, ["stiffness"])
-    if "rod" in between:  # and these do
+    if "rod" in between:  # and these do, all of them
+        named = re.search(r"take (.*), of a march", remedy)
+        assert wavesym.model(scene, re.split(", | or ", named[1])).outputs == ("displacement@m",)
         own, other = wavesym.model(scene, ["dashpot"]).values([3.0], dashpot=[[1.0], [2.0]])[:, 0, 0]
         assert own == pytest.approx(wavesym.run(scene, [3.0])["displacement@m"][0], rel=1e-6)
         assert abs(other - own) > 1e-6

@@ -181,10 +181,17 @@ def _records(folder: Path) -> Iterator[str]:
     yield ""
     yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(sweeps.drive()))
     yield ""
+    yield from frame_figures(folder.parent / "examples" / "records")
+
+
+def frame_figures(records: Path) -> Iterator[str]:
+    """Damped frames: also measured alone, by `python -m tools.bench FOLDER frames`."""
+    yield frames.TITLE
+    yield ""
     yield f"Frames of {frames.STOREYS} storeys, damped, each with stiffnesses and masses of its own, under El Centro to"
     yield "1e-3: the peaks of 31 outputs by modes, compiling apart, on one core. Errors are those of eight frames."
     yield ""
-    yield from _table(frames.HEAD, frames.rows(folder.parent / "examples" / "records"))
+    yield from _table(frames.HEAD, frames.rows(records))
 
 
 def corner_figures(examples: Path) -> Iterator[str]:

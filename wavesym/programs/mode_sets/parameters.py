@@ -116,21 +116,23 @@ def mode_parameters(
 
     UnservedError for what modes do not serve, WavesymError for a name that the scene does not have.
     """
-    _refuse_dashpots(model.network)
+    _refuse_dashpots(model)
     _refuse_jumps(model, names)
     numbers = {name: every for name, every in _numbers(model) if every}
     fields = runtime_fields(model, names, numbers, _unit, amplitudes)
     return ModeParameters(model, fields, tuple(load for _, load in amplitudes) if "load" in names else ())
 
 
-def _refuse_dashpots(network: Network) -> None:
-    """UnservedError for dashpots, which say who takes their numbers."""
+def _refuse_dashpots(model: Model) -> None:
+    """UnservedError for dashpots, which says who takes their numbers: of those that the scene has."""
+    network = model.network
     points = [point for point in network.points if point.damping != 0 and point.motion is None]
     points += [network.points[link.left] for link in network.links if link.damping != 0]
     if points:
-        remedy = "take mass, dashpot, spring, impedance or load, of a march, or a sweep, which computes each case alone"
-        if not network.bars:
-            remedy = "take a sweep, which computes each case alone"
+        remedy = "write a sweep, which computes each case alone"
+        if network.bars:
+            known = [name for name, numbers in model.parameters.numbers.items() if numbers and name not in OF_MODES]
+            remedy = f"take {alternatives([*known, *(['load'] if model.loads else [])])}, of a march, or {remedy}"
         raise UnservedError(
             f"runtime: numbers of modes beside the dashpot or absorbing end at {points[0].label} are "
             f"not supported ({remedy})"
