@@ -320,7 +320,7 @@ def _point(part: Any, beside: Sequence[Any]) -> Node:
         mass, dashpot, stiffness = map(rational, (getattr(part, "mass", 0), part.dashpot, spring))
         sprung = _springs(part, Fraction(0)) if part.has_law else ()
         return Node(
-            Point(mass, dashpot, stiffness, rational(velocity), name=part.name or ""), (*_friction(part), *sprung)
+            Point(mass, dashpot, stiffness, rational(velocity), name=part.name or ""), (*sprung, *_friction(part))
         )
     if part == "fixed":
         return Node(Point(fmpq(0), motion="fixed"))

@@ -230,8 +230,12 @@ class Start:
         def is_affordable(finer: int) -> bool:
             return grid.finer(finer).cost(self.until) <= MOST_MOVED
 
-        late = grid.tau(1) if rule == "late" else 0.0
-        method = Integration(name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), True, late)
+        late, missed = 0.0, 0.0
+        if rule == "late":
+            late, missed = grid.tau(1), grid.missed([event.double for event in events(known.model)])
+        method = Integration(
+            name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), True, late, missed
+        )
         return method.outcomes(known.model.name, known.names, truths, {"to": f"{self.until:.4g}"})
 
 
@@ -349,14 +353,15 @@ class CornerHistory:
             if min(lasting) >= self.shortest:
                 break
             at = lasting.index(min(lasting))
-            if claimed[kept[at]].kind == "sticks" and self._matches(claimed, turned := [*kept[:at], *kept[at + 1 :]]):
-                return turned  # it goes back after a moment, which is one event
-            del kept[at : at + 2]
+            turned, neither = [*kept[:at], *kept[at + 1 :]], [*kept[:at], *kept[at + 2 :]]
+            # what goes back, or comes to rest, after a moment is one event
+            kept = turned if self._fits(claimed, turned) and not self._fits(claimed, neither) else neither
         return kept
 
-    def _matches(self, claimed: Sequence[ContactEvent], kept: Sequence[int]) -> bool:
-        """Whether it has seen the same kinds of events, as far as it has seen any."""
-        return all(claimed[k].kind == change.kind for k, (change, _) in zip(kept, self.changes, strict=False))
+    def _fits(self, claimed: Sequence[ContactEvent], kept: Sequence[int]) -> bool:
+        """Whether what it has seen is the first of these."""
+        seen = [change.kind for change, _ in self.changes]
+        return [claimed[k].kind for k in kept[: len(seen)]] == seen
 
 
 def compare_events(

@@ -98,6 +98,17 @@ class MidpointGrid:
         """What it takes to come to tau = `until`: points moved, roughly."""
         return until / float(self.step) * (len(self.problem.delays) + self.problem.points**2 + _STEP)
 
+    def missed(self, events: Sequence[float]) -> float:
+        """By how much fronts of loads and events miss instants in all, where finer grids miss them alike."""
+        step, times = float(self.step), [*map(float, self._cuts), *events]
+        return sum(each for each in (abs(time - step * round(time / step)) for time in times) if each < step / 4)
+
+    @property
+    def _cuts(self) -> set[Fraction]:
+        """When fronts set out from points: at multiples of the delays' common measure after these."""
+        measure = self.problem.measure or 2 * Fraction(self.problem.until)
+        return {event.time % measure for event in self.problem.events} | {Fraction(0)}
+
     def instants(self, until: float, struck: Sequence[tuple[Change, float]] = (), reach: int = _REACH) -> Instants:
         """Those up to `until` at which what every output is read from, `reach` steps around it, has no front inside.
 
@@ -105,14 +116,13 @@ class MidpointGrid:
         what happened at corners: `struck` has when, and how well that is known.
         """
         measure, step = self.problem.measure or 2 * Fraction(until), float(self.step)
-        cuts = {event.time % measure for event in self.problem.events} | {Fraction(0)}
         instants = np.arange(1, int(until / step))
         free = np.ones(len(instants), dtype=bool)
         window = float(measure / self.step)
         for reading in self.problem.readings:
             offset = _offset(self.problem, reading)
             for way in (offset, -offset):
-                for cut in cuts:
+                for cut in self._cuts:
                     passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
                     free &= np.abs(passed) > reach - _SAME
                 for change, slack in struck:

@@ -17,6 +17,7 @@ from wavesym.methods.differences import Grid, fields, point_steps
 from wavesym.methods.elements import keep_places
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
+from wavesym.verification.link_pulls import EXACT, ROUNDS
 from wavesym.verification.problem import CornerProblem, LinkLaw
 
 REACH = 4
@@ -71,22 +72,26 @@ class _ReturnMapping:
         self._longer, self._pulls = np.zeros(len(laws)), np.array([law.preload for law in laws])
 
     def settle(self, after: Array, influence: Array, now: Array, before: Array) -> Array:
-        """Displacements with what each link pulls, within its limits."""
+        """Displacements with what each link pulls, within its limits: springs, then friction, until they agree."""
+        rubbing, pulls = [], np.zeros(len(self._laws))
         for number, law in enumerate(self._laws):
             if law.friction:
-                held = float(law.row @ (after - before) / (law.row @ influence @ law.row))
-                pull = self._rub(number, law, held)
+                rubbing.append(number)
             else:
-                pull = law.limit(self._trial(number, law, float(law.row @ now)))
-            after -= influence @ law.row * pull
+                after -= influence @ law.row * law.limit(self._trial(number, law, float(law.row @ now)))
+        ways = list(self._ways)
+        for _ in range(ROUNDS):
+            last = pulls.copy()
+            for number in rubbing:
+                law = self._laws[number]
+                held = float(pulls[number] + law.row @ (after - before) / (law.row @ influence @ law.row))
+                pull, ways[number] = _rub(law, self._ways[number], held)
+                after -= influence @ law.row * (pull - pulls[number])
+                pulls[number] = pull
+            if len(rubbing) < 2 or np.max(np.abs(pulls - last)) <= EXACT * np.max(np.abs(pulls)):
+                break
+        self._ways = ways
         return after
-
-    def _rub(self, number: int, law: LinkLaw, held: float) -> float:
-        """What friction pulls where so much would hold it: it slides on the same way, or comes to rest at first."""
-        way = self._ways[number]
-        on = way != 0 and way * held > law.friction
-        self._ways[number] = way if on else 0.0 if abs(held) <= law.rest else float(np.sign(held))
-        return way * law.friction if on else law.limit(held)
 
     def _trial(self, number: int, law: LinkLaw, longer: float) -> float:
         """What a spring would pull without limits."""
@@ -95,3 +100,10 @@ class _ReturnMapping:
         trial = float(self._pulls[number] + law.stiffness * (longer - self._longer[number]))
         self._longer[number], self._pulls[number] = longer, law.limit(trial)
         return trial
+
+
+def _rub(law: LinkLaw, way: float, held: float) -> tuple[float, float]:
+    """What friction pulls where `held` would hold it, and its way: it slides on, or comes to rest at first."""
+    if way != 0 and way * held > law.friction:
+        return way * law.friction, way
+    return law.limit(held), 0.0 if abs(held) <= law.rest else float(np.sign(held))
