@@ -230,11 +230,11 @@ class Start:
         def is_affordable(finer: int) -> bool:
             return grid.finer(finer).cost(self.until) <= MOST_MOVED
 
-        late, missed = 0.0, 0.0
+        late, offset = 0.0, 0.0
         if rule == "late":
-            late, missed = grid.tau(1), grid.missed([event.double for event in events(known.model)])
+            late, offset = grid.tau(1), grid.front_offset([event.double for event in events(known.model)])
         method = Integration(
-            name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), True, late, missed
+            name, grid.cells, solve, is_affordable, rule, [taus] * len(known.names), True, late, offset
         )
         return method.outcomes(known.model.name, known.names, truths, {"to": f"{self.until:.4g}"})
 

@@ -98,7 +98,7 @@ class MidpointGrid:
         """What it takes to come to tau = `until`: points moved, roughly."""
         return until / float(self.step) * (len(self.problem.delays) + self.problem.points**2 + _STEP)
 
-    def missed(self, events: Sequence[float]) -> float:
+    def front_offset(self, events: Sequence[float]) -> float:
         """By how much fronts of loads and events miss instants in all, where finer grids miss them alike."""
         step, times = float(self.step), [*map(float, self._cuts), *events]
         return sum(each for each in (abs(time - step * round(time / step)) for time in times) if each < step / 4)

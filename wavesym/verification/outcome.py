@@ -195,7 +195,7 @@ class Integration:
 
     It is refined as long as `is_affordable` says so of that. `instants` are those of each output's values. What happens
     at corners may be `late` by so much with N steps: where events do not converge, a difference of grids is no bound.
-    Nor is it where events have `missed` instants of all grids by so much alike.
+    Nor is it where events have missed instants of all grids alike, by `front_offset` in all.
     """
 
     name: str
@@ -206,7 +206,7 @@ class Integration:
     instants: Sequence[Sequence[float]]
     clear: bool = False
     late: float = 0.0
-    missed: float = 0.0
+    front_offset: float = 0.0
 
     def refine(self, truths: Sequence[Truth | None]) -> tuple[int, list[Refinement]]:
         """N, and all outputs with N, 2N and 4N steps, compared with their values and scales where these are known."""
@@ -231,7 +231,7 @@ class Integration:
             note = "" if each.method_error <= FINE else too_coarse(scene, self.name)
             right = integral.judges if truth is None else each.is_right
             lag = integral.steepest * self.late * self.coarsest / (4 * steps)
-            error, unseen = each.best * each.scale, integral.steepest * self.missed
+            error, unseen = each.best * each.scale, integral.steepest * self.front_offset
             agreed = each.method_error <= FINE and not error <= integral.error_bound + unseen
             decided = right or agreed or not error <= integral.error_bound + lag
             if not decided:
