@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from wavesym.errors import SceneError
 from wavesym.mechanics.clock import Clock
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
@@ -374,3 +375,28 @@ def test_what_breaks_a_law_is_seen(
     monkeypatch.setattr(home, name, wrong)
     with pytest.raises(AssertionError):
         law()
+
+
+@pytest.mark.parametrize(
+    ("kind", "modulus", "section"),
+    [
+        ("shear", {"G": "58.32 MPa"}, {"A": "1 m^2"}),
+        ("longitudinal", {"E": "58.32 MPa"}, {"A": "3 m^2"}),
+        ("torsional", {"G": "58.32 MPa"}, {"diameter": "2 m"}),
+    ],
+)
+def test_a_wave_speed_stands_for_the_modulus(kind: str, modulus: dict[str, str], section: dict[str, str]) -> None:
+    """1800 kg/m^3 (180 m/s)^2 is 58.32 MPa: bars are the same fractions, and so is the time that results are in."""
+
+    def column(stiff: dict[str, str]) -> Any:
+        rods = [{"rod": length, "rho": "1800 kg/m^3", **section, **stiff} for length in ("4 m", "6 m")]
+        system = {"type": "chain", "parts": ["free", *rods, "fixed"]}
+        output = {"until": "0.1 s", "velocity": ["0 m"]}
+        return lower(Scene(name="good", units={"kind": kind}, system=system, output=output))
+
+    measured, derived, faster = (column(stiff) for stiff in ({"speed": "180 m/s"}, modulus, {"speed": "181 m/s"}))
+    assert (measured.network, measured.clock) == (derived.network, derived.clock)
+    assert (faster.network, faster.clock) != (derived.network, derived.clock)
+    for twice in (modulus, {"k": "5/6"} if kind == "shear" else modulus):
+        with pytest.raises(SceneError, match=f"{next(iter(twice))}: stands beside speed"):
+            column({"speed": "180 m/s", **twice})

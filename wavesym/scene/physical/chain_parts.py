@@ -20,7 +20,7 @@ from wavesym.systems.parts import ChainPart, ContactPart, JointPart, LinkPart, M
 
 
 class RodKeys(SceneTable):
-    """Keys of a rod of any kind. It may say its impedance and wave speed instead of what they follow from."""
+    """Keys of a rod of any kind. Its wave speed may stand for its modulus, with its impedance for all it is made of."""
 
     key: ClassVar[str] = "rod"
     dimensions: ClassVar[Mapping[str, str]]
@@ -46,16 +46,13 @@ class RodKeys(SceneTable):
         """As waves see it; `dashpot` is the dimension of impedances. Raises the error of `table.refusal`."""
         with key_context("rod"):
             length = read_quantity(self.rod, "length", 1)
-        if self.impedance is None and self.speed is None:
+        written = [key for key in self.material_keys() if getattr(self, key) is not None]
+        if self.impedance is None and (written or self.speed is None):
             values = self._si_values()
             modulus, section, density = (values[key] for key in self.dimensions)
             return ElasticRod.from_section(length, modulus, section, density, self._square(values))
-        for key in self.material_keys():
-            if getattr(self, key) is not None:
-                given = "impedance" if self.impedance is not None else "speed"
-                *others, last = self.dimensions
-                whole = f"impedance and speed, or {', '.join(others)} and {last}"
-                raise refusal(f"stands beside {given}; a rod has {whole}: leave the other out", key)
+        if written:
+            raise self._beside(written[0], "impedance")
         impedance, speed = self._si_value("impedance", dashpot), self._si_value("speed", "velocity")
         return ElasticRod(length, impedance / speed * length, impedance * speed / length)
 
@@ -67,7 +64,20 @@ class RodKeys(SceneTable):
             return read_quantity(value, dimension, least)
 
     def _si_values(self) -> dict[str, Fraction]:
-        return {key: self._si_value(key, dimension) for key, dimension in self.dimensions.items()}
+        """Modulus, section and density by their keys; with a wave speed c the modulus is rho c^2."""
+        modulus, section, density = self.dimensions
+        if self.speed is None:
+            return {key: self._si_value(key, dimension) for key, dimension in self.dimensions.items()}
+        if getattr(self, modulus) is not None:
+            raise self._beside(modulus, "speed")
+        values = {key: self._si_value(key, self.dimensions[key]) for key in (section, density)}
+        return values | {modulus: values[density] * self._si_value("speed", "velocity") ** 2}
+
+    def _beside(self, key: str, other: str) -> Exception:
+        """The error for a key that says again what another one says."""
+        modulus, section, density = self.dimensions
+        ways = f"impedance and speed, or speed, {density} and {section}, or {modulus}, {section} and {density}"
+        return refusal(f"stands beside {other}; a rod has {ways}: leave the other out", key)
 
     @classmethod
     def material_keys(cls) -> tuple[str, ...]:
@@ -106,6 +116,8 @@ class ShearRod(RodKeys):
         values = super()._si_values()
         if self.k is None:
             return values
+        if self.speed is not None:
+            raise refusal("stands beside speed, which is that of its waves, k and all; leave k out", "k")
         with key_context("k"):
             factor = exact(self.k)
             if factor <= 0:
