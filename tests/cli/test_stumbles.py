@@ -15,7 +15,7 @@ from wavesym import api
 from wavesym.cli import main
 from wavesym.results import rows
 from wavesym.scene import Scene, builtin_names, lower
-from wavesym.scene.first_scene import IN_UNITS, KINDS, first_text
+from wavesym.scene.first_scene import IN_UNITS, KINDS, first_scene
 
 __all__ = ["folder"]
 
@@ -163,14 +163,45 @@ def test_a_scene_to_start_from_takes_a_record(capsys: pytest.CaptureFixture[str]
     Path("quake.csv").write_text("time,acc\n0,0\n0.5,0.1\n1,-0.2\n")
     for kind, unit in (("frame", "g"), ("wall", "g"), ("soil", "g"), ("drive", "N*m")):
         assert main(["init", kind, "--record", "quake.csv"]) == 0
-        text = capsys.readouterr().out
+        text, err = capsys.readouterr()
         assert f'unit = "{unit}"' in text
+        assert err.startswith(
+            f'init: quake.csv does not say the unit of its samples: "{unit}" is assumed; write --unit '
+        )
         Path("first.toml").write_text(text, encoding="utf-8")
         scene = wavesym.Scene.from_toml("first.toml")
         assert [len(load.record.samples) for load in scene.load] == [3]
         assert float(wavesym.evaluator(scene).tau_max * wavesym.evaluator(scene).seconds_per_tau) == pytest.approx(1)
     assert refused(capsys, "init", "impact", "--record", "quake.csv").startswith("--record: a scene of impact takes no")
     assert refused(capsys, "init", "frame", "--record", "none.csv").startswith("none.csv: No such file or directory")
+
+
+def test_a_scene_to_start_from_has_the_unit_of_its_record(capsys: pytest.CaptureFixture[str]) -> None:
+    """1 m/s^2 is 1/9.80665 g: the same file acts so much less."""
+    Path("quake.csv").write_text("time,acc\n0,0\n0.5,1\n1,-2\n")
+    largest = {}
+    for unit in ("g", "m/s^2"):
+        assert main(["init", "frame", "--record", "quake.csv", "--unit", unit, "-o", "first.toml"]) == 0
+        assert capsys.readouterr() == ("", "")
+        largest[unit] = wavesym.summary(wavesym.Scene.from_toml("first.toml"))["drift@1"].max.value
+    assert largest["g"] == pytest.approx(9.80665 * largest["m/s^2"], rel=1e-9)
+    Path("acc.csv").write_text("time,acc [m/s^2]\n0,0\n0.5,1\n1,-2\n")
+    assert main(["init", "frame", "--record", "acc.csv", "--unit", "m/s^2"]) == 0
+    out, err = capsys.readouterr()
+    assert not err
+    assert "\nunit = " not in out
+    Path("bare.csv").write_text("acc\n0\n1\n-2\n")
+    assert main(["init", "frame", "--record", "bare.csv"]) == 0
+    assert [line.partition(': "')[2] for line in capsys.readouterr().err.splitlines()] == [
+        'g" is assumed; write --unit m/s^2 where that is it',
+        '0.01 s" is assumed; write another `spacing` in the scene where that is it',
+    ]
+    for options, said in (
+        (["--record", "quake.csv", "--unit", "mm"], '--unit: "mm" is a length, not an acceleration'),
+        (["--record", "acc.csv", "--unit", "g"], "acc.csv: --unit g is not that of the file; write m/s^2, or none"),
+        (["--unit", "g"], '--unit: "g" is that of a record; write --record FILE too'),
+    ):
+        assert refused(capsys, "init", "frame", *options).startswith(said)
 
 
 def test_from_python_what_is_wrong_is_told() -> None:
@@ -257,6 +288,6 @@ def test_names_of_files_are_no_commands_to_a_terminal(capsys: pytest.CaptureFixt
 def test_a_column_of_soil_under_a_record_that_begins_with_a_jump_has_accelerations() -> None:
     """No place without mass is accelerated by a jump: the load rises to the first sample."""
     record = Path(__file__).parents[2] / "examples/records/elcentro_1940_ns_peknold.at2"
-    text = first_text("soil", record).replace("strain = ", 'acceleration = ["40 m"]\nstrain = ')
+    text = first_scene("soil", record).text.replace("strain = ", 'acceleration = ["40 m"]\nstrain = ')
     scene = Scene.from_toml(text).with_({"output.until": "1 s"})
     assert wavesym.summary(scene)["acceleration@40 m"].max.value > 0

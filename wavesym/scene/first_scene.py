@@ -6,10 +6,16 @@ import json
 from fractions import Fraction
 from importlib.resources import files
 from os import PathLike
+from typing import NamedTuple
 
-from wavesym.errors import WavesymError
+from pydantic_core import PydanticCustomError
+
+from wavesym.errors import SceneError, WavesymError
+from wavesym.fields import quantity
 from wavesym.fields.numbers import decimal_text
+from wavesym.fields.table import show
 from wavesym.records.read import read_record
+from wavesym.records.record_file import RecordFile
 
 IN_UNITS = ("frame", "wall", "soil", "drive", "impact", "pile")
 DIMENSIONLESS = ("building", "collision")
@@ -18,40 +24,71 @@ KINDS = (*IN_UNITS, *DIMENSIONLESS)
 _FIRST = files("wavesym.scene") / "first"
 _USUAL_UNIT = {"frame": "g", "wall": "g", "soil": "g", "drive": "N*m"}
 """Of the samples of a record whose file does not say it."""
+_SAMPLES = {"g": "acceleration", "N*m": "moment"}
 _REPLACED = ("spacing", "samples", "unit", "times", "steps")
 _SCHEMA = "#:schema scene.schema.json"
 """For editors: the file that `wavesym schema -o scene.schema.json` writes."""
 _CHOICE = "# or record = "
 
 
-def first_text(kind: str, record: str | PathLike[str] | None = None) -> str:
+class FirstScene(NamedTuple):
+    """A scene to start from, and what was assumed of its record, as lines for whoever wrote none of it."""
+
+    text: str
+    assumptions: tuple[str, ...] = ()
+
+
+def first_text(kind: str) -> str:
+    """A commented scene to start from, in TOML; `kind` is one of KINDS."""
+    return first_scene(kind).text
+
+
+def first_scene(kind: str, record: str | PathLike[str] | None = None, unit: str | None = None) -> FirstScene:
     """A commented scene to start from.
 
     Args:
         kind: one of KINDS.
         record: a file of AT2 or CSV that is its load, until it ends.
+        unit: that of the record's samples, where the file does not say it; None for what is usual.
 
     Returns:
-        TOML.
+        TOML, and a line for each thing that neither the file nor `unit` says.
 
     Raises:
-        WavesymError: for a kind that starts by itself, or has no units, and takes no record.
-        SceneError: for a file that is no record.
+        WavesymError: for a kind that starts by itself, or has no units, and takes no record, and for a unit without a
+            record, or of something else.
+        SceneError: for a file that is no record, or says another unit.
     """
     text = f"{_SCHEMA}\n{(_FIRST / f'{kind}.toml').read_bytes().decode()}"
+    if record is None and unit is not None:
+        raise WavesymError(f"--unit: {show(unit)} is that of a record; write --record FILE too")
     if record is None:
-        return text
+        return FirstScene(text)
     if kind not in _USUAL_UNIT:
         *others, last = _USUAL_UNIT
         raise WavesymError(f"--record: a scene of {kind} takes no record; write {', '.join(others)} or {last}")
     found = read_record(record)
     step = found.even()
     lines = [f"record = {json.dumps(found.file)}"]
+    assumptions: list[str] = []
+    if unit is not None:
+        _refuse_unit(kind, found, unit)
     if not found.unit:
-        lines.append(f'unit = "{_USUAL_UNIT[kind]}"{"":18}# of its samples: the file does not say')
+        comment = "of its samples" if unit else "of its samples: assumed, the file does not say"
+        lines.append(f"{f'unit = {json.dumps(unit or _USUAL_UNIT[kind])}':31} # {comment}")
+    if not found.unit and unit is None:
+        other = "m/s^2" if _USUAL_UNIT[kind] == "g" else "kN*m"
+        assumptions.append(
+            f'{found.file} does not say the unit of its samples: "{_USUAL_UNIT[kind]}" is assumed; '
+            f"write --unit {other} where that is it"
+        )
     if step is None:
-        lines.append(f'spacing = "0.01 s"{"":14}# of its samples: the file does not say')
-        return _replace_samples(text, lines, "")
+        lines.append(f'spacing = "0.01 s"{"":14}# of its samples: assumed, the file does not say')
+        assumptions.append(
+            f'{found.file} does not say the time between its samples: "0.01 s" is assumed; '
+            "write another `spacing` in the scene where that is it"
+        )
+        return FirstScene(_replace_samples(text, lines, ""), tuple(assumptions))
     begin = found.times[0] if found.times else Fraction(0)
     if kind == "soil" and not found.times and found.samples[0]:
         begin = step
@@ -59,7 +96,19 @@ def first_text(kind: str, record: str | PathLike[str] | None = None) -> str:
             f'start = "{decimal_text(step)} {found.clock or "s"}"{"":15}# its first sample is not 0: it rises to it'
         )
     end = begin + (len(found.samples) - 1) * step
-    return _replace_samples(text, lines, f"{decimal_text(end)} {found.clock or 's'}")
+    replaced = _replace_samples(text, lines, f"{decimal_text(end)} {found.clock or 's'}")
+    return FirstScene(replaced, tuple(assumptions))
+
+
+def _refuse_unit(kind: str, record: RecordFile, written: str) -> None:
+    """WavesymError for what is no unit of what the load of a kind is; SceneError for another one than the file's."""
+    try:
+        size = quantity.unit(written, _SAMPLES[_USUAL_UNIT[kind]])
+        other = quantity.unit(record.unit, _SAMPLES[_USUAL_UNIT[kind]]) if record.unit else size
+    except PydanticCustomError as error:
+        raise WavesymError(f"--unit: {error}") from None
+    if size != other:
+        raise SceneError(f"--unit {written} is not that of the file; write {record.unit}, or none", file=record.file)
 
 
 def _replace_samples(text: str, record: list[str], until: str) -> str:
