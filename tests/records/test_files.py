@@ -156,7 +156,7 @@ DAMAGED = [
     (AT2.replace("NPTS=   5, DT=", "NPTS=   5, TD="), "line 4: no NPTS and DT; write them as in"),
     (HEAD + "NPTS=   5, DT=   .0200 SEC\n", "line 4: the file ends after 0 numbers"),
     # no numbers
-    (AT2.replace("3.", "nan"), "line 5: word 3 is no decimal"),
+    (AT2.replace("3.", "nan"), "line 5: word 3 is no decimal; write numbers alone"),
     (AT2.replace("3.", "-Infinity"), "line 5: word 3 is no decimal"),
     (AT2.replace("3.", "."), "line 5: word 3 is no decimal"),
     (AT2.replace("3.", "1e999"), "line 5: word 3 is no decimal"),
@@ -164,7 +164,20 @@ DAMAGED = [
     (AT2.replace("3.", "\u0663"), "line 5: word 3 is no decimal"),
     (AT2.replace("3.", "3\x00"), "line 5: word 3 is no decimal"),
     (AT2.replace("3.", "**.**"), "line 5: word 3 is no decimal"),
-    (CSV.replace("-0.5", "NaN"), "line 4: column 2 (accel_g) is no decimal"),
+    (CSV.replace("-0.5", "bad"), "line 4: column 2 (accel_g) is no decimal; write a number in every row"),
+    # lines of words above the header
+    (
+        "Station A\nBay Area\ntime,acc\n0,1\n",
+        "line 2: column 1 is no decimal; begin lines of words, but one header, with #",
+    ),
+    (
+        "Station, A, B\ntime,acc\n0,1\n",
+        "line 1: 3 columns, and no number below; begin lines of words, but one header, with #",
+    ),
+    ("A,B,acc\ntime,acc\n0,1\n", "line 1: 3 columns, and no number below"),
+    ("time,acc\n0,1,2\n", "line 2: 3 columns, but 2 in the header; write as many, and # before other lines"),
+    ("time,acc\ns,g\n0,1\n", "line 2: column 1 is no decimal; begin lines of words, but one header, with #"),
+    (CSV.replace("-0.5", "NaN"), "line 4: column 2 (accel_g) is no decimal; write a number in every row"),
     (CSV.replace("-0.5", ""), "line 4: column 2 (accel_g) is no decimal"),
     (CSV.replace("0.02", "1/50"), "line 4: column 1 (time_s) is no decimal"),
     (CSV.replace("-0.5", "-0,5"), "line 4: 3 columns, but 2 in the header; write as many"),

@@ -399,3 +399,27 @@ def test_strings_and_comments_are_not_counted(tmp_path):
         path.write_text(DRIVE.replace('"good"', quoted))
         with pytest.raises(SceneError, match=r"^[^ ]*: name: "):
             Scene.from_toml(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("height = 4,2\n", "numbers have a decimal point: write 4.2"),
+        ("height = -4,25 m\n", "numbers have a decimal point: write -4.25"),
+        ("parts = [{ rod = 4,2 }]\n", "numbers have a decimal point: write 4.2"),
+        ("height = 4.2 m\n", 'a quantity has quotes: write "4.2 m"'),
+        ("parts = [{ rod = 4.2 kN/m^2 }]\n", 'a quantity has quotes: write "4.2 kN/m^2"'),
+        ('height = "4.2 m\nm = 2\n', 'a text begins and ends with a quote, on one line: write " at its end'),
+        ("height = '4.2 m\nm = 2\n", 'a text begins and ends with a quote, on one line: write " at its end'),
+        ('height = "4.2 m', 'a text begins and ends with a quote, on one line: write " at its end'),
+    ],
+)
+def test_frequent_slips_in_toml_say_what_to_write(text: str, remedy: str) -> None:
+    """And no other fault does: two words behind a number are none of them."""
+    with pytest.raises(SceneError) as error:
+        Scene.from_toml(text + "\n")
+    assert str(error.value).startswith("scene: no TOML, ")
+    assert str(error.value).endswith(f"; {remedy}")
+    with pytest.raises(SceneError) as error:
+        Scene.from_toml("a = 1 # 4,2\nb = 2 3\n")
+    assert str(error.value).endswith("(at line 2, column 7)")

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pint import UnitRegistry
 
 _QUANTITY = re.compile(r"([+-]?[0-9]+(?:/[0-9]+|(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)) ?(?![eE][+-]?[0-9])([^\s0-9.+-].*)")
+_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]")
 _NAME = r"[A-Za-z\u00b5\u03bc%][A-Za-z_0-9]*"  # with either mu, for micro
 _UNIT = re.compile(rf"{_NAME}(?:\^-?[1-9])?(?:[*/]{_NAME}(?:\^-?[1-9])?)*")
 _RAISED = re.compile(r"([A-Za-z]+)([2-9])")  # a power as drawings have it
@@ -60,6 +61,10 @@ def si_value(value: object, dimension: str) -> Fraction:
         raise refusal(what)
     if len(value) > LONGEST:  # before anything is done with it
         raise refusal(f"{show(value)} is too long; write at most {LONGEST} characters")
+    if _COMMA.match(value):
+        pointed = value.replace(",", ".")
+        like = pointed if value.count(",") == 1 and _QUANTITY.fullmatch(pointed) else DIMENSIONS[dimension].example
+        raise refusal(f"{show(value)} has a comma; write a decimal point, as in {show(like)}")
     if not (found := _QUANTITY.fullmatch(value)):
         raise refusal(what)
     meaning = _fitting(found[2], dimension, value)
@@ -76,6 +81,14 @@ def _is_zero(value: object) -> bool:
         return exact(value) == 0
     except PydanticCustomError:
         return False
+
+
+@cache
+def _usual(dimension: str) -> str:
+    """The usual units of a dimension, as a sentence has them: "m, mm, cm or km"."""
+    names = [name for name, one in _USUAL.items() if name.isalpha() and fits(one.powers, DIMENSIONS[dimension])]
+    *others, last = names or [DIMENSIONS[dimension].example.partition(" ")[2]]
+    return f"{', '.join(others)} or {last}" if others else last
 
 
 def _example(dimension: str) -> str:
@@ -108,7 +121,8 @@ def base_units(unit: str) -> tuple[Fraction, Mapping[str, int]]:
 
 def _fitting(text: str, dimension: str, value: str) -> _Meaning:
     """What a unit means, which is one of a dimension; `value` is what the message shows where it is none."""
-    meaning = _meaning(text, value, gravity=dimension in ("acceleration", "jerk"))
+    gravity = dimension in ("acceleration", "jerk")
+    meaning = _meaning(text, value, gravity=gravity, usual=f"{with_article(dimension)} in {_usual(dimension)}")
     if not fits(meaning.powers, DIMENSIONS[dimension]):
         others = (slip.sub(right, text) for slip, right in _SLIPS)
         meant = (
@@ -121,7 +135,9 @@ def _fitting(text: str, dimension: str, value: str) -> _Meaning:
     return meaning
 
 
-def _meaning(text: str, value: str, *, gravity: bool) -> _Meaning:
+def _meaning(
+    text: str, value: str, *, gravity: bool, usual: str = "one of length, mass, time or angle, or made of these"
+) -> _Meaning:
     if not _UNIT.fullmatch(text):
         grammar = 'a number and units joined by * and /, with powers up to ^9, such as "3 kN*s/m^2"'
         raise refusal(f"{show(value)} is not a quantity; write {grammar}")
@@ -137,9 +153,9 @@ def _meaning(text: str, value: str, *, gravity: bool) -> _Meaning:
         if one is None:
             raised = _RAISED.fullmatch(name)
             drawn = f'Did you mean "{raised[1]}^{raised[2]}"?' if raised and _unit_meaning(raised[1]) else ""
-            meant = drawn or did_you_mean(name, _names())
-            known = "one of length, mass, time or angle, or made of these"
-            raise refusal(f"{show(value)}: {show(name)} is not a known unit; write {known}{meant and f'. {meant}'}")
+            alike = next((f'Did you mean "{each}"?' for each in _names() if each.casefold() == name.casefold()), "")
+            meant = drawn or alike or did_you_mean(name, _names())
+            raise refusal(f"{show(value)}: {show(name)} is not a known unit; write {usual}{meant and f'. {meant}'}")
         factor *= one.factor**power
         for base, exponent in one.powers.items():
             powers[base] = powers.get(base, 0) + exponent * power

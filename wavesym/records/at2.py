@@ -39,7 +39,7 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
         for place, word in enumerate(line.split(), 1):
             value = decimal(word)
             if value is None:
-                raise damage_error(file, number, f"word {place} is no decimal")
+                raise damage_error(file, number, f"word {place} is no decimal; write numbers alone")
             if len(samples) == count:
                 raise damage_error(
                     file, number, f"more numbers than the {count} of NPTS on line {_HEADER}; write as many"

@@ -26,6 +26,7 @@ _QUANTITIES = "acc|accel|acceleration|velocity|displacement|force|moment|torque"
 _SECONDS = ("s", "sec", "ms")
 _MARKS, _BLANK = "\t;,", " "
 _MOST_COLUMNS = 10_000
+_HEADLESS = "begin lines of words, but one header, with #"
 _QUOTING = re.compile(r'(?:[^"#]|"[^"]*("|$))*')
 _NAMES = re.compile(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?")  # of columns, each with its unit
 _BRACKETS = re.compile(r"(.*\S)\s*(?:\[(.*)\]|\((.*)\))")
@@ -68,10 +69,13 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
     for number, row in chain(top if headless else top[1:], rows):
         cells = _cells(file, number, row, mark)
         if len(cells) != len(named):
-            raise damage_error(file, number, f"{len(cells)} columns, but {len(named)} in the header; write as many")
+            words = "" if places else ", and # before other lines of words"
+            raise damage_error(
+                file, number, f"{len(cells)} columns, but {len(named)} in the header; write as many{words}"
+            )
         if clock:
-            times.append(decimals.read(cells[clock.place], number, clock.place)[0])
-        sample, word = decimals.read(cells[column.place], number, column.place)
+            times.append(decimals.read(cells[clock.place], number, clock.place, first=not places)[0])
+        sample, word = decimals.read(cells[column.place], number, column.place, first=not places)
         samples.append(sample)
         written.append(word)
         places.append(number)
@@ -127,14 +131,15 @@ class _Decimals:
         self._file, self._may, self._named = file, may, named
         self._mark: str | None = None  # once there was one
 
-    def read(self, word: str, line: int, place: int) -> tuple[Fraction, str]:
-        """A number, and how it is written, with a point."""
+    def read(self, word: str, line: int, place: int, *, first: bool) -> tuple[Fraction, str]:
+        """A number, and how it is written, with a point; whether its row is the `first` decides what helps."""
         mark = "." if "." in word else "," if self._may and "," in word else None
         plain = word.replace(",", ".") if mark == "," else word
         value = decimal(plain)
         if value is None:
             name = f" ({bare(self._named[place].header)})" if self._named else ""
-            raise damage_error(self._file, line, f"column {place + 1}{name} is no decimal")
+            remedy = _HEADLESS if first else "write a number in every row"
+            raise damage_error(self._file, line, f"column {place + 1}{name} is no decimal; {remedy}")
         if mark is not None and mark != self._mark:
             if self._mark is not None:
                 raise damage_error(
@@ -161,6 +166,8 @@ def _choose(
     if not others:
         raise damage_error(file, at, "only a column of times; write a column of samples")
     if wanted is None:
+        if len(others) > 1 and not numeric:
+            raise damage_error(file, at, f"{len(named)} columns, and no number below; {_HEADLESS}")
         if len(others) > 1:
             raise damage_error(file, at, f"{len(others)} columns of samples; write `column` to say which{known}")
         return others[0]

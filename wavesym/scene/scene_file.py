@@ -116,13 +116,38 @@ def _refuse_large(file: str, text: str) -> None:
         raise SceneError(f"more than {_MOST_VALUES} values; split the scene, or thin its samples", file=file)
 
 
+_PLACE = re.compile(r"at line ([0-9]+), column ([0-9]+)")
+_OPEN = ("Illegal character '\\n'", "Found invalid character '\\n'", "Unterminated string", 'Expected "\'"')
+_COMMA = re.compile(r"=\s*([+-]?[0-9]+),([0-9]+)\s*\Z")
+_UNQUOTED = re.compile(r"=\s*([+-]?[0-9]+(?:\.[0-9]+)?)\s*\Z")
+_REST = re.compile(r"(,[0-9]+)|\s*([A-Za-z][\w/*^]*)")
+
+
+def _remedy(text: str, error: str) -> str:
+    """What to write in place of what is no TOML, for the slips that are frequent; empty for others."""
+    if error.startswith(_OPEN):
+        return '; a text begins and ends with a quote, on one line: write " at its end'
+    if not (place := _PLACE.search(error)):
+        return ""
+    line, column = text.split("\n")[int(place[1]) - 1], int(place[2]) - 1
+    before, after = line[:column], line[column:]
+    if found := _COMMA.search(before):  # in braces, where what follows a comma should be a key
+        return f"; numbers have a decimal point: write {found[1][:20]}.{found[2][:20]}"
+    number, rest = _UNQUOTED.search(before), _REST.match(after)
+    if number and rest and rest[1]:
+        return f"; numbers have a decimal point: write {number[1][:20]}.{rest[1][1:20]}"
+    if number and rest:
+        return f'; a quantity has quotes: write "{number[1][:20]} {rest[2][:20]}"'
+    return ""
+
+
 def parse_text(file: str, text: str) -> dict[str, Any]:
     """The table in a text of TOML, decimals as they are written. SceneError, which names `file`, where it is none."""
     _refuse_large(file, text)
     try:
         return tomllib.loads(text, parse_float=WrittenDecimal)
     except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"no TOML, {error}", file=file) from None
+        raise SceneError(f"no TOML, {error}{_remedy(text, str(error))}", file=file) from None
     except ValueError:  # the limit is Python's
         digits = sys.get_int_max_str_digits()
         raise SceneError(f"an integer has more than {digits} digits; write fewer", file=file) from None
