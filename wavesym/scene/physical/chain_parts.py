@@ -52,7 +52,7 @@ class RodKeys(SceneTable):
             modulus, section, density = (values[key] for key in self.dimensions)
             return ElasticRod.from_section(length, modulus, section, density, self._square(values))
         if written:
-            raise self._beside(written[0], "impedance")
+            raise self._repetition(written[0], "impedance")
         impedance, speed = self._si_value("impedance", dashpot), self._si_value("speed", "velocity")
         return ElasticRod(length, impedance / speed * length, impedance * speed / length)
 
@@ -69,11 +69,11 @@ class RodKeys(SceneTable):
         if self.speed is None:
             return {key: self._si_value(key, dimension) for key, dimension in self.dimensions.items()}
         if getattr(self, modulus) is not None:
-            raise self._beside(modulus, "speed")
+            raise self._repetition(modulus, "speed")
         values = {key: self._si_value(key, self.dimensions[key]) for key in (section, density)}
         return values | {modulus: values[density] * self._si_value("speed", "velocity") ** 2}
 
-    def _beside(self, key: str, other: str) -> Exception:
+    def _repetition(self, key: str, other: str) -> Exception:
         """The error for a key that says again what another one says."""
         modulus, section, density = self.dimensions
         ways = f"impedance and speed, or speed, {density} and {section}, or {modulus}, {section} and {density}"
