@@ -9,12 +9,13 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
-from flint import fmpq
+from flint import arb, arb_poly, fmpq
 
 from wavesym.errors import SceneError
 from wavesym.exact.contacts.events import contact_schedule, events
-from wavesym.exact.contacts.springs import CornerSpring
+from wavesym.exact.contacts.springs import CornerSpring, SpringState, yielding_motion
 from wavesym.exact.first_arrivals import first_arrivals
+from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.scene import Scene, lower
@@ -84,6 +85,24 @@ def test_a_pile_is_driven_into_soil_that_yields() -> None:
     v, x = Reference(model).values([0.2, 4.0])
     assert v == pytest.approx([math.exp(-0.4), 0.5], rel=1e-15)
     assert x == pytest.approx([(1 - math.exp(-0.4)) / 2, 0.25 + (4 - math.log(2) / 2) / 2], rel=1e-15)
+
+
+def test_a_stretch_is_exactly_its_limit_only_where_it_certainly_yields_at_the_end() -> None:
+    """Pulled at any rate that is not excluded from any stretch within, a spring with the limit 1 ends where it may."""
+    spring = CornerSpring(0, 1, fmpq(1), fmpq(1), 0, fmpq(0), (fmpq(1), fmpq(1)), fmpq(0))
+    unknown, length, limit = fmpq(1, 8), fmpq(1), fmpq(1)
+    certain = []
+    for rate in (fmpq(-1, 4), fmpq(1, 100), fmpq(1, 10), fmpq(1, 3), fmpq(3)):
+        for error in (fmpq(0), fmpq(1, 5), fmpq(1, 2)):
+            pulled = Enclosure(arb_poly([arb(rate)]), arb(error))
+            state = SpringState(arb(limit - unknown).union(arb(limit)), None)
+            end = yielding_motion(spring, state, 1, pulled, length).at_end(length)
+            drawn = [(start, v) for start in (limit - unknown, limit) for v in (rate - error, rate + error) if v >= 0]
+            ends = {min(start + v * length, limit) for start, v in drawn}  # what yields goes no further back
+            assert all(end.stretch.contains(arb(each)) for each in ends)
+            certain.append(end.exact is not None)
+            assert not certain[-1] or ends == {limit} == {end.exact} and rate >= error
+    assert {True, False} == set(certain)
 
 
 @pytest.mark.parametrize("law", [{"gap": [0, 0]}, {"yield": 1000}, {"gap": [-1000, 1000]}])

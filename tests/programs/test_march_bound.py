@@ -28,6 +28,7 @@ from wavesym.programs.march.bound import (
     Verdict,
     judge,
     largest_wave,
+    most_additions,
     reading_weights,
     size_of,
     smoothness,
@@ -468,6 +469,17 @@ def gathered(c, t, start, half):
     low = local(Rounded(np.full(DEGREE + 1, max(0.0, -start))), half)
     difference = antiderivative(c, local(since(t, start), half)) - antiderivative(c, low)
     return Rounded.wrong(half) * difference
+
+
+def test_no_integral_over_a_window_is_the_sum_of_more_numbers_than_said() -> None:
+    """Programs add what an antiderivative is at the end of each stretch, less what it is at its start."""
+    for law in ("bodies", "blocks", "scatterers"):
+        plan = march_plan(lower(of_one_kind(law)))
+        delays = {term.delay for output in plan.outputs for term in output.terms}
+        added = [2 * len(plan.stretches(delay)) for delay in delays]
+        assert len(plan.panels) > 1
+        assert len(plan.panels) < max(added) / 2 + 1
+        assert max(added) <= most_additions(plan)
 
 
 @pytest.mark.quick(1)

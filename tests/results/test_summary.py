@@ -251,6 +251,22 @@ def test_published_peaks_of_one_storey(period, sampled, true):
     assert at.how == "the values of modes at 1560 samples"
 
 
+def test_extremes_at_samples_are_those_of_the_finest_record():
+    """A long rod moves by force over impedance: both forces together are largest between the samples of the other."""
+    fine, coarse = {"spacing": "1/4", "samples": [0, 0, 3, 0]}, {"spacing": 1, "samples": [0, 1, 0]}
+    for loads in ([fine, coarse], [coarse, fine]):
+        scene = Scene(
+            name="rod",
+            system={"type": "chain", "parts": [{"joint": True, "name": "end"}, {"rod": 1}, "absorbing"]},
+            load=[{"at": "end", **load} for load in loads],
+            output={"until": 3, "tolerance": 1e-9, "velocity": ["end"]},
+        )
+        assert sample_comb(scene) == (0, fmpq(1, 4))
+        assert lower(scene).spacing == fmpq(1, 4)
+        (end,) = summarise(lower(scene), own_samples(lower(scene), sample_comb(scene))).outputs
+        assert (abs(end.largest.value), end.largest.at.tau) == (pytest.approx(3.5, rel=1e-9), 0.5)
+
+
 def test_values_at_places_in_panels_are_those_of_the_program():
     times, ramps = ["1/3", 1, "5/2", 3, 7], [1, -1, 2, "-5/2", "1/2"]
     load = [{"times": times, "a": [0] * 5, "b": ramps}]

@@ -891,3 +891,16 @@ def test_a_delay_that_is_rational_is_exact() -> None:
     assert model.clock is not None
     assert model.clock.seconds == fmpq(1, 30)
     assert model.spacing == fmpq(3, 5)
+
+
+def test_a_shaft_is_as_slender_as_its_length_over_its_diameter() -> None:
+    shaft = {"rod": "70 cm", "diameter": "200 mm", "G": "80 GPa", "rho": "7850 kg/m^3"}
+    scene = {
+        "name": "shaft",
+        "units": {"kind": "torsional", "length": "m", "time": "ms"},
+        "system": {"type": "chain", "parts": [{"joint": True, "name": "end"}, shaft, "fixed"]},
+        "load": [{"at": "end", "times": ["0 s"], "steps": ["1 kN*m"]}],
+        "output": {"until": "1 ms", "tolerance": 1e-9, "velocity": ["0 m"]},
+    }
+    said = list(remarks(physical(scene, Faults())))
+    assert any(line.startswith("rod 1 is 3.5 times as long as wide") for line in said)

@@ -132,14 +132,14 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
             raise OverflowError(f"waves beyond {nearest(real.reach):.1g}")
     smooth = smoothness(plan, degree)
     lost_reading = 8.0 * (degree + 3) ** 2 * smallest
-    stretches = 2.0 * len(plan.panels) + 2
+    additions = most_additions(plan)
     errors = []
     for o, output in enumerate(plan.outputs):
         error = 0.0
         if of := output.part(summed=True):
             error += _influence(plan, of) * sqrt(step) * summed
-            error += unit * (24 * stretches * step * sums[o] + len(of) * plan.windows * held[o])
-            error += plan.windows * stretches * lost_reading * (1 + step) * max(1, len(of) / 2)
+            error += unit * (24 * additions * step * sums[o] + len(of) * plan.windows * held[o])
+            error += plan.windows * additions * lost_reading * (1 + step) * max(1, len(of) / 2)
             error += _direct(losses, of) * step * plan.windows
         if of := output.part(summed=False):
             error += _influence(plan, of) * largest_wave(smooth, plan, truncated + rounded)
@@ -174,6 +174,11 @@ def reading_weights(degree: int, displaced: bool) -> Array:
     """
     k = np.arange(degree + 1)
     return k + 8 + degree / (k + 1.0) if displaced else (k + 1) * (k + 2.0) + degree
+
+
+def most_additions(plan: MarchPlan) -> float:
+    """How many numbers an integral over a window is the sum of: at both ends of each stretch of the wave."""
+    return 2.0 * len(plan.panels) + 2
 
 
 def _influence(plan: MarchPlan, terms: Iterable[OutputTerm]) -> float:
