@@ -101,7 +101,7 @@ def test_a_stretch_is_exactly_its_limit_only_where_it_certainly_yields_at_the_en
             ends = {min(start + v * length, limit) for start, v in drawn}  # what yields goes no further back
             assert all(end.stretch.contains(arb(each)) for each in ends)
             certain.append(end.exact is not None)
-            assert not certain[-1] or ends == {limit} == {end.exact} and rate >= error
+            assert not certain[-1] or (ends == {limit} == {end.exact} and rate >= error)
     assert {True, False} == set(certain)
 
 

@@ -240,6 +240,45 @@ def loaded(scene, **options):
     return found
 
 
+SQUARES = """
+#include "sprung.c"
+int squares(const sprung_parameters *numbers, double *square, double *wrong);
+int squares(const sprung_parameters *numbers, double *square, double *wrong)
+{
+    static model m;
+    static projection p;
+    damping_rule rule;
+    const int read = find_model(&m, numbers, &p, &rule);
+    for (int n = 0; n < FOUND; ++n) {
+        square[n] = p.w[n] * p.w[n];
+        wrong[n] = p.wrong[n];
+    }
+    return read ? ROWS : 0;
+}
+"""
+
+
+def test_by_rounding_a_square_is_as_wrong_as_the_energy_of_its_mode(tmp_path):
+    """Of a mode of mass 1 twice the energies of springs and of masses are w^2 each, as nothing else swings: also
+    where one spring is far stiffer than the others, whose energy is what hardly stretches it."""
+    for name, text in program_files(SPRUNG).items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "squares.c").write_text(SQUARES)
+    compiler().run([*LANGUAGES["c99"], "-O0", "-fPIC", "-shared", "squares.c", "-o", "squares.so", "-lm"], tmp_path)
+    squares = ctypes.CDLL(str(tmp_path / "squares.so")).squares
+    given = wavesym.model(SPRUNG, runtime_of(SPRUNG)).parameters
+    for stiff in (1.0, 50.0, 1e6):
+        stiffness = np.array(given["stiffness"]) * [1, stiff, 1, 1]
+        numbers = np.concatenate([stiffness if name == "stiffness" else given[name] for name in runtime_of(SPRUNG)])
+        square, wrong = np.empty(4), np.empty(4)
+        rows = squares(*(ctypes.c_void_p(array.ctypes.data) for array in (numbers, square, wrong)))
+        assert rows == 4
+        spring = np.diag(np.append(stiffness[:-1] + stiffness[1:], stiffness[-1]))
+        spring -= np.diag(stiffness[1:], 1) + np.diag(stiffness[1:], -1)
+        assert square == pytest.approx(np.linalg.eigvalsh(spring / 2), rel=1e-9)  # all masses are 2
+        assert wrong == pytest.approx((4 * rows + 8) * 2.0**-52 * 2 * square, rel=1e-6)
+
+
 def test_bad_numbers_are_refused_and_too_few_modes_told():
     frame, model = loaded(FRAME, parts=("peaks",)), wavesym.model(FRAME, NUMBERS)
     own = np.concatenate([model.parameters[name] for name in NUMBERS])

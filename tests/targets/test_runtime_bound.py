@@ -118,6 +118,35 @@ def test_waves_that_are_sent_wrong_add_up_at_an_instant(tmp_path):
     assert_refused((SENT, ("w->instant += w->passes[port]", "w->instant += 0 * w->passes[port]")), "building", tmp_path)
 
 
+def test_a_bound_is_relative_to_what_is_certainly_there(tmp_path):
+    """Pulled alike from both sides the middle moves by its own little load alone, and what both pulls round stays: it
+    may be as large as the motion, whose largest value is then known to be no less than what is seen less that."""
+    parts = [
+        {"joint": True, "name": "a"},
+        {"rod": 1},
+        {"mass": 1, "name": "n"},
+        {"rod": 1},
+        {"joint": True, "name": "b"},
+    ]
+    scene = wavesym.Scene(
+        name="level",
+        system={"type": "chain", "parts": parts},
+        load=[{"at": at, "times": [0], "steps": [1]} for at in "anb"],
+        output={"until": 3, "tolerance": "1e-9", "velocity": ["n"]},
+    )
+    made = BuiltModel(scene, ["load"], tmp_path)
+    relative, absolute = [], []
+    for little in 2.0 ** np.arange(-41, -35):
+        _, (bound,) = made.bound(1, little, -1)
+        _, values = made.sample(0.0, made.until / 300, 301)
+        relative.append(bound)
+        absolute.append(np.max(np.abs(values)) * (bound / (1 + bound) if np.isfinite(bound) else 1))
+    assert np.isinf(relative[0])
+    assert max(relative[1:]) > 1 > min(relative) > 0.01
+    assert absolute[1:] == pytest.approx([absolute[-1]] * 5, rel=0.01)
+    assert absolute[0] < 1.01 * absolute[-1]
+
+
 STEPS = 150
 STEPPED = wavesym.Scene(
     name="stepped",
