@@ -21,6 +21,7 @@ from wavesym.exact.contacts.events import ContactEnd, contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
+from wavesym.programs.hats import under_jumps
 from wavesym.programs.making import make
 from wavesym.programs.march.plan import march_plan
 from wavesym.programs.program import Program
@@ -97,7 +98,7 @@ def histories(model: Model, columns: int = 1, program: Program | None = None) ->
     contacts = contact_ends(model)
     formal = [_formal(model, probe, contacts) for probe in model.probes]
     dense = _dense(model)
-    sudden = program.under_jumps(model)
+    sudden = under_jumps(program, model)
     fronts = [[] if dense else arrivals(sudden, probe) for probe in model.probes]
     names = [output.name for output in program.outputs]
     rows = [names.index(probe.name) for probe in model.probes]

@@ -83,6 +83,11 @@ def rest_of(model: Model) -> Model:
     return replace(model, loads=split(model).rest)
 
 
+def under_jumps(program: Program, model: Model) -> Model:
+    """A model under the loads by which a program's outputs may jump: records that are added up hat by hat do not."""
+    return rest_of(model) if program.hats else model
+
+
 def still(model: Model, load: RecordLoad) -> Model:
     """The model at rest until one hat acts."""
     network = replace(

@@ -166,12 +166,6 @@ class Program(BoundedOutputs):
         """Whether it is stepped exactly, in steps of one length: loads and outputs do not jump."""
         return self.step == "spacing"
 
-    def under_jumps(self, model: Model) -> Model:
-        """A model under the loads by which its outputs may jump: records that are added up hat by hat do not."""
-        from wavesym.programs.hats import rest_of
-
-        return rest_of(model) if self.hats else model
-
     def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
         """All outputs at tau, of shape (outputs, *tau.shape), in the type of the format; NaN where tau is out of range.
 

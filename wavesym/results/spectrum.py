@@ -29,6 +29,7 @@ from wavesym.errors import CostError, WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import with_unit
 from wavesym.numbers.doubles import nearest
+from wavesym.programs.hats import under_jumps
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.results.presentation import csv_line, output_number
@@ -165,7 +166,7 @@ def _periods(model: Model, per_tau: float) -> Numbers:
 
 def _stretches(model: Model, program: Program, step: float) -> list[tuple[Numbers, Numbers]]:
     """Stretches without jumps, each of an even number of equal steps: instants, and the outputs there."""
-    if program.has_equal_steps or (program.hats and not jumps(program.under_jumps(model))):
+    if program.has_equal_steps or (program.hats and not jumps(under_jumps(program, model))):
         taus, values = sample_program(model, program, step)  # nothing jumps; steps of panels of one length are equal
         steps = np.diff(taus)
         cuts = np.flatnonzero(np.abs(np.diff(steps)) > 1e-6 * steps[:-1]) + 1

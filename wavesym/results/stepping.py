@@ -12,6 +12,7 @@ from wavesym.exact.breakpoints import Breakpoints
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.hats import under_jumps
 from wavesym.programs.modes.records import Panels
 from wavesym.programs.program import Program
 
@@ -39,7 +40,7 @@ def sample_program(model: Model, program: Program, step: float) -> tuple[Numbers
     """Instants no more than `step` apart, in order, with both sides of jumps, and the values of a program there."""
     if program.has_equal_steps and program.real is DOUBLE:
         return Panels.from_program(program).sample(step)
-    fronts = jumps(program.under_jumps(model))
+    fronts = jumps(under_jumps(program, model))
     taus = np.unique([*program.instants(step), *fronts, *map(just_before, fronts)])
     return taus, program.evaluate(taus)
 
