@@ -108,6 +108,7 @@ NEARLY = [
     (integrations.midpoints, friction_beside_contacts, 1),  # a load that misses all grids by 1e-9
     (integrations.corner_changes, friction_beside_contacts, 3),  # a spring with a law and friction at one mass
     (integrations.differences, light_friction, 3),  # friction of what a spring with a law holds, too
+    (integrations.differences, light_friction, 6),  # springs with a law at a joint without mass swing up
     (integrations.corner_changes, light_friction, 7),  # what turns round comes to rest at once
 ]
 

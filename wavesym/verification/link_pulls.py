@@ -15,7 +15,7 @@ from wavesym.methods.problem import Array
 from wavesym.verification.problem import BranchChange, CornerProblem, LinkLaw
 
 # pulls of links are found as exactly as this, relative to the largest, in so many rounds
-EXACT, ROUNDS = 1e-15, 1000
+_EXACT, ROUNDS = 1e-15, 1000
 
 # parts of what pushes and gaps are worth that tell whether a contact is closed
 _SIGN = 1e-9
@@ -118,7 +118,7 @@ class LinkPulls:
                 compliance = self._compliance[k, k]
                 rate = float(rates[k] - self._compliance[k] @ self._pulls + compliance * self._pulls[k])
                 self._pulls[k] = self._mean(k, rate, float(longer[k]), float(compliance))
-            if np.max(np.abs(self._pulls - before)) <= EXACT * np.max(np.abs(self._pulls)):
+            if np.max(np.abs(self._pulls - before)) <= _EXACT * np.max(np.abs(self._pulls)):
                 break
         v = free - self._influence @ self._pulls
         self._record_branches(longer + self._h * (self._rows @ v), step)

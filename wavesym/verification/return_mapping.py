@@ -1,7 +1,7 @@
 """Friction and springs with a law by central differences, which pull back what went too far: return mapping.
 
 `wavesym/methods/differences.py` has the steps. What rubs pulls in the mean from t - h to t + h what keeps it from
-moving, as much as it can; a spring pulls at t as much as it is longer, and what is beyond its limits becomes permanent.
+moving, as much as it can; a spring pulls as much as it is longer, and what is beyond its limits becomes permanent.
 Nothing is known of events. Fronts stay as sharp as they are, and outputs are read where none is within a few cells.
 """
 
@@ -17,7 +17,7 @@ from wavesym.methods.differences import Grid, fields, point_steps
 from wavesym.methods.elements import keep_places
 from wavesym.methods.problem import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
-from wavesym.verification.link_pulls import EXACT, ROUNDS
+from wavesym.verification.link_pulls import ROUNDS
 from wavesym.verification.problem import CornerProblem, LinkLaw
 
 REACH = 4
@@ -25,6 +25,9 @@ REACH = 4
 
 # a point rounds three sums, a node and what is read off a little more
 _ROUNDINGS = 8
+
+# pulls of links are found as exactly as this, relative to the largest
+_EXACT = 1e-13
 
 
 def integrate_differences(problem: CornerProblem, step: Fraction, instants: NDArray[np.int_]) -> tuple[Array, Array]:
@@ -64,42 +67,41 @@ def _roundoff(problem: CornerProblem, reading: Gauge, h: float, steps: int) -> f
 
 
 class _ReturnMapping:
-    """What links pull, step by step: that of a spring which yields goes on from its pull a step before."""
+    """What links pull, step by step: that of a spring which yields goes on from its pull a step before.
+
+    A spring is as long in a step as those without a law are (`point_steps`): else it swings up where nothing has mass.
+    """
 
     def __init__(self, problem: CornerProblem) -> None:
         self._laws = laws = problem.laws
-        self._ways = [float(np.sign(law.row @ problem.velocity)) for law in laws]
+        self._rows = np.array([law.row for law in laws])
+        self._ways = np.sign(self._rows @ problem.velocity)
         self._longer, self._pulls = np.zeros(len(laws)), np.array([law.preload for law in laws])
 
     def settle(self, after: Array, influence: Array, now: Array, before: Array) -> Array:
-        """Displacements with what each link pulls, within its limits: springs, then friction, until they agree."""
-        rubbing, pulls = [], np.zeros(len(self._laws))
-        for number, law in enumerate(self._laws):
-            if law.friction:
-                rubbing.append(number)
-            else:
-                after -= influence @ law.row * law.limit(self._trial(number, law, float(law.row @ now)))
-        ways = list(self._ways)
+        """Displacements with what each link pulls, within its limits, when all bear what the others leave."""
+        yields, earlier, pulls = influence @ self._rows.T, self._pulls, np.zeros(len(self._laws))
+        compliance = np.einsum("ij,ji->i", self._rows, yields)
         for _ in range(ROUNDS):
             last = pulls.copy()
-            for number in rubbing:
-                law = self._laws[number]
-                held = float(pulls[number] + law.row @ (after - before) / (law.row @ influence @ law.row))
-                pull, ways[number] = _rub(law, self._ways[number], held)
-                after -= influence @ law.row * (pull - pulls[number])
+            for number, (law, row) in enumerate(zip(self._laws, self._rows, strict=True)):
+                free = row @ after + compliance[number] * pulls[number]
+                if law.friction:
+                    held = float(free - row @ before) / compliance[number]
+                    pull, _way = _rub(law, float(self._ways[number]), held)
+                else:
+                    longer = (free + 2 * row @ now + row @ before) / 4
+                    kept = 0.0 if law.side else earlier[number] - law.stiffness * self._longer[number]
+                    trial = kept + law.stiffness * (longer - law.side * law.gap)
+                    pull = law.limit(float(trial / (1 + law.stiffness * compliance[number] / 4)))
+                after -= yields[:, number] * (pull - pulls[number])
                 pulls[number] = pull
-            if len(rubbing) < 2 or np.max(np.abs(pulls - last)) <= EXACT * np.max(np.abs(pulls)):
+            if len(pulls) == 1 or np.max(np.abs(pulls - last)) <= _EXACT * np.max(np.abs(pulls)):
                 break
-        self._ways = ways
+        held = pulls + self._rows @ (after - before) / compliance
+        self._ways = np.array([_rub(*each)[1] for each in zip(self._laws, self._ways, held, strict=True)])
+        self._longer, self._pulls = self._rows @ (after + 2 * now + before) / 4, pulls
         return after
-
-    def _trial(self, number: int, law: LinkLaw, longer: float) -> float:
-        """What a spring would pull without limits."""
-        if law.side:
-            return law.stiffness * (longer - law.side * law.gap)
-        trial = float(self._pulls[number] + law.stiffness * (longer - self._longer[number]))
-        self._longer[number], self._pulls[number] = longer, law.limit(trial)
-        return trial
 
 
 def _rub(law: LinkLaw, way: float, held: float) -> tuple[float, float]:
