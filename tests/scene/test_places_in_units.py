@@ -14,6 +14,7 @@ import pytest
 from tests.support.generated import files
 from wavesym.cli import main
 from wavesym.errors import WavesymError
+from wavesym.exact.reference import Reference
 from wavesym.mechanics.length import LengthUnit, axis_text, place_text
 from wavesym.pictures.page.document import page
 from wavesym.programs.making import make
@@ -112,6 +113,66 @@ def test_refusals_of_programs(tmp_path: Path) -> None:
     damped = plain.replace('"fixed"', '"absorbing"').replace('type = "chain"', 'type = "chain"\ndamping = 0.01')
     with pytest.raises(WavesymError, match="damping: stands beside a dashpot or an absorbing end at 3900 mm"):
         scene(damped, tmp_path / "bar.toml")
+
+
+CORNERED = f"""
+name = "bar"
+units = {{ length = "mm", time = "ms" }}
+load = [{{ at = "1.3 m+", times = ["0 s", "0.3 ms"], steps = ["40 kN", "-40 kN"] }}]
+output = {{ until = "1.25 ms", tolerance = 1e-9, velocity = ["3 m-"] }}
+[system]
+type = "chain"
+parts = [{{ rod = "1.3 m", {STEEL}, velocity = "1 m/s" }}, "contact", {{ rod = "1.7 m", {STEEL} }},
+  {{ joint = true, friction = "10 kN" }}, {{ rod = "90 cm", {STEEL} }}, {{ spring = "100 MN/m", yield = "10 kN" }},
+  {{ rod = "1.1 m", {STEEL} }}, {{ spring = "100 MN/m", only = "push", gap = "1 um" }}, {{ rod = "0.4 m", {STEEL} }},
+  "fixed"]
+"""
+# in the length of the first rod nodes are at 1, 30/13, 3, 50/13 and 54/13, and the load's side is 1+
+CORNERS = {"contact": "1300 mm", "friction": "3000 mm", "spring": ("3900 mm", "5000 mm")}
+
+
+def test_every_law_with_a_corner_is_where_the_scene_says(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "bar.toml"
+    path.write_text(CORNERED, encoding="utf-8")
+    assert main(["run", str(path), "-o", str(tmp_path / "bar.csv")]) == 0
+    told = capsys.readouterr().err
+    found = re.findall(r"(\w+) at x = (.*?) (opens|slips|sticks|yields|holds|engages|lets go) at", told)
+    assert {kind for *_, kind in found} == {"opens", "slips", "sticks", "yields", "holds", "engages", "lets go"}
+    assert all(place in CORNERS[law] for law, place, _ in found)
+    assert {place for _, place, _ in found} == {"1300 mm", "3000 mm", "3900 mm", "5000 mm"}
+    assert main(["summary", str(path)]) == 0
+    losses = re.findall(r"^(friction|spring) at (.*?): set", capsys.readouterr().out, flags=re.MULTILINE)
+    assert sorted(losses) == [("friction", "3000 mm"), ("spring", "3900 mm")]
+
+
+@pytest.mark.parametrize(
+    ("outputs", "line"),
+    [
+        ('strain = ["3.9 m"]', '3.9 m has two sides; write "3.9 m-" or "3.9 m+"'),
+        ('velocity = ["3900 mm"]', '3900 mm has two sides; write "3900 mm-" or "3900 mm+"'),
+        ('force = ["1.3 m"]', '1.3 m has two sides; write "1.3 m-" or "1.3 m+"'),
+        ('velocity = ["5.5 m"]', '"5.5 m" is not on the chain; write a place from 0 to 5.4 m'),
+        ('acceleration = ["2 m"]', "acceleration@2 m has no mass, and contacts that close make velocities jump"),
+        ('acceleration = ["3 m"]', "acceleration@3 m has no mass, and contacts that close make velocities jump"),
+    ],
+)
+def test_a_refused_place_of_an_output_is_the_one_that_was_written(outputs: str, line: str, tmp_path: Path) -> None:
+    with pytest.raises(WavesymError, match=re.escape(line)) as refused:
+        Reference(lower(scene(CORNERED.replace('velocity = ["3 m-"]', outputs), tmp_path / "bar.toml"))).values([0.5])
+    assert not re.search("/13", str(refused.value))
+
+
+def test_a_front_that_no_output_takes_is_where_the_scene_says(tmp_path: Path) -> None:
+    glued = CORNERED.replace('"contact", ', "").replace("1.3 m+", "1.3 m").replace(', friction = "10 kN"', "")
+    glued = (
+        glued.replace(', yield = "10 kN"', "")
+        .replace(', only = "push", gap = "1 um"', "")
+        .replace('"1 m/s"', '"0 m/s"')
+    )
+    text = glued.replace('velocity = ["3 m-"]', 'acceleration = ["2 m"]')
+    front = r"acceleration@2 m: a front .* can pass there \(what acts at 1300 mm jumps by 40000 N at 0 ms\)"
+    with pytest.raises(WavesymError, match=front):
+        Reference(lower(scene(text, tmp_path / "bar.toml"))).values([0.5])
 
 
 def test_what_is_computed_is_the_same(tmp_path: Path) -> None:

@@ -47,8 +47,8 @@ class Cost:
         moves = sum((tau / shortest[number] for number, tau in self._last.items()), fmpq(0))
         if moves > MOST_MOVES:
             raise CostError(
-                f"output.until: waves cross the shortest rod in {nearest(min(shortest.values())):g}, contacts are "
-                f"looked for {nearest(moves):.1e} times, the limit is {MOST_MOVES:g} (a shorter horizon or longer "
+                f"output.until: waves cross the shortest rod in tau = {nearest(min(shortest.values())):g}, contacts "
+                f"are looked for {nearest(moves):.1e} times, the limit is {MOST_MOVES:g} (a shorter horizon or longer "
                 "rods help)"
             )
 
