@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 import pytest
 
 from tests.papers.small import Paper
-from wavesym.cli import main, progress
+from wavesym import progress
+from wavesym.cli import main
 from wavesym.papers import verdict_page
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.record import Record
@@ -137,7 +138,7 @@ def test_a_line_too_long_for_the_terminal_is_cut(soon: None, monkeypatch: pytest
 
 def test_a_terminal_that_has_gone_stops_nothing(soon: None, monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = opened(monkeypatch)
-    monkeypatch.setattr(progress.click, "echo", gone)
+    monkeypatch.setattr(progress, "_put", gone)
     work()
     assert terminal.close() == ""
 

@@ -7,6 +7,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wavesym.progress import progress
+
 if TYPE_CHECKING:
     from wavesym.sweeps.status import SweepStatus
 
@@ -20,6 +22,8 @@ def sweep(
     retry_failed: bool = False,
 ) -> Any:
     """Compute many scenes into a folder, as `wavesym sweep` does; what is there goes on where it was.
+
+    On a terminal a line says how far it is.
 
     Args:
         source: a file of TOML, or the same fields: `scene` (a Scene, or a path), `vary`, `records`, `keep`.
@@ -43,7 +47,8 @@ def sweep(
     from wavesym.sweeps.store import open_dataset, require_packages
 
     require_packages("xarray", "zarr")
-    run_sweep(source, folder, workers, scheduler, retry_failed)
+    with progress(f"sweep {folder}") as line:
+        run_sweep(source, folder, workers, scheduler, retry_failed, line.count)
     return open_dataset(folder)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from wavesym.errors import WavesymError
 from wavesym.scene import Scene, lower
 
 if TYPE_CHECKING:
@@ -138,20 +139,30 @@ def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
     return summarise(model, own_samples(model, sample_comb(scene)) if at_samples else None, drifts(scene))
 
 
-def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Peaks:
-    """Statistics of one scene, or of several, as arrays: `min`, `tau_min`, `max`, `tau_max`, `arrival` (a tau), `mean`,
-    `rms` and `residual`, the value at the end.
+def peaks(
+    scenes: Scene | Iterable[Scene],
+    *,
+    keep: Sequence[str] = ("min", "max", "tau_min", "tau_max"),
+    at_samples: bool = False,
+) -> Peaks:
+    """Statistics of one scene, or of several, as arrays; many scenes share work as the cases of a sweep do.
+
+    Scenes that differ in numbers which one compiled program takes (a diameter, a stiffness, an amplitude) take little
+    longer than one: where only extremes are kept, and not `at_samples`. On a terminal a line says how far it is.
 
     Args:
         scenes: what to compute.
+        keep: which statistics, as in a sweep: of `min`, `max`, `tau_min`, `tau_max`, and of what makes each scene be
+            computed by itself, `arrival` (a tau), `mean`, `rms` and `residual`, the value at the end.
         at_samples: as of `summary`.
 
     Returns:
         A mapping of these names to NumPy arrays, (cases, outputs), or (outputs,) of one scene, with the names of
-        `cases` (by what varies) and `outputs`; `to_xarray()` and `to_pandas()` make labelled tables. What a scene does
-        not have is NaN.
+        `cases` (by what varies) and `outputs`, and the `bound` of errors (cases,), an estimate where work is shared;
+        `to_xarray()` and `to_pandas()` make labelled tables. What a scene does not have is NaN.
 
     Raises:
+        WavesymError: for a statistic that there is not.
         ToleranceError, CostError: as of `summary`.
 
     >>> import wavesym
@@ -160,11 +171,15 @@ def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Peaks
     >>> table.cases, table["max"].shape
     (('system.kappa[0] = 1/2', 'system.kappa[0] = 2'), (2, 5))
     """
-    from wavesym.results.peaks import peaks_of
+    from wavesym.results.statistics import wrong_statistic
+    from wavesym.sweeps.scenes import peaks_of
 
+    if wrong := wrong_statistic(keep):
+        raise WavesymError(f"keep[{wrong[1]}]: {wrong[0]}")
     every = [scenes] if isinstance(scenes, Scene) else list(scenes)
-    summaries = [summary(scene, at_samples=at_samples) for scene in every]
-    return peaks_of(every, summaries, several=not isinstance(scenes, Scene))
+    if not every:
+        raise WavesymError("peaks: no scene; write at least 1")
+    return peaks_of(every, keep, several=not isinstance(scenes, Scene), at_samples=at_samples)
 
 
 def spectrum(scene: Scene, damping: float = 0.05) -> Spectra:

@@ -18,8 +18,8 @@ from wavesym.cli.parameters import (
     refuse_out,
     written_format,
 )
-from wavesym.cli.progress import progress
 from wavesym.errors import SceneError
+from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene

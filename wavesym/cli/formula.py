@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, format_option, put_notes, refuse_out
-from wavesym.cli.progress import progress
+from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wavesym.cli.parameters import PATH, SCENE, decimals, format_option, is_drawn, put, put_notes, refuse_out
-from wavesym.cli.progress import progress
+from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene

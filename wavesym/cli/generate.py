@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wavesym.cli.parameters import NAMES, PATH, SCENE, ParameterType, put, put_notes, scene_argument
-from wavesym.cli.progress import progress
 from wavesym.programs.request import AIMS, EVALUATORS, LANGUAGES, PRECISIONS, SIMULATORS, Request
+from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wavesym.cli.parameters import PATH, SCENE, ParameterType, put_notes, refuse_scene, refuse_unwritable
-from wavesym.cli.progress import progress
+from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from wavesym.cli.parameters import PATH, refuse_unwritable, require_matplotlib
-from wavesym.cli.progress import progress
+from wavesym.progress import progress
 
 
 @click.command()

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import monotonic
 
 import click
 
 from wavesym.cli.parameters import PATH, format_option, put, refuse_unwritable
-from wavesym.cli.progress import progress
+from wavesym.progress import progress
 
 
 @click.command()
@@ -58,21 +57,7 @@ def sweep(
     if workers and scheduler:
         raise click.UsageError("--workers and --scheduler exclude each other; write one of them")
     refuse_unwritable(out, folder=True)
-    start = monotonic()
     with progress(f"sweep {source}") as line:
-
-        def watch(cases: int, done: int, before: int) -> None:
-            line.tell(_progress_text(cases, done, before, monotonic() - start))
-
-        failed = api.run_sweep(source, out, workers, scheduler, retry_failed, watch)
+        failed = api.run_sweep(source, out, workers, scheduler, retry_failed, line.count)
     click.echo(f"{out}: {api.sweep_status(out).line}", err=True)
     return 1 if failed else 0
-
-
-def _progress_text(cases: int, done: int, before: int, seconds: float) -> str:
-    """How far it is, how fast, and how long it will take."""
-    text = f"{done} of {cases} cases"
-    if done == before:
-        return text
-    rate = (done - before) / seconds
-    return f"{text}, {rate:.3g} a second, about {(cases - done) / rate:.0f} s left"

@@ -17,7 +17,7 @@ from wavesym.cli.parameters import (
     refuse_scene,
     written_format,
 )
-from wavesym.cli.progress import progress
+from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene

@@ -19,8 +19,8 @@ from wavesym.cli.parameters import (
     refuse_unwritable,
     written_format,
 )
-from wavesym.cli.progress import progress
 from wavesym.programs.request import EVALUATORS, PRECISIONS
+from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.results.optional import require_packages
-from wavesym.results.statistics import ARRAYS, array_values
-from wavesym.results.summary import Summary
+from wavesym.results.statistics import ARRAYS
 from wavesym.scene import Scene
 from wavesym.scene.paths import leaves
 
@@ -26,17 +25,20 @@ class Peaks(Mapping[str, NDArray[np.float64]]):
         cases: what each scene is called: by what varies, `system.kappa[0] = 1/2`, or by its name.
         outputs: the names of the outputs, each once.
         several: whether arrays have a dimension of cases, (cases, outputs); else they are (outputs,).
+        bound: (cases,), the error of values, relative to each output's largest: as of sweeps.
 
-    `peaks["max"]` is an array; its names are those that it goes through: `min`, `tau_min`, `max`, `tau_max`, `arrival`,
-    `mean`, `rms`, `residual`. What a scene does not have is NaN.
+    `peaks["max"]` is an array; its names are those that were kept. What a scene does not have is NaN.
     """
 
     cases: tuple[str, ...]
     outputs: tuple[str, ...]
     several: bool
+    bound: NDArray[np.float64]
     _arrays: Mapping[str, NDArray[np.float64]]
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
+        if name not in self._arrays:
+            raise KeyError(f'{name} was not kept; write keep = ["{name}", …]')
         return self._arrays[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -64,26 +66,17 @@ class Peaks(Mapping[str, NDArray[np.float64]]):
         return pandas.DataFrame({name: values.ravel() for name, values in self.items()}, index=rows)
 
 
-def peaks_of(scenes: Sequence[Scene], summaries: Sequence[Summary], *, several: bool) -> Peaks:
-    """The statistics of scenes, from the summary of each."""
-    outputs = tuple(dict.fromkeys(output.name for summary in summaries for output in summary.outputs))
-    place = {name: k for k, name in enumerate(outputs)}
-    arrays = {name: np.full((len(summaries), len(outputs)), np.nan) for name in ARRAYS}
-    for row, summary in enumerate(summaries):
-        for output in summary.outputs:
-            for name, number in array_values(output).items():
-                arrays[name][row, place[output.name]] = number
-    if not several:
-        arrays = {name: values[0] for name, values in arrays.items()}
-    return Peaks(case_names(scenes), outputs, several, arrays)
-
-
 def case_names(scenes: Sequence[Scene]) -> tuple[str, ...]:
     """Scenes by the few fields in which they differ; by their names where these differ, or where many fields do."""
     names = [scene.name for scene in scenes]
     fields = [leaves(scene.model_dump()) for scene in scenes]
-    paths = dict.fromkeys(path for each in fields for path in each)
-    varied = [path for path in paths if len({repr(each.get(path)) for each in fields}) > 1]
+    varied = varied_paths(fields)
     if len(set(names)) > 1 or not 0 < len(varied) <= _MOST_VARIED:
         return tuple(names)
     return tuple(", ".join(f"{path} = {each.get(path, 'none')}" for path in varied) for each in fields)
+
+
+def varied_paths(every: Sequence[Mapping[str, object]]) -> list[str]:
+    """The paths at which some fields, by path, differ."""
+    paths = dict.fromkeys(path for each in every for path in each)
+    return [path for path in paths if len({repr(each.get(path)) for each in every}) > 1]

@@ -17,8 +17,8 @@ from wavesym.results.near_zero import zero_within
 Numbers = NDArray[np.float64]
 Evaluate = Callable[[Numbers], Numbers]
 
-_FINER = 9
-_ROUNDS = 5  # each makes a part a quarter as wide
+_FINER = 65
+_ROUNDS = 2  # each makes a part 1/32 as wide; a march goes over the whole horizon in each
 _TOPS = 3  # of an output and a side that are looked at
 _TWINS = 1e-15  # relative: neighbouring doubles
 _EQUAL = 1e-14  # of the largest value: rounding makes no later instant of a plateau higher

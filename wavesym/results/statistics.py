@@ -5,11 +5,12 @@ A statistic is one entry here, and where `wavesym.results.summary` finds it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import nan
 from typing import NamedTuple
 
+from wavesym.fields.table import show
 from wavesym.results.presentation import number_text
 
 
@@ -118,6 +119,17 @@ RUNTIME_ARRAYS = (*_RUNTIME, *(f"tau_{name}" for name in _RUNTIME))
 """The arrays that programs with parameters at run time have, too."""
 ARRAYS = {name: _EVERY[name] for name in (*RUNTIME_ARRAYS, *_EVERY)}
 """The arrays of all statistics, and what they are."""
+
+
+def wrong_statistic(names: Sequence[object]) -> tuple[str, int] | None:
+    """What is wrong with the first of some names that is no array, or stands twice, and its place; None for none."""
+    for k, name in enumerate(names):
+        if name not in ARRAYS:
+            *others, last = ARRAYS
+            return f"{show(name)} is not a statistic; write {', '.join(others)} or {last}", k
+        if name in names[:k]:
+            return f"{show(name)} stands twice; write it once", k
+    return None
 
 
 def array_values(output: OutputSummary) -> dict[str, float]:

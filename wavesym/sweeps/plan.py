@@ -155,7 +155,7 @@ def _make_plan(request: SweepRequest) -> SweepPlan:
         for column in dimension.columns:
             if not isinstance(column.values[0], Unreadable):
                 fields = replace_at_path(fields, column.path, column.values[0])
-    watched = _output_units(base, fields, dimensions)
+    watched = _all_outputs(base, fields, dimensions)
     return SweepPlan(
         base.name,
         fields,
@@ -230,20 +230,21 @@ def _refuse_overlap(paths: list[str]) -> None:
                 )
 
 
-def _output_units(base: Scene, fields: dict[str, Any], dimensions: list[SweepAxis]) -> dict[str, str]:
+def output_units(scene: Scene) -> dict[str, str]:
+    """The outputs of a scene, in order, with their units."""
+    scale = scene.scale
+    return {each.name: scale.unit(each.quantity) if scale else "" for each in scene.outputs}
+
+
+def _all_outputs(base: Scene, fields: dict[str, Any], dimensions: list[SweepAxis]) -> dict[str, str]:
     """The outputs of all cases, in order, with their units."""
-
-    def units(scene: Scene) -> dict[str, str]:
-        scale = scene.scale
-        return {each.name: scale.unit(each.quantity) if scale else "" for each in scene.outputs}
-
     varied = [dimension for dimension in dimensions if any(map(_makes_outputs, dimension.columns))]
     if not varied:
-        return units(base)
+        return output_units(base)
     watched: dict[str, str] = {}
     for scene in _scenes(fields, varied):
-        watched |= {name: unit for name, unit in units(scene).items() if name not in watched}
-    return watched or units(base)
+        watched |= {name: unit for name, unit in output_units(scene).items() if name not in watched}
+    return watched or output_units(base)
 
 
 def _makes_outputs(column: Column) -> bool:

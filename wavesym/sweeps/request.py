@@ -7,13 +7,21 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import Annotated, Any, Self
 
-from pydantic import Field, PlainValidator, PrivateAttr, ValidationError, field_validator, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PlainValidator,
+    PrivateAttr,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import Integer
 from wavesym.fields.table import SceneTable, as_list, key_context, refusal, scene_error, show
 from wavesym.reading import read_text
-from wavesym.results.statistics import ARRAYS, RUNTIME_ARRAYS
+from wavesym.results.statistics import RUNTIME_ARRAYS, wrong_statistic
 from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.scene import Scene
 from wavesym.scene.scene_file import builtin_names, parse_text
@@ -66,12 +74,8 @@ class KeepTable(SceneTable):
     @classmethod
     def _check_names(cls, value: object) -> tuple[object, ...]:
         names = as_list(value)
-        for k, name in enumerate(names):
-            if name not in ARRAYS:
-                *others, last = ARRAYS
-                raise refusal(f"{show(name)} is not a statistic; write {', '.join(others)} or {last}", k)
-            if name in names[:k]:
-                raise refusal(f"{show(name)} stands twice; write it once", k)
+        if wrong := wrong_statistic(names):
+            raise refusal(*wrong)
         return names
 
     @field_validator("histories")
@@ -86,6 +90,14 @@ class KeepTable(SceneTable):
         if not self.summary and self.histories is None:
             raise refusal("keeps nothing; write a summary or histories")
         return self
+
+
+def _keep(value: object) -> object:
+    """Its keys are said where there is no table, as in keep = ["max"]."""
+    if not isinstance(value, Mapping | KeepTable):
+        example = 'write it below [keep], as summary = ["min", "max"] and histories = 100, or leave it out'
+        raise refusal(f"{show(value)} is not a table of summary and histories; {example}")
+    return value
 
 
 def _texts(value: object) -> tuple[str, ...]:
@@ -111,7 +123,7 @@ class SweepRequest(SceneTable):
     records: Annotated[tuple[str, ...], PlainValidator(_texts)] = ()
     zip: bool = False
     vary: dict[str, Values] = Field(default_factory=dict)
-    keep: KeepTable = KeepTable()
+    keep: Annotated[KeepTable, BeforeValidator(_keep)] = KeepTable()
 
     _folder: str = PrivateAttr(default="")
 

@@ -10,21 +10,23 @@ from wavesym.errors import SceneError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.results.response import Response
+from wavesym.results.rows import own_samples
 from wavesym.results.statistics import array_values
 from wavesym.results.summary import summarise
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import sample_comb
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.values import CaseValues, Numbers
 
 
-def single(plan: SweepPlan, scene: Scene) -> CaseValues:
-    """The values of a scene. WavesymError as for `summary` and `evaluator`."""
+def single(plan: SweepPlan, scene: Scene, *, at_samples: bool = False) -> CaseValues:
+    """The values of a scene, of a summary `at_samples` or true ones. WavesymError as for `summary` and `evaluator`."""
     model = lower(scene)
     rows = output_rows(plan, model)
     made = dict[str, Numbers | float]()
     bounds, hows = [], []
     if plan.summary:
-        found = summarise(model)
+        found = summarise(model, own_samples(model, sample_comb(scene)) if at_samples else None)
         every = [array_values(output) for output in found.outputs]
         for name in plan.summary:
             made[name] = spread_out(plan, rows, np.array([values[name] for values in every]))

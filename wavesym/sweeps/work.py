@@ -18,7 +18,7 @@ from wavesym.sweeps.shared_records import record_cases
 from wavesym.sweeps.single import single
 from wavesym.sweeps.values import BatchValues, CaseValues
 
-_ALONE = Lock()
+ALONE = Lock()
 """The precision of balls is one for all threads of a process: two batches at once would set it for each other."""
 
 
@@ -26,10 +26,10 @@ def compute(plan: SweepPlan, batches: Batches, batch: int, places: list[Place] |
     """The values of a batch, or of some places in it. What is wrong with a case is its reason, and the others go on."""
     values = BatchValues.empty(plan, batches.places(batch) if places is None else places)
     row = {place: k for k, place in enumerate(values.places)}
-    with _ALONE:
+    with ALONE:
         for group in batches.groups(batch):
             if asked := [place for place in group if place in row]:
-                shared = _shared_cases(plan, batches, group)
+                shared = shared_cases(plan, batches, group)
                 for place in asked:
                     if place in shared:
                         values.put(row[place], shared[place])
@@ -38,7 +38,7 @@ def compute(plan: SweepPlan, batches: Batches, batch: int, places: list[Place] |
     return values
 
 
-def _shared_cases(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict[Place, CaseValues]:
+def shared_cases(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict[Place, CaseValues]:
     """The cases of a group that can share work, as far as that serves them."""
     try:
         if batches.kind == "recorded":

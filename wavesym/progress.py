@@ -10,8 +10,6 @@ from threading import Event, Thread
 from time import monotonic
 from typing import TypeVar
 
-import click
-
 T = TypeVar("T")
 
 QUIET, STEP = 2.0, 0.5
@@ -25,10 +23,19 @@ class Progress:
 
     def __init__(self, what: str) -> None:
         self.what = self._doing = what
+        self._start = monotonic()
 
     def tell(self, step: str) -> None:
         """The step that is taken now."""
         self._doing = f"{self.what}: {step}"
+
+    def count(self, cases: int, done: int, before: int) -> None:
+        """How many cases are done, `before` of them before this line; how fast, and how long the rest will take."""
+        step = f"{done} of {cases} cases"
+        if done > before:
+            rate = (done - before) / (monotonic() - self._start)
+            step += f", {rate:.3g} a second, about {(cases - done) / rate:.0f} s left"
+        self.tell(step)
 
     def each(self, items: Sequence[T], name: Callable[[T], str]) -> Iterator[T]:
         """The items, each told by its name and number when it is taken."""
@@ -46,9 +53,9 @@ class Progress:
         with suppress(OSError):  # of a terminal that has gone
             while not done.is_set():
                 line = f"{self._doing} ({monotonic() - start:.0f} s)"
-                click.echo(f"\r{line[:width]:{width}}", nl=False, err=True)
+                _put(f"\r{line[:width]:{width}}")
                 done.wait(STEP)
-            click.echo(f"\r{'':{width}}\r", nl=False, err=True)
+            _put(f"\r{'':{width}}\r")
 
 
 @contextmanager
@@ -66,6 +73,11 @@ def progress(what: str) -> Iterator[Progress]:
     finally:
         done.set()
         shower.join()
+
+
+def _put(text: str) -> None:
+    sys.stderr.write(text)
+    sys.stderr.flush()
 
 
 def _columns() -> int:
