@@ -161,3 +161,18 @@ class ToleranceError(WavesymError):
     def __init__(self, message: str, refusal: str = "", bound: float = inf) -> None:
         super().__init__(message)
         self.refusal, self.bound = refusal, bound
+
+
+def install_command(extra: str) -> str:
+    """What brings an extra of wavesym, from any folder: from its source where that is installed, else by its name."""
+    import json
+    from importlib.metadata import PackageNotFoundError, distribution
+    from urllib.parse import unquote, urlsplit
+
+    try:
+        origin = json.loads(distribution("wavesym").read_text("direct_url.json") or "{}")
+    except (PackageNotFoundError, ValueError):
+        origin = {}
+    if origin.get("dir_info", {}).get("editable"):
+        return f"pip install -e '{unquote(urlsplit(origin['url']).path)}[{extra}]'"
+    return f"pip install 'wavesym[{extra}]'"

@@ -19,7 +19,7 @@ from flint import fmpq
 import wavesym
 from wavesym import api
 from wavesym.cli import COMMANDS, GROUPS, main
-from wavesym.errors import CostError, ToleranceError
+from wavesym.errors import CostError, ToleranceError, install_command
 from wavesym.programs.request import Request
 from wavesym.scene import builtin_names
 
@@ -229,7 +229,7 @@ def test_plot_of_another_kind_of_file(capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_plot_without_matplotlib(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr("wavesym.cli.parameters.find_spec", lambda name: None)
-    assert "matplotlib is not installed: pip install 'wavesym[plot]'" in refused(
+    assert f"matplotlib is not installed: {install_command('plot')}" in refused(
         capsys, "plot", "mine.toml", "-o", "mine.svg"
     )
 

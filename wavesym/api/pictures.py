@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, install_command
 from wavesym.programs.request import refuse_unknown
 from wavesym.scene import Scene, lower
 
@@ -45,7 +45,7 @@ def plot(scene: Scene, path: str | PathLike[str] | None = None, kind: str = "his
 def plot_with_notes(scene: Scene, path: str | PathLike[str] | None, kind: str) -> tuple[Figure, list[str]]:
     """As `plot`, with what the picture leaves out, line by line."""
     if not find_spec("matplotlib"):
-        raise WavesymError("matplotlib is not installed; `pip install 'wavesym[plot]'` brings it")
+        raise WavesymError(f"matplotlib is not installed: {install_command('plot')}")
     from wavesym.pictures.saving import picture_format, save
     from wavesym.pictures.scene_picture import KINDS, draw
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from wavesym.errors import SceneError, WavesymError
+from wavesym.errors import SceneError, WavesymError, install_command
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -132,7 +132,8 @@ def is_drawn(out: Path | None, texts: Sequence[str]) -> bool:
 def require_matplotlib() -> None:
     """UsageError where what draws is not installed: before the work that a picture takes."""
     if not find_spec("matplotlib"):
-        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
+        context = click.get_current_context()
+        raise click.UsageError(f"matplotlib is not installed: {install_command('plot')}", context)
 
 
 class RatioParameter(ParameterType):

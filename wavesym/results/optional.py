@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, install_command
 
 
 def require_packages(library: str, extra: str) -> Any:
@@ -13,4 +13,4 @@ def require_packages(library: str, extra: str) -> Any:
     try:
         return import_module(library)
     except ImportError:
-        raise WavesymError(f"{library} is not installed; the extra `{extra}` of wavesym brings it") from None
+        raise WavesymError(f"{library} is not installed: {install_command(extra)}") from None

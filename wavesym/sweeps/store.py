@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, install_command
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.dimension import SweepAxis
 from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, SweepPlan
@@ -41,7 +41,7 @@ def require_packages(*libraries: str) -> None:
     from importlib.util import find_spec
 
     if missing := [name for name in libraries if not find_spec(name)]:
-        raise WavesymError(f"sweep: {' and '.join(missing)} not installed; write pip install -e '.[sweep]'")
+        raise WavesymError(f"sweep: {' and '.join(missing)} not installed: {install_command('sweep')}")
 
 
 @dataclass(frozen=True)

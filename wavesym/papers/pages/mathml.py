@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, install_command
 from wavesym.papers.pages.marks import mark
 from wavesym.papers.tree import Addition, FormulaList, Group, Minus, Product, Relation, Series, Tree, latex
 
@@ -26,7 +26,7 @@ def mathml(tree: Tree, differing: frozenset[int] = frozenset()) -> str:
     try:
         from latex2mathml.converter import convert
     except ImportError:
-        raise WavesymError("latex2mathml is not installed; `pip install 'wavesym[papers]'` brings it") from None
+        raise WavesymError(f"latex2mathml is not installed: {install_command('papers')}") from None
     elements = []
     for piece in mark(pieces(tree), differing):
         element = convert(piece.replace(r"\marked{", r"\style{marked}{"), display="block")
