@@ -148,7 +148,8 @@ def test_the_command_prints_csv_and_draws(tmp_path, capsys):
     assert main(["spectrum", str(scene), "--damping", "0.02"]) == 0
     captured = capsys.readouterr()
     header, *rows = captured.out.splitlines()
-    assert header == "period,acceleration@1,acceleration@2"
+    columns = [f"pseudo-acceleration of acceleration@{k} at damping 0.02" for k in (1, 2)]
+    assert header == ",".join(["period", *columns])
     found = spectra(lower(Scene.from_toml(scene)), 0.02)
     assert [[float(x) for x in row.split(",")] for row in rows] == np.vstack([found.periods, found.values]).T.tolist()
     assert "damping 0.02" in captured.err

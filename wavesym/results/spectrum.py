@@ -84,8 +84,9 @@ class Spectra:
         )
 
     def csv(self) -> list[str]:
-        """Lines of CSV: one for each period, in the header each output with its unit."""
-        names = map(with_unit, self.outputs, self.units)
+        """Lines of CSV: one for each period, in the header what is of each output, at which damping, with its unit."""
+        columns = [f"pseudo-acceleration of {name} at damping {self.damping:g}" for name in self.outputs]
+        names = map(with_unit, columns, self.units)
         header = csv_line([with_unit("period", self.time_unit or ""), *names])
         rows = np.vstack([self.periods, self.values]).T.tolist()
         return [header, *map(csv_line, rows)]
