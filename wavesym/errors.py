@@ -125,6 +125,10 @@ class MeasureError(CostError):
         self.helps = helps
 
 
+class WindowsError(CostError):
+    """A march of more windows than can be computed: a longer common measure of travel times, or less time, helps."""
+
+
 class RangeError(WavesymError, OverflowError):
     """A number would be beyond the largest one of its floating-point format.
 

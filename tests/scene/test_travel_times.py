@@ -18,6 +18,7 @@ from wavesym.cli import main
 from wavesym.mechanics.network import Bar
 from wavesym.mechanics.travel_times import FINEST, adjust_speeds, percent, speed_change
 from wavesym.numbers.doubles import common_measure
+from wavesym.programs.making import make
 from wavesym.scene import lower
 from wavesym.scene.explicit_text import explicit_text
 
@@ -119,6 +120,42 @@ def test_a_speed_adjustment_that_is_too_little_says_how_much_is_enough() -> None
     lower(column(speed_adjustment=enough))
     with pytest.raises(SceneError, match=r'50 of a speed is out of range; write "0.5 %", or another up to "20 %"'):
         column(speed_adjustment=50)
+
+
+DEEP = [("6.8 m", 489), ("2.6 m", 461), ("4.5 m", 441), ("7.6 m", 415), ("2.5 m", 383), ("7.9 m", 341), ("6.1 m", 322)]
+
+
+def deep(adjustment: str, until: str = "20 s") -> Scene:
+    """Twelve layers on rock that have no common measure, under a record."""
+    layers = [*DEEP, ("5.4 m", 317), ("3.3 m", 273), ("2.2 m", 251), ("6.7 m", 233), ("4.7 m", 211)]
+    rods = [{"rod": h, "speed": f"{c} m/s", "rho": "1800 kg/m^3", "A": "1 m^2"} for h, c in layers]
+    parts = [{"motion": "acceleration", "name": "rock"}, {"dashpot": "2400 kN*s/m"}, *rods, "free"]
+    samples = ["0", *(str(value) for value in SAMPLES[1:-1] * 12), "0"]
+    return Scene(
+        name="deep",
+        units={"kind": "shear"},
+        system={"type": "chain", "parts": parts, "speed_adjustment": adjustment},
+        load=[{"at": "rock", "spacing": "0.02 s", "samples": samples, "unit": "m/s^2"}],
+        output={"until": until, "velocity": ["rock"], "tolerance": "1e-6"},
+    )
+
+
+def test_a_column_whose_windows_are_too_short_says_which_adjustment_is_enough(thorough: bool) -> None:
+    """One short line, and what it says is served; a bound that is no tolerance has nothing to do with it."""
+    with pytest.raises(ToleranceError) as caught:
+        make(lower(deep("0.2 %")))
+    line = str(caught.value)
+    assert line.startswith("system.speed_adjustment: it leaves travel times a common measure of ")
+    assert len(line) < 260
+    assert line.endswith(" or take `wavesym frf` for the response at frequencies")
+    (enough,) = re.findall(r'speed_adjustment = "([^"]*)" under \[system\]', line)
+    assert wavesym.frf(deep("0.2 %"), [1.0]).outputs
+    with pytest.raises(ToleranceError, match=r"^output.tolerance: 1e-20 cannot be met"):
+        make(lower(deep("0.2 %", "0.1 s").with_({"output.tolerance": "1e-20"})))
+    if thorough:  # seconds
+        assert make(lower(deep(enough))).error_bound <= 1e-6
+        with pytest.raises(ToleranceError, match=r"^system.speed_adjustment: .* to 600 s; write a shorter horizon, or"):
+            make(lower(deep("20 %", "600 s")))
 
 
 def test_a_scene_keeps_what_was_written() -> None:

@@ -58,7 +58,8 @@ class Model:
     lengths. `damping` is that of its modes; `inputs` says of the sources of its loads, and of the numbers of its parts
     by name, what 1 is in a unit, and that unit. An `endless` one goes on after that tau. `preset` are the parameters of
     a network that a preset made, None where they are those of its parts. Contacts and other corners are followed
-    as far as `followed_probes` need, too, so that one solution serves several models.
+    as far as `followed_probes` need, too, so that one solution serves several models. `written_speeds` are those of the
+    bars before they were adjusted, none where they were not.
     """
 
     name: str
@@ -76,6 +77,7 @@ class Model:
     endless: bool = False
     preset: Parametrization | None = None
     followed_probes: tuple[Probe, ...] = ()
+    written_speeds: tuple[fmpq, ...] = ()
 
     @property
     def parameters(self) -> Parametrization:

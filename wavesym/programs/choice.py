@@ -15,6 +15,7 @@ from wavesym.errors import (
     ToleranceError,
     UnservedError,
     WavesymError,
+    WindowsError,
 )
 from wavesym.exact.tables.signal import refuse_many, signals
 from wavesym.mechanics.model import Model
@@ -161,6 +162,10 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
         measure = next((one.error for one in tried if isinstance(one.error, MeasureError)), None)
         if measure and bound >= 1:
             raise unfollowed_waves(model, measure, {kind: refusals[kind] for kind in refusals if kind == "modes"})
+        if model.written_speeds and bound >= 1 and any(isinstance(one.error, WindowsError) for one in tried):
+            from wavesym.programs.adjustment import short_steps  # with what marches
+
+            raise short_steps(model)
         raise unmet_tolerance(model.tolerance, refusals, bound)
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)

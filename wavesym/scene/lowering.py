@@ -26,7 +26,7 @@ from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.records.load import RecordedLoad
-from wavesym.scene.notes import changed_speeds, damping_in_time, reading_notes, spacing_text
+from wavesym.scene.notes import changed_speeds, damping_in_time, reading_notes, spacing_text, written_speeds
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
@@ -98,6 +98,7 @@ def _build_model(scene: Scene) -> Model:
         inputs=_inputs(scene),
         spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
         preset=SystemParameters(chain) if chain else None,
+        written_speeds=written_speeds(scene),
     )
 
 

@@ -61,6 +61,13 @@ def changed_speeds(scene: Scene) -> str:
     return f"{percent(change)} or less" if change else ""
 
 
+def written_speeds(scene: Scene) -> tuple[fmpq, ...]:
+    """The speeds of waves as they were written, where they are changed; else none."""
+    if not isinstance(system := scene.system, ExplicitChain) or not changed_speeds(scene):
+        return ()
+    return tuple(bar.speed for bar in system.drawing_as_written.bars)
+
+
 def _speed_notes(scene: Scene) -> Iterator[str]:
     """A line where speeds are not those that were written."""
     if change := changed_speeds(scene):

@@ -13,7 +13,7 @@ from functools import cached_property
 
 from flint import arb, fmpq
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, WindowsError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -223,7 +223,7 @@ def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float
     )
     spent += work
     if spent > _MOST_WORK:
-        raise CostError(
+        raise WindowsError(
             f"output.until: a march of degree {degree} on steps of {plan.step} to tau = {plan.tau_max:g} would "
             f"cost {spent:.1e} operations, the limit is {_MOST_WORK:.1e} (a shorter horizon helps)"
         )
