@@ -77,3 +77,27 @@ displacement = ["slab"]
     stops = 34**0.5 - 4  # 9 J = 4 N s + 1 N/m s^2 / 2
     assert link.dissipated == (pytest.approx(4 * stops, rel=1e-15), "J")
     assert link.set == (pytest.approx(1000 * stops, rel=1e-15), "mm")
+
+
+@pytest.mark.parametrize(("speed", "limits"), [(1, [0, 5]), (-1, [5, 0])])
+@pytest.mark.parametrize("before_fixed", [False, True])
+def test_a_spring_whose_limits_are_exchanged_gives_way(speed: int, limits: list[int], before_fixed: bool) -> None:
+    """A body goes on as if nothing held it, v t far; with its limits the other way round the spring stops it."""
+    for pair, gives_way in ((limits, not before_fixed), (limits[::-1], before_fixed)):
+        spring = {"spring": 100, "yield": pair}
+        body = {"mass": 1, "velocity": speed, "name": "a"}
+        parts = [body, spring, "fixed"] if before_fixed else [body | spring, {"rod": 1, "impedance": "1/1000000"}]
+        (found,) = losses(chain(parts, Fraction(1, 20)))
+        assert found.gives_way == gives_way, pair
+        if gives_way:
+            assert found.dissipated == 0
+            assert float(abs(found.set)) == pytest.approx(1 / 20, rel=1e-5)
+
+
+def test_a_spring_that_was_loaded_before_it_let_go_does_not_give_way() -> None:
+    """It bears all of a swing there and back, K s^2 = m v^2, less than its limit, and then yields without a force."""
+    body = {"mass": 1, "velocity": 1, "name": "a"}
+    (found,) = losses(chain([body, {"spring": 1, "yield": [0, 5]}, "fixed"], Fraction(4)))
+    assert found.dissipated == 0
+    assert float(found.set) == pytest.approx(4 - 3.141592653589793, rel=1e-12)
+    assert not found.gives_way

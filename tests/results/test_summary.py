@@ -386,3 +386,32 @@ def test_no_program_is_made_for_drifts_that_nobody_asked_for(monkeypatch: pytest
 def test_numbers_for_people_have_no_power_of_ten_below_ten_million() -> None:
     shown = [number_text(value, "N", 4) for value in (-11803.2, 999960.0, 9999999.0, 12345678.0, 0.00001234)]
     assert shown == ["-11800 N", "1000000 N", "10000000 N", "1.235e+07 N", "1.234e-05 N"]
+
+
+def test_a_spring_that_bears_nothing_is_told_wherever_its_scene_is(tmp_path, capsys) -> None:
+    """The toe of a pile, pulled down from the ground at its back, with the limits of one before "fixed"."""
+    text = """
+name = "toe"
+[system]
+type = "chain"
+parts = [{ rod = 1, velocity = 1 }, { joint = true, velocity = 0, spring = 2, yield = [0, "1/2"] }]
+[output]
+until = "1/2"
+displacement = ["1"]
+"""
+    path = tmp_path / "toe.toml"
+    path.write_text(text)
+    note = "the spring at 1 bore no force when it was loaded: it was pulled, and yield = [0, B] bears only what pushes"
+    found = wavesym.summary(Scene.from_toml(str(path)))
+    (told,) = found.notes
+    assert told.startswith(note)
+    assert told in str(found).splitlines()
+    assert main(["summary", str(path)]) == 0
+    assert capsys.readouterr().out == f"{found}\n"
+    for arguments in (["run", "--samples", "2"], ["summary", "--format", "json"]):
+        assert main([arguments[0], str(path), *arguments[1:]]) == 0
+        assert note in capsys.readouterr().err
+    for right in ('["1/2", 0]', '"1/2"'):
+        path.write_text(text.replace('[0, "1/2"]', right))
+        assert main(["run", str(path), "--samples", "2"]) == 0
+        assert "bore no force" not in capsys.readouterr().err

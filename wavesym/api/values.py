@@ -93,13 +93,13 @@ def run_csv(
     Raises:
         ToleranceError, CostError: where no program will do, or it would take minutes to know what contacts do.
     """
-    from wavesym.results.notes import event_notes, horizon_notes, value_notes
+    from wavesym.results.notes import event_notes, horizon_notes, link_notes, value_notes
     from wavesym.results.response import Response
     from wavesym.results.rows import csv_lines
 
     model = lower(scene)
     response = Response(model)
-    for line in (*horizon_notes(model, at or ()), *value_notes(model), *event_notes(response)):
+    for line in (*horizon_notes(model, at or ()), *value_notes(model), *event_notes(response), *link_notes(model)):
         tell(line)
     lines = csv_lines(response, samples, at)
     if made := response.program:

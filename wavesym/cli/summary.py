@@ -43,5 +43,7 @@ def summary(scene: Scene, at_samples: bool, format: str, out: Path | None) -> No
         lines = api.scene_notes(scene)
     if format == "json" and not found.proved:
         lines.append(f"{found.how}: {found.accuracy}")
+    if format == "json":
+        lines += found.notes
     put_notes(scene, lines)
     deliver(summary_text(found, format), out)

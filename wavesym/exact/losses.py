@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -20,14 +20,21 @@ from wavesym.mechanics.network import Link
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 
+_NOTHING = fmpq(1, 10**9)  # of a spring's limit: what it bears until it is certain that it yields without a force
+
 
 @dataclass(frozen=True)
 class LinkLoss:
-    """A link that rubs or yields: how far that took it until the end, `set`, and the energy `dissipated`, as balls."""
+    """A link that rubs or yields: how far that took it until the end, `set`, and the energy `dissipated`, as balls.
+
+    What `gives_way` is a spring of which one limit is 0, that yields on this side as soon as it is loaded, and never on
+    the other.
+    """
 
     link: Link
     set: arb
     dissipated: arb
+    gives_way: bool = False
 
 
 def losses(model: Model, solved: Model | None = None) -> tuple[LinkLoss, ...]:
@@ -49,8 +56,12 @@ def losses(model: Model, solved: Model | None = None) -> tuple[LinkLoss, ...]:
         where = {point: Balls(motion.segments(probe, bits)) for point, probe in probes.items()}
         found = []
         for n, link in losing.items():
-            slides = _slides(n, known.stages[model.network.joint_of[link.left]], until)
-            found.append(_loss(link, slides, _Stretch(where[link.left], where[link.right], link.ratio)))
+            stages = known.stages[model.network.joint_of[link.left]]
+            stretch = _Stretch(where[link.left], where[link.right], link.ratio)
+            slides = _slides(n, stages, until)
+            before = [stage.start for stage in stages if slides and stage.start <= slides[0][1]]
+            gives_way = all(_bears_nothing(link, sign) for sign, *_ in slides) and _is_unstrained(link, stretch, before)
+            found.append(replace(_loss(link, slides, stretch), gives_way=gives_way))
         return tuple(found)
 
 
@@ -75,6 +86,23 @@ def _slides(number: int, stages: Sequence[Stage], until: fmpq) -> list[tuple[int
     ends = [*(stage.start for stage in stages), until]
     stretches = zip(stages, pairwise(ends), strict=True)
     return [(sign, low, high) for stage, (low, high) in stretches if (sign := sliding_sign(number, stage.sliding))]
+
+
+def _bears_nothing(link: Link, sign: int) -> bool:
+    """Whether a spring that yields this way does so without a force, and with one on the other."""
+    if link.limits is None:
+        return False
+    pull, push = link.limits
+    return push > 0 == pull if sign > 0 else pull > 0 == push
+
+
+def _is_unstrained(link: Link, stretch: _Stretch, taus: Sequence[fmpq]) -> bool:
+    """Whether a spring without a preload bears at most `_NOTHING` of its limit at all of some tau and between."""
+    if not taus or link.limits is None or link.preload != 0:
+        return False
+    places = [*taus, *((low + high) / 2 for low, high in pairwise(taus))]
+    allowed = arb(_NOTHING * max(link.limits) / link.stiffness)
+    return all(abs(stretch.evaluate(tau)) < allowed for tau in places)
 
 
 def _loss(link: Link, slides: list[tuple[int, fmpq, fmpq]], stretch: _Stretch) -> LinkLoss:

@@ -36,6 +36,7 @@ POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedanc
 """The parameters at run time that have to be positive, and that a largest rate is about."""
 
 _HELPS = re.compile(r" \([^()]* help(s)?\)$")
+_OTHERS = re.compile(r" \(take [^()]*\)$")
 
 
 @dataclass(frozen=True)
@@ -211,7 +212,9 @@ def unmet_tolerance(tolerance: fmpq, refusals: Mapping[str, str], bound: float) 
 
     remedy = f"; write {2 * bound:.0e} or more" if bound < 0.1 else ""
     # what would help one kind of program alone is no news where a tolerance helps
-    why = (f"{kind}: {re.sub(_HELPS, '', refusal) if remedy else refusal}" for kind, refusal in refusals.items())
+    # and what else could be taken has been tried, too
+    tried = ((kind, re.sub(_OTHERS, "", refusal)) for kind, refusal in refusals.items())
+    why = (f"{kind}: {re.sub(_HELPS, '', refusal) if remedy else refusal}" for kind, refusal in tried)
     message = f"output.tolerance: {nearest(tolerance):g} cannot be met{remedy} ({'; '.join(why)})"
     return ToleranceError(message, "; ".join(refusals.values()), bound)
 

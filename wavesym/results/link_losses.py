@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from flint import fmpq
 
@@ -11,6 +11,9 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import midpoint
 from wavesym.results.presentation import number_text
+
+if TYPE_CHECKING:
+    from wavesym.exact.losses import LinkLoss
 
 _PLAIN = (fmpq(1), "")
 _GROUND = "ground"  # the place of what does not move
@@ -35,7 +38,8 @@ class LinkSummary(NamedTuple):
 
     Points are called by their names, else by their places: links at one place differ in them, or in their laws.
     `set` is how far it slid or yielded until the end of the horizon, lengthening it (or, of friction, along x) where
-    that is positive; `dissipated` the energy that this took. Both are right to rounding.
+    that is positive; `dissipated` the energy that this took. Both are right to rounding. The `note` is a sentence on a
+    spring that yielded without a force as soon as it was loaded, and never with one; empty of all others.
     """
 
     place: str
@@ -43,6 +47,7 @@ class LinkSummary(NamedTuple):
     between: tuple[str, str]
     set: MeasuredQuantity
     dissipated: MeasuredQuantity
+    note: str = ""
 
     @property
     def where(self) -> str:
@@ -86,6 +91,17 @@ def link_summaries(model: Model, solved: Model | None = None) -> tuple[LinkSumma
             _names(model, each.link),
             MeasuredQuantity(midpoint(each.set * stretch[0]), stretch[1]),
             MeasuredQuantity(midpoint(each.dissipated * energy[0]), energy[1]),
+            _note(each) if each.gives_way else "",
         )
         for each in found
+    )
+
+
+def _note(loss: LinkLoss) -> str:
+    """What a spring that gives way is, and what may have been meant."""
+    pulled = loss.set > 0
+    one, other, written = ("pulled", "pushes", "[0, B]") if pulled else ("pushed", "pulls", "[A, 0]")
+    return (
+        f"the spring at {loss.link.place} bore no force when it was loaded: it was {one}, and yield = {written} bears "
+        f"only what {other} it; exchange the two?"
     )

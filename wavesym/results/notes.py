@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
+from wavesym.results.link_losses import link_summaries
 
 if TYPE_CHECKING:
     from wavesym.results.response import Response
@@ -41,6 +42,17 @@ def event_notes(response: Response) -> list[str]:
         f"{each.subject} {each.kind} at tau = {each.digits}{_in_time(response.model, each.double)}"
         for each in response.events
     ]
+
+
+def link_notes(model: Model) -> list[str]:
+    """A line for each spring that yields and bore no force where it was loaded; none where it would cost too much.
+
+    A summary has the same as the `note` of each of its `links`.
+    """
+    limits = (model.network.links[n].limits for n in model.network.corners)
+    if not any(both is not None and min(both) == 0 < max(both) for both in limits):
+        return []
+    return [link.note for link in link_summaries(model) or () if link.note]
 
 
 def _formal_notes(model: Model) -> list[str]:

@@ -16,16 +16,16 @@ from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes_
 from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.exact.joints.fronts import has_more_fronts
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.probe import Probe, with_unit
 from wavesym.numbers.doubles import midpoint, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.results.link_losses import LinkSummary, link_summaries
 from wavesym.results.optional import require_packages
-from wavesym.results.presentation import html_table, output_number
+from wavesym.results.presentation import align_columns, html_table, number_text, output_number
 from wavesym.results.response import Response
 from wavesym.results.sampling import sampled_extremes
-from wavesym.results.statistics import STATISTICS, OutputSummary, OutputTime, Peak
+from wavesym.results.statistics import STATISTICS, OutputSummary, OutputTime, Peak, cells, headings
 from wavesym.results.stepping import describe_step, sample_program, spacing
 
 Numbers = NDArray[np.float64]
@@ -63,6 +63,28 @@ class Summary:
         count = len(self.outputs)
         return f"Summary({self.name!r}, {count} output{'s' * (count != 1)}, {self.how}: {self.accuracy})"
 
+    def __str__(self) -> str:
+        return "\n".join(self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        """A table of the outputs, and a line for what else there is to know, as `wavesym summary` prints them."""
+        clock = "tau" if self.time_unit is None else f"time [{self.time_unit}]"
+        rows = ((with_unit(output.label, output.unit), *cells(output, "-")) for output in self.outputs)
+        yield from align_columns([("output", *headings(clock)), *rows])
+        yield ""
+        if not all(peak.reached for output in self.outputs for peak in (output.min, output.max)):
+            yield "-  it comes up to this value, and jumps then"
+        if (drift := self.largest_drift) is not None:
+            peak, when = drift.largest, number_text(drift.largest.at.in_scene_time, self.time_unit or "")
+            yield f"largest drift: {drift.label}, {number_text(peak.value, drift.unit)} at {when}"
+        if self.drifts_cost_too_much:
+            yield "the largest drift would cost too much (drifts as outputs help)"
+        yield from map(str, self.links or ())
+        yield from self.notes
+        if self.links is None:
+            yield "sets and what is dissipated would cost too much (a shorter horizon helps)"
+        yield f"{self.how}: {self.accuracy}"
+
     def _rows(self) -> list[dict[str, Any]]:
         """A row for each output, by the names of columns."""
         time = "tau" if self.time_unit is None else f"time [{self.time_unit}]"
@@ -87,6 +109,11 @@ class Summary:
     def _repr_html_(self) -> str:
         rows = self._rows()
         return html_table(repr(self), rows[0], (map(_cell, row.values()) for row in rows))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What one might not expect of its links, a line for each."""
+        return tuple(link.note for link in self.links or () if link.note)
 
     @property
     def accuracy(self) -> str:

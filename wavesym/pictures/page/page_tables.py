@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from wavesym.documents.advice import WAVES, Advice, Candidate
@@ -51,11 +52,15 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
         * bool(contact_ends(model)),
         _drift(found.largest_drift, scale),
         "The largest drift would cost too much; drifts as outputs help" * found.drifts_cost_too_much,
-        *(f"{line[:1].upper()}{line[1:]}" for line in (link.describe(_DIGITS) for link in found.links or ())),
+        *(f"{line[:1].upper()}{line[1:]}" for line in (*_links(found), *found.notes)),
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
         f"How: {found.how}; {found.accuracy}. Four figures are shown; the command summary writes more",
     ]
     return PageTable(head, tuple(rows), tuple(filter(None, notes)))
+
+
+def _links(found: Summary) -> Iterator[str]:
+    return (link.describe(_DIGITS) for link in found.links or ())
 
 
 def _drift(found: OutputSummary | None, scale: Timescale) -> str:
