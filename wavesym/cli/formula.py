@@ -4,44 +4,42 @@ from __future__ import annotations
 
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import OUT, SCENE, ParameterType, deliver, format_option, put_notes, refuse_out
+from wavesym.cli.parameters import (
+    OUT,
+    SCENE,
+    Seconds,
+    TimeParameter,
+    deliver,
+    format_option,
+    in_unit,
+    put_notes,
+    refuse_out,
+)
 from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
 
-class TimeParameter(ParameterType):
-    """A time, exact: a decimal or a ratio."""
-
-    name = "time"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Fraction:
-        """The time as a fraction."""
-        from pydantic_core import PydanticCustomError
-
-        from wavesym.fields.numbers import exact
-
-        try:
-            return exact(value)
-        except PydanticCustomError as error:
-            self.fail(str(error), param, ctx)
-
-
 @click.command()
 @click.argument("scene", type=SCENE)
 @click.option("--output", required=True, metavar="NAME", help='Which output, such as "strain@0.5".')
 @click.option(
-    "--until", type=TimeParameter(), metavar="T", help="An earlier end, in tau; with [units] in that of results."
+    "--until",
+    type=TimeParameter(),
+    metavar="T",
+    help='An earlier end, in tau; with [units] in that of results, or as "2 ms".',
 )
 @click.option("--symbolic", is_flag=True, help="Coefficients as functions of the parameters: of the paper's systems.")
 @format_option("text", "latex", "sympy", "c", help="How it is written; sympy: one expression in tau, c: a function.")
 @OUT
-def formula(scene: Scene, output: str, until: Fraction | None, symbolic: bool, format: str, out: Path | None) -> None:
+def formula(
+    scene: Scene, output: str, until: Fraction | Seconds | None, symbolic: bool, format: str, out: Path | None
+) -> None:
     """Print an output as a formula, exact.
 
     Print an output in closed form: what it gains at each breakpoint, exponentials times powers with exact coefficients,
@@ -55,7 +53,7 @@ def formula(scene: Scene, output: str, until: Fraction | None, symbolic: bool, f
 
     refuse_out(out)
     with progress(f"formula {scene.name}"):
-        text = api.formula(scene, output, until, format, symbolic=symbolic)
+        text = api.formula(scene, output, in_unit(until, scene, "--until", tau=False), format, symbolic=symbolic)
         notes = api.scene_notes(scene, values=False)
     put_notes(scene, notes)
     deliver(text, out)

@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import NAMES, PATH, SCENE, ParameterType, put, put_notes, scene_argument
+from wavesym.cli.parameters import (
+    NAMES,
+    PATH,
+    SCENE,
+    ParameterType,
+    TimeParameter,
+    in_unit,
+    put,
+    put_notes,
+    scene_argument,
+)
 from wavesym.programs.request import AIMS, EVALUATORS, LANGUAGES, PRECISIONS, SIMULATORS, Request
 from wavesym.progress import progress
 
@@ -41,7 +51,6 @@ class PositiveParameter(ParameterType):
         return number
 
 
-STEP = PositiveParameter("a positive number of tau; write one such as 0.1 or 1/8")
 KAPPA = PositiveParameter("a positive number; write one such as 5 or 1/2")
 
 
@@ -90,9 +99,9 @@ KAPPA = PositiveParameter("a positive number; write one such as 5 or 1/2")
 @click.option("--stream", is_flag=True, help="Take the loads sample by sample, from a controller, without end.")
 @click.option(
     "--step",
-    type=STEP,
+    type=TimeParameter(),
     metavar="DTAU",
-    help="For a stream whose steps all begin at multiples of this, in tau, as 0.1 or 1/8.",
+    help='For a stream whose steps all begin at multiples of this, in tau, as 1/8; with [units] also as "0.25 ms".',
 )
 @click.option("--package", is_flag=True, help="Add what builds, tests and installs C: CMake, ctest, pkg-config.")
 @click.option("--target", type=click.Choice(SIMULATORS), help="Make one file, NAME.fmu, a stream for simulators.")
@@ -119,6 +128,7 @@ def generate(
         raise click.UsageError(
             f"--check: binaries of --target {target} differ by compiler and cannot be compared; leave --target out"
         )
+    options["step"] = in_unit(options["step"], scene, "--step", tau=True)
     request = Request.from_options(**options)
     if only_check:
         with progress(f"check {scene.name}"):

@@ -8,10 +8,11 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
+from fractions import Fraction
 from glob import escape, glob
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 from click.shell_completion import CompletionItem
@@ -153,6 +154,44 @@ class RatioParameter(ParameterType):
         if not 0 <= ratio < 1:
             self.fail(f'{value!r} is no ratio from 0 to below 1; write 0.05 or "5 %"', param, ctx)
         return ratio
+
+
+class Seconds(NamedTuple):
+    """A time that was written with a unit."""
+
+    number: Fraction
+
+
+class TimeParameter(ParameterType):
+    """A positive time, exact: a decimal or a ratio, or with a unit, which `in_unit` takes to that of a scene."""
+
+    name = "time"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Fraction | Seconds:
+        """The time as it was written."""
+        from wavesym.fields.numbers import exact
+        from wavesym.fields.quantity import si_value
+
+        if isinstance(value, Fraction | Seconds):
+            return value
+        found: Fraction | Seconds = Fraction(0)
+        for read in (exact, lambda text: Seconds(si_value(text, "time"))):
+            with suppress(ValueError):
+                found = read(value)
+                break
+        if (found.number if isinstance(found, Seconds) else found) <= 0:
+            form = 'a positive time; write a number such as 0.1 or 1/8, or with [units] one such as "0.25 ms"'
+            self.fail(f"{value} is not {form}", param, ctx)
+        return found
+
+
+def in_unit(time: Fraction | Seconds | None, scene: Scene, name: str, *, tau: bool) -> Fraction | None:
+    """A time that an option took, in tau or else in the unit of results. click.UsageError for seconds without units."""
+    if not isinstance(time, Seconds):
+        return time
+    if scene.scale is None:
+        raise click.UsageError(f"{name}: a time with a unit, and the scene has no [units]; write a number of tau")
+    return time.number / (scene.scale.seconds if tau else scene.scale.results.sizes["time"])
 
 
 class NamesParameter(ParameterType):

@@ -23,6 +23,13 @@ if TYPE_CHECKING:
     from wavesym.scene import Scene
 
 
+def _refuse_m(context: click.Context, _: click.Parameter, m: str | None) -> None:
+    """Say what to write in the place of --m, which `derive` has."""
+    if m is not None:
+        scenes = "write a scene, such as drive_equal, or what `wavesym init drive` prints"
+        raise click.UsageError(f"--m: a table is that of a scene, which has its own m; {scenes}", context)
+
+
 @click.command()
 @click.argument("scene", type=SCENE)
 @click.option(
@@ -30,6 +37,7 @@ if TYPE_CHECKING:
     type=click.IntRange(min=1),
     help="How many of every function.  [default: those that the horizon needs]",
 )
+@click.option("--m", hidden=True, is_eager=True, expose_value=False, callback=_refuse_m)
 @format_option("csv", "json", "latex")
 @click.option(
     "--symbolic",

@@ -1,0 +1,41 @@
+"""Options that are times take them with units where the scene has units."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from wavesym.cli import main
+from wavesym.scene import Scene
+
+
+def written(folder: Path) -> dict[str, str]:
+    return {path.name: path.read_text() for path in folder.iterdir()}
+
+
+def test_a_step_in_milliseconds_is_one_in_tau(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", "drive", "-o", str(tmp_path / "d.toml")]) == 0
+    scale = Scene.from_toml(tmp_path / "d.toml").scale
+    assert scale is not None
+    milliseconds = scale.seconds * 1000 / 2
+    for name, step in (("a", f"{milliseconds} ms"), ("b", "1/2")):
+        arguments = ["generate", str(tmp_path / "d.toml"), "--stream", "--step", step, "-o", str(tmp_path / name)]
+        assert main(arguments) == 0, capsys.readouterr().err
+    assert written(tmp_path / "a") == written(tmp_path / "b")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        (["generate", "drive_m1", "--stream", "--step", "1 ms"], "no [units]"),
+        (["generate", "drive_m1", "--stream", "--step", "-1"], "is not a positive time"),
+        (["formula", "drive_m1", "--output", "strain@0", "--until", "2 m"], "is not a positive time"),
+        (["tables", "drive", "--m", "3"], "drive_equal"),
+    ],
+)
+def test_what_is_no_time_is_one_line(arguments: list[str], what: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 2
+    err = capsys.readouterr().err
+    assert what in err
+    assert len(err.splitlines()) == 1
