@@ -282,6 +282,21 @@ def test_the_spectrum_of_the_load_is_what_an_oscillator_does() -> None:
     assert [f"T{k} = {period:.3g} s" in text for k, period in enumerate(periods, 1)] == [True] * len(periods)
 
 
+def test_the_page_has_the_spectrum_of_the_highest_acceleration() -> None:
+    """Its values are those of `spectrum`, whose program is another one; without such an output there is none."""
+    scene = Scene(**FRAME).with_({"output.acceleration": [1, 2]})
+    text = page(scene)
+    assert faults(text) == []
+    assert 'id="floor-shaking"' in text
+    assert 'id="floor-shaking"' not in page(Scene(**FRAME))
+    links = dict(re.findall(r'download="([^"]*)\.csv" href="data:text/csv;charset=utf-8,([^"]*)"', text))
+    (csv,) = (link for name, link in links.items() if name.startswith("floor pseudo-acceleration"))
+    rows = np.array([[float(cell) for cell in row.split(",")] for row in unquote(html.unescape(csv)).splitlines()[1:]])
+    found = wavesym.spectrum(scene, damping=0.05)
+    assert rows[:, 0] == pytest.approx(found.periods, rel=1e-4)
+    assert rows[:, 1] == pytest.approx(found["acceleration@2"], rel=2e-3, abs=2e-3 * found["acceleration@2"].max())
+
+
 @pytest.mark.parametrize(
     ("value", "unit", "shown"),
     [(-3.298e6, "N", "3.298 MN"), (1500, "N", "1.5 kN"), (2, "N", "2 N"), (2e6, "mm", "2000000 mm")],

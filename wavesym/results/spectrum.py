@@ -92,8 +92,8 @@ class Spectra:
         return [header, *map(csv_line, rows)]
 
 
-def spectra(model: Model, damping: float) -> Spectra:
-    """The spectra of the outputs of quantity acceleration.
+def spectra(model: Model, damping: float, program: Program | None = None) -> Spectra:
+    """The spectra of the outputs of quantity acceleration, by a `program` that has these, where there is one.
 
     WavesymError where there is none, or the horizon is too short; CostError for too many steps; ToleranceError,
     CostError where nothing could be generated either.
@@ -113,8 +113,11 @@ def spectra(model: Model, damping: float) -> Spectra:
             f"output.until: a response spectrum would take {count:.1e} steps of tau = {step:g}, the limit is "
             f"{_MOST:.1e} (a shorter horizon helps)"
         )
-    program = make(watched)
-    stretches, accelerations = zip(*_stretches(watched, program, step), strict=True)
+    program = program or make(watched)
+    names = [output.name for output in program.outputs]
+    rows = [names.index(probe.name) for probe in probes]
+    stretches, every = zip(*_stretches(watched, program, step), strict=True)
+    accelerations = [values[rows] for values in every]
     lengths = [(taus[-1] - taus[0]) / (len(taus) - 1) for taus in stretches]
     fine = _peaks(accelerations, lengths, periods / per_tau, damping)
     some = periods[::_EACH] / per_tau

@@ -20,7 +20,7 @@ from wavesym.pictures.loads import load_histories
 from wavesym.pictures.naming import heading, with_titles
 from wavesym.pictures.page.crossings import crossings
 from wavesym.pictures.page.headline import Figure, headline, longest_periods, neglected_effects, storeys
-from wavesym.pictures.page.load_spectrum import load_spectrum
+from wavesym.pictures.page.load_spectrum import floor_spectrum, load_spectrum
 from wavesym.pictures.page.motion import Motion, motion
 from wavesym.pictures.page.page_tables import PageTable, advice_table, extremes_table
 from wavesym.pictures.page.places import along_pictures, maps
@@ -55,6 +55,7 @@ class Report:
     facts: tuple[tuple[str, str], ...]
     structure: PagePicture
     spectrum: PagePicture | None
+    floor_spectrum: PagePicture | None
     motion: Motion | None
     histories: tuple[PagePicture, ...]
     notes: tuple[str, ...]
@@ -125,6 +126,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
             picture("structure", title, structured.description, structured.height, structured.markup, class_="plot"),
         ),
         spectrum=load_spectrum(model, loads, periods, scale),
+        floor_spectrum=floor_spectrum(model, made.program, periods, scale),
         motion=motion(model, found, scale),
         histories=(),
         notes=tuple(f"{note[:1].upper()}{note[1:]}" for note in (*_missing_outputs(model, drawn), *notes(made))),

@@ -1,4 +1,4 @@
-"""The response spectrum of what shakes a building, with the periods of the building in it."""
+"""Response spectra of what shakes a building, and of what it makes of that, with its own periods in them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from math import floor, log10
 
 import numpy as np
 
+from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.pictures.histories import History, Points
@@ -15,7 +16,8 @@ from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePict
 from wavesym.pictures.page.svg import line, polyline, text
 from wavesym.pictures.timescale import Timescale
 from wavesym.pictures.units import unit_text
-from wavesym.results.spectrum import line_spectrum
+from wavesym.programs.program import Program
+from wavesym.results.spectrum import line_spectrum, spectra
 
 _DAMPING = 0.05  # where modes of the structure have no one ratio: what codes take
 _BEYOND, _PER_DECADE = 4.0, 100  # how far the periods go beyond those of the structure; how many there are
@@ -51,15 +53,42 @@ def load_spectrum(
     damping = _ratio(model)
     lines = [stretch * [scale.per_tau, 1.0] for stretch in load.stretches]
     values = line_spectrum(lines, every, damping)
-    return _picture(every, values, own, damping, load, scale)
+    title = f"Response spectrum of the load, damping {100 * damping:.3g} %"
+    return _picture("spectrum", title, every, values, own, load.output.unit, scale)
+
+
+def floor_spectrum(
+    model: Model, program: Program | None, periods: Sequence[float], scale: Timescale
+) -> PagePicture | None:
+    """The same of the last output of quantity acceleration, a roof's where floors are listed from below.
+
+    Args:
+        model: the scene's.
+        program: has its outputs.
+        periods: the longest of the structure, in the time of results.
+        scale: how time is told.
+
+    Returns:
+        The picture; None where there is no such output, or the horizon is too short.
+    """
+    accelerations = [probe for probe in model.probes if probe.quantity == "acceleration"]
+    if program is None or not accelerations or (model.clock.unit if model.clock else "") != scale.unit:
+        return None
+    damping, probe = _ratio(model), accelerations[-1]
+    try:
+        found = spectra(model.watching([probe]), damping, program)
+    except WavesymError:
+        return None
+    own = np.array([each for each in periods if found.periods[0] <= each <= found.periods[-1]])
+    title = f"Response spectrum of {probe.label}, damping {100 * damping:.3g} %"
+    return _picture("floor", title, found.periods, found.values[0], own, probe.unit, scale)
 
 
 def _picture(
-    periods: Points, values: Points, own: Points, damping: float, load: History, scale: Timescale
+    key: str, title: str, periods: Points, values: Points, own: Points, unit: str, scale: Timescale
 ) -> PagePicture:
     x = PlotAxis(log10(periods[0]), log10(periods[-1]), LEFT, WIDTH - RIGHT)
     y = PlotAxis(0.0, 1.3 * float(values.max()) or 1.0, TOP + _HEIGHT, TOP)
-    unit = load.output.unit
     time = scale.unit or "tau"
     frame = Frame(
         x,
@@ -76,18 +105,17 @@ def _picture(
         marks.append(text(at + 5, TOP + 12 * number, f"T{number} = {period:.3g} {time}", "start", class_="halo"))
         words.append(f"{value:.4g}{unit and ' '}{unit} at T{number} = {period:.3g} {time}")
     points = [(x.pixel(log10(t)), y.pixel(v)) for t, v in zip(periods.tolist(), values.tolist(), strict=True)]
-    title = f"Response spectrum of the load, damping {100 * damping:.3g} %"
     markup = picture(
-        "spectrum",
+        key,
         title,
-        f"At the periods of the structure: {', '.join(words)}.",
+        f"At the periods of the structure: {', '.join(words)}." if words else "Over the period.",
         TOP + _HEIGHT + BELOW,
         frame.draw(),
         polyline(points, "spectrum"),
         *marks,
         class_="plot",
     )
-    name = f"pseudo-acceleration{unit and ' in '}{unit_text(unit)}"
+    name = f"{'floor ' if key == 'floor' else ''}pseudo-acceleration{unit and ' in '}{unit_text(unit)}"
     return PagePicture(title, markup, ((0, name, csv_address((f"period in {time}", name), periods, values)),))
 
 
