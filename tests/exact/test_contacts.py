@@ -18,13 +18,14 @@ from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.contacts import cost, guards
 from wavesym.exact.contacts import schedule as room
 from wavesym.exact.contacts.cluster import Cluster
-from wavesym.exact.contacts.events import events
+from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.contacts.guards import BranchEnd
 from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.exact.contacts.search import Search
 from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.exact.reference import Reference
 from wavesym.pictures.field import Field
+from wavesym.scene import Scene, lower
 
 DELAYS = [1, 1, "1/2", "3/2", "1.000000001"]
 IMPEDANCES = [1, 1, 2, "1/3"]
@@ -332,3 +333,26 @@ def test_light_cones_take_a_contact_for_closed():
     with ctx.workprec(64):
         assert all(event.tau <= arb(near.until) for event in events(near))
     assert {event.x for event in events(near)} <= {"0", "1"}
+
+
+def test_what_would_be_known_too_little_is_found_with_more_bits(monkeypatch):
+    """Instants found with twice the bits lie within those found before, and waves are known as much better."""
+    text = {"spring": 50, "yield": [5, 0]}
+    parts = [{"mass": 2, "velocity": 4}, {"spring": 90, "only": "push"}, {"rod": 1}, {"joint": True, **text}]
+    model = lower(
+        Scene(name="pile", system={"type": "chain", "parts": parts}, output={"until": 6, "velocity": ["1/2"]})
+    )
+    found = []
+    for kept in (64, 420):
+        room.outcome.cache_clear()
+        monkeypatch.setattr(room, "_KEPT_BITS", kept)
+        found.append(contact_schedule(model, model.until))
+    room.outcome.cache_clear()
+    once, twice = found
+    assert (once.bits, twice.bits) == (448, 896)
+    assert len(once.changes) == len(twice.changes) > 2
+    for one, other in zip(once.changes, twice.changes, strict=True):
+        assert one.link == other.link
+        assert abs(one.low - other.low) < fmpq(1, 2**200)
+    errors = [max(known.error for wave in each.waves.sent.values() for known in wave.stretches) for each in found]
+    assert errors[1] < errors[0] * arb(2) ** -300

@@ -24,6 +24,10 @@ _ATTEMPTS = ((448, True), (448, False), (896, False))
 _MOST_BITS = 7168
 _FURTHER = 2**64  # longest stretches on which a branch is left open: a graze is no further with more bits
 
+# springs: what is known to fewer bits than these at the end is found once more with twice as many; what is not known of
+# them grows with each stretch, whatever the bits of waves that are made of it later
+_KEPT_BITS = 128
+
 # what is taken back so soon, in longest stretches on which it is left open what a contact does, is no event
 _MOMENT = 64
 
@@ -98,6 +102,8 @@ def _attempt(
     """What a search finds with as many bits as it takes."""
     tried: list[int] = []
     attempts, reached = list(_ATTEMPTS), fmpq(-1)
+    first: T | None = None
+    springs = all(network.links[number].is_spring_with_corner for number in network.corners)
     while attempts:
         bits, relaxing = attempts.pop(0)
         if bits in tried:
@@ -105,9 +111,16 @@ def _attempt(
         with ctx.workprec(bits):
             search = Search(network, loads, dict(last), relaxing)
             try:
-                return follow(search)
+                found = follow(search)
             except UndecidedError as error:
+                if first is not None:
+                    return first
                 undecided = error
+            else:
+                if first is not None or not springs or search.known_bits() >= _KEPT_BITS:
+                    return found
+                first, attempts = found, [(2 * bits, False)]
+                continue
         if not search.has_relaxed:
             tried.append(bits)
         if not attempts and undecided.tau - reached > _FURTHER * search.width and bits < _MOST_BITS:

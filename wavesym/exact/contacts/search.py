@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import product
+from math import inf
 
 from flint import arb, ctx, fmpq
 
@@ -98,6 +99,13 @@ class Search:
     def has_relaxed(self) -> bool:
         """Whether what decays fast has been left out somewhere."""
         return any(joint.has_relaxed for joint in self.waves.joints.values())
+
+    def known_bits(self) -> float:
+        """To how many bits waves are known, relative to the largest, where they are known least."""
+        stretches = [known for wave in self.waves.sent.values() for known in wave.stretches]
+        most = max((abs(known.polynomial[0]).upper() for known in stretches), default=arb(0))
+        least = max((known.error for known in stretches), default=arb(0))
+        return inf if least == 0 or most == 0 else float((most / least).log_base(2))
 
     def _course(self, number: int, last: fmpq, loads: Sequence[AppliedLoad]) -> Course:
         network, joint = self._network, self._network.joints[number]
