@@ -32,7 +32,8 @@ def records() -> Mapping[str, Record]:
 
 def _in_place(axes: Axes, curves: list[Curve], size: float) -> None:
     for curve in curves:
-        axes.text(*curve.points[0], curve.text)
+        if curve.text:
+            axes.text(*curve.points[0], curve.text)
 
 
 def redrawn() -> dict[int, Figure]:

@@ -871,7 +871,7 @@ def test_colours_of_pictures_have_units() -> None:
     figure = xt.draw(lower(scene), scene.system.lines, scene.physical)
     assert {each.get_xlabel() for each in figure.axes} >= {"arm:x in m", "x in m"}
     words = {each.get_text() for each in figure.texts}
-    assert words >= {"Velocity in m/s", "Force in N: pull red, push blue", "good: waves over place and time"}
+    assert words >= {"Velocity in m/s", "Force in N: pull red, push blue", "Good: waves over place and time"}
     assert {each.get_ylabel() for each in figure.axes} >= {"t in s"}
 
 

@@ -42,7 +42,8 @@ _STYLES: tuple[tuple[_Dashes, str], ...] = (
     ((0, (3, 1)), "#777777"),
 )
 _ALPHA = {False: 1.0, True: 0.55}  # of what is formal
-_VERTICES, _ANCHORS = 18, 8  # of a curve, as labels see it; of those, places where its name may hang
+_VERTICES, _ANCHORS = 18, 8  # of a curve: places where its name may hang, and where others are near most of them
+_INK = 150  # vertices of a curve that labels keep free
 _NEAR = 0.03  # curves this near to each other, in heights of a panel, are not told apart by a label
 _COLUMNS = 2000  # of a panel
 _LOAD = 1.2  # inches
@@ -163,11 +164,10 @@ def _labels(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[C
         others = [other.points for other in panel.histories if other is not history]
         shape = thin_polyline(history.points, _VERTICES)
         places = isolated_vertices(shape, others, _NEAR * (high - low))
-        if len(places) == len(shape):
-            curves.append(Curve(history.name, shape, color, "bold"))
-        else:  # no name can hang on the rest of the curve, yet none may cover it
-            curves.append(Curve(history.name, thin_polyline(places, _ANCHORS), color, "bold"))
-            curves.append(Curve("", shape, "none", "normal"))
+        anchors = shape if len(places) == len(shape) else thin_polyline(places, _ANCHORS)
+        curves.append(Curve(history.name, anchors, color, "bold"))
+        # no name can hang on the rest of the curve, yet none may cover it
+        curves.append(Curve("", thin_polyline(history.points, _INK), "none", "normal"))
     curves += [Curve(mark.text, mark.points, "black", mark.weight) for mark in panel.marks]
     for instant in instants:
         upright = np.column_stack([np.full(9, instant.tau), np.linspace(low, high, 9)])
