@@ -253,7 +253,10 @@ class Search:
 
     def _decide(self, course: Course, start: fmpq, limit: fmpq) -> tuple[JointStretch, BranchEnd | None] | None:
         """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
+        joint = self.waves.joints[course.number]
         for closed, sliding in self._choices(course):
+            if not joint.may_join(closed, start):
+                continue
             moved = self._move(course, start, limit - start, closed, sliding, trial=True)
             if all(contact.begins(moved) for contact in course.contacts):
                 moved, end = self._cut(course, start, moved, fmpq(0))
@@ -337,7 +340,8 @@ class Search:
 
         Friction of masses that is not certain to slide all the time is held: that is no further from the truth than
         the energy that is lost by it, where what is vague may have any force. What has come to rest and is certainly
-        pulled beyond its limit goes on from rest that way, as it is.
+        pulled beyond its limit goes on from rest that way, as it is. What rubs without mass may slide as soon as a mass
+        that moves may touch it.
         """
         joint, arriving = self.waves.joints[course.number], self.waves.arriving(course.number, start, length)
         vague = frozenset(contact.link for contact in course.contacts if contact.is_unclear)
@@ -347,6 +351,10 @@ class Search:
         while True:
             others = [contact for contact in course.contacts if contact.link not in vague | turned.keys()]
             closed = held | frozenset(contact.link for contact in others if contact.is_held)
+            light = frozenset(each.link for each in others if isinstance(each, Friction) and not each.inert)
+            if closed & light and not joint.may_join(closed | vague, start):
+                vague |= closed & light
+                continue
             sliding = frozenset((each.link, each.sign) for each in others if each.sign and each.link not in closed)
             moved = joint.move(arriving, start, length, closed, vague, sliding | turned.items())
             turning = {each.link: each.leaving(moved) for each in others if isinstance(each, Friction)}

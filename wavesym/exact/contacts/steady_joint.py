@@ -79,12 +79,28 @@ class SteadyJoint(ABC):
         for k, factor, motion in zip((touch.left, touch.right), (-touch.ratio, _ONE), motions, strict=True):
             if motion is None and self.law.mass[k] == 0:
                 return None
-            velocity = arb(self._loads[k].polynomial_from(start)(fmpq(0)))
-            if motion is None:
-                unknown = (2 * self._states.of_point[k].error_energy / arb(self.law.mass[k])).sqrt().upper()
-                velocity = self._states.of_point[k].velocity + arb(0, unknown)
-            total += arb(factor) * velocity
+            total += arb(factor) * self._velocity(k, start)
         return total
+
+    def may_join(self, closed: Closed, start: fmpq) -> bool:
+        """Whether masses that these would hold together, or on what moves as is given, may be as fast as each other.
+
+        No force that is finite stops a mass at once, whatever without mass is between it and what it would stick to.
+        """
+        for cluster in self._split(closed, frozenset()):
+            for k in cluster.stuck_points:
+                leader = cluster.leader(cluster.group(k))
+                apart = self._velocity(k, start) - arb(cluster.ratio(k)) * self._velocity(leader, start)
+                if not apart.contains(0):
+                    return False
+        return True
+
+    def _velocity(self, k: int, start: fmpq) -> arb:
+        """That of a mass, or of what moves as is given, with all that is not known of it."""
+        if self.law.motions[k] is not None:
+            return arb(self._loads[k].polynomial_from(start)(fmpq(0)))
+        state = self._states.of_point[k]
+        return state.velocity + arb(0, (2 * state.error_energy / arb(self.law.mass[k])).sqrt().upper())
 
     def move(
         self,

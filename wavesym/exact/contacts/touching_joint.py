@@ -170,6 +170,8 @@ class TouchingJoint(SteadyJoint):
         takes: dict[int, arb] = {}
         for chosen, sliding in self._branches(vague):
             cluster = Cluster.from_law(among.joint_law, points, self.touches, closed | chosen)
+            if not _may_join(cluster, known, span):
+                continue
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
             rubbed = self._add_friction(pulls, sliding)
             q = scatter(cluster.law, group_forces(cluster, rubbed), rigid)
@@ -254,3 +256,12 @@ class TouchingJoint(SteadyJoint):
             result[self.touches[n].right] = [*result[self.touches[n].right], (_ONE, between)]
             result[self.touches[n].left] = [*result[self.touches[n].left], (-self.touches[n].ratio, between)]
         return result
+
+
+def _may_join(cluster: Cluster, known: Mapping[int, Terms], span: arb) -> bool:
+    """Whether what sticks may be as fast at some instant as what it sticks to: see `SteadyJoint.may_join`."""
+    for k in cluster.stuck_points:
+        slower = scale_terms(known[cluster.leader(cluster.group(k))], -cluster.ratio(k))
+        if k in known and not add_terms([*known[k], *slower]).evaluate_on(span).contains(0):
+            return False
+    return True
