@@ -173,5 +173,5 @@ def test_light_bodies_are_moved_as_far_as_a_series_bears():
 
 def test_what_moves_too_often_is_refused_at_once(monkeypatch):
     monkeypatch.setattr(Search, "_advance", None)
-    with pytest.raises(CostError, match="waves cross the shortest rod in 1e-06"):
+    with pytest.raises(CostError, match="waves cross the shortest rod in tau = 1e-06"):
         events(line([rod("1/1000000", velocity=1), contact("1/3"), rod()], 3))

@@ -259,7 +259,7 @@ def test_what_rounding_may_do_is_said_where_it_is_more_than_was_asked_for(precis
 @pytest.mark.parametrize("step", ["0", "-1/8", "soon", "1e-400"])
 def test_a_step_is_a_positive_number(step, capsys):
     assert main(["generate", "drive_m1", "--stream", "--step", step]) == 2
-    assert f"{step} is not a positive number of tau; write one such as 0.1 or 1/8" in capsys.readouterr().err
+    assert f"{step} is not a positive time; write a number such as 0.1 or 1/8" in capsys.readouterr().err
 
 
 @pytest.mark.slow

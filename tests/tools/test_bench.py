@@ -71,7 +71,7 @@ def test_a_record_has_rows_of_modes_and_elements(monkeypatch):
 
 def test_frames_have_a_row(monkeypatch):
     """Errors are within estimates."""
-    monkeypatch.setattr(frames, "_SETS", 3)
+    monkeypatch.setattr(frames, "_SETS", (3,))
     monkeypatch.setattr(frames, "_HELD", 1)
     (row,) = frames.rows(FOLDER.parent / "examples" / "records")
     assert 0 < float(row[-1]) < 1
