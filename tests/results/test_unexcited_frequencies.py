@@ -165,3 +165,31 @@ def test_delays_without_a_useful_measure() -> None:
         peaks = wavesym.frf(chain(parts, "l", displacement=["mid", "l"]), low=0.95, high=1, points=2).peaks()
         assert [peak.amplitude for peak in peaks] == pytest.approx(expected, nan_ok=True)
         assert all(peak.high == np.inf for peak in peaks)
+
+
+SPRINGS = ["fixed", {"spring": 1}, {"mass": 1, "name": "m"}, {"spring": 1}, {"mass": 1, "name": "n"}]
+BARS = ["fixed", {"rod": 1}, {"mass": 1, "name": "m"}, {"rod": 1}, "fixed"]
+
+
+def first_undamped(parts):
+    system = {"type": "chain", "parts": parts, "damping": [0, "1/20"]}
+    output = {"until": 20, "tolerance": 1e-6, "displacement": ["m"]}
+    return Scene(name="first", system=system, load=[{"at": "m", "times": [0], "steps": [1]}], output=output)
+
+
+@pytest.mark.parametrize(("parts", "natural"), [(SPRINGS, (5**0.5 - 1) / 2), (BARS, 1.0768739863118)])
+def test_a_mode_without_damping_beside_damped_ones_has_a_pole(parts, natural):
+    """That of a mass between rods at 2 cot w = w: a power series about it does not exist."""
+    (peak,) = wavesym.frf(first_undamped(parts), low=0.5, high=2, points=2).peaks()
+    assert peak.amplitude == np.inf
+    assert peak.frequency == pytest.approx(natural, rel=1e-9)
+
+
+def test_of_masses_on_springs_no_mode_is_left_out():
+    """A sum over two modes is all there is: shapes by hand from the golden ratio."""
+    taus = np.array([0.3, 1.15, 2.0])
+    frequencies, shapes = np.linalg.eigh(np.array([[2.0, -1.0], [-1.0, 1.0]]))
+    w = np.sqrt(frequencies)
+    right = sum(shapes[0, k] ** 2 / (w[k] ** 2 - taus**2 + 2j * (0, 0.05)[k] * w[k] * taus) for k in range(2))
+    found = wavesym.frf(first_undamped(SPRINGS), taus)
+    assert found.values[0] == pytest.approx(right, rel=1e-13)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from flint import acb, arb, fmpq
+from flint import acb, acb_series, arb, fmpq
 
 from wavesym.exact.modes.harmonic import Quantity
 from wavesym.exact.modes.shape import Mode
@@ -69,7 +69,7 @@ class ModalTransfer:
         """
         rate, square = w * _I, w * w
         answers = [
-            1 / (rate * (2 * ratio * n) - square + n * n) - (1 / (n * n) if n != 0 else 0)
+            _reciprocal(rate * (2 * ratio * n) - square + n * n) - (1 / (n * n) if n != 0 else 0)
             for n, ratio in zip(self._frequencies, self._ratios, strict=True)
         ]
         made: list[Quantity] = [acb(0) for _ in self.model.probes]
@@ -107,6 +107,8 @@ class ModalTransfer:
         """
         last, most = self._frequencies[-1], self._largest_remaining_ratio
         made = [arb(0) for _ in self.model.probes]
+        if len(self._frequencies) < self.count:
+            return made  # there are no more
         if not last > w:
             return [arb("inf") for _ in made]
         rate = acb(0, w)
@@ -201,3 +203,10 @@ class ModalTransfer:
             if n != 0:
                 total = total - value * value / n ** (2 * power)
         return total.max(arb(0))
+
+
+def _reciprocal(divisor: Quantity) -> Quantity:
+    """One over it; not a number where it may be 0."""
+    if isinstance(divisor, acb_series) and acb(divisor[0]).contains(0):
+        return acb_series([acb("nan"), 0, 0], prec=3)
+    return 1 / divisor
