@@ -114,16 +114,18 @@ class ModalSets:
         """The values, then their derivatives by each parameter, of shape (sets, 1 + parameters, outputs, times), and as
         many estimates: differences, extrapolated, of models with as many modes.
 
-        Where the first step is not good to the tolerance others are taken, and of all the best.
+        Where the first step is not good to the tolerance others are taken, and of all the best. What modes left out add
+        is twice what as many modes again add, at most: it falls at least as their number rises.
         """
         own, (sets, count) = self._horizon_responses(given, tau), given.shape
+        finer = self._horizon_responses(given, tau, more=1) if self._most_doublings else None
         found = no_sets(sets, (1 + count, *own.values.shape[1:]), (1 + count,))
         found.status[:], found.estimate[:, 0], found.values[:, 0] = own.status, own.estimate, own.values
         for parameter, most in enumerate(self._largest_steps(given).T):
             size = np.abs(given[:, parameter])
             step = _STEP * np.where(size > 0, size, 1.0)
             best = self._difference(given, own, parameter, step, tau)
-            scale = best.scale.copy()
+            scale, taken = best.scale.copy(), step.copy()
             for _ in range(_TRIES):
                 poor = best.estimate > nearest(self.model.tolerance)
                 if not poor.any():
@@ -134,8 +136,15 @@ class ModalSets:
                 better = tried.estimate < best.estimate[poor]
                 rows = np.flatnonzero(poor)[better]
                 best.slopes[rows], best.estimate[rows] = tried.slopes[better], tried.estimate[better]
+                taken[rows] = step[rows]
             found.values[:, 1 + parameter] = best.slopes
             found.estimate[:, 1 + parameter] = best.estimate + own.estimate
+            if finer is not None:
+                change = np.abs(self._difference(given, finer, parameter, taken, tau, more=1).slopes - best.slopes)
+                largest = np.abs(best.slopes).max(axis=2, initial=0.0)
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    relative = np.nan_to_num(change.max(axis=2, initial=0.0) / largest, nan=0.0)
+                found.estimate[:, 1 + parameter] += 2 * relative.max(axis=1)
         return found
 
     def _largest_steps(self, given: Array) -> Array:
@@ -148,7 +157,9 @@ class ModalSets:
             axis=1,
         )
 
-    def _difference(self, given: Array, own: ModeSetResponses, parameter: int, step: Array, tau: Array) -> _Slopes:
+    def _difference(
+        self, given: Array, own: ModeSetResponses, parameter: int, step: Array, tau: Array, more: int = 0
+    ) -> _Slopes:
         """Derivatives by one parameter, by differences of the second order over `step` and twice that, extrapolated.
 
         The nearer one is wrong by about a third of how far they are apart, and by what turns of fast modes are missed;
@@ -160,7 +171,7 @@ class ModalSets:
         def value_at(times: int) -> None:
             other = given.copy()
             other[:, parameter] += times * step
-            found = self._horizon_responses(other, tau, given)
+            found = self._horizon_responses(other, tau, given, more)
             points[times], values[times] = other[:, parameter], found.values
             np.fmax(rounded, found.rounding_errors, out=rounded)
 
@@ -230,9 +241,9 @@ class ModalSets:
                 found.values[row] = bounds + np.where(off > 0, off / largest, 0.0)
         return found
 
-    def responses(self, given: Array, tau: Array, like: Array | None = None) -> ModeSetResponses:
+    def responses(self, given: Array, tau: Array, like: Array | None = None, more: int = 0) -> ModeSetResponses:
         """Those at instants of the horizon in any order: of each set by as many modes as its tolerance needs, or that
-        of the set beside it in `like`."""
+        of the set beside it in `like`; their number is doubled `more` times."""
         found, tolerance = self._by_modes(0, given, tau), nearest(self.model.tolerance)
         estimate = found.estimate.copy() if like is None else self._by_modes(0, like, np.empty(0)).estimate
         doublings = np.zeros(len(given), int)
@@ -242,11 +253,15 @@ class ModalSets:
             doublings = np.minimum(doublings, self._most_doublings)
             for count in np.unique(doublings[short]).tolist():
                 rows = short & (doublings == count)
-                more = self._by_modes(count, given[rows], tau)
-                found.put(rows, more)
-                estimate[rows] = more.estimate
+                refined = self._by_modes(count, given[rows], tau)
+                found.put(rows, refined)
+                estimate[rows] = refined.estimate
                 if like is not None:
                     estimate[rows] = self._by_modes(count, like[rows], np.empty(0)).estimate
+        if more:
+            doublings = np.minimum(doublings + more, self._most_doublings)
+            for count in np.unique(doublings).tolist():
+                found.put(doublings == count, self._by_modes(count, given[doublings == count], tau))
         return found
 
     @cached_property
@@ -255,10 +270,12 @@ class ModalSets:
         most = min(_MOST_MODES, self.parameters.like.most)
         return max(ceil(log2(most / self.parameters.fewest)), 0)
 
-    def _horizon_responses(self, given: Array, tau: Array, like: Array | None = None) -> ModeSetResponses:
+    def _horizon_responses(
+        self, given: Array, tau: Array, like: Array | None = None, more: int = 0
+    ) -> ModeSetResponses:
         """Responses at instants of which some may be outside the horizon, and NaN."""
         inside = (tau >= 0) & (tau <= self.tau_max)
-        found = self.responses(given, tau[inside], like)
+        found = self.responses(given, tau[inside], like, more)
         values = np.full((len(given), len(self.model.probes), len(tau)), np.nan)
         values[:, :, inside] = found.values
         return found._replace(values=values)

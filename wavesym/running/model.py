@@ -208,7 +208,6 @@ class RuntimeModel:
         """Values, and their derivatives by all parameters, given or not; arguments and errors are those of `run`.
 
         The derivative of a peak is that of its output at its tau, as its slope is 0 there: `gradients(peaks.tau_max)`.
-        Estimates of derivatives by numbers of modes do not count what modes that are left out add to them.
         """
         instants = _numbers("tau", tau)
         check_horizon(instants, self.tau_max, strict=strict)
