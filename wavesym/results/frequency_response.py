@@ -22,7 +22,7 @@ from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.optional import require_packages
-from wavesym.results.presentation import csv_line, output_number
+from wavesym.results.presentation import OutputRows, csv_line
 from wavesym.results.resonance import AmplitudePeaks, peaks
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
@@ -42,7 +42,7 @@ _ROUNDING = 2.0**-52  # both parts, each to the nearest double
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class FrequencyResponse:
+class FrequencyResponse(OutputRows):
     """Complex amplitudes of the outputs under one unit of a load exp(+i w t); `wavesym.frf` makes it.
 
     Attributes:
@@ -71,15 +71,6 @@ class FrequencyResponse:
     possible_poles: tuple[float, ...]
     _model: Model = field(repr=False)
     _load: HarmonicLoad = field(repr=False)
-
-    def __getitem__(self, name: str) -> NDArray[np.complex128]:
-        return np.asarray(self.values[output_number(name, self.outputs, self.name)])
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.outputs)
-
-    def __len__(self) -> int:
-        return len(self.outputs)
 
     def __repr__(self) -> str:
         low, high = self.frequency[[0, -1]] if len(self.frequency) else (0.0, 0.0)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from html import escape
+from typing import TYPE_CHECKING, Any
 
 from wavesym.errors import did_you_mean
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _WRITTEN_OUT = 1e7
 
@@ -16,6 +20,24 @@ def output_number(name: str, outputs: Sequence[str], scene: str) -> int:
         return outputs.index(name)
     known = f"{', '.join(outputs)}. {did_you_mean(str(name), outputs)}".rstrip(". ")
     raise KeyError(f"{name} is no output of {scene}; there are {known}")
+
+
+class OutputRows:
+    """What has a row of values for each output of a scene: rows[NAME], the names in order, and how many these are."""
+
+    outputs: tuple[str, ...]
+    values: NDArray[Any]
+    name: str
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        row: NDArray[Any] = self.values[output_number(name, self.outputs, self.name)]
+        return row
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.outputs)
+
+    def __len__(self) -> int:
+        return len(self.outputs)
 
 
 def html_table(caption: str, heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:

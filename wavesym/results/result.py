@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.probe import with_unit
 from wavesym.results.horizon import check_horizon
 from wavesym.results.optional import require_packages
-from wavesym.results.presentation import html_table, output_number
+from wavesym.results.presentation import OutputRows, html_table
 from wavesym.results.response import Response
 from wavesym.results.rows import instants
 from wavesym.results.summary import Summary, summarise
@@ -29,7 +29,7 @@ _SHOWN = 5  # rows of a long table at its start and its end
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Result:
+class Result(OutputRows):
     """The outputs of a scene at some instants; `scene.run` and `wavesym.run` make it.
 
     Attributes:
@@ -63,14 +63,10 @@ class Result:
     _response: Response = field(repr=False, compare=False)
     _plot: Callable[[Scene, str | PathLike[str] | None], Any] = field(repr=False, compare=False)
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
-        return np.asarray(self.values[output_number(name, self.outputs, self.scene.name)])
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.outputs)
-
-    def __len__(self) -> int:
-        return len(self.outputs)
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        """That of the scene."""
+        return self.scene.name
 
     @property
     def events(self) -> tuple[ContactEvent, ...]:

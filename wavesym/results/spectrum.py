@@ -16,7 +16,7 @@ is told is about a third of that change.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, factorial, floor, log10, pi, sqrt
@@ -32,7 +32,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.programs.hats import under_jumps
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
-from wavesym.results.presentation import csv_line, output_number
+from wavesym.results.presentation import OutputRows, csv_line
 from wavesym.results.stepping import jumps, just_before, sample_program
 
 Numbers = NDArray[np.float64]
@@ -49,7 +49,7 @@ _TOP = 0.8  # a parabola adds at most a quarter to the largest of its three valu
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Spectra:
+class Spectra(OutputRows):
     """Response spectra of a scene; `wavesym.spectrum` makes them. `spectra[NAME]` is that of one output, (n,).
 
     `values[k]` is the pseudo-acceleration of `outputs[k]` at `periods`, in its unit; periods in `time_unit`. `step` is
@@ -66,15 +66,6 @@ class Spectra:
     values: Numbers
     step: float
     change: float
-
-    def __getitem__(self, name: str) -> Numbers:
-        return np.asarray(self.values[output_number(name, self.outputs, self.name)])
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.outputs)
-
-    def __len__(self) -> int:
-        return len(self.outputs)
 
     def __repr__(self) -> str:
         count, unit = len(self), self.time_unit or "tau"

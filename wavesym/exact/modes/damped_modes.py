@@ -80,7 +80,7 @@ class DampedSpectrum(CutNetwork):
 
 def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
     near, rows = guesses * (1 + _OFF), len(stiffness.points)
-    roots = stiffness.yielding(near, 1j * near).tolist()
+    roots = stiffness.softest_rows(near, 1j * near).tolist()
     found: list[Mode | None] = [None] * len(guesses)
     for bits in (_FEWER_BITS, _BITS_A_ROW) if rows > _MANY_ROWS else (_BITS_A_ROW,):
         with ctx.workprec(_BITS + bits * rows):

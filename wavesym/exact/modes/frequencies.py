@@ -99,7 +99,7 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
         with ctx.workprec(bits):
             laws.append((bits, stiffness.law(arb)))
     guesses = bisect_frequencies(stiffness, count)
-    roots = stiffness.yielding(guesses * (1 - _OFF)).tolist()
+    roots = stiffness.softest_rows(guesses * (1 - _OFF)).tolist()
     together = np.diff(guesses) < _TOGETHER * guesses[1:]
     n = known + 1
     while n <= count:

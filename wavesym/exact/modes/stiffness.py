@@ -297,7 +297,7 @@ class Stiffness:
         clamped = [count * turn for count, turn in zip(self.doubles.counts, turns, strict=True)]
         return np.asarray(sum(clamped, np.zeros(w.shape, np.int64)) + sum(negative, np.zeros(w.shape, np.int64)))
 
-    def yielding(self, w: NDArray[Any], rate: NDArray[Any] | None = None) -> NDArray[np.int64]:
+    def softest_rows(self, w: NDArray[Any], rate: NDArray[Any] | None = None) -> NDArray[np.int64]:
         """The row on which a force moves most at each w, in doubles: one that moves much in the mode that is near.
 
         Where there are dashpots `rate` is i w.
