@@ -6,10 +6,12 @@ import copy
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import wavesym
 from tests.support.chains import chains
 from wavesym.errors import SceneError, WavesymError
 from wavesym.exact.reference import Reference
@@ -304,6 +306,39 @@ def test_no_rod_and_no_parts() -> None:
         Scene(name="s", system={"type": "chain"}, output=output)
     with pytest.raises(SceneError, match=r"^scene: system\.parts: "):
         Scene(name="s", system={"type": "chain", "parts": "fixed"}, output=output)
+
+
+def test_branches_alone_may_have_what_stands_between_nodes(tmp_path: Path) -> None:
+    """A mass and a rod that turns twice as fast are a mass at the end of a rod four times as stiff; a page too."""
+    held = {"mass": 1, "name": "hub"}
+    branch = {"from": "hub", "name": "arm", "ratio": 2, "parts": [{"rod": 1, "name": "r"}, "fixed"]}
+    load = [{"at": "hub", "times": [0], "steps": [1]}]
+    output = {"until": 5, "displacement": ["hub"]}
+    branched = Scene(name="s", system={"type": "chain", "parts": [held], "branch": [branch]}, load=load, output=output)
+    line = {"type": "chain", "parts": [held, {"rod": 1, "impedance": 4}, "fixed"]}
+    found, expected = (
+        wavesym.run(scene, samples=11)["displacement@hub"]
+        for scene in (branched, Scene(name="s", system=line, load=load, output=output))
+    )
+    assert found == pytest.approx(expected, rel=1e-13)
+    w = np.array([mode.omega for mode in wavesym.modes(branched, count=5)])
+    assert np.cos(w) * 4 - w * np.sin(w) == pytest.approx(np.zeros(5), abs=1e-13)
+    wavesym.report(branched, tmp_path / "page.html")
+    assert "every rod of the branch arm" in (tmp_path / "page.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("parts", "why"),
+    [
+        ([{"mass": 1}], "no rod, spring or dashpot; write at least one"),
+        (["contact", {"mass": 1}], "contacts alone; write a rod, a spring or a dashpot, too"),
+    ],
+)
+def test_branches_of_bare_masses_or_contacts_are_none(parts: list[Any], why: str) -> None:
+    system = {"type": "chain", "parts": [{"mass": 1, "name": "hub"}]}
+    system["branch"] = [{"from": "hub", "name": "b", "parts": parts}]
+    with pytest.raises(SceneError, match=rf"^scene: system\.parts: {why}$"):
+        Scene(name="s", system=system, output={"until": 1, "velocity": ["hub"]})
 
 
 NUMBER = st.sampled_from([0, 1, -1, "1/2", "1e-300", "1e300", 2.5, True, None, "x", "1/0", [], 10**400])

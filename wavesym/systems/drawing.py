@@ -14,8 +14,18 @@ from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.systems.contacts import name_contacts, refuse_impacts, refuse_joined_corners
-from wavesym.systems.lines import Keys, PlacedBetween, PlacedNode, alternating
-from wavesym.systems.parts import Branch, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart, SpringLaw
+from wavesym.systems.lines import EMPTY, Keys, PlacedBetween, PlacedNode, alternating
+from wavesym.systems.parts import (
+    BETWEEN,
+    Branch,
+    ChainPart,
+    ContactPart,
+    LinkPart,
+    MotionPart,
+    PointPart,
+    RodPart,
+    SpringLaw,
+)
 from wavesym.systems.station import MAIN, Lines, Station
 
 
@@ -106,14 +116,24 @@ class _Pen:
     contacts: list[tuple[Link, Keys]] = field(default_factory=list)
     paths: dict[int, Keys] = field(default_factory=dict)  # points by the parts that they are, or that come next
     places: dict[int, tuple[str, Fraction]] = field(default_factory=dict)  # of contacts, by the number of the link
+    kinds: set[type[BETWEEN]] = field(default_factory=set)  # of parts between nodes, of all lines
 
     def drawing(self) -> Drawing:
         """What was drawn."""
+        self._refuse_empty()
         for k, point in enumerate(self.points):
             self._bearable(k, point)
         refuse_impacts(self.points, self.contacts)
         refuse_joined_corners(self.points, self.links, self.paths)
         return Drawing(tuple(self.points), tuple(self.bars), tuple(self.links), self.lines, self.names, self.places)
+
+    def _refuse_empty(self) -> None:
+        """A chain has something between its nodes, on its branches at least, unless the ground holds its only one."""
+        held = self.links or any(point.stiffness != 0 or point.damping != 0 for point in self.points)
+        if not self.kinds and not held:
+            raise refusal(EMPTY, "parts")
+        if self.kinds == {ContactPart}:
+            raise refusal("contacts alone; write a rod, a spring or a dashpot, too", "parts")
 
     def line(
         self,
@@ -126,6 +146,7 @@ class _Pen:
         """Parts from left to right; a branch begins at a point that is there already."""
         self.lines[name] = ()  # so that no node of it has its name
         nodes, between = alternating(parts, at, branch=begin is not None)
+        self.kinds |= {type(part) for _, part in between}
         if begin is not None and nodes[0] is not None:
             self._wheel(begin, nodes[0][1], ratio, (*at, nodes[0][0]))
         numbers = [self._draw_node(nodes, between, k, at) if k or begin is None else begin for k in range(len(nodes))]

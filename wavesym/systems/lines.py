@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from wavesym.fields.table import refusal, show
-from wavesym.systems.parts import BETWEEN, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart
+from wavesym.systems.parts import BETWEEN, ChainPart, ContactPart, LinkPart, MotionPart
 
 Keys = tuple[str | int, ...]
 PlacedNode = tuple[int, ChainPart | str]
@@ -14,6 +14,7 @@ PlacedNode = tuple[int, ChainPart | str]
 PlacedBetween = tuple[int, BETWEEN]
 """What is between two nodes, and which of the parts it is."""
 
+EMPTY = "no rod, spring or dashpot; write at least one"
 _TOUCHING = ContactPart(contact=Fraction(0))
 
 
@@ -41,7 +42,8 @@ def alternating(
         if 0 < k < len(parts) - 1 and (part in ("free", "fixed", "absorbing") or isinstance(part, MotionPart)):
             raise refusal("an end between other parts; write a mass or a joint", *at, k)
         nodes[-1] = k, part
-    _refuse_empty(nodes[0], between, at, branch)
+    if not between and nodes[0] is None:
+        raise refusal(EMPTY, *at)
     _refuse_ends(nodes, between, at, branch)
     return nodes, between
 
@@ -50,16 +52,6 @@ def _refuse_loose(one: BETWEEN, other: BETWEEN, at: Keys) -> None:
     """Between two contacts nothing makes a joint of what is not written."""
     if isinstance(one, ContactPart) and isinstance(other, ContactPart):
         raise refusal("a contact beside a contact; write a rod or a mass between them", *at)
-
-
-def _refuse_empty(node: PlacedNode | None, between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:
-    """A chain has something between its nodes, unless the ground holds its only one; a branch may be a wheel alone."""
-    part = node[1] if node else None
-    held = isinstance(part, PointPart) and (part.friction or part.spring or part.dashpot)
-    if not between and not held and not (branch and node):
-        raise refusal("no rod, spring or dashpot; write at least one", *at)
-    if between and not branch and not any(isinstance(part, RodPart | LinkPart) for _, part in between):
-        raise refusal("contacts alone; write a rod, a spring or a dashpot, too", *at)
 
 
 def _refuse_ends(nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:

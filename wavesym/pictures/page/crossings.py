@@ -36,7 +36,10 @@ _QUANTITIES = {"velocity": 0, "force": 1}
 
 
 def crossings(model: Model, lines: Lines, units: Scale | None) -> list[PagePicture]:
-    """Velocity and force of the main line; nothing where waves cross too often, or it would cost too much."""
+    """Velocity and force of the main line, or of the first branch with a rod.
+
+    Nothing where waves cross too often, or it would cost too much.
+    """
     shortest = model.network.shortest
     if model.until > _MOST * shortest:
         return []
@@ -48,7 +51,8 @@ def crossings(model: Model, lines: Lines, units: Scale | None) -> list[PagePictu
 
 
 def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | None) -> PagePicture:
-    stations, scale = lines[""], timescale(model)
+    line_name, stations = next(each for each in lines.items() if each[1][-1].x)
+    scale = timescale(model)
     until, long = nearest(model.until), float(stations[-1].x)
     factor = nearest(rational(units.factor(name, 1))) if units else 1.0
     values = factor * _cells(field, stations, until, _QUANTITIES[name])
@@ -61,7 +65,7 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
     bar = colour_bar(words, ends, TOP + _TALL + BELOW, signed=True)
     description = (
-        f"Colours show the {name} of every rod of the main line, place to the right and time upward to "
+        f"Colours show the {name} of every rod of {_line_text(line_name)}, place to the right and time upward to "
         f"{scale.format(until)}; waves are bands that slope by one rod in one crossing."
     )
     title = f"{name}: place to the right, time upward".capitalize()
@@ -71,6 +75,10 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     return PagePicture(
         title, picture(f"xt-{name}", title, description, height, frame, image, formal, nodes, bar, class_="plot")
     )
+
+
+def _line_text(name: str) -> str:
+    return f"the branch {name}" if name else "the main line"
 
 
 def _formal(end: ContactEnd, x: PlotAxis, y: PlotAxis, until: float, long: float, per_tau: float) -> Svg:

@@ -45,7 +45,7 @@ def structure(model: Model, lines: Lines) -> Picture:
     """The structure with its supports, loads, names, and the places of its outputs."""
     if model.labels.system["type"] == "building":
         return _building(model)
-    shown = {name: stations for name, stations in lines.items() if stations[-1].x}
+    shown = {name: stations for name, stations in lines.items() if stations[-1].x or not name}  # branches hang from ""
     return _Pen(model.network, shown, model.length).chain(model)
 
 
@@ -160,7 +160,7 @@ class _Pen:
             shrink = min(shrink, 0.6 * room / signs if signs else 1.0)
         for stations in self.lines.values():
             signs = sum(width for station in stations for _, width in self._widths(station)) * shrink
-            unit = min(unit, (room - signs) / float(stations[-1].x))
+            unit = min(unit, (room - signs) / float(stations[-1].x)) if stations[-1].x else unit
         return shrink, unit
 
     def _line(self, name: str, stations: tuple[Station, ...], y: float, scale: tuple[float, float]) -> None:
