@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from hypothesis import Phase, is_hypothesis_test, settings
 
+from tests.support.kept_builds import KeptBuilds
 from wavesym.running import mode_sets, native, sets, stream
 from wavesym.running.toolchain import Compiler, CompilerError, compiler
 
@@ -59,17 +60,21 @@ def pytest_collection_finish() -> None:
 
 @pytest.fixture(autouse=True, scope="session")
 def quick_builds(pytestconfig: pytest.Config) -> Iterator[None]:
-    """Without --run-slow, C is compiled without optimisation, in a third of the time.
+    """Without --run-slow, C is compiled without optimisation, in a third of the time, and kept for the next run.
 
     It is compared with exact values and bounds, which hold however it is compiled. Where a test says how products are
-    contracted, or that code is small, it is compiled as the test says.
+    contracted, or that code is small, it is compiled as the test says. `--cache-clear` drops what is kept.
     """
     run = Compiler.run
+    kept = None if _without_compiler() else KeptBuilds(pytestconfig.cache.mkdir("compiled"), compiler())
 
     def quick(self: Compiler, arguments: Sequence[str], folder: Path) -> None:
         if not any(argument.startswith("-ffp-contract") for argument in arguments):
             arguments = ["-O0" if argument in ("-O1", "-O2", "-O3") else argument for argument in arguments]
-        run(self, arguments, folder)
+        if kept:
+            kept.run(run, self, arguments, folder)
+        else:
+            run(self, arguments, folder)
 
     with pytest.MonkeyPatch.context() as patch:
         if not pytestconfig.getoption("--run-slow"):

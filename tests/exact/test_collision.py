@@ -9,7 +9,6 @@ import pytest
 from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import brentq
 
 import wavesym
 from tests.support.drawn import systems
@@ -44,6 +43,8 @@ def test_the_strain_is_zero_there_and_negative_before(kappa):
         taus = np.linspace(0, ends[x] - 1e-9, 2001)
         values = response(taus)[x // 2 - 1]
         assert values.max() < 0, x
+    from scipy.optimize import brentq  # slow to import
+
     late = brentq(lambda tau: response(tau)[0], ends[2] - 1e-3, ends[2] + 1e-3, xtol=1e-13)
     assert abs(late - ends[2]) < 1e-12 or response(ends[2])[0] > 0  # a root, or a jump over 0
 

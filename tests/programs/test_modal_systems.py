@@ -9,7 +9,6 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
-from scipy.signal import lsim
 
 from tests.support.drawn import systems
 from tests.support.modal import building, by_elements, chain, samples
@@ -179,6 +178,8 @@ def test_damped_modes_beyond_those_taken_are_within_the_bound(name):
 @pytest.mark.parametrize("name", ["a ratio", pytest.param("a list", marks=pytest.mark.slow), "Rayleigh"])
 def test_damped_outputs_are_those_of_finite_elements(name):
     """Linear elements, extrapolated; each of their modes is damped and stepped by SciPy."""
+    from scipy.signal import lsim  # slow to import
+
     damping = DAMPED[name]
     load = samples(9)
     model = replace(building(["1", "1/4", "3/5"], [load], tolerance="1e-4", relative=[1, 2]), damping=damping)

@@ -7,7 +7,6 @@ import pytest
 from flint import arb, ctx, fmpq
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.signal import lfilter
 
 from tests.support import oscillators
 from tests.support.assembly import exact
@@ -106,6 +105,8 @@ class OneMode(ModesScheme):
     BLOCK = 1 << 20
 
     def _step_states(self, state, first, last):
+        from scipy.signal import lfilter  # slow to import
+
         p11, p12, p21, p22, one, two = (float(part[0, 0]) for part in self._mode_functions(self._length))
         ramp, start = self.load[:2, first:last, 0].astype(float)
         y, v = one * start + two * ramp, p12 * start + one * ramp

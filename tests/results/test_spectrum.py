@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import wavesym
@@ -82,6 +81,8 @@ def floor(until=40, **changes):
 def test_a_floor_of_a_scene(damping):
     """Its jump is no ramp of one step; every spectrum is within the change that is told of it."""
     found = spectra(lower(floor()), damping)
+    from scipy.integrate import solve_ivp  # slow to import
+
     mass = 1.5
 
     def acceleration(t):

@@ -8,7 +8,6 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
-from scipy.signal import lsim
 
 import wavesym
 from tests.support.drawn import systems
@@ -82,6 +81,8 @@ def drawn(model, sets, name, wide=0.4):
 
 def integrated(stiffness, mass, damping, load):
     """The outputs of SPRUNG at TIMES: its matrices, and an exact step of its state under straight lines."""
+    from scipy.signal import lsim  # slow to import
+
     mass = np.diag(mass)
     spread = np.diag(np.append(stiffness[:-1] + stiffness[1:], stiffness[-1]))
     spring = spread - np.diag(stiffness[1:], 1) - np.diag(stiffness[1:], -1)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import czt
 
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.network_problem import undamped_problem
@@ -74,6 +73,8 @@ def _reading(problem: Problem, reading: Gauge, s: Complex, solved: Complex) -> C
 
 
 def _solve(problem: Problem, resolution: float) -> Evaluate:
+    from scipy.signal import czt  # takes a second to import
+
     span = _PERIODS * problem.until
     c = _DAMPED / (2 * span)
     k = np.arange(int(resolution))
