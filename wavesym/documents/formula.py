@@ -230,7 +230,7 @@ def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmp
         UnservedError: for other outputs.
     """
     probe = _probe(model, name)
-    if probe.quantity in ("force", "acceleration"):
+    if probe.computed_quantity in ("force", "acceleration"):
         raise UnservedError(
             f"--symbolic: {probe.name} is no sum of waves without parameters; a strain, velocity, displacement, drift "
             "or relative displacement is"

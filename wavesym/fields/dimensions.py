@@ -35,6 +35,7 @@ DIMENSIONS: Mapping[str, Dimension] = {
     "area": Dimension(2, 0, 0, "8 cm^2"),
     "second moment of area": Dimension(4, 0, 0, "57680 cm^4"),
     "modulus": Dimension(-1, 1, -2, "210 GPa"),
+    "stress": Dimension(-1, 1, -2, "200 MPa"),
     "density": Dimension(-3, 1, 0, "7850 kg/m^3"),
     "angle": Dimension(0, 0, 0, "2 deg", 1),
     "angular velocity": Dimension(0, 0, -1, "1500 rpm", 1),

@@ -114,10 +114,10 @@ def _merge_terms(probe: Probe, parts: Iterable[ReadingTerm]) -> Sum:
 
 
 def _parts(network: Network, probe: Probe) -> Iterator[ReadingTerm]:
-    match probe.quantity:
+    match probe.computed_quantity:
         case "strain" | "force":
             bar = network.bars[probe.rod - 1]
-            stiffness = bar.impedance * bar.speed if probe.quantity == "force" else _ONE
+            stiffness = bar.impedance * bar.speed if probe.computed_quantity == "force" else _ONE
             yield ReadingTerm(stiffness, Gauge("strain", probe.rod, probe.place))
             yield ReadingTerm(stiffness * bar.weight_strain(probe.place), Gauge("constant", 0, _ZERO))
         case "drift":

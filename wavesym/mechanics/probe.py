@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
+from wavesym.mechanics.quantities import QUANTITIES
+
 _ONE = fmpq(1)
 
 
@@ -30,6 +32,11 @@ class Probe:
     factor: fmpq = _ONE
     unit: str = ""
     title: str = ""
+
+    @property
+    def computed_quantity(self) -> str:
+        """What it is `factor` times of: a stress is so many times a force."""
+        return QUANTITIES[self.quantity].multiple_of or self.quantity
 
     @property
     def label(self) -> str:

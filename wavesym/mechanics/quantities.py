@@ -12,8 +12,9 @@ class Quantity:
     Attributes:
         name: as a scene writes it.
         axis: what the dimensionless number is, for an axis; {0} stands for the letter of the displacement.
-        like: the quantity that is read at the same places, with a side where that has one; "" for what counts rods.
+        place_quantity: the one read at the same places, with a side where that has one; "" for what counts rods.
         order: how often the waves are differentiated: -1 for an integral.
+        multiple_of: the quantity that it is a multiple of, as a scene's units say.
         words: in a sentence; the name where there is nothing better.
         title: the same in a title.
         torsion: what people call it of a shaft.
@@ -24,6 +25,7 @@ class Quantity:
     axis: str
     place_quantity: str
     order: int = 0
+    multiple_of: str = ""
     words: str = ""
     title: str = ""
     torsion: str = ""
@@ -46,7 +48,8 @@ class Quantity:
     @property
     def plural(self) -> str:
         """Several of them."""
-        return f"{self.phrase[:-1]}ies" if self.phrase.endswith("y") else f"{self.phrase}s"
+        phrase = self.phrase
+        return f"{phrase[:-1]}ies" if phrase.endswith("y") else f"{phrase}es" if phrase.endswith("s") else f"{phrase}s"
 
 
 QUANTITIES = {
@@ -74,6 +77,7 @@ QUANTITIES = {
             title="displacement relative to the ground",
             torsion="relative rotation",
         ),
+        Quantity("stress", "impedance \u00d7 strain / section", "strain", multiple_of="force", torsion="shear stress"),
     )
 }
 """By name, in the order of the outputs of a scene."""

@@ -257,7 +257,7 @@ class Problem:
                 if row is None:
                     row = readings.setdefault(reading, np.zeros(len(self.probes)))
                 row[output] += nearest(probe.factor) * weight
-                if probe.quantity in ("strain", "force"):
+                if probe.computed_quantity in ("strain", "force"):
                     more = self.weight_strain(probe.rod - 1, nearest(probe.place))
                     constants[output] += nearest(probe.factor) * weight * more
         return readings, loads, constants
@@ -337,7 +337,7 @@ def output_terms(problem: Problem, probe: Probe) -> Iterator[tuple[float, Gauge]
     is read.
     """
     bar, here = probe.rod - 1, Gauge(probe.quantity, probe.rod, probe.place, probe.point)
-    match probe.quantity:
+    match probe.computed_quantity:
         case "acceleration" if problem.modal is None and (known := _acceleration(problem, probe)):
             yield from known
         case "force":

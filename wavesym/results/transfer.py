@@ -290,7 +290,7 @@ def output_amplitude(network: Network, probe: Probe, amplitudes: Amplitudes) -> 
             moved = amplitudes.point(reading.point)
         elif reading.quantity == "strain":
             moved = amplitudes.slope(number, reading.place) / bar.speed
-            if probe.quantity == "force" and bar.loss != 0:
+            if probe.computed_quantity == "force" and bar.loss != 0:
                 moved = moved * acb(1, arb(bar.loss))
         else:
             moved = amplitudes.displacement(number, reading.place)

@@ -68,6 +68,8 @@ def _lines(scene: Scene) -> Iterator[str]:
                 raise UnservedError(
                     'output.relative: base = "force" has no foundation that moves; write base = "ground"'
                 )
+            if quantity == "stress":
+                raise UnservedError("output.stress: what is written out has no sections; take force")
             places = [position.text if quantity == "drift" else numbers.position(position) for position in positions]
             yield f"{quantity} = {_list_text(map(_place, places, positions))}"
 

@@ -142,6 +142,8 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
     fields = scene.dimensionless().model_dump(mode="json")
     if scene.scale is not None:
         fields["units"] = scene.scale.canonical
+        if scene.output.stress:
+            fields["sections"] = [str(rod.section) for rod in scene.scale.rods.all]
     canonical = json.dumps(fields, sort_keys=True, separators=(",", ":"))
     system = {"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)}
     if change := changed_speeds(scene):

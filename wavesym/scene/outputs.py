@@ -23,6 +23,7 @@ from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import Faults, SceneTable, WrittenDecimal, as_list, refusal, show
 from wavesym.mechanics.quantities import QUANTITIES
+from wavesym.scene.physical.scale import Scale
 from wavesym.systems import SystemTable
 from wavesym.systems.output_places import OutputPlaces
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
@@ -72,7 +73,6 @@ class Output(SceneTable):
     """The outputs, the horizon (in tau), and the largest error allowed relative to an output's largest value."""
 
     instead: ClassVar[Mapping[str, str]] = {
-        "stress": "write force, and divide by the area of the rod there",
         **dict.fromkeys(("moment", "torque"), "write force, which is a moment in shafts"),
         "rotation": "write displacement, which is an angle in shafts",
     }
@@ -86,6 +86,7 @@ class Output(SceneTable):
     force: Positions = ()
     drift: Drifts = ()
     relative: Positions = ()
+    stress: Positions = ()
 
     @field_validator("until")
     @classmethod
@@ -150,3 +151,27 @@ def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> t
                 found.append(Observable(quantity, place.x, place.side, name, place, position.title))
     faults.refuse()
     return tuple(found)
+
+
+def check_stresses(output: Output, found: Sequence[Observable], system: SystemTable, scale: Scale | None) -> None:
+    """Refuse stresses of rods whose section nobody knows; raises the error of `table.refusal`."""
+    stresses, faults = (each for each in found if each.quantity == "stress"), Faults()
+    for k, (position, observable) in enumerate(zip(output.stress, stresses, strict=True)):
+        place, text = observable.place, show(WrittenDecimal(position.text))
+        with faults.gather("output", "stress", k):
+            if scale is None:
+                raise refusal(f"{text} has no section without [units]; write force")
+            if scale.rods.all[place.rod - 1].section is None:
+                raise refusal(f"{text} is on a rod of unknown section; write {_SECTIONS[scale.kind]}, or take force")
+            here = [station for station in system.lines[place.line] if station.x == place.x and not position.side]
+            beside = [rod for station in here for rod in (station.left, station.right) if rod is not None]
+            if len({scale.rods.all[rod].section for rod in beside}) > 1:
+                raise refusal(f'{text} has two sides; write "{position.text}-" or "{position.text}+"')
+    faults.refuse()
+
+
+_SECTIONS = {
+    "longitudinal": "its A, E and rho",
+    "shear": "its A, G and rho, of a storey shear = { k, G, A }",
+    "torsional": "its diameter",
+}

@@ -30,7 +30,7 @@ from wavesym.scene.describe import describe
 from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.loads import loads
 from wavesym.scene.names import Name
-from wavesym.scene.outputs import NoOutput, Observable, Output, observables
+from wavesym.scene.outputs import NoOutput, Observable, Output, check_stresses, observables
 from wavesym.scene.paths import replace_at_path
 from wavesym.scene.physical.scale import Scale, UnitsTable
 from wavesym.scene.physical.scene import PhysicalScene, forgotten_units, physical
@@ -88,6 +88,7 @@ class Scene(SceneTable):
                 faults.found += [fault for fault in others.found if not _may_follow(fault, faults)]
                 faults.refuse()
             super().__init__(**(fields if found is None else found.fields))
+            check_stresses(self.output, self.outputs, self.system, found.scale if found else None)
         except (PydanticCustomError, ValidationError) as error:
             raise scene_error(error) from None
         self._physical = found

@@ -236,7 +236,8 @@ class Storey(SceneTable):
         stiffness = made.stiffness(self.height) if made else self.stiffness
         assert stiffness is not None  # one of the three is given
         depth = self.columns.depth_squared if self.columns else None
-        return ElasticRod(self.height, self._mass(given, made), stiffness, depth)
+        section = self.shear.A if self.shear else None  # columns bend
+        return ElasticRod(self.height, self._mass(given, made), stiffness, depth, section)
 
     def _mass(self, given: str, made: Columns | Shear | None) -> Fraction:
         area, rho = (made.area, made.rho) if made else (None, None)

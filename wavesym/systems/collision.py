@@ -165,7 +165,7 @@ class RodOfBody(SceneTable):
 
     def rod(self) -> ElasticRod:
         """As waves see it."""
-        return ElasticRod.from_section(self.length, self.E, self.A, self.rho, self.A)
+        return ElasticRod.from_area(self.length, self.E, self.A, self.rho)
 
 
 class Body(SceneTable):

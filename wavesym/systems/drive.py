@@ -169,7 +169,7 @@ class Round(SceneTable):
             raise refusal("stands beside J; write one of them", "bore")
         moment = self.J if self.diameter is None else round_section(self.diameter, self.bore)
         assert moment is not None  # one of the two is given
-        return ElasticRod.from_section(self.length, self.G, moment, self.rho, self.diameter and self.diameter**2)
+        return ElasticRod.from_polar_moment(self.length, self.G, moment, self.rho, self.diameter)
 
 
 class Disc(SceneTable):

@@ -22,25 +22,30 @@ class ElasticRod:
     """A rod in SI base units: its length, its mass, and the force on it per metre that its ends part.
 
     In torsion its moment of inertia, and the moment per radian. A wave takes sqrt(mass/stiffness) from end to end, and
-    its impedance is sqrt(mass stiffness).
+    its impedance is sqrt(mass stiffness). Its stress is the force over `section`, where that is known: the area; of a
+    round shaft J over the radius, for the stress at its surface.
     """
 
     length: Fraction
     mass: Fraction
     stiffness: Fraction
     width_squared: Fraction | None = None
+    section: Fraction | None = None
 
     @classmethod
-    def from_section(
-        cls,
-        length: Fraction,
-        modulus: Fraction,
-        section: Fraction,
-        density: Fraction,
-        width_squared: Fraction | None = None,
+    def from_area(
+        cls, length: Fraction, modulus: Fraction, area: Fraction, density: Fraction, *, sheared: bool = False
     ) -> ElasticRod:
-        """A rod of one section: E A, k G A or G J over its length, and the density times A or J times that."""
-        return cls(length, density * section * length, modulus * section / length, width_squared)
+        """A rod of one section: E A, or k G A of one that is sheared, over its length, and its mass."""
+        return cls(length, density * area * length, modulus * area / length, None if sheared else area, area)
+
+    @classmethod
+    def from_polar_moment(
+        cls, length: Fraction, modulus: Fraction, moment: Fraction, density: Fraction, diameter: Fraction | None
+    ) -> ElasticRod:
+        """A shaft of one section: G J over its length, and its inertia; `diameter` if it is round."""
+        square, section = (None, None) if diameter is None else (diameter**2, 2 * moment / diameter)
+        return cls(length, density * moment * length, modulus * moment / length, square, section)
 
     @property
     def slenderness(self) -> float | None:

@@ -125,7 +125,7 @@ class Sketch:
         rods = [(begin, end, bar) for begin, end, bar in self.rods[line] if begin <= x <= end]
         inside = any(begin < x < end for begin, end, _ in rods)
         spread = line and x == 0 and len([spot for spot, _ in self.spots[line] if spot == x]) == 1  # a gear's branch
-        if inside or output.quantity in ("strain", "force") or (spread and position.x is not None):
+        if inside or output.computed_quantity in ("strain", "force") or (spread and position.x is not None):
             begin, end, bar = rods[-1 if position.side > 0 else 0]
             return replace(output, rod=bar + 1, place=rational((x - begin) / (end - begin)), point=None)
         return replace(output, rod=0, place=fmpq(0), point=self.point(position))

@@ -328,7 +328,7 @@ class ModeSetsTables:
     def _output_tables(self) -> Tables:
         like, model = self.parameters.like, self.parameters.model
         ends = [output.slope[1] if output.slope else None for output in like.outputs]
-        forces = [probe.quantity == "force" for probe in model.probes]
+        forces = [probe.computed_quantity == "force" for probe in model.probes]
         scales = [
             probe.factor / (1 if end is None or force else self._network.bars[end.bar].length)
             for probe, end, force in zip(model.probes, ends, forces, strict=True)

@@ -147,7 +147,8 @@ def free_march(model: Model, free: FreeNetwork, loads: tuple[AppliedLoad, ...], 
     points = zip(free.network.points, model.network.points, strict=True)
     network = replace(free.network, points=tuple(replace(point, loads=own.loads) for point, own in points))
     plan = march_plan(replace(model, network=network, loads=loads), real, joint_rows, helps)
-    factors: list[Any] = [free.factors.force if probe.quantity == "force" else fmpq(1) for probe in model.probes]
+    forces = [probe.computed_quantity == "force" for probe in model.probes]
+    factors: list[Any] = [free.factors.force if force else fmpq(1) for force in forces]
     outputs = (
         replace(output, terms=tuple(replace(one, gain=one.gain * factor) for one in output.terms))
         for output, factor in zip(plan.outputs, factors, strict=True)

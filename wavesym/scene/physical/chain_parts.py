@@ -49,8 +49,7 @@ class RodKeys(SceneTable):
         written = [key for key in self.material_keys() if getattr(self, key) is not None]
         if self.impedance is None and (written or self.speed is None):
             values = self._si_values()
-            modulus, section, density = (values[key] for key in self.dimensions)
-            return ElasticRod.from_section(length, modulus, section, density, self._square(values))
+            return self._rod(length, *(values[key] for key in self.dimensions))
         if written:
             raise self._repetition(written[0], "impedance")
         impedance, speed = self._si_value("impedance", dashpot), self._si_value("speed", "velocity")
@@ -84,9 +83,8 @@ class RodKeys(SceneTable):
         """The keys that say what it is made of."""
         return tuple(key for key in cls.model_fields if key not in RodKeys.model_fields)
 
-    def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
-        """Of its width, where that is known and should be small beside the length."""
-        return None
+    def _rod(self, length: Fraction, modulus: Fraction, section: Fraction, density: Fraction) -> ElasticRod:
+        return ElasticRod.from_area(length, modulus, section, density)
 
 
 class LongitudinalRod(RodKeys):
@@ -98,9 +96,6 @@ class LongitudinalRod(RodKeys):
     E: Any = None
     rho: Any = None
 
-    def _square(self, found: Mapping[str, Fraction]) -> Fraction:
-        return found["A"]
-
 
 class ShearRod(RodKeys):
     """It is sheared: k G A and rho A."""
@@ -111,6 +106,9 @@ class ShearRod(RodKeys):
     G: Any = None
     rho: Any = None
     k: Any = None
+
+    def _rod(self, length: Fraction, modulus: Fraction, section: Fraction, density: Fraction) -> ElasticRod:
+        return ElasticRod.from_area(length, modulus, section, density, sheared=True)
 
     def _si_values(self) -> dict[str, Fraction]:
         values = super()._si_values()
@@ -146,8 +144,9 @@ class TorsionalRod(RodKeys):
             raise refusal("stands beside J; write one of them", "bore")
         return super()._si_value(key, dimension)
 
-    def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
-        return None if self.diameter is None else self._si_value("diameter", "length") ** 2
+    def _rod(self, length: Fraction, modulus: Fraction, section: Fraction, density: Fraction) -> ElasticRod:
+        diameter = None if self.diameter is None else self._si_value("diameter", "length")
+        return ElasticRod.from_polar_moment(length, modulus, section, density, diameter)
 
 
 def _keys(part: type[ChainPart]) -> type[SceneTable]:

@@ -27,15 +27,14 @@ _DEFAULTS = {
     "force": "N",
     "moment": "N*m",
     "angle": "rad",
+    "stress": "Pa",
 }
 
 
 class UnitsTable(SceneTable):
     """`[units]`: how waves move the rods of a chain, and the units of results. In torsion velocities are angular."""
 
-    instead: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("stress", "pressure"), "write force: stress is no output; it is force, divided by the area of the rod there"
-    )
+    instead: ClassVar[Mapping[str, str]] = {"pressure": "write stress"}
 
     kind: object = None
     time: object = None
@@ -45,6 +44,7 @@ class UnitsTable(SceneTable):
     force: object = None
     moment: object = None
     angle: object = None
+    stress: object = None
 
     def chain_kind(self) -> Kind:
         """How waves move the rods of a chain that is written out."""
@@ -114,11 +114,14 @@ class Scale:
     def canonical(self) -> dict[str, Any]:
         """What of it makes two scenes different, exact, for JSON."""
         numbers = {"seconds": self.seconds, "displacement": self.displacement, "force": self.force}
+        results = {key: [text, str(self.results.sizes[key])] for key, text in self.results.texts.items()}
+        if results["stress"][0] == _DEFAULTS["stress"]:  # so scenes keep the hash that they have had
+            del results["stress"]
         return {
             "kind": self.kind,
             **{name: str(number) for name, number in numbers.items()},
             "lengths": list(map(str, self.lengths)),
-            "results": {key: [text, str(self.results.sizes[key])] for key, text in self.results.texts.items()},
+            "results": results,
         }
 
     def factor(self, quantity: str, rod: int) -> Fraction:
@@ -135,6 +138,10 @@ class Scale:
                 return self.displacement / self.seconds**2 / sizes["acceleration"]
             case "force":
                 return self.force / sizes[self._force_dimension]
+            case "stress":
+                section = self.rods.all[rod - 1].section
+                assert section is not None  # as `scene.stresses` has looked
+                return self.force / section / sizes["stress"]
         return self.displacement / sizes[moved]
 
     def unit(self, quantity: str) -> str:
@@ -143,7 +150,7 @@ class Scale:
         match quantity:
             case "strain":
                 return f"{texts['angle']}/{texts['length']}" if self.kind == "torsional" else ""
-            case "velocity" | "acceleration":
+            case "velocity" | "acceleration" | "stress":
                 return texts[quantity]
             case "force":
                 return texts[self._force_dimension]
