@@ -25,6 +25,8 @@ from wavesym.mechanics.loads import AppliedLoad
 from wavesym.numbers.doubles import rational
 
 _LONG = 440  # characters of a load that is written out
+MOST_TIMES = 50_000
+"""At so many a load may change: what takes more is refused by every program, half a minute later."""
 
 
 class Load(SceneTable):
@@ -90,6 +92,14 @@ class TimedLoad(Load):
     lists: ClassVar[tuple[str, str]] = ("steps", "ramps")
 
     times: Numbers = Field(description="a list of times")
+
+    @field_validator("times", mode="before")
+    @classmethod
+    def _refuse_many(cls, times: object) -> object:
+        """Before any of them is looked at."""
+        if isinstance(times, list | tuple) and len(times) > MOST_TIMES:
+            raise refusal(f"{len(times)} times, the limit is {MOST_TIMES}; write `samples` at a spacing, or a `record`")
+        return times
 
     @field_validator("times")
     @classmethod

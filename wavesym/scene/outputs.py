@@ -30,6 +30,8 @@ from wavesym.systems.place import MisplacedError, Place, Position, position_of
 
 # Beyond it even the integer part of an argument costs a double most of its digits.
 LONGEST_HORIZON = 10**9
+MOST_OUTPUTS = 5_000
+"""Histories of as many, of 1001 values each, take about 40 s."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,16 @@ class Output(SceneTable):
     drift: Drifts = ()
     relative: Positions = ()
     stress: Positions = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_many(cls, table: object) -> object:
+        """Before any of them is looked at."""
+        lists = (table.get(quantity) for quantity in QUANTITIES) if isinstance(table, Mapping) else ()
+        count = sum(len(positions) for positions in lists if isinstance(positions, list | tuple))
+        if count > MOST_OUTPUTS:
+            raise refusal(f"{count} positions, the limit is {MOST_OUTPUTS}; write fewer, or split the scene")
+        return table
 
     @field_validator("until")
     @classmethod

@@ -193,9 +193,11 @@ static void run(const name_model *m, int window, int section, const samples *s, 
     }
 }
 
-static int on_section(int window, int section, const samples *s, size_t k)
+/* Whether sample k is where one before it is. */
+static int still_there(int window, int at, const samples *s, size_t k)
 {
-    return belongs(instant(s->tau0, s->dtau, s->one, (real)k), window, section);
+    const real tau = instant(s->tau0, s->dtau, s->one, (real)k), t = tau - cycle_begin(window);
+    return s->dtau < 0 ? tau >= 0 && t >= from[at] : tau <= NAME_TAU_MAX && t < from[at + 1];
 }
 
 /* The first sample after k that is not where sample k is, or count. */
@@ -206,10 +208,10 @@ static size_t run_end(int window, int section, const samples *s, size_t k)
     const real reach = (edge - s->tau0) * s->per_tau; /* about where the run ends */
     size_t end = reach == reach && reach < (real)s->count ? (reach > (real)k ? (size_t)reach : k) + 1 : s->count;
     end = end > s->count ? s->count : end;
-    while (end > k + 1 && !on_section(window, section, s, end - 1)) {
+    while (end > k + 1 && !still_there(window, at, s, end - 1)) {
         --end;
     }
-    while (end < s->count && on_section(window, section, s, end)) {
+    while (end < s->count && still_there(window, at, s, end)) {
         ++end;
     }
     return end;
