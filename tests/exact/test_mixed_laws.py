@@ -178,6 +178,16 @@ def test_what_friction_has_stopped_bears_on_a_rod_with_just_0(name: str) -> None
     assert wrong(table) == []
 
 
+@pytest.mark.parametrize("velocity", [-6, pytest.param(6, marks=pytest.mark.slow)])
+def test_what_leaves_rest_presses_on_a_rod_that_rests_or_parts_from_it(velocity: int) -> None:
+    """The contact bears exactly 0 until the mass slips, and then less than the square of any time that is not known."""
+    held = {"mass": 5, "velocity": 0, "friction": "5/7", "name": "m"}
+    parts = ["absorbing", {"rod": 1}, "contact", held, {"spring": "3/5"}, {"mass": 1, "velocity": velocity}]
+    output = {"until": 2, "displacement": ["m"], "velocity": ["m"]}
+    table = {"name": "leaves", "system": {"type": "chain", "parts": parts}, "output": output}
+    assert wrong(table, first="0") == []
+
+
 @pytest.mark.slow
 def test_three_masses_that_rub_between_two_contacts_come_to_rest() -> None:
     """As two of them stop, no number of bits told what the contacts bear."""

@@ -21,12 +21,14 @@ from wavesym.exact.contacts.guards import (
     begins_bearable,
     begins_to_grow,
     is_not_negative,
+    is_positive,
     lasts_until,
+    margins,
     spread,
     value_range,
 )
 from wavesym.exact.contacts.joint_stretch import JointStretch, sliding_sign
-from wavesym.exact.joints.enclosure import UNIT, Enclosure, add_terms
+from wavesym.exact.joints.enclosure import Enclosure, add_terms
 from wavesym.numbers.doubles import middle
 
 
@@ -272,7 +274,8 @@ class Friction(Corner):
             length = fmpq((rest / resolution).ceil() * resolution)
             if length < (moved.length if end is None else end.length):
                 return BranchEnd(length, None)
-        if end is None or not self.inert or (end.spread is None and self.link in moved.exact_contacts):
+        rested = moved.rests.get(self.link) == 0  # it sends what is known exactly, as long as it is certainly at rest
+        if end is None or not self.inert or (end.spread is None and self.link in moved.exact_contacts) or rested:
             return end
         late = 4 * ((end.spread or fmpq(0)) + resolution)
         length = fmpq(((end.length + late) / resolution).ceil() * resolution)
@@ -292,7 +295,7 @@ class Friction(Corner):
         """Whether they are on all of a short stretch."""
         if self.link in moved.closed_links:
             return self.inert or all(is_not_negative(margin, length) for margin in self._margins(moved))
-        return bool(value_range(self._forward(moved), length) > 0)
+        return is_positive(self._forward(moved), length)
 
     def advance(self, moved: JointStretch, length: fmpq) -> None:
         """Know how fast it slides at the end of a stretch."""
@@ -302,6 +305,8 @@ class Friction(Corner):
         self.rate = moved.rates[self.link].evaluate(length)
         if self.link in moved.vague:
             self.sign, self.closed = 0, False
+        elif (sign := sliding_sign(self.link, moved.sliding)) * self.rate > 0:  # it has certainly left rest
+            self.sign, self.closed = sign, False
 
     @property
     def branch(self) -> Branch:
@@ -315,8 +320,7 @@ class Friction(Corner):
 
     def _margins(self, moved: JointStretch) -> list[Enclosure]:
         """What is left of the limit either way."""
-        force = moved.pushes[self.link]
-        return [add_terms([(self.limit, UNIT), (fmpq(way), force)]) for way in (1, -1)]
+        return margins(self.limit, moved.pushes[self.link])
 
     def _forward(self, moved: JointStretch) -> Enclosure:
         """How fast it goes the way it slides."""

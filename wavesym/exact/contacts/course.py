@@ -14,11 +14,15 @@ from wavesym.exact.contacts.touching_waves import Stage
 
 @dataclass
 class Doubt:
-    """Since when it is not certain what a contact of a joint does, until when that was left open; how long next."""
+    """Since when it is not certain what a contact of a joint does, until when that was left open; how long next.
+
+    `first` is how long the first such stretch was.
+    """
 
     low: fmpq
     high: fmpq
     next: fmpq
+    first: fmpq
 
 
 @dataclass

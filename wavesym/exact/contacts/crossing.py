@@ -26,6 +26,7 @@ class _Course:
 
     def __init__(self, p: arb_poly, error: arb, high: fmpq) -> None:
         self.p, self.error, self._high = p, error, high
+        self._near = [Enclosure(p, error)]
         with ctx.workprec(_COARSE):
             self._rough = shorten(Enclosure(p * arb(1), error), high)
 
@@ -37,8 +38,18 @@ class _Course:
             with ctx.workprec(_COARSE):
                 positive, way = _sign_on(self._rough.polynomial, self._rough.error, a + half, half)
         if b - a <= self._high * _CLOSE or (b - a <= self._high * _NEAR and not positive and not way):
-            positive, way = _sign_on(self.p, self.error, a + half, half)
+            near = self._shorten(b)
+            positive, way = _sign_on(near.polynomial, near.error, a + half, half)
         return positive, way
+
+    def _shorten(self, end: fmpq) -> Enclosure:
+        """The same without the powers that count for nothing up to a place, or somewhat beyond."""
+        level, reach = 0, self._high * _CLOSE
+        while end <= reach:
+            level, reach = level + 1, reach * _CLOSE
+            if level == len(self._near):
+                self._near.append(shorten(self._near[-1], reach / _CLOSE))
+        return self._near[level]
 
 
 def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq | None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from flint import arb, fmpq
 
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.joints.enclosure import Enclosure
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, add_terms
 from wavesym.numbers.doubles import middle
 
 
@@ -23,6 +23,11 @@ class BranchEnd(NamedTuple):
     length: fmpq
     spread: fmpq | None
     late: fmpq = fmpq(0)
+
+
+def margins(limit: fmpq, force: Enclosure) -> list[Enclosure]:
+    """What is left of a limit either way."""
+    return [add_terms([(limit, UNIT), (fmpq(way), force)]) for way in (1, -1)]
 
 
 def begins_bearable(force: Enclosure) -> bool:
@@ -102,3 +107,8 @@ def is_not_negative(known: Enclosure, length: fmpq) -> bool:
         value_range(each, length) > 0 if each.exact is None else first_fall(each.exact, fmpq(0), length) is None
         for each in known.choices or (known,)
     )
+
+
+def is_positive(known: Enclosure, length: fmpq) -> bool:
+    """Whether a function is certainly positive on a short stretch, on which it may go one way."""
+    return positive_until(known.polynomial, known.error, fmpq(0), length, length) is None

@@ -34,6 +34,8 @@ _WIDTH = fmpq(1, 2**230)
 _INSTANT_BITS = 320
 # how much longer each next stretch is on which it is left open what a contact does, in bits
 _LONGER = 3
+# and after those that are so many times the first: what leaves rest is as fast as their square
+_LONGEST, _MANY = 12, 1 << 24
 # how much of the working precision is beyond the first of these stretches
 _SPARE = 128
 
@@ -316,14 +318,15 @@ class Search:
         length = limit - start
         doubt = course.doubt
         if doubt is None or start - doubt.high > 16 * (doubt.high - doubt.low):
-            doubt = course.doubt = Doubt(start, start, max(self._least, 4 * spread))
+            first = max(self._least, 4 * spread)
+            doubt = course.doubt = Doubt(start, start, first, first)
         if length > self.width:
             if doubt.next > self.width:
                 unclear = (contact for contact in course.contacts if contact.is_unclear)
                 worst = next(unclear, course.contacts[0])
                 raise UndecidedError(worst.link, worst.closed, start)
             length = min(length, doubt.next)
-            doubt.next *= 1 << _LONGER
+            doubt.next *= 1 << (_LONGER if doubt.next < _MANY * doubt.first else _LONGEST)
         else:  # what is not known came with a front: it takes about as long again
             doubt.next = max(doubt.next, 4 * length)
         moved = self._move_vague(course, start, length)

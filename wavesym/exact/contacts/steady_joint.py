@@ -17,12 +17,14 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, connected_sets
 from wavesym.exact.contacts.cluster_states import ClusterStates
+from wavesym.exact.contacts.crossing import shortfall
+from wavesym.exact.contacts.guards import lasts_until, margins
 from wavesym.exact.contacts.holding_forces import HoldingForces
 from wavesym.exact.contacts.joint_springs import JointSprings
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
-from wavesym.exact.joints.joint_law import JointLaw, forces_on, joint_ends, outgoing_terms, scatter
+from wavesym.exact.joints.joint_law import JointLaw, bound_sum, forces_on, joint_ends, outgoing_terms, scatter
 from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.exact.joints.network_waves import LoadPolynomial
 from wavesym.mechanics.loads import AppliedLoad
@@ -33,6 +35,9 @@ _ONE = fmpq(1)
 _ROUNDS = 4  # in which a bound of springs' forces must hold
 _SHORTER = 4  # where it does not, as a spring answers to its own force
 _LATER = 2  # times: when friction has stopped a mass is not known closely
+_SPARE = (
+    64  # bits of the working precision: the others tell how closely it is known since when friction is beyond its limit
+)
 _MISSED = 16  # bits: what has died away is that much more than rounding errors, at most
 
 
@@ -63,6 +68,8 @@ class SteadyJoint(ABC):
         first = {k: PointState.from_exact(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
         self._states = ClusterStates(self.law, self.springs, sets, first)
         self.forces = HoldingForces(self.law, self.touches)
+        grounded = {self._mass_on_ground(n) for n, touch in self.touches.items() if touch.friction != 0} - {-1}
+        self._states.resting = {k for k in grounded if network.points[joint.points[k]].velocity == 0}
 
     def take(self, moved: JointStretch) -> None:
         """Go on to the end of a stretch."""
@@ -123,10 +130,10 @@ class SteadyJoint(ABC):
         branches for certain, as long as they are on them.
         """
         if trial or not self.springs:
-            return self._move(arriving, start, length, closed, vague, sliding, relaxing, {})
+            return self._move(arriving, start, length, closed, vague, sliding, relaxing, {}, trial)
         unknown: dict[int, arb] = {}
         for _ in range(_ROUNDS):
-            moved = self._move(arriving, start, length, closed, vague, sliding, relaxing, unknown)
+            moved = self._move(arriving, start, length, closed, vague, sliding, relaxing, unknown, trial)
             off = self.springs.wrong_forces(moved)
             if all(force <= unknown.get(n, arb(0)) for n, force in off.items()):
                 return moved
@@ -143,6 +150,7 @@ class SteadyJoint(ABC):
         sliding: Sliding,
         relaxing: bool | None,
         unknown: Mapping[int, arb],
+        trial: bool,
     ) -> JointStretch:
         """The same, where forces of springs with a corner are `unknown` by so much."""
         acting = [load.polynomial_from(start) for load in self._loads]
@@ -154,7 +162,7 @@ class SteadyJoint(ABC):
             if any(self.touches[n].left in cluster.points for n in vague):
                 self._drift(cluster, result, arriving, forces, acting)
             else:
-                self._move_cluster(cluster, result, forces, acting, relaxing)
+                self._move_cluster(cluster, result, forces, acting, relaxing, trial)
         self.springs.strain_others(result)
         for n, energy in self.springs.flows(result, unknown):
             for k in next(cluster.points for cluster in clusters if n in cluster.springs):
@@ -226,6 +234,7 @@ class SteadyJoint(ABC):
         forces: Sequence[Terms],
         acting: Sequence[fmpq_poly],
         relaxing: bool | None,
+        trial: bool,
     ) -> None:
         law, points = cluster.law, cluster.points
         pushed = group_forces(cluster, forces)
@@ -261,24 +270,49 @@ class SteadyJoint(ABC):
                 cut = 2 * rate * result.length > MOST_SWING
                 result.fleeting = cut and any(each.slow < rate for each in cluster.relaxations)
             self._energy = self._energy.max(motion.energy(motion.velocity, motion.displacement))
-        for k, (group, ratio) in zip(points, law.moves, strict=True):
-            result.velocities[k] = scale_terms(q[group], ratio)
-        certain = {k for n in cluster.pushes for k in self.touches[n].sides if self.touches[n].breakaway != 0}
-        for k, slow in self._states.unseen_rates(cluster, result.state).items():
-            if k not in certain and slow != 0:
-                result.velocities[k] = [*result.velocities[k], (_ONE, Enclosure(arb_poly(), slow))]
+        moving_points = {k: scale_terms(q[group], ratio) for k, (group, ratio) in zip(points, law.moves, strict=True)}
         begun = self._states.exact_state(cluster)
-        result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places, begun)
+        before = {k: result.state[k] for k in points if k in result.state}
+        assumed: dict[int, arb] = {}
+        for _ in range(_ROUNDS):
+            result.velocities |= self._less_known(cluster, result, moving_points, sum(assumed.values(), arb(0)))
+            result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places, begun)
+            slipped = {} if trial else self._slips(cluster, result)
+            if all(root <= assumed.get(n, arb(0)) for n, root in slipped.items()):
+                break
+            assumed = {n: (2 * root).upper() for n, root in slipped.items()}
+            lost = (sum(assumed.values(), arb(0)) ** 2).upper()
+            result.state |= {k: before.get(k, self._states.of_point[k]).lose(lost) for k in points}
+        else:
+            raise ArithmeticError("what friction bears has no bound")
         self.springs.strain(cluster, result, self._states.of_point, places if motion is None else motion)
-        self._lose_excess(cluster, result)
         self._find_rests(cluster, result)
 
+    def _less_known(
+        self, cluster: Cluster, result: JointStretch, velocities: Mapping[int, Terms], root: arb
+    ) -> dict[int, Terms]:
+        """Velocities, with what is not known of masses that stick; `root`^2 is energy that others may have got."""
+        certain = {k for n in cluster.pushes for k in self.touches[n].sides if self.touches[n].breakaway != 0}
+        rates = {k: slow for k, slow in self._states.unseen_rates(cluster, result.state).items() if k not in certain}
+        if root != 0:
+            law = cluster.law
+            known = {a: (arb(2) / arb(law.mass[a])).sqrt() * root for a in law.heavy}
+            known |= {a: arb(0) for a in range(len(law.mass)) if law.motions[a] is not None}
+            known |= law.light_velocities([arb(0)] * len(law.mass), known, bound_sum)
+            for k, (group, ratio) in zip(cluster.points, law.moves, strict=True):
+                rates[k] = (rates.get(k, arb(0)) + abs(arb(ratio)) * known[group]).upper()
+        return {
+            k: [*terms, (_ONE, Enclosure(arb_poly(), slow))] if (slow := rates.get(k, arb(0))) != 0 else terms
+            for k, terms in velocities.items()
+        }
+
     def _mass_on_ground(self, n: int) -> int:
-        """The mass that rubs on the ground; -1 of other friction."""
+        """The mass that rubs on the ground, and on nothing else; -1 of other friction, or if it bears more at rest."""
         touch = self.touches[n]
         for k, other in (touch.sides, touch.sides[::-1]):
             if self.law.motions[other] == "fixed" and self.law.motions[k] is None and self.law.mass[k] != 0:
-                return k
+                rubs = [m for m, each in self.touches.items() if each.friction != 0 and k in each.sides]
+                return k if rubs == [n] and touch.breakaway == 0 else -1
         return -1
 
     def _find_rests(self, cluster: Cluster, result: JointStretch) -> None:
@@ -289,10 +323,7 @@ class SteadyJoint(ABC):
         rates = self._states.unseen_rates(cluster, result.state)
         for n in cluster.pushes:
             touch, k = self.touches[n], self._mass_on_ground(n)
-            rubs = [m for m, each in self.touches.items() if each.friction != 0 and k in each.sides]
-            if touch.friction == 0 or touch.breakaway != 0 or rubs != [n]:
-                continue
-            if [j for j in self._states.held_masses(cluster) if cluster.group(j) == cluster.group(k)] != [k]:
+            if k < 0 or [j for j in self._states.held_masses(cluster) if cluster.group(j) == cluster.group(k)] != [k]:
                 continue
             rate = rates.get(k, arb(0)) * arb(1 if k == touch.right else touch.ratio)
             since = self._stops(result, n, rate)
@@ -312,22 +343,35 @@ class SteadyJoint(ABC):
         return since if rate < stopping * arb(since) else None
 
     def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
-        """What sticks and is pulled beyond its limits, at an end of the stretch, may slide: energy not known of it.
+        """What sticks and is pulled beyond its limits may slide meanwhile: energy that is not known."""
+        for root in self._slips(cluster, result).values():
+            for j in cluster.points:
+                result.state[j] = result.state.get(j, self._states.of_point[j]).lose(root**2)
 
-        Where contacts are vague, a force that holds may be anything in its range at any time.
+    def _slips(self, cluster: Cluster, result: JointStretch) -> dict[int, arb]:
+        """The root of the energy that is not known of what sticks and is pulled beyond its limits, where it may be.
+
+        By dE/dt <= e d, with a force that is off by d, sqrt(E) grows by at most the integral of d sqrt(w/2), with w the
+        `lightness` of what it holds. Where contacts are vague, that may have any value in its range at any time.
         """
-        taus = [arb(0).union(arb(result.length))] if result.vague else [fmpq(0), result.length]
+        found = {}
         for n in cluster.pushes:
             touch = self.touches[n]
-            for _ in {touch.left, touch.right} & set(cluster.stuck_points):
-                excess = max(self.excess(n, result.pushes[n], tau) for tau in taus)
-                if not excess > 0:
-                    continue
+            if touch.friction == 0 or touch.breakaway != 0 or not set(touch.sides).intersection(cluster.stuck_points):
+                continue
+            if result.vague:
+                force = result.pushes[n].evaluate_on(arb(0).union(arb(result.length)))
+                impulse = (abs(force) - arb(touch.friction)).upper() * arb(result.length)
+            else:
+                impulse = sum(
+                    (_shortfall_integral(each, result.length) for each in margins(touch.friction, result.pushes[n])),
+                    arb(0),
+                )
+            if impulse > 0:
                 result.excesses.add(n)
-                lightness = sum(1 / self.law.mass[j] for j in (touch.left, touch.right) if self.law.mass[j] != 0)
-                more = (excess * arb(result.length)) ** 2 * arb(lightness) / 2
-                for j in cluster.points:
-                    result.state[j] = result.state.get(j, self._states.of_point[j]).lose(more)
+                lightness = sum((1 / self.law.mass[j] for j in touch.sides if self.law.mass[j] != 0), fmpq(0))
+                found[n] = (impulse * (arb(lightness) / 2).sqrt()).upper()
+        return found
 
     def excess(self, n: int, force: Enclosure, tau: fmpq | arb) -> arb:
         """By how much what sticks bears more than its limit at an instant, or anywhere in a span, at most."""
@@ -405,6 +449,12 @@ class SteadyJoint(ABC):
             length,
         )
         return [replace(each, onset=onset) for each, onset in zip(velocities, begin, strict=True)]
+
+
+def _shortfall_integral(margin: Enclosure, length: fmpq) -> arb:
+    """How much a function may be below 0 on a stretch, integrated, at most."""
+    end = lasts_until(margin, fmpq(0), length, length / fmpq(2) ** (ctx.prec - _SPARE))
+    return arb(0) if end is None else shortfall(margin, length) * arb(length - end.length)
 
 
 def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:

@@ -80,6 +80,9 @@ class TouchingJoint(SteadyJoint):
         else:
             raise ArithmeticError("the force of a contact has no bound")
         result.velocities |= found.velocities
+        for k in points:  # what has mass moves like that under every choice, as time goes on
+            if (leader := cluster.leader(cluster.group(k))) in known:
+                result.velocities[k] = scale_terms(known[leader], cluster.ratio(k))
         result.sends |= found.sends
         self._bound_sends(cluster, result, closed, vague, arriving, forces)
         result.rates |= found.rates

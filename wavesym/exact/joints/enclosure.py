@@ -125,8 +125,10 @@ class Enclosure:
         return value + arb(0, self.error) if self.error != 0 else value
 
     def evaluate_on(self, span: arb) -> arb:
-        """An enclosure of all values on a part of the stretch."""
-        return self.polynomial(span) + arb(0, self.error)
+        """An enclosure of all values on a part of the stretch: those at its ends, where it goes one way."""
+        p, ends = self.polynomial, (span.lower(), span.upper())
+        one_way = p.length() > 2 and not p.derivative()(span).contains(0)
+        return (p(ends[0]).union(p(ends[1])) if one_way else p(span)) + arb(0, self.error)
 
 
 STILL = Enclosure(arb_poly(), arb(0), fmpq_poly())
