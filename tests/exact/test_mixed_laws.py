@@ -178,6 +178,22 @@ def test_what_friction_has_stopped_bears_on_a_rod_with_just_0(name: str) -> None
     assert wrong(table) == []
 
 
+def test_what_a_front_moves_on_a_rod_is_known_at_that_instant() -> None:
+    """Friction had stopped the mass while it pressed on the rod: it did not turn round, nor part from it."""
+    parts = [{"joint": True, "name": "s"}, {"rod": 2}, "contact", {"mass": 1, "name": "n", "friction": "1/2"}]
+    parts[-1] |= {"velocity": -1}
+    output = {"until": 6, "velocity": ["s", "n"], "displacement": ["s", "n"]}
+    loads = [{"at": "s", "times": [0], "steps": [1]}]
+    table = {"name": "front", "system": {"type": "chain", "parts": parts}, "load": loads, "output": output}
+    model = lower(Scene(**table))
+    sticks, slips, opens, *_ = events(model)
+    assert (sticks.kind, slips.kind, opens.kind) == ("sticks", "slips", "opens")
+    assert (slips.tau, opens.tau) == (2, 4)
+    with ctx.workprec(BITS):
+        assert abs(sticks.tau - arb(3).log()) < CLOSE
+    assert list(wrong_values(model, PiecewiseChain(table, 7), [2.0, 4.0, 6.0])) == []
+
+
 @pytest.mark.parametrize("velocity", [-6, pytest.param(6, marks=pytest.mark.slow)])
 def test_what_leaves_rest_presses_on_a_rod_that_rests_or_parts_from_it(velocity: int) -> None:
     """The contact bears exactly 0 until the mass slips, and then less than the square of any time that is not known."""

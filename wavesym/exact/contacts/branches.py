@@ -210,16 +210,17 @@ class Friction(Corner):
     link: int
     limit: fmpq
     inert: bool
+    touching: bool
     rate: arb
     sign: int
     closed: bool
     _decision: Branch
 
     @classmethod
-    def begin(cls, link: int, limit: fmpq, inert: bool, rate: arb) -> Friction:
+    def begin(cls, link: int, limit: fmpq, inert: bool, touching: bool, rate: arb) -> Friction:
         """At the start: what is at rest sticks."""
         sign = int(rate > 0) - int(rate < 0)
-        return cls(link, limit, inert, rate, sign, sign == 0, Branch(sign == 0, sign))
+        return cls(link, limit, inert, touching, rate, sign, sign == 0, Branch(sign == 0, sign))
 
     @property
     def may_close(self) -> bool:
@@ -266,7 +267,11 @@ class Friction(Corner):
             if not self.inert or forward.begins is not None:
                 return lasts_until(forward, low, moved.length, resolution)
             end = lasts_until(_without_start(forward), low, moved.length, resolution)
-            return end and BranchEnd(end.length, spread(forward, end.length))
+            if end is None:
+                return None
+            off = spread(forward, end.length)
+            sure = end.length - 2 * off if self.touching else end.length
+            return BranchEnd(sure if sure > low and forward.evaluate(sure) > 0 else end.length, off)
         guards = self._margins(moved)
         ends = [end for guard in guards if (end := lasts_until(guard, low, moved.length, resolution)) is not None]
         end = min(ends, key=lambda end: end.length, default=None)

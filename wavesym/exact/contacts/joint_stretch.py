@@ -50,7 +50,8 @@ class JointStretch:
     `exact_contacts` the contacts whose two sides begin in a state that is known exactly. Its series, where it is one,
     bears exp(`swing` length); it is `fleeting` where what decays fast keeps it short, until that has died away. `rests`
     is when friction of masses on the ground certainly has stopped them, if it holds them from then on; what it bears
-    may be beyond its limit in `excesses`.
+    may be beyond its limit in `excesses`. `stops` are masses that it stops on the ground, and which way they may be
+    moving yet, unless it may be beyond.
     """
 
     length: fmpq
@@ -67,6 +68,7 @@ class JointStretch:
     spring_motions: dict[int, SpringMotion] = field(default_factory=dict)
     springs: dict[int, SpringState] = field(default_factory=dict)
     rests: dict[int, fmpq] = field(default_factory=dict)
+    stops: dict[int, tuple[int, int]] = field(default_factory=dict)
     excesses: set[int] = field(default_factory=set)
     swing: fmpq = field(default_factory=fmpq)
     fleeting: bool = False

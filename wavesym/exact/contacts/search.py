@@ -135,7 +135,8 @@ class Search:
         rate = rate if on_motion is None else on_motion
         if link.breakaway != 0:
             return Breakaway.begin(n, (link.friction, link.breakaway), joint.forces.lightness(n), rate)
-        return Friction.begin(n, link.friction, joint.is_inert(n), rate)
+        touching = any(each.friction == 0 for each in joint.touches.values())
+        return Friction.begin(n, link.friction, joint.is_inert(n), touching, rate)
 
     def steps(self) -> Iterator[None]:
         """Joints are moved in order of time."""
@@ -369,7 +370,8 @@ class Search:
             if not wrong:
                 return moved
             held |= wrong & inert
-            vague |= wrong - inert
+            if not wrong & inert:  # what one does while the other slides on, wrongly, says nothing of it
+                vague |= wrong
 
 
 def lasting(changes: Iterable[Change], width: fmpq) -> list[Change]:

@@ -22,7 +22,7 @@ from wavesym.exact.contacts.guards import lasts_until, margins
 from wavesym.exact.contacts.holding_forces import HoldingForces
 from wavesym.exact.contacts.joint_springs import JointSprings
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
-from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms
+from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms, with_bounds
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
 from wavesym.exact.joints.joint_law import JointLaw, bound_sum, forces_on, joint_ends, outgoing_terms, scatter
 from wavesym.exact.joints.joint_motion import JointMotion
@@ -69,6 +69,7 @@ class SteadyJoint(ABC):
         self._states = ClusterStates(self.law, self.springs, sets, first)
         self.forces = HoldingForces(self.law, self.touches)
         grounded = {self._mass_on_ground(n) for n, touch in self.touches.items() if touch.friction != 0} - {-1}
+        self._stopping: dict[int, int] = {}  # masses that friction stops, and which way they may be moving yet
         self._states.resting = {k for k in grounded if network.points[joint.points[k]].velocity == 0}
 
     def take(self, moved: JointStretch) -> None:
@@ -76,6 +77,7 @@ class SteadyJoint(ABC):
         self._states.take(moved)
         self.springs.take(moved)
         self._states.resting = {self._mass_on_ground(n) for n in moved.rests.keys() - moved.excesses}
+        self._stopping = {k: sign for n, (k, sign) in moved.stops.items() if n not in moved.excesses}
 
     def rate_on_motion(self, n: int, start: fmpq) -> arb | None:
         """How fast a mass slides on what moves as is given, from an instant on; None of other friction."""
@@ -274,6 +276,7 @@ class SteadyJoint(ABC):
         begun = self._states.exact_state(cluster)
         before = {k: result.state[k] for k in points if k in result.state}
         assumed: dict[int, arb] = {}
+        self._find_stops(cluster, result)
         for _ in range(_ROUNDS):
             result.velocities |= self._less_known(cluster, result, moving_points, sum(assumed.values(), arb(0)))
             result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places, begun)
@@ -301,10 +304,39 @@ class SteadyJoint(ABC):
             known |= law.light_velocities([arb(0)] * len(law.mass), known, bound_sum)
             for k, (group, ratio) in zip(cluster.points, law.moves, strict=True):
                 rates[k] = (rates.get(k, arb(0)) + abs(arb(ratio)) * known[group]).upper()
+        one_way = {k: sign for n, (k, sign) in result.stops.items() if n not in result.excesses}
         return {
-            k: [*terms, (_ONE, Enclosure(arb_poly(), slow))] if (slow := rates.get(k, arb(0))) != 0 else terms
+            k: [*terms, (_ONE, _slow_enclosure(slow, self._way(cluster, k, one_way)))] if slow != 0 else terms
             for k, terms in velocities.items()
+            for slow in [rates.get(k, arb(0))]
         }
+
+    @staticmethod
+    def _way(cluster: Cluster, k: int, one_way: Mapping[int, int]) -> int:
+        """Which way a point may be moving that moves as a mass that friction stops; 0 where that is not known."""
+        for j, sign in one_way.items():
+            if cluster.group(j) == cluster.group(k):
+                return sign if cluster.ratio(k) / cluster.ratio(j) > 0 else -sign
+        return 0
+
+    def _find_stops(self, cluster: Cluster, result: JointStretch) -> None:
+        """Which way the masses that friction holds on the ground may be moving yet.
+
+        One that certainly moved that way does not turn round as long as friction may bear what would hold it: N is what
+        drives it beyond friction, so that r' = 0 or -sign(r) (R - N sign(r)) w, and r has the sign it had or is 0.
+        """
+        for n in cluster.pushes:
+            if (k := self._mass_on_ground(n)) < 0 or not self._is_alone(cluster, k):
+                continue
+            velocity = self._states.of_point[k].velocity
+            velocity += arb(0, (2 * self._states.of_point[k].error_energy / arb(self.law.mass[k])).sqrt().upper())
+            sign = self._stopping.get(k, int(velocity > 0) - int(velocity < 0))
+            if sign:
+                result.stops[n] = (k, sign)
+
+    def _is_alone(self, cluster: Cluster, k: int) -> bool:
+        """Whether no other mass moves as one does."""
+        return [j for j in self._states.held_masses(cluster) if cluster.group(j) == cluster.group(k)] == [k]
 
     def _mass_on_ground(self, n: int) -> int:
         """The mass that rubs on the ground, and on nothing else; -1 of other friction, or if it bears more at rest."""
@@ -323,7 +355,7 @@ class SteadyJoint(ABC):
         rates = self._states.unseen_rates(cluster, result.state)
         for n in cluster.pushes:
             touch, k = self.touches[n], self._mass_on_ground(n)
-            if k < 0 or [j for j in self._states.held_masses(cluster) if cluster.group(j) == cluster.group(k)] != [k]:
+            if k < 0 or not self._is_alone(cluster, k):
                 continue
             rate = rates.get(k, arb(0)) * arb(1 if k == touch.right else touch.ratio)
             since = self._stops(result, n, rate)
@@ -449,6 +481,12 @@ class SteadyJoint(ABC):
             length,
         )
         return [replace(each, onset=onset) for each, onset in zip(velocities, begin, strict=True)]
+
+
+def _slow_enclosure(most: arb, way: int) -> Enclosure:
+    """A rate that is unknown but for its size, and perhaps for its sign."""
+    bounds = (fmpq_poly() if way > 0 else None, fmpq_poly() if way < 0 else None)
+    return with_bounds(Enclosure(arb_poly(), most), None, *bounds)
 
 
 def _shortfall_integral(margin: Enclosure, length: fmpq) -> arb:
