@@ -66,7 +66,8 @@ def quick_builds(pytestconfig: pytest.Config) -> Iterator[None]:
     contracted, or that code is small, it is compiled as the test says. `--cache-clear` drops what is kept.
     """
     run = Compiler.run
-    kept = None if _without_compiler() else KeptBuilds(pytestconfig.cache.mkdir("compiled"), compiler())
+    cache: pytest.Cache | None = getattr(pytestconfig, "cache", None)  # none with -p no:cacheprovider
+    kept = KeptBuilds(cache.mkdir("compiled"), compiler()) if cache and not _without_compiler() else None
 
     def quick(self: Compiler, arguments: Sequence[str], folder: Path) -> None:
         if not any(argument.startswith("-ffp-contract") for argument in arguments):

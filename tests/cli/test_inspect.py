@@ -69,8 +69,18 @@ ALWAYS = ("collision_m4", "stepped_shaft")
 SCENES = [name if name in ALWAYS else pytest.param(name, marks=pytest.mark.slow) for name in builtin_names()]
 
 
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("stage", STAGES)
+def is_quick(stage: str, name: str) -> bool:
+    """Whether a stage is shown in quick runs: where all programs are tried, only of the chain."""
+    return name in (ALWAYS[1:] if stage in ("summary", "program") else ALWAYS)
+
+
+@pytest.mark.parametrize(
+    ("stage", "name"),
+    [
+        pytest.param(stage, name, marks=[pytest.mark.slow] * (not is_quick(stage, name)))
+        for stage, name in product(STAGES, builtin_names())
+    ],
+)
 def test_every_stage_of_every_scene(name: str, stage: str) -> None:
     """In JSON and text, the same sections with the same values in lines that are not long."""
     text = inspection(short(name), stage)

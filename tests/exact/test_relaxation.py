@@ -77,7 +77,7 @@ def begun(law: JointLaw, decaying: int) -> tuple[JointMotion, list[fmpq_poly]]:
     return motion, [force(fmpq_poly([time, 1])) for force in forces]
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("law", STIFF, ids=["open", "closed", "light", "light closed", "body"])
 @pytest.mark.parametrize("decaying", [1200, 40])
 def test_the_slow_motion_encloses_what_steps_find(law: JointLaw, decaying: int) -> None:
@@ -209,13 +209,13 @@ def test_without_leaving_out_what_is_fast_the_same_is_found(monkeypatch: pytest.
     assert long
 
 
-def test_a_body_that_presses_ever_less_still_presses() -> None:
+def test_a_body_that_presses_ever_less_still_presses(thorough: bool) -> None:
     """It decays by exp(-1000 tau), far below all bits, and the contact stays closed until the wave comes back."""
     parts = [{"mass": "1/1000", "velocity": 1}, "contact", {"rod": 1}, "absorbing"]
     table = {
         "name": "light",
         "system": {"type": "chain", "parts": parts},
-        "output": {"until": "3", "velocity": ["0+"]},
+        "output": {"until": "3" if thorough else "1", "velocity": ["0+"]},
     }
     assert events(lower(Scene(**table))) == ()
 

@@ -75,7 +75,7 @@ def test_every_kind_of_joint(real, thorough) -> None:
     made = march(model, real)
     assert {joint.space.law for joint in made.plan.joints} == {SCATTERER, BODY, BLOCK}
     assert made.error_bound < (1e-9 if real is DOUBLE else 0.5)
-    assert np.all(missed(model, made, 12 if real is DOUBLE and thorough else 5) <= 1)
+    assert np.all(missed(model, made, (12 if real is DOUBLE else 5) if thorough else 3) <= 1)
 
 
 @settings(max_examples=12)

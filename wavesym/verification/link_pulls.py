@@ -8,6 +8,7 @@ both ends of the step. Each of these is monotone, so they are found one after an
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import mul
 
 import numpy as np
 
@@ -92,8 +93,9 @@ class LinkPulls:
         self._rows = np.array([*problem.parting, *(law.row for law in problem.laws)]).reshape(-1, problem.points)
         # what is prescribed gives no way
         self._influence = inverse @ (self._rows * problem.is_free).T
-        self._compliance = self._rows @ self._influence
-        self._pulls = np.zeros(len(self._rows))
+        self._compliance: list[list[float]] = (self._rows @ self._influence).tolist()
+        self._pulls = [0.0] * len(self._rows)
+        self._gaps: list[float] = problem.gaps.tolist()
         self._laws = [self._link(law, inverse) for law in problem.laws]
         self._open = problem.gaps > 0
         self.changes: list[BranchChange] = []
@@ -111,31 +113,34 @@ class LinkPulls:
         for link in self._laws:
             if isinstance(link, _Friction):
                 link.speed = float(link.law.row @ q) if link.inertia else 0.0
-        rates, longer = self._rows @ free, self._rows @ u
+        # from here on of the links, which are few: plain numbers
+        rates: list[float] = (self._rows @ free).tolist()
+        longer, pulls = self._rows @ u, self._pulls
+        lengths: list[float] = longer.tolist()
         for _ in range(ROUNDS):
-            before = self._pulls.copy()
-            for k in range(len(self._rows)):
-                compliance = self._compliance[k, k]
-                rate = float(rates[k] - self._compliance[k] @ self._pulls + compliance * self._pulls[k])
-                self._pulls[k] = self._mean(k, rate, float(longer[k]), float(compliance))
-            if np.max(np.abs(self._pulls - before)) <= _EXACT * np.max(np.abs(self._pulls)):
+            before = pulls.copy()
+            for k, row in enumerate(self._compliance):
+                rate = rates[k] - sum(map(mul, row, pulls)) + row[k] * pulls[k]
+                pulls[k] = self._mean(k, rate, lengths[k], row[k])
+            changed = max(abs(pull - last) for pull, last in zip(pulls, before, strict=True))
+            if changed <= _EXACT * max(map(abs, pulls)):
                 break
-        v = free - self._influence @ self._pulls
-        self._record_branches(longer + self._h * (self._rows @ v), step)
+        v = free - self._influence @ pulls
+        self._record_branches((longer + self._h * (self._rows @ v)).tolist(), step)
         return np.asarray(v)
 
     def _mean(self, k: int, rate: float, longer: float, compliance: float) -> float:
-        contacts = len(self._problem.gaps)
+        contacts = len(self._gaps)
         if k >= contacts:
             return self._laws[k - contacts].mean(rate, longer, compliance, self._h)
-        return min(((float(self._problem.gaps[k]) + longer) / self._h + rate) / compliance, 0.0)
+        return min(((self._gaps[k] + longer) / self._h + rate) / compliance, 0.0)
 
-    def _record_branches(self, longer: Array, step: int) -> None:
+    def _record_branches(self, longer: list[float], step: int) -> None:
         """On which branches links are at the end of a step."""
         problem = self._problem
         length, force = problem.worth
         for k, number in enumerate(problem.contacts):
-            apart = problem.gaps[k] + longer[k]
+            apart = self._gaps[k] + longer[k]
             if -self._pulls[k] > _SIGN * force if self._open[k] else apart > _SIGN * length:
                 self._open[k] ^= True
                 closed = int(not self._open[k])

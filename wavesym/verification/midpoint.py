@@ -198,7 +198,10 @@ class _Motion:
         self._ends, self._middles = times, times[:-1] + h / 2
         self._lags = np.repeat(np.array([int(delay / grid.step) for delay in problem.delays], dtype=int), 2)
         self._late, self._slopes = np.repeat(problem.delay, 2), np.repeat(problem.start_slope, 2)
+        self._slowest = max(self._lags, default=0)
         self._beyond = np.arange(2 * len(problem.delays)) ^ 1
+        self._start_waves = problem.start_waves.ravel()[self._beyond]
+        self._inertia, self._incidence = 2 * problem.mass / h, 2 * problem.incidence
         self._sent = np.zeros((steps, 2 * len(problem.delays) + problem.points))
         self._u, self._q = np.zeros(problem.points), problem.velocity.copy()
         self._loads = problem.load_means(times[:-1], times[1:])
@@ -206,8 +209,8 @@ class _Motion:
         self._impedance = np.repeat(problem.impedance, 2)
         matrix: Array = np.diag(2 * problem.mass / h + problem.incidence**2 @ self._impedance)
         matrix += problem.damping + h / 2 * problem.stiffness
-        prescribed = list(problem.prescribed_points)
-        matrix[prescribed] = np.eye(problem.points)[prescribed]
+        self._prescribed = list(problem.prescribed_points)
+        matrix[self._prescribed] = np.eye(problem.points)[self._prescribed]
         self._inverse: Array = np.linalg.inv(matrix).astype(np.float64)
         self._links = LinkPulls(problem, self._inverse, h)
         self.changes = self._links.changes
@@ -215,19 +218,19 @@ class _Motion:
     def advance(self, step: int) -> None:
         """One step."""
         problem, h, u = self._problem, self._h, self._u
-        came = np.where(
-            step < self._lags,
-            problem.start_waves.ravel()[self._beyond] + self._slopes * ((step + 0.5) * h - self._late / 2),
-            self._sent[np.maximum(step - self._lags, 0), self._beyond],
-        )
-        acting = 2 * problem.mass / h * self._q - problem.stiffness @ u + self._loads[step]
-        acting += 2 * problem.incidence @ (self._impedance * came)
-        prescribed = list(problem.prescribed_points)
-        acting[prescribed] = self._loads[step, prescribed]
-        self._q[prescribed] = self._begun[prescribed, step]  # it may jump there
+        came: Array = self._sent[np.maximum(step - self._lags, 0), self._beyond]
+        if step < self._slowest:
+            at_start = self._start_waves + self._slopes * ((step + 0.5) * h - self._late / 2)
+            came = np.where(step < self._lags, at_start, came)
+        acting = self._inertia * self._q - problem.stiffness @ u + self._loads[step]
+        acting += self._incidence @ (self._impedance * came)
+        if prescribed := self._prescribed:
+            acting[prescribed] = self._loads[step, prescribed]
+            self._q[prescribed] = self._begun[prescribed, step]  # it may jump there
         v = self._links.settle(self._inverse @ acting, self._q, u, step)
         self._u, self._q = u + h * v, 2 * v - self._q
-        self._sent[step] = np.append(problem.incidence.T @ v - came, v)
+        self._sent[step, : len(came)] = problem.incidence.T @ v - came
+        self._sent[step, len(came) :] = v
 
     def evaluate(self, reading: Gauge, taus: Array) -> Array:
         """A strain, a velocity, a displacement or an acceleration at instants."""

@@ -76,7 +76,7 @@ class LinkLaw:
         stiffness, gap, preload = map(nearest, (link.stiffness, link.gap, link.preload))
         return cls(corner, opening(network, link), *of_friction, stiffness, link.side, gap, pull, push, preload)
 
-    @property
+    @cached_property
     def limits(self) -> tuple[float, float]:
         """Between which its pull is."""
         if self.side:

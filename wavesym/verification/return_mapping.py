@@ -8,6 +8,7 @@ Nothing is known of events. Fronts stay as sharp as they are, and outputs are re
 from __future__ import annotations
 
 from fractions import Fraction
+from operator import mul
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,32 +76,42 @@ class _ReturnMapping:
     def __init__(self, problem: CornerProblem) -> None:
         self._laws = laws = problem.laws
         self._rows = np.array([law.row for law in laws])
-        self._ways = np.sign(self._rows @ problem.velocity)
-        self._longer, self._pulls = np.zeros(len(laws)), np.array([law.preload for law in laws])
+        self._ways: list[float] = np.sign(self._rows @ problem.velocity).tolist()
+        self._longer, self._pulls = [0.0] * len(laws), [law.preload for law in laws]
+        self._influence, self._yields, self._coupling = np.empty(0), np.empty(0), list[list[float]]()
 
     def settle(self, after: Array, influence: Array, now: Array, before: Array) -> Array:
         """Displacements with what each link pulls, within its limits, when all bear what the others leave."""
-        yields, earlier, pulls = influence @ self._rows.T, self._pulls, np.zeros(len(self._laws))
-        compliance = np.einsum("ij,ji->i", self._rows, yields)
+        if influence is not self._influence:
+            self._influence, self._yields = influence, influence @ self._rows.T
+            self._coupling = (self._rows @ self._yields).tolist()
+        # from here on in the links' lengths, which are few: plain numbers
+        longest: list[float] = (self._rows @ after).tolist()
+        passed: list[float] = (self._rows @ before).tolist()
+        known: list[float] = (self._rows @ (2 * now + before)).tolist()
+        earlier, pulls = self._pulls, [0.0] * len(self._laws)
         for _ in range(ROUNDS):
             last = pulls.copy()
-            for number, (law, row) in enumerate(zip(self._laws, self._rows, strict=True)):
-                free = row @ after + compliance[number] * pulls[number]
+            for number, (law, coupling) in enumerate(zip(self._laws, self._coupling, strict=True)):
+                compliance = coupling[number]
+                free = longest[number] - sum(map(mul, coupling, pulls)) + compliance * pulls[number]
                 if law.friction:
-                    held = float(free - row @ before) / compliance[number]
-                    pull, _way = _rub(law, float(self._ways[number]), held)
+                    pulls[number], _way = _rub(law, self._ways[number], (free - passed[number]) / compliance)
                 else:
-                    longer = (free + 2 * row @ now + row @ before) / 4
                     kept = 0.0 if law.side else earlier[number] - law.stiffness * self._longer[number]
-                    trial = kept + law.stiffness * (longer - law.side * law.gap)
-                    pull = law.limit(float(trial / (1 + law.stiffness * compliance[number] / 4)))
-                after -= yields[:, number] * (pull - pulls[number])
-                pulls[number] = pull
-            if len(pulls) == 1 or np.max(np.abs(pulls - last)) <= _EXACT * np.max(np.abs(pulls)):
+                    trial = kept + law.stiffness * ((free + known[number]) / 4 - law.side * law.gap)
+                    pulls[number] = law.limit(trial / (1 + law.stiffness * compliance / 4))
+            changed = max(abs(pull - before) for pull, before in zip(pulls, last, strict=True))
+            if len(pulls) == 1 or changed <= _EXACT * max(map(abs, pulls)):
                 break
-        held = pulls + self._rows @ (after - before) / compliance
-        self._ways = np.array([_rub(*each)[1] for each in zip(self._laws, self._ways, held, strict=True)])
-        self._longer, self._pulls = self._rows @ (after + 2 * now + before) / 4, pulls
+        after -= self._yields @ pulls
+        lengths: list[float] = (self._rows @ after).tolist()
+        for number, (law, length) in enumerate(zip(self._laws, lengths, strict=True)):
+            if law.friction:
+                held = pulls[number] + (length - passed[number]) / self._coupling[number][number]
+                self._ways[number] = _rub(law, self._ways[number], held)[1]
+            self._longer[number] = (length + known[number]) / 4
+        self._pulls = pulls
         return after
 
 
