@@ -15,7 +15,7 @@ import pytest
 SCENE = """name = "mine"
 system = {type = "building", m = 3, kappa = ["1/4", "3/5", 1, "2/7"], base = "ground"}
 load = [{times = [0, "5/2"], a = [1, 0], b = [0, "-1/3"]}, {spacing = "1/4", samples = [0, 0.1, -0.2]}]
-output = {until = 4, tolerance = 1e-5, strain = [0.5, "1+"], velocity = [1.5], displacement = [3]}
+output = {until = 2, tolerance = 1e-5, strain = [0.5, "1+"], velocity = [1.5], displacement = [3]}
 """
 REQUESTS = [
     ["generate", "SCENE", "-o", "out", "--language", "all"],

@@ -390,7 +390,7 @@ def test_a_program_with_another_bound_is_seen(monkeypatch: pytest.MonkeyPatch) -
         return replace(form, outputs=tuple(replace(output, bound=0.5) for output in form.outputs))  # type: ignore[type-var]
 
     monkeypatch.setitem(choice.MAKERS, "pieces", coarse)
-    read = told(scene())
+    read = told(scene(until=3))
     assert read["program"]["kind"] == "closed"
     row = by(read["tried"], *TRIED)["pieces", "double", "speed"]
     assert (row["bound"], row["refusal"]) == (0.5, "rounding leaves a bound of 0.5 for strain@0.5")
