@@ -1,5 +1,4 @@
-/* elimination.c: tables of bodies and blocks on a panel, of numbers that come at run time, and how blocks move. Generated files
- * have what stands below the first empty line, under the text of polynomials.c. */
+/* elimination.c: tables of bodies and blocks on a panel, of numbers that come at run time, and how blocks move. */
 #ifndef TABLES
 #define NAME_RUNTIME
 #include "stream/tables.h"

@@ -1,5 +1,5 @@
 /* joint.c: a joint on a panel, as marches and streams step it: from the waves that arrive at its ends and what acts on its
- * points those that it sends. Generated files have what stands below the first empty line, under the tables of joints. */
+ * points those that it sends. */
 #ifndef TABLES
 #include "march/tables.h"
 #include "series.h"

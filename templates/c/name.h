@@ -1,5 +1,7 @@
 /* name.h: stands for the header that is generated for a scene called `name`, where its C is read by itself.
- * With SINGLE defined its numbers are floats. */
+ * With SINGLE defined its numbers are floats.
+ * Of each file here generated C has what is below the first empty line, under the scene's name; above that a file includes
+ * those whose text stands above its own. */
 #include <stddef.h>
 
 #ifdef SINGLE

@@ -1,6 +1,6 @@
-/* polynomials.c: sums of Chebyshev polynomials, and loads as such; models have it twice, for one set of parameters and for a
- * set in each lane of a vector. Where nobody says what a number `num` is, with OF(name) for what is called name, it is real.
- * Generated files have what stands below the first empty line. */
+/* polynomials.c: sums of Chebyshev polynomials, and loads as such; models have it twice, for one set of parameters and for
+ * a set in each lane of a vector. Where nobody says what a number `num` is, with OF(name) for what is called name, it is
+ * real. */
 #ifndef TABLES
 #include "march/tables.h"
 #endif

@@ -1,5 +1,4 @@
-/* ports.h: the tables of joints and of the ends of rods at them, their ports, of all marches.
- * In tables.h what stands below the first empty line. */
+/* ports.h: the tables of joints and of the ends of rods at them, their ports, of all marches. */
 
 /* joints: where their points, states and ports start in the next tables, and the force on each point, -1 for none */
 extern const int first_point[];

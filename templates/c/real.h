@@ -1,6 +1,4 @@
-/* real.h: the numbers of a program.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* real.h: the numbers of a program. */
 
 #if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
      defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)) && \

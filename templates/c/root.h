@@ -1,5 +1,4 @@
-/* root.h: roots, without <math.h>, which not every machine has.
- * Plain C of streams and of bounds of models. Generated files have what stands below the first empty line. */
+/* root.h: roots, without <math.h>, which not every machine has: for streams and for bounds of models. */
 
 /* Of a number that is 0 or more: the root of a number from 1/4 to 4, by Newton, times a power of 2. */
 static real root(real square)

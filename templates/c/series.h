@@ -1,6 +1,4 @@
-/* series.h: Chebyshev series of DEGREE, as marches and streams read them.
- * Plain C of a program of a scene called `name`. Generated files have what stands below the first empty line, under the text
- * of polynomials.c. */
+/* series.h: Chebyshev series of DEGREE, as marches and streams read them. */
 #include "polynomials.c"
 
 static void clear(real *y, int count)

@@ -1,6 +1,4 @@
-/* vectors.h: numbers that are computed at once.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* vectors.h: numbers that are computed at once. */
 
 /* Bytes of the widest vectors that the compiler may use; 0 where it knows none, or NAME_PLAIN asks for plain C. Wider ones
  * would go through memory. */

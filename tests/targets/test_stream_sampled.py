@@ -127,8 +127,8 @@ def test_a_bound_without_one_of_its_parts_is_less(monkeypatch):
     scene, truth = made(*SYSTEMS["base force"])
 
     def ran(fault, sampling):
-        def spoiled(of, *files, kernels=written.kernels):
-            text = kernels(of, *files)
+        def spoiled(of, *files, kernels=written.kernels, **given):
+            text = kernels(of, *files, **given)
             if fault and "stream/stream.c" in files:
                 assert text.count(FAULTS[fault][0]) == 1
                 return text.replace(*FAULTS[fault])

@@ -1,6 +1,4 @@
-/* closed.c: sums of pulses.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* closed.c: sums of pulses. */
 #include "library.h"
 #include "tables.h"
 

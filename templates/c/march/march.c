@@ -1,6 +1,4 @@
-/* march.c: waves window by window.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* march.c: waves window by window. */
 #include "tables.h"
 #include "../series.h"
 #include "../joint.c"

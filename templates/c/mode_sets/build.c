@@ -1,5 +1,4 @@
-/* build.c: a model of parameters.
- * Plain C that stands below the text of steps.c in generated files, which have what stands below the first empty line. */
+/* build.c: a model of parameters. */
 #include "steps.c"
 
 static void weights_of(model *m, const projection *p, const damping_rule *rule)

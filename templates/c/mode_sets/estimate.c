@@ -1,5 +1,4 @@
-/* estimate.c: damping, and what modes that are not found can add to outputs (docs/modes.md).
- * Plain C that stands below the text of oscillators.c in generated files, which have what stands below the first empty line. */
+/* estimate.c: damping, and what modes that are not found can add to outputs (docs/modes.md). */
 #include "oscillators.c"
 
 /* The ratios of the first modes with strain, the last one for all higher ones; or a/w + b w, halved, for all. */

@@ -1,6 +1,4 @@
-/* frequencies.c: the dynamic stiffness K of a chain, and its frequencies by counting (Wittrick and Williams 1971).
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* frequencies.c: the dynamic stiffness K of a chain, and its frequencies by counting (Wittrick and Williams 1971). */
 #include "tables.h"
 
 static real least_of(real x, real y)

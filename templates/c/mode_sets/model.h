@@ -1,5 +1,4 @@
-/* model.h: what a model and a state consist of; part of NAME.h, and of tables.h.
- * Below the first empty line, as in the other files. */
+/* model.h: what a model and a state consist of; part of NAME.h, and of tables.h. */
 
 /* What oscillators do in a time: the matrix of displacement and velocity, and the displacements that a force of 1, and
  * one that grows by 1 in a unit of tau, cause from rest. */

@@ -1,5 +1,4 @@
-/* oscillators.c: what an oscillator does in a time.
- * Plain C that stands below the text of projection.c in generated files, which have what stands below the first empty line. */
+/* oscillators.c: what an oscillator does in a time. */
 #include "projection.c"
 
 /* Of displacement and velocity the entries of the matrix, and what a constant force and a growing one cause. */

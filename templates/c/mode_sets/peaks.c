@@ -1,5 +1,4 @@
-/* peaks.c: extremes under the scene's loads, between samples, too.
- * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty line. */
+/* peaks.c: extremes under the scene's loads, between samples, too. */
 #include "read.c"
 
 /* What is known of the extremes of all outputs: side 0 the least, 1 the greatest. `best` is times -1 or 1, by points of

@@ -1,5 +1,4 @@
-/* projection.c: what modes are of outputs and loads, and their sums over all modes.
- * Plain C that stands below the text of statics.c in generated files, which have what stands below the first empty line. */
+/* projection.c: what modes are of outputs and loads, and their sums over all modes. */
 #include "statics.c"
 
 /* By mode: frequencies, how wrong w^2 is, what outputs are of modes, and their shares in loads. What outputs are of the

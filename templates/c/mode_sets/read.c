@@ -1,5 +1,4 @@
-/* read.c: histories of a model under the scene's loads.
- * Plain C that stands below the text of build.c in generated files, which have what stands below the first empty line. */
+/* read.c: histories of a model under the scene's loads. */
 #include "build.c"
 
 int name_build(model *m, const name_parameters *parameters)

@@ -1,5 +1,4 @@
-/* sets.c: many sets of parameters, one after the other, for those who load this into a process.
- * Plain C that stands below the text of peaks.c in generated files, which have what stands below the first empty line. */
+/* sets.c: many sets of parameters, one after the other, for those who load this into a process. */
 #include "peaks.c"
 
 void name_sets(const name_parameters *parameters, size_t sets, model *m, const real *tau, size_t count, int *status,

@@ -1,5 +1,4 @@
-/* shapes.c: how far places move in the modes.
- * Plain C that stands below the text of frequencies.c in generated files, which have what stands below the first empty line. */
+/* shapes.c: how far places move in the modes. */
 #include "frequencies.c"
 
 /* Of a mode its frequency times each delay; 1/sin of this, sin and cos of half of it. */

@@ -1,5 +1,4 @@
-/* statics.c: the shapes of loads that do not change, and by them sums over all modes (docs/modes.md).
- * Plain C that stands below the text of shapes.c in generated files, which have what stands below the first empty line. */
+/* statics.c: the shapes of loads that do not change, and by them sums over all modes (docs/modes.md). */
 #include "shapes.c"
 
 /* K where nothing moves, eliminated, and the motion without strain, of mass 1. */

@@ -1,5 +1,4 @@
-/* steps.c: oscillators, step by step, and what outputs are then.
- * Plain C that stands below the text of estimate.c in generated files, which have what stands below the first empty line. */
+/* steps.c: oscillators, step by step, and what outputs are then. */
 #include "estimate.c"
 
 static void rest(motion *s)

@@ -1,5 +1,4 @@
-/* stream.c: loads sample by sample.
- * Plain C that stands below the text of build.c in generated files, which have what stands below the first empty line. */
+/* stream.c: loads sample by sample. */
 #define STREAMED
 #include "build.c"
 

@@ -1,6 +1,4 @@
-/* modes.c: oscillators, step by step.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* modes.c: oscillators, step by step. */
 #include "tables.h"
 
 /* A mode is an oscillator, y'' + 2 damping frequency y' + frequency^2 y = push * load. Over one step with a load that is

@@ -1,5 +1,4 @@
-/* state.h: what a stream remembers; part of NAME.h, and of tables.h.
- * Below the first empty line, as in modes.c. */
+/* state.h: what a stream remembers; part of NAME.h, and of tables.h. */
 
 /* A stream. Its owner keeps it; all of it is set by init. */
 typedef struct name_state {

@@ -1,6 +1,4 @@
-/* pieces.c: polynomials on pieces, one by one and in vectors.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* pieces.c: polynomials on pieces, one by one and in vectors. */
 #include "tables.h"
 
 /* Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p]. Outputs that may jump

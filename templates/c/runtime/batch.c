@@ -1,6 +1,4 @@
-/* batch.c: models of many sets of parameters at once.
- * Plain C that stands below the text of build.c in lanes in generated files, which have what stands below the first empty
- * line. */
+/* batch.c: models of many sets of parameters at once. */
 #include "lanes.c"
 #include "laws.h"
 #include "set.h"

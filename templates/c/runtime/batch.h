@@ -1,5 +1,4 @@
-/* batch.h: models of many sets of parameters of a chain side by side.
- * Generated files have what stands below the first empty line, with their scene's name. */
+/* batch.h: models of many sets of parameters of a chain side by side. */
 
 /* Models of up to NAME_WIDTH sets. Plain data, yours; only `build_batch` writes into it. It is read and written sooner
  * where it begins at a multiple of 64 bytes. */

@@ -1,5 +1,4 @@
-/* blocks.c: an output of a model that has been built at many instants of a section.
- * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty line. */
+/* blocks.c: an output of a model that has been built at many instants of a section. */
 #include "read.c"
 
 /* A block of an output at t after the start of a window's cycle. */

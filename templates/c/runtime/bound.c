@@ -1,5 +1,4 @@
-/* bound.c: a proved bound of the errors of a model, from what it sends itself.
- * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty line. */
+/* bound.c: a proved bound of the errors of a model, from what it sends itself. */
 #include "blocks.c"
 #include "../root.h"
 

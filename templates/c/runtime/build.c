@@ -1,6 +1,5 @@
 /* build.c: models, window by window: of one set of parameters, and of many in lanes. All sets have one degree, the highest
- * that one of them needs; one that is refused goes along, and what it would need is not asked of others.
- * Plain C that stands below the text of outputs.c in generated files, which have what stands below the first empty line. */
+ * that one of them needs; one that is refused goes along, and what it would need is not asked of others. */
 #include "outputs.c"
 
 /* How far a build has come. `status` is what `build` returns; of all windows so far truncation errors, the largest velocity

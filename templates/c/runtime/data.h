@@ -1,5 +1,4 @@
-/* data.h: data to compare models with.
- * Generated files have what stands below the first empty line, with their scene's name. */
+/* data.h: data to compare models with. */
 
 /* Data, so that the sum of squares of all misfits is taken from coefficients: with the series c of an output on a section
  * of a window, V c its values and y the data, |V c - y|^2 = |R c - z|^2 + rest. R is a triangle with weights. */

@@ -1,5 +1,4 @@
-/* lanes.c: the march that follows is of many sets of parameters, a set in each lane of a vector.
- * Plain C of a program of a scene called `name`; what stands below the first empty line. */
+/* lanes.c: the march that follows is of many sets of parameters, a set in each lane of a vector. */
 #include "model.c"
 
 /* Bytes of vectors: where they have 16, clang keeps two registers side by side in one, which hides what joints wait for. */

@@ -1,9 +1,5 @@
 /* march.c: joints on a window: their tables, how they move, what they send. Generated files have it twice, for one set of
- * parameters and for a set in each lane of a vector: `num` is a number of each set, OF(name) what is called name.
- * Plain C of a program of a scene called `name`; what stands below the first empty line. */
-#ifndef num
-#include "one.c"
-#endif
+ * parameters and for a set in each lane of a vector: `num` is a number of each set, OF(name) what is called name. */
 #include "../polynomials.c"
 #include "../elimination.c"
 

@@ -1,6 +1,4 @@
-/* misfit.c: sums of squares of what models miss of data, taken from coefficients.
- * Plain C that stands below the text of batches.c in generated files, which have what stands below the first
- * empty line. */
+/* misfit.c: sums of squares of what models miss of data, taken from coefficients. */
 #include "batch.c"
 
 /* A group is an output on a section of a window. `numbers` has of each blocks of ROWS rows of its triangle R, interlaced:

@@ -1,5 +1,5 @@
-/* model.c: a model of one set of parameters.
- * Plain C that stands below the text of build.c in generated files, which have what stands below the first empty line. */
+/* model.c: a model of one set of parameters. */
+#include "one.c"
 #include "build.c"
 
 /* The laws of parameters. 0, 1 for a bad number, or 2 for bodies so light, or springs so stiff, that a rounding of how they

@@ -1,5 +1,4 @@
-/* model.h: what a built model keeps, as the members of a struct.
- * Generated files have what stands below the first empty line, with their scene's name. */
+/* model.h: what a built model keeps, as the members of a struct. */
 
     int built;                  /* 1, or 0 where `build` refused */
     int degree[NAME_WINDOWS];   /* of the polynomials of each window */

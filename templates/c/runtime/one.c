@@ -1,5 +1,4 @@
-/* one.c: the march that follows is of one set of parameters.
- * Plain C of a program of a scene called `name`; what stands below the first empty line. */
+/* one.c: the march that follows is of one set of parameters. */
 #include "reach.c"
 
 static void enlarge(real *most, const real *x)

@@ -1,5 +1,4 @@
-/* outputs.c: outputs as sums of waves, for one set of parameters and for many in lanes, and how large they are.
- * Plain C that stands below the text of march.c in generated files, which have what stands below the first empty line. */
+/* outputs.c: outputs as sums of waves, for one set of parameters and for many in lanes, and how large they are. */
 #include "march.c"
 
 /* The antiderivative of a series on a panel: all c_k but the first, which is 0. */

@@ -1,5 +1,4 @@
-/* peaks.c: the least and the greatest value of each output of a model, between samples, too.
- * Plain C that stands below the text of blocks.c in generated files, which have what stands below the first empty line. */
+/* peaks.c: the least and the greatest value of each output of a model, between samples, too. */
 #include "blocks.c"
 
 /* How often an interval is halved at most; into how many parts one is cut where it is looked at closely;

@@ -1,5 +1,4 @@
-/* reach.c: where waves come to, whatever cancels, and what errors of outputs are relative to.
- * Plain C that stands below the text of series.c in generated files, which have what stands below the first empty line. */
+/* reach.c: where waves come to, whatever cancels, and what errors of outputs are relative to. */
 #include "series.c"
 
 /* A panel, counted through all windows, that there is not: what begins there does not begin. */

@@ -1,5 +1,4 @@
-/* read.c: values of a model that has been built, one by one and in blocks.
- * Plain C that is put below the march in NAME.c; what stands below the first empty line. */
+/* read.c: values of a model that has been built, one by one and in blocks. */
 #include "model.c"
 
 name_real name_error_estimate(const name_model *model)

@@ -1,5 +1,4 @@
-/* series.c: what all of a program with parameters at run time starts from: numbers, windows, places of waves and joints.
- * Plain C of a program of a scene called `name`; it stands below the first empty line in NAME.c, above the march. */
+/* series.c: what all of a program with parameters at run time starts from: numbers, windows, places of waves and joints. */
 #include "tables.h"
 
 /* So many samples are a block. */

@@ -1,5 +1,4 @@
-/* set.h: what models are built in: for one set of parameters, and for a set in each lane of a vector (`num`).
- * Plain C of a program of a scene called `name`; what stands below the first empty line, in headers for one set. */
+/* set.h: what models are built in: for one set of parameters, and for a set in each lane of a vector (`num`). */
 
 /* The largest value and mean of each output so far, and the mean from which on it is evaluated again. */
 typedef struct {

@@ -1,5 +1,4 @@
-/* sets.c: many sets of parameters in one call, for callers to whom a call costs more than a model.
- * Plain C that is put below all of NAME.c; what stands below the first empty line. */
+/* sets.c: many sets of parameters in one call, for callers to whom a call costs more than a model. */
 #include "misfit.c"
 
 void name_sets(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,

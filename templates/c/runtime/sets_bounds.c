@@ -1,5 +1,4 @@
-/* sets_bounds.c: proved bounds of many sets of parameters.
- * Plain C that is put below all of NAME.c; what stands below the first empty line. */
+/* sets_bounds.c: proved bounds of many sets of parameters. */
 #include "tables.h"
 
 void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,

@@ -1,5 +1,4 @@
-/* sets_tangents.c: many sets of parameters, with their derivatives.
- * Plain C that is put below all of NAME.c; what stands below the first empty line. */
+/* sets_tangents.c: many sets of parameters, with their derivatives. */
 #include "tables.h"
 
 void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,

@@ -1,4 +1,4 @@
-/* tables.h: stands for what runtime.c.j2 writes above the text of joints.c, where that is read by itself. */
+/* tables.h: stands for what runtime.c.j2 writes above the texts of these files, where they are read by themselves. */
 #define TABLES
 #include <stddef.h>
 

@@ -1,5 +1,4 @@
-/* tangent.h: a model of a chain with its derivatives.
- * Generated files have what stands below the first empty line, with their scene's name. */
+/* tangent.h: a model of a chain with its derivatives. */
 
 /* A model with its derivatives by every parameter, in the order of the parameters: their series lie as the model's. */
 struct name_tangent {

@@ -1,5 +1,4 @@
-/* tangents.c: models with their derivatives by parameters: the same march, under what acts as laws change.
- * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty line. */
+/* tangents.c: models with their derivatives by parameters: the same march, under what acts as laws change. */
 #include "read.c"
 
 /* A derivative may miss so much more of itself than a value. */

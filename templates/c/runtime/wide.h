@@ -1,5 +1,4 @@
-/* wide.h: how many sets of parameters stand side by side, and what the series of waves are as long as.
- * Generated files have what stands below the first empty line, with their scene's name. */
+/* wide.h: how many sets of parameters stand side by side, and what the series of waves are as long as. */
 
 /* How many numbers a series of a wave has: zeros up to a whole vector follow. */
 enum { NAME_ROW = NAME_DEGREE + 64 / sizeof(name_real) };

@@ -1,5 +1,4 @@
-/* work.h: what a model of a chain needs while it is built.
- * Generated files have what stands below the first empty line, with their scene's name. */
+/* work.h: what a model of a chain needs while it is built. */
 
 /* What is worked in while a model is built, and what nobody needs afterwards. */
 struct name_work {

@@ -1,8 +1,5 @@
-/* breakpoints.c: loads of a stream that jump and bend, at breakpoints and where there is no room for one.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* breakpoints.c: loads of a stream that jump and bend, at breakpoints and where there is no room for one. */
 #include "panels.c"
-#include "../root.h"
 
 /* The breakpoint that is now, or the start of the panel, or none. */
 static int breakpoint_now(const stream *state)

@@ -1,6 +1,4 @@
-/* made.c: what parameters that come at run time make of the tables of a stream.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* made.c: what parameters that come at run time make of the tables of a stream. */
 #define NAME_RUNTIME
 #include "stream.c"
 #include "../elimination.c"

@@ -1,8 +1,5 @@
-/* panels.c: how a panel of a stream begins and ends: joints, from its start on and after breakpoints, and loads.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* panels.c: how a panel of a stream begins and ends: joints, from its start on and after breakpoints, and loads. */
 #include "waves.c"
-#include "../joint.c"
 
 /* More by which polynomials have missed the truth: of the root of an energy, and of a wave at once. */
 static void lose(stream *state, real energy, real wave)

@@ -1,5 +1,4 @@
-/* state.h: what a stream of waves remembers, the members of name_state; part of NAME.h, and of tables.h.
- * Below the first empty line, as in stream.c. */
+/* state.h: what a stream of waves remembers, the members of name_state; part of NAME.h, and of tables.h. */
 
     name_real time;        /* since the current panel began, */
     name_real time_low;    /* and what is lost of that by rounding; */

@@ -1,6 +1,4 @@
-/* stream.c: waves under loads that come sample by sample, step by step.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* stream.c: waves under loads that come sample by sample, step by step. */
 #include "breakpoints.c"
 
 /* What a load is now where an output shows it. */

@@ -1,8 +1,8 @@
-/* waves.c: where a stream has its waves, and how they are read.
- * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
- * the first empty line. */
+/* waves.c: where a stream has its waves, and how they are read. */
 #include "tables.h"
+#include "../root.h"
 #include "../series.h"
+#include "../joint.c"
 
 /* A place for what has no breakpoint of its own: the start of the panel, or none that is left. */
 enum { EDGE = -1, NONE = -2 };

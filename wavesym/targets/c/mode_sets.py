@@ -11,15 +11,13 @@ from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, named_loads
 from wavesym.targets.literals import c_constants
 
-_BUILD = ("frequencies", "shapes", "statics", "projection", "oscillators", "estimate", "steps", "build")
-
 
 def files(scene: Description, program: Program) -> dict[str, str]:
     """NAME.h and NAME.c, and the self-test where there are reference values."""
     assert program.laws is not None
     streamed, peaks = bool(program.step), "peaks" in program.parts
     fields = tuple(parameter_fields(program.laws, program.real))
-    reading = ("stream",) if streamed else ("read", *(["peaks"] if peaks else []))
+    reading = "stream" if streamed else "peaks" if peaks else "read"
     source = render(
         "c/mode_sets/mode_sets.c.j2",
         scene=scene,
@@ -27,7 +25,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         fields=fields,
         tables=program_tables("mode_sets/tables.h", scene, program),
         numbers=kernels(scene, "real.h", "vectors.h"),
-        kernel=kernels(scene, *(f"mode_sets/{file}.c" for file in (*_BUILD, *reading))),
+        kernel=kernels(scene, f"mode_sets/{reading}.c"),
     )
     header = render(
         "c/mode_sets/mode_sets.h.j2",

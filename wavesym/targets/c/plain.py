@@ -13,8 +13,6 @@ from wavesym.targets.description import Description, named_loads
 from wavesym.targets.literals import c_constants
 
 _NUMBERS = {"closed": ("closed/library.h", "real.h"), "pieces": ("real.h", "vectors.h")}
-_BELOW = {"march": ("polynomials.c", "series.h", "joint.c")}
-"""What stands below the tables besides the kernel."""
 _UNDER = {"spacing": "under the scene's loads", "panel": "under a step of each load at tau = 0"}
 """What a stream's bound of errors is for."""
 
@@ -31,12 +29,13 @@ def header(scene: Description, program: Program, more: str = "") -> str:
 def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     name = program.kernel
+    numbers = _NUMBERS.get(name, ("real.h",))
     return render(
         "c/plain.c.j2",
         scene=scene,
-        numbers=kernels(scene, *_NUMBERS.get(name, ("real.h",))),
+        numbers=kernels(scene, *numbers),
         tables=program_tables(f"{name}/tables.h", scene, program),
-        kernel=kernels(scene, *_BELOW.get(name, ()), f"{name}/{name}.c"),
+        kernel=kernels(scene, f"{name}/{name}.c", above=numbers),
     )
 
 

@@ -43,18 +43,10 @@ _SIZES = (
     "lanes",
     "groups",
 )
-_MARCH = ("polynomials.c", "elimination.c", *(f"runtime/{name}.c" for name in ("march", "outputs", "build")))
-_KERNEL = (*(f"runtime/{name}.c" for name in ("series", "reach", "one")), *_MARCH, "runtime/model.c")
-"""What builds models of one set."""
-_READ, _BLOCKS = "runtime/read.c", "runtime/blocks.c"
-_OF_PARTS = {
-    "peaks": (_BLOCKS, "runtime/peaks.c"),
-    "gradients": ("runtime/tangents.c",),
-    "bound": (_BLOCKS, "root.h", "runtime/bound.c"),
-}
-"""What stands below it besides what reads models."""
-_LANES, _MISFIT = "runtime/lanes.c", "runtime/misfit.c"
-_BATCH = ("runtime/set.h", *_MARCH, "runtime/batch.c")
+_MODEL, _READ, _LANES = (f"runtime/{name}.c" for name in ("model", "read", "lanes"))
+"""Models of one set, and what stands below them: what reads them, and where many march in lanes."""
+_OF_PARTS = {"peaks": "runtime/peaks.c", "gradients": "runtime/tangents.c", "bound": "runtime/bound.c"}
+"""What reads models besides."""
 _SETS = {"misfit": "sets.c", "gradients": "sets_tangents.c", "bound": "sets_bounds.c"}
 _MOST_ON_STACK = 1 << 16
 """Bytes of work that `build` puts there: more is kept in the model."""
@@ -173,12 +165,17 @@ def _source(scene: Description, program: Program, fields: Sequence[CRuntimeField
         largest=largest,
         least=least,
         numbers=kernels(scene, "real.h", "vectors.h"),
-        kernel=kernels(scene, *_KERNEL),
-        read=kernels(scene, _READ, *dict.fromkeys(file for part in parts for file in _OF_PARTS.get(part, ()))),
+        kernel=kernels(scene, _MODEL),
+        read=kernels(scene, _READ, *(_OF_PARTS[part] for part in parts if part in _OF_PARTS), above=(_MODEL,)),
         lanes=kernel(_LANES, scene),
-        batch=kernels(scene, *_BATCH, *([_MISFIT] if "misfit" in parts else ())),
+        batch=kernels(scene, _batch(parts), above=(_LANES,)),
         arrays=tuple((name, str(len(functions))) for name, functions in needed.items()),
     )
+
+
+def _batch(parts: Sequence[str]) -> str:
+    """What is of many sets side by side."""
+    return f"runtime/{'misfit' if 'misfit' in parts else 'batch'}.c"
 
 
 def _struct_sizes(scene: Description, parts: Sequence[str], memory: Memory, inside: bool) -> Iterator[tuple[str, str]]:
@@ -198,24 +195,23 @@ def _struct_sizes(scene: Description, parts: Sequence[str], memory: Memory, insi
 def _stack_sizes(scene: Description, parts: Sequence[str], memory: Memory, inside: bool) -> Iterator[tuple[str, str]]:
     """What functions need of a stack, at most."""
 
-    def stack(*files: str, num: str = "real") -> int:
-        return memory.stack(kernels(scene, *files), num=num)
+    def stack(file: str, num: str = "real") -> int:
+        return memory.stack(kernels(scene, file, above=(_MODEL,)), num=num)
 
-    building = stack(*_KERNEL)
+    building = stack(_MODEL)
     work = 0 if inside else memory.size(f"{scene.name}_work")
     yield str(building + work), "build"
     yield str(building), "build_with"
     yield str(stack(_READ)), "error_estimate, model_eval, model_sample"
     if "peaks" in parts:
-        yield str(stack(_READ, *_OF_PARTS["peaks"])), "model_peaks"
+        yield str(stack(_OF_PARTS["peaks"])), "model_peaks"
     if "gradients" in parts:
-        yield str(building + stack(_READ, *_OF_PARTS["gradients"])), "functions of a tangent"
+        yield str(building + stack(_OF_PARTS["gradients"])), "functions of a tangent"
     if "batch" in parts:
-        misfit = (_MISFIT,) if "misfit" in parts else ()
-        description = "functions of a batch and of data" if misfit else "functions of a batch"
-        yield str(building + stack(_LANES, *_BATCH, *misfit, num="wide")), description
+        description = "functions of a batch and of data" if "misfit" in parts else "functions of a batch"
+        yield str(building + stack(_batch(parts), num="wide")), description
     if "bound" in parts:
-        bounded = building + stack(_READ, *_OF_PARTS["bound"])
+        bounded = building + stack(_OF_PARTS["bound"])
         yield str(bounded + work), "error_bound"
         yield str(bounded), "error_bound_with"
 
@@ -224,7 +220,7 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what of each part runs many sets of parameters in NAME.c; values and peaks go with misfits."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    more = kernels(scene, *(f"runtime/{file}" for part, file in _SETS.items() if part in program.parts))
+    more = "\n\n".join(kernel(f"runtime/{file}", scene) for part, file in _SETS.items() if part in program.parts)
     return {**made, name: f"{made[name]}\n{more}\n"}
 
 

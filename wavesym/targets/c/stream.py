@@ -13,7 +13,8 @@ from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, named_loads
 from wavesym.targets.literals import c_constants
 
-_KERNEL = tuple(f"stream/{part}.c" for part in ("waves", "panels", "breakpoints", "stream"))
+_SERIES = ("root.h", "series.h", "joint.c")
+"""What stands above the names of tables in a state."""
 
 
 def source(scene: Description, program: Program) -> str:
@@ -30,8 +31,8 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables=program_tables("stream/tables.h", scene, known),
         numbers=kernel("real.h", scene),
-        series=kernels(scene, "root.h", "polynomials.c", "series.h", "joint.c"),
-        kernel=kernels(scene, *_KERNEL, *(("elimination.c", "stream/made.c") if laws else ())),
+        series=kernels(scene, *_SERIES),
+        kernel=kernels(scene, "stream/made.c" if laws else "stream/stream.c", above=_SERIES),
         fields=_fields(program),
         functions=tuple((name, str(len(of))) for name, of in laws.functions.items()) if laws else (),
         made_tables=made,
