@@ -37,6 +37,8 @@ _VALUES = 400_000  # of all outputs together
 # what a picture can show, of an output's largest value: modes take the more of them the less that is
 _SEEN = fmpq(1, 10**4)
 _QUICK = {"march": _TOLERANCE, "modes": _SEEN}
+_USUAL, _SOON = Request(), Request(optimize="making")
+_FEW = 12  # outputs: for more it counts how long pieces take to fit
 MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
 
 
@@ -124,7 +126,7 @@ def drawable(model: Model) -> Program:
         with suppress(WavesymError):
             return make(model.tolerating(max(model.tolerance, least)), Request(kind))
     try:
-        return make(model.tolerating(max(model.tolerance, _TOLERANCE)))
+        return make(model.tolerating(max(model.tolerance, _TOLERANCE)), _SOON if len(model.probes) > _FEW else _USUAL)
     except ToleranceError:
         with suppress(WavesymError):  # rounding adds up over long horizons
             return make(model.tolerating(_SEEN), Request("march"))

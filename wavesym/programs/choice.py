@@ -81,8 +81,8 @@ def choose(
         model: dimensionless, with its tolerance, relative to each output's largest value.
         name: "auto", "closed", "pieces", "modes" or "march".
         precision: "double" or "single".
-        optimize: "speed" for the least work, "size" for the least tables; None for what is usual: in single precision
-            pieces have small tables.
+        optimize: "speed" for the least work, "size" for the least tables, "making" for what is made soonest; None for
+            what is usual: in single precision pieces have small tables.
         asked: whether more may be spent on an evaluator that is requested by its name.
 
     Returns:

@@ -67,7 +67,8 @@ def pieces(
         model: dimensionless.
         real: the numbers of the program.
         tolerance: relative to each output's largest value.
-        optimize: "speed" for pieces on which many samples take least time, "size" for the least tables.
+        optimize: "speed" for pieces on which many samples take least time, "size" for the least tables, "making" for
+            those that are fitted soonest.
         most_seconds: what computing the waves may take.
 
     Raises:
@@ -75,7 +76,10 @@ def pieces(
     """
     # no finer than rounding: a smaller tolerance is not met by more bits or more pieces
     fits = _Fits(model, real, max(tolerance, real.roundoff / 8), most_seconds)
-    found = _smallest(fits, tolerance) if optimize == "size" else _fastest(fits, tolerance)
+    if optimize == "making":
+        found = fits.fit_pieces(_USUAL[-1])
+    else:
+        found = _smallest(fits, tolerance) if optimize == "size" else _fastest(fits, tolerance)
     for shorter in _SHORTER:
         missed = rational(found.error_bound) > tolerance > real.roundoff / 8
         if shorter > found.per_unit and missed and fits.differ(shorter, found.per_unit):
