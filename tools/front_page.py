@@ -163,8 +163,8 @@ def measurement_rows() -> list[str]:
     return [
         f"**Why better:** no mesh, so fronts stay sharp; errors of {float(row['error_at_fronts']):.1e}, proved below "
         f"{float(row['proved_bound']):.1e}.<br>",
-        f"**How fast:** {float(row['ns_per_value']):.2g} ns a value, {ratio:.2g} times as fast as the best other method; "
-        f"{built} µs for new parameters (a building, C, one core; {best['name']}, to 1e-9).",
+        f"**How fast:** {float(row['ns_per_value']):.2g} ns a value, {ratio:.2g} times as fast as the best other "
+        f"method; {built} µs for new parameters (a building, C, one core; {best['name']}, to 1e-9).",
     ]
 
 

@@ -95,7 +95,7 @@ _HOMES = {
         ("CostError", "RangeError", "SceneError", "ToleranceError", "UnservedError", "WavesymError"), "wavesym.errors"
     ),
 }
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 
 def __getattr__(name: str) -> object:

@@ -44,11 +44,12 @@ class Request:
     """The options that decide what is generated.
 
     `evaluator` is a kind of program or "auto". `optimize` says which is best of the programs that meet the tolerance:
-    the fastest ("speed"), or the one with the smallest tables ("size"), for pictures what is made soonest ("making");
-    None is the fastest kind, in single precision, which is for small machines, with small tables. `runtime` names the parameters that are given at run time, `parts`
-    what their C has besides values; `kappa_max` is the largest kappa that it is made for, None for ten times the
-    scene's own. A `stream` takes loads sample by sample, best at multiples of `step`; `target` is what it is wrapped
-    for. `language` and `package` say which files there are, not what they compute.
+    the fastest ("speed"), or the one with the smallest tables ("size"), for pictures what is made soonest
+    ("making"); None is the fastest kind, in single precision, which is for small machines, with small tables.
+    `runtime` names the parameters that are given at run time, `parts` what their C has besides values; `kappa_max`
+    is the largest kappa that it is made for, None for ten times the scene's own. A `stream` takes loads sample by
+    sample, best at multiples of `step`; `target` is what it is wrapped for. `language` and `package` say which
+    files there are, not what they compute.
     """
 
     evaluator: str = "auto"
