@@ -57,6 +57,23 @@ def test_what_comes_first_decides(law: str, comes: str, way: int, beside: str) -
     assert wrong(scene(law, comes, way, beside), first="0") == []
 
 
+@pytest.mark.slow
+def test_a_limit_that_is_relieved_as_the_square_of_time_is_touched_and_met_again() -> None:
+    """u = -(1 - cos w tau)/40 until 1, with w^2 = 40, which touches 0 at 2 pi/w; then u'' = -40 u, up to 0."""
+    parts = [{"mass": 1, "velocity": 0, "name": "m"}, {"spring": 40, "yield": [0, 10], "preload": -10}, "fixed"]
+    loads = [{"at": "m", "times": [0, 1], "steps": [9, 1]}]
+    output = {"until": 4, "displacement": ["m"], "velocity": ["m"]}
+    model = lower(Scene(name="lifted", system={"type": "chain", "parts": parts}, load=loads, output=output))
+    (yields,) = events(model)
+    (velocity,), (displacement,) = Reference(model).values([2.0])
+    with ctx.workprec(200):
+        met, fast = arb("0.5") + 2 * arb.pi() / arb(40).sqrt(), (arb(40).sqrt() / 2).sin() / arb(10).sqrt()
+        assert yields.kind == "yields"
+        assert abs(yields.tau - met) < arb("1e-40")
+        assert abs(arb(velocity) - abs(fast)) < arb(2) ** -52
+        assert abs(arb(displacement) - abs(fast) * (2 - met)) < arb(2) ** -52
+
+
 def test_an_idle_spring_at_its_gap_leaves_a_contact_its_first_power() -> None:
     """v' + v = tau until 1, then -1; the contact, with the force v of the rod, opens as v = 0."""
     parts = ["fixed", {"spring": 2, "only": "push"}, {"mass": 1, "velocity": 0, "name": "m"}]

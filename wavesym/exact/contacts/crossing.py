@@ -122,9 +122,10 @@ def shortfall(known: Enclosure, high: fmpq) -> arb:
         positive, way = course.sign_on(a, b)
         if positive:
             continue
-        seen = p(arb(a)).min(p(arb(b)))
+        ends = p(arb(a)), p(arb(b))
+        seen, off = ends[0].min(ends[1]), (error + ends[0].rad() + ends[1].rad()).upper()
         least = seen if way else _least_on(p, a, b)
-        if way or least >= (-TINY * error).min(2 * seen) or b - a <= finest:
+        if way or least >= (-TINY * off).min(2 * seen) or b - a <= finest:
             worst = worst.max((error - least).upper())
             continue
         half = (b - a) / 2
