@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 import wavesym
+from wavesym.numbers.arrays import Array
 from wavesym.pictures.saving import save
 from wavesym.pictures.style import colours, draw_grid, new_figure, set_title, with_style
 
@@ -43,8 +43,6 @@ _METHODS = {  # of the chart: language, label, colour, marker, and where its lab
     "Laplace inversion": ("SciPy", "Laplace inversion", "#8a2f2f", "v", (-62, -22)),
 }
 
-Numbers = NDArray[np.float64]
-
 
 def scene(places: list[float]) -> wavesym.Scene:
     """The bars: the second is stiffer and heavier, its far end is free."""
@@ -57,7 +55,7 @@ def scene(places: list[float]) -> wavesym.Scene:
     return wavesym.Scene(name="bars", **fields)
 
 
-def finite_elements(times: Numbers) -> Numbers:
+def finite_elements(times: Array) -> Array:
     """The force at the place, by linear elements of equal length and Newmark's method, a step for each time."""
     count, h, step = 2 * _ELEMENTS, 1 / _ELEMENTS, float(times[1])
     impedances = np.repeat([1.0, _IMPEDANCE], _ELEMENTS)

@@ -8,16 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import wavesym
 from wavesym.errors import SceneError, UnservedError
 from wavesym.exact.contacts.events import events
 from wavesym.exact.losses import losses
 from wavesym.interactive import Scene
+from wavesym.numbers.arrays import Array
 from wavesym.scene import lower
-
-Array = NDArray[np.float64]
 
 
 def chain(parts: list[Any], output: dict[str, Any], load: list[Any] | None = None, **system: Any) -> Scene:

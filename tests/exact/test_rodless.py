@@ -8,17 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import wavesym
 from wavesym.cli import main
 from wavesym.errors import UnservedError, WavesymError
+from wavesym.numbers.arrays import Array
 from wavesym.programs.choice import attempt
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
-
-Array = NDArray[np.float64]
 
 
 class Dense:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from tests.pictures.clear import texts_keep_clear
+from wavesym.numbers.arrays import Array
 from wavesym.papers.pielorz1979 import figures as section_5
-from wavesym.papers.pielorz1979.figure_scenes import Array, contact_end, figure, loads
+from wavesym.papers.pielorz1979.figure_scenes import contact_end, figure, loads
 from wavesym.papers.pielorz1979.measures import Finding
 from wavesym.papers.record import Record, Sentence
 from wavesym.scene import lower

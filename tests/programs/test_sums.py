@@ -8,20 +8,19 @@ from typing import Any
 import numpy as np
 import pytest
 from flint import fmpq
-from numpy.typing import NDArray
 
 from tests.exact.test_sums import ALL
 from tests.support.generated import files
 from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import march
 from wavesym.running.compilation import compile_files, import_text
 from wavesym.scene import Scene, lower
 
-Values = NDArray[np.float64]
 OPEN = [part for part in ALL["system"]["parts"] if part != "contact"]
 MASSES = ["first", "gear", "hung", "struck", "tip", "a:0"]
 CHAIN = {
@@ -77,7 +76,7 @@ def model(name: str, factor: fmpq | None = None, tolerance: str = "1e-6") -> Mod
     return made.watching(replace(probe, factor=(-1) ** k * factor**k) for k, probe in enumerate(made.probes))
 
 
-def instants(reference: Reference) -> Values:
+def instants(reference: Reference) -> Array:
     """Breakpoints, the doubles before them, and others."""
     breaks = np.array(reference.breakpoints())
     even = np.linspace(0, reference.tau_max, 40)
@@ -85,7 +84,7 @@ def instants(reference: Reference) -> Values:
     return np.unique(taus[taus <= reference.tau_max])
 
 
-def missed(values: Values, reference: Reference, taus: Values, bounds: list[float]) -> float:
+def missed(values: Array, reference: Reference, taus: Array, bounds: list[float]) -> float:
     """The largest error, in what is allowed."""
     exact = np.array(reference.values(taus.tolist()))
     sizes = [float(size.upper()) for size in reference.largest()]

@@ -26,6 +26,7 @@ from tests.support.generated import files
 from tests.support.scenes import as_toml, scenes
 from tests.support.truth import Truth
 from wavesym.errors import CostError, RangeError, ToleranceError
+from wavesym.numbers.arrays import Array
 from wavesym.running.compilation import FLAGS, import_text
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
@@ -37,8 +38,6 @@ MOST = 240
 """Instants at which a program is asked."""
 GRID = 65
 """Samples of NAME_sample."""
-
-Values = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -98,7 +97,7 @@ class Exam:
         taus = np.array([*near, *ends, *tiny, *rng.uniform(0, self.tau_max, 40)], dtype=real)
         return taus[(taus >= 0) & (taus <= end)]
 
-    def judge(self, taus: NDArray[np.floating], found: Values, bounds: list[float]) -> tuple[float, int, float]:
+    def judge(self, taus: NDArray[np.floating], found: Array, bounds: list[float]) -> tuple[float, int, float]:
         """The largest error in parts of what is allowed; its output, and tau.
 
         What is 0 up to TAU_MAX must be so exactly. Otherwise rounded towards innocence.
@@ -165,13 +164,13 @@ def _said(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
 
 
-def _in_numpy(made: dict[str, str], scene: Scene, exam: Exam) -> Iterator[tuple[NDArray[np.floating], Values]]:
+def _in_numpy(made: dict[str, str], scene: Scene, exam: Exam) -> Iterator[tuple[NDArray[np.floating], Array]]:
     yield exam.taus, import_text(made[f"{scene.name}.py"], scene.name).evaluate(exam.taus)
 
 
 def _in_c(
     made: dict[str, str], scene: Scene, exam: Exam, flags: tuple[str, ...]
-) -> Iterator[tuple[NDArray[np.floating], Values]]:
+) -> Iterator[tuple[NDArray[np.floating], Array]]:
     name, outputs = scene.name, len(scene.outputs)
     real = ctypes.c_double if exam.real is np.float64 else ctypes.c_float
     with TemporaryDirectory() as directory:

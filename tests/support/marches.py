@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tests.support.drives import exact, instants
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE, SINGLE, Real
 from wavesym.programs.making import program
@@ -17,8 +17,6 @@ from wavesym.programs.march.evaluator import March
 from wavesym.programs.march.plan import MarchPlan, march_plan
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.schemes.march import Marching, MarchScheme, WindowBlock
-
-Array = NDArray[np.float64]
 
 HALF_ULP = 2.0**-53
 LEAST = 5e-324

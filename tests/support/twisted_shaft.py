@@ -16,12 +16,10 @@ from fractions import Fraction
 
 import numpy as np
 from flint import arb, ctx
-from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.scene import Scene
-
-Array = NDArray[np.float64]
 
 LASTS = Fraction(1, 2)
 STRAIN_AT = Fraction(1, 4)

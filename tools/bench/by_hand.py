@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
 from wavesym.methods.characteristics import unlinked_problem
-from wavesym.methods.problem import Array, LoadEvent
+from wavesym.methods.problem import LoadEvent
 from wavesym.methods.quadrature import gauss, lagrange
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.running.native import FAST, address, library
 

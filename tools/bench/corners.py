@@ -21,7 +21,7 @@ from wavesym.exact.contacts.schedule import outcome
 from wavesym.exact.reference import Reference
 from wavesym.lab.timing import medians
 from wavesym.mechanics.model import Model
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.programs.making import make
 from wavesym.running.native import FAST
 from wavesym.scene import Scene, lower

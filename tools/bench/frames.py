@@ -13,10 +13,10 @@ from time import process_time
 
 import numpy as np
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.mode_sets.parameters import ModeParameters, mode_parameters, names_of
 from wavesym.programs.modes.evaluator import modes
-from wavesym.programs.modes.loads import Numbers
 from wavesym.running.mode_sets import ModalSets
 from wavesym.scene import Scene, lower
 
@@ -66,13 +66,13 @@ def _parameters(records: Path) -> ModeParameters:
     return mode_parameters(model, names_of(model), ())
 
 
-def _draw_sets(parameters: ModeParameters, sets: int) -> Numbers:
+def _draw_sets(parameters: ModeParameters, sets: int) -> Array:
     """Sets whose numbers are up to a third larger or smaller than the frame's own."""
     own = np.array([float(value) for field in parameters.fields for value in field.values])
     return np.asarray(own * np.exp(np.random.default_rng(28).uniform(-0.3, 0.3, (sets, len(own)))))
 
 
-def _errors(parameters: ModeParameters, given: Numbers, engine: ModalSets) -> Numbers:
+def _errors(parameters: ModeParameters, given: Array, engine: ModalSets) -> Array:
     """Of each set the worst error."""
     model = parameters.model
     taus = np.linspace(0.0, model.horizon(), 3119)

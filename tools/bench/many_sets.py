@@ -15,7 +15,7 @@ import numpy as np
 
 from tools.bench.by_hand import Line, SampleGrid, line, peaks_in_c, peaks_in_numpy
 from wavesym.lab.timing import medians
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.runtime.making import sets_program
 from wavesym.running.model import RuntimeModel, compiled_model

@@ -19,6 +19,7 @@ from tools.bench.by_hand import SampleGrid, in_c, in_numpy, line
 from tools.bench.harness import EVERY
 from wavesym.errors import UnservedError
 from wavesym.lab.timing import medians
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.request import PARTS
 from wavesym.programs.runtime.making import sets_program
@@ -27,8 +28,6 @@ from wavesym.running.model import compiled_model
 from wavesym.running.native import FAST, address, library, struct_size
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import runtime_sets
-
-Array = NDArray[np.float64]
 
 SAMPLES = 1001
 LIGHT = 100

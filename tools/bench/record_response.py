@@ -7,13 +7,13 @@ from functools import partial
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.lab.timing import medians
 from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
 from wavesym.methods.network_problem import linear_problem
+from wavesym.numbers.arrays import Array
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
@@ -22,8 +22,6 @@ SAMPLES, SPACING = 1560, fmpq(4995, 1000)
 _ELEMENTS = (1, 2, 4, 8)  # of a rod
 _STOREYS = range(1, 11)
 _FREQUENCIES = (0.4, 0.9, 1.1, 1.7, 2.3, 3.1, 4.7, 7.3)  # Hz
-
-Values = NDArray[np.float64]
 
 
 def frame() -> Scene:
@@ -50,7 +48,7 @@ def rows() -> Iterator[Sequence[str]]:
     """What, the seconds that it takes from the scene's model to all outputs at all samples, its largest error."""
     model = lower(frame())
     taus = np.array([float(k * SPACING) for k in range(SAMPLES)])
-    ways: dict[str, Callable[[], Values]] = {"modes": partial(modes, model, taus)}
+    ways: dict[str, Callable[[], Array]] = {"modes": partial(modes, model, taus)}
     for count in _ELEMENTS:
         ways[f"finite elements, modal, {count} a rod"] = partial(elements, model, count)
     right = make(model.tolerating(model.tolerance / 30), Request(evaluator="modes")).evaluate(taus)
@@ -59,12 +57,12 @@ def rows() -> Iterator[Sequence[str]]:
         yield name, f"{seconds:.3f}", f"{np.max(np.abs(way() - right) / sizes):.1e}"
 
 
-def modes(model: Model, taus: Values) -> Values:
+def modes(model: Model, taus: Array) -> Array:
     """The outputs at tau by modes of waves."""
     return make(model, Request(evaluator="modes")).evaluate(taus)
 
 
-def elements(model: Model, count: int) -> Values:
+def elements(model: Model, count: int) -> Array:
     """The outputs at the samples, `count` elements to a rod."""
     problem = linear_problem(model)
     return DiscreteModel(Elements(problem, np.full(len(problem.ends), count))).outputs(float(SPACING))[1]

@@ -32,10 +32,9 @@ from wavesym.exact.output_piece import NO_AVERAGES, Averages, Piece, averages, s
 from wavesym.exact.tables.ball import is_zero
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import middle, midpoint, nearest, not_below, rational
-
-Numbers = NDArray[np.float64]
 
 BOUND = 1.2e-16
 """Of an extreme, relative to the output's largest value: two roundings to double, and what counts as equal."""
@@ -191,7 +190,7 @@ class _Screen:
         self._bend = np.abs(self._powers) @ (k * (k - 1.0))
         self._low, self._high = self._values(np.arange(len(pieces)), _POINTS[0])
 
-    def _values(self, chosen: NDArray[np.intp], points: int) -> tuple[Numbers, Numbers]:
+    def _values(self, chosen: NDArray[np.intp], points: int) -> tuple[Array, Array]:
         """The least and the greatest value of pieces at so many points."""
         t = np.linspace(-1.0, 1.0, points)
         values = self._powers[chosen] @ np.vander(t, self._powers.shape[1], increasing=True).T

@@ -13,7 +13,7 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
 from wavesym.methods.network_problem import linear_problem
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import attempt, choose
 from wavesym.programs.making import program

@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
 from wavesym.methods.network_problem import gridded_problem
-from wavesym.methods.problem import Array, Evaluate, Method, Problem
+from wavesym.methods.problem import Evaluate, Method, Problem
 from wavesym.methods.quadrature import gauss, lagrange
+from wavesym.numbers.arrays import Array
 from wavesym.running.native import FAST, address, library
 
 _SOURCE = Path(__file__).with_suffix(".c")

@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.elements import FEWEST, interpolate_readings, keep_places, stencil
 from wavesym.methods.network_problem import gridded_problem
-from wavesym.methods.problem import Array, Evaluate, Method, Problem
+from wavesym.methods.problem import Evaluate, Method, Problem
+from wavesym.numbers.arrays import Array
 
 Places = NDArray[np.int_]
 

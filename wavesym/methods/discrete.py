@@ -16,8 +16,9 @@ from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.elements import Elements
 from wavesym.methods.network_problem import linear_problem
 from wavesym.methods.oscillators import DERIVATIVES, KEPT, condense
-from wavesym.methods.problem import Array, Evaluate, Method, Problem
+from wavesym.methods.problem import Evaluate, Method, Problem
 from wavesym.methods.stepping import Systems, step_systems
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import fraction, nearest
 
 

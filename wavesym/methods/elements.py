@@ -17,7 +17,8 @@ from scipy.sparse.linalg import splu
 
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.network_problem import undamped_problem
-from wavesym.methods.problem import Array, Evaluate, Method, Problem
+from wavesym.methods.problem import Evaluate, Method, Problem
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import fraction
 
 FEWEST = 4

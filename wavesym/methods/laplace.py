@@ -9,19 +9,17 @@ their end rings with stays at fronts.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.network_problem import undamped_problem
-from wavesym.methods.problem import Array, Evaluate, Method, Problem
+from wavesym.methods.problem import Evaluate, Method, Problem
+from wavesym.numbers.arrays import Array, Complex
 
 _PERIODS = 2.0  # T, in horizons
 _DAMPED = 34.0  # 2 c T: what comes back from beyond 2 T is e^-34 of it
 _ORDER = 6  # of the filter: what is smooth converges as the number of terms to about this power
 _LAST = 36.0  # the last term keeps e^-36
 _MOST = 1 << 22  # entries of a matrix of exponentials at a time
-
-Complex = NDArray[np.complex128]
 
 
 def _transforms(problem: Problem, s: Complex) -> Complex:

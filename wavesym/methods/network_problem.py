@@ -11,7 +11,8 @@ from flint import fmpq
 from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link, Network
-from wavesym.methods.problem import LOAD_TERMS, Array, LoadEvent, Problem
+from wavesym.methods.problem import LOAD_TERMS, LoadEvent, Problem
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import fraction, nearest
 
 # a grid of steps that all delays are multiples of has at most so many in the longest

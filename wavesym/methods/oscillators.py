@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 
 KEPT = 4
 """What is kept of a load: its integral, itself, two derivatives."""

@@ -28,9 +28,9 @@ from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 
-Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]
 """Ascending tau in [0, until], shape (n,), to outputs, shape (outputs, n)."""
 

@@ -9,7 +9,7 @@ import numpy as np
 from flint import arb, arb_mat, ctx
 from numpy.polynomial import legendre
 
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 
 _BITS = 256  # of Gauss's rule before it is rounded
 

@@ -15,7 +15,7 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import not_below, rational
 
 _TERMS = 18  # of a series of exp, for what is at most 1: the next one is 1e-17

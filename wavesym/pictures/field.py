@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from flint import arb, fmpq
-from numpy.typing import NDArray
 
 from wavesym.exact.contacts.events import events
 from wavesym.exact.joints.network_waves import SentWave, Waves
@@ -12,9 +11,8 @@ from wavesym.exact.motion import Motion
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import middle, nearest, rational
-
-Array = NDArray[np.float64]
 
 # errors this small, relative to the largest wave, are seen in no picture
 _UNSEEN = arb(2) ** -20

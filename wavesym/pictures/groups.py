@@ -10,7 +10,8 @@ import numpy as np
 
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.quantities import QUANTITIES
-from wavesym.pictures.histories import Histories, History, Points
+from wavesym.numbers.arrays import Array
+from wavesym.pictures.histories import Histories, History
 from wavesym.pictures.timescale import Timescale, timescale
 from wavesym.pictures.units import unit_text
 from wavesym.results.presentation import number_text
@@ -30,7 +31,7 @@ class Mark:
     """Something to be seen on a curve: its number, and one point or two that a line joins, (n, 2)."""
 
     text: str
-    points: Points
+    points: Array
     weight: str = "bold"
 
 

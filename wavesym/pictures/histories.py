@@ -14,12 +14,12 @@ from math import inf, nextafter
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.errors import SpacingError, ToleranceError, WavesymError
 from wavesym.exact.contacts.events import ContactEnd, contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.hats import under_jumps
 from wavesym.programs.making import make
@@ -27,8 +27,6 @@ from wavesym.programs.march.plan import march_plan
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
 from wavesym.results.sampling import sampled_extremes
-
-Points = NDArray[np.float64]
 
 _TOLERANCE = fmpq(1, 10**6)
 _VISIBLE = 1e-5  # smaller jumps, relative to the largest value, are no jumps
@@ -51,7 +49,7 @@ class History:
     """
 
     output: Probe
-    stretches: tuple[Points, ...]
+    stretches: tuple[Array, ...]
     formal: float = inf
 
     @property
@@ -59,17 +57,17 @@ class History:
         return self.output.label
 
     @cached_property
-    def points(self) -> Points:
+    def points(self) -> Array:
         """All vertices, in order."""
         return np.vstack(self.stretches)
 
     @cached_property
-    def real(self) -> Points:
+    def real(self) -> Array:
         """The vertices that are no formal continuation."""
         return self.points[self.points[:, 0] <= self.formal]
 
     @property
-    def extremes(self) -> Points:
+    def extremes(self) -> Array:
         """Tau and value of its least and of its greatest value, (2, 2), in which nothing is formal."""
         return self.real[[np.argmin(self.real[:, 1]), np.argmax(self.real[:, 1])]]
 
@@ -179,7 +177,7 @@ def _formal(model: Model, probe: Probe, contacts: tuple[ContactEnd, ...]) -> flo
     return min((end.double + abs(x - end.x) for end in contacts for x in places), default=inf)
 
 
-def _instants(program: Program, columns: int, fronts: list[list[float]], formal: list[float]) -> Points:
+def _instants(program: Program, columns: int, fronts: list[list[float]], formal: list[float]) -> Array:
     until = program.tau_max
     most = min(_MOST, max(_LEAST, _VALUES // len(formal)))
     count = columns * -(-min(max(_LEAST, int(_PER_UNIT * until)), most) // columns)
@@ -189,7 +187,7 @@ def _instants(program: Program, columns: int, fronts: list[list[float]], formal:
     return np.unique(np.concatenate([program.instants(until / count), sudden, before, late]))
 
 
-def _with_peaks(program: Program, taus: Points, ends: Points) -> tuple[Points, Points]:
+def _with_peaks(program: Program, taus: Array, ends: Array) -> tuple[Array, Array]:
     """Tau and values (outputs, n), with those at which an output is least or greatest until it `ends` between them.
 
     They are looked for around the highest values at the other instants, as `summary` does.
@@ -203,7 +201,7 @@ def _with_peaks(program: Program, taus: Points, ends: Points) -> tuple[Points, P
     return np.insert(taus, place, more), np.insert(values, place, program.evaluate(more), axis=1)
 
 
-def _split_at_fronts(points: Points, fronts: list[float]) -> tuple[Points, ...]:
+def _split_at_fronts(points: Array, fronts: list[float]) -> tuple[Array, ...]:
     """A polyline in parts, between the fronts at which it jumps."""
     tau, value = points.T
     at = np.searchsorted(tau, fronts)

@@ -9,9 +9,8 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.transforms import Bbox
-from numpy.typing import NDArray
 
-Points = NDArray[np.float64]
+from wavesym.numbers.arrays import Array
 
 _DISTANCES = (8.0, 14.0, 22.0, 32.0, 44.0, 60.0, 80.0, 105.0, 135.0, 170.0)
 _DIRECTIONS = tuple((float(np.cos(a)), float(np.sin(a))) for a in np.arange(16) * np.pi / 8)
@@ -26,7 +25,7 @@ class Curve:
     """A polyline to be named: its vertices in data coordinates, (n, 2), and how its label is written."""
 
     text: str
-    points: Points
+    points: Array
     color: str
     weight: str
 
@@ -34,11 +33,11 @@ class Curve:
 @dataclass(frozen=True)
 class _Place:
     box: Bbox
-    anchor: Points
+    anchor: Array
     distance: float
 
     @property
-    def leader(self) -> Points:
+    def leader(self) -> Array:
         """Points on the line to its curve, if it has one: (n, 2)."""
         if self.distance <= _LEADER:
             return np.empty((0, 2))
@@ -68,7 +67,7 @@ def label(axes: Axes, curves: Sequence[Curve], fontsize: float) -> None:
             axes.plot(line[:, 0], line[:, 1], color=curve.color, linewidth=0.5, zorder=1)
 
 
-def _best(points: Points, size: Bbox, inside: Bbox, ink: Points, taken: Sequence[_Place]) -> _Place:
+def _best(points: Array, size: Bbox, inside: Bbox, ink: Array, taken: Sequence[_Place]) -> _Place:
     """The cheapest place: inside, over no label nor past one, over little ink, near; of equals the first."""
     reach = np.array([(distance, *direction) for distance in _DISTANCES for direction in _DIRECTIONS])
     anchors = np.repeat(points, len(reach), axis=0)
@@ -90,7 +89,7 @@ def _best(points: Points, size: Bbox, inside: Bbox, ink: Points, taken: Sequence
     return _Place(Bbox(centres[best] + np.outer((-1, 1), half)), anchors[best], float(distance[best]))
 
 
-def _resample(points: Points) -> Points:
+def _resample(points: Array) -> Array:
     """Points on a polyline, every few pixels."""
     parts = [points[:1]]
     for low, high in pairwise(points):

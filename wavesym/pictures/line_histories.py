@@ -15,7 +15,8 @@ import numpy as np
 from wavesym.mechanics.length import LengthUnit, in_unit, place_text
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.quantities import QUANTITIES
-from wavesym.pictures.histories import Histories, Points, histories
+from wavesym.numbers.arrays import Array
+from wavesym.pictures.histories import Histories, histories
 from wavesym.pictures.reduction import columns_of, extremes_between
 from wavesym.pictures.timescale import Timescale
 from wavesym.pictures.units import unit_text
@@ -49,7 +50,7 @@ class Band:
 
     line: str
     spots: tuple[Spot, ...]
-    values: Points
+    values: Array
 
     def tick_labels(self, most: int, first: int = 1) -> list[tuple[float, str]]:
         """Its places with their numbers, at most so many."""
@@ -62,7 +63,7 @@ class LineHistories:
 
     quantity: str
     unit: str
-    taus: Points
+    taus: Array
     bands: tuple[Band, ...]
     program: Program
     length: LengthUnit | None = None
@@ -181,7 +182,7 @@ def _quantity_histories(made: Histories, quantity: str, lines: list[tuple[str, t
     return LineHistories(quantity, own[0].output.unit, taus, tuple(bands), made.program)
 
 
-def cells(along: LineHistories, band: Band, columns: int) -> Points:
+def cells(along: LineHistories, band: Band, columns: int) -> Array:
     """The value of the largest size in each of so many columns of time, (places, columns); NaN where it is formal."""
     until = float(along.taus[-1])
     column = np.minimum(columns_of(along.taus, until, columns), columns - 1)
@@ -195,14 +196,14 @@ def cells(along: LineHistories, band: Band, columns: int) -> Points:
     return _fill_gaps(found)
 
 
-def _fill_gaps(found: Points) -> Points:
+def _fill_gaps(found: Array) -> Array:
     """Columns without an instant are as the one before."""
     there = ~np.isnan(found).all(axis=0)
     last = np.maximum.accumulate(np.where(there, np.arange(found.shape[1]), 0))
     return found[:, last]
 
 
-def limit(parts: list[Points]) -> float:
+def limit(parts: list[Array]) -> float:
     """The value of the strongest colour: what all but the largest few cells stay within."""
     sizes = np.abs(np.concatenate([part[~np.isnan(part)] for part in parts]))
     return float(np.quantile(sizes, _CLIPPED)) or float(np.max(sizes)) or 1.0
@@ -251,6 +252,6 @@ def describe_extremes(found: LineHistories, band: Band, scale: Timescale) -> str
     )
 
 
-def envelope(band: Band) -> tuple[Points, Points]:
+def envelope(band: Band) -> tuple[Array, Array]:
     """The least and the greatest value at each place, (places,)."""
     return np.nanmin(band.values, axis=1), np.nanmax(band.values, axis=1)

@@ -13,8 +13,9 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
-from wavesym.pictures.histories import History, Points
+from wavesym.pictures.histories import History
 
 Acting = Sequence[tuple[AppliedLoad, int]]
 """Loads on one node, each with the power of tau that it grows with: 0 for a step, 1 for a ramp."""
@@ -36,7 +37,7 @@ def load_histories(model: Model) -> tuple[History, ...]:
     return tuple(found)
 
 
-def stretches(acting: Acting, until: fmpq) -> Iterator[Points]:
+def stretches(acting: Acting, until: fmpq) -> Iterator[Array]:
     """The sum of loads as polylines (n, 2) of tau and value; between them it jumps."""
     times = sorted({fmpq(0), until, *(load.time for load, _ in acting if load.time < until)})
     changes: dict[fmpq, list[fmpq]] = {time: [fmpq(0), fmpq(0)] for time in times}

@@ -15,9 +15,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.pictures.groups import PlotPanel, load_panel, notes, panels, restless
-from wavesym.pictures.histories import Histories, History, Points
+from wavesym.pictures.histories import Histories, History
 from wavesym.pictures.labels import Curve, label
 from wavesym.pictures.naming import heading
 from wavesym.pictures.reduction import reduce_vertices
@@ -189,12 +190,12 @@ def _curve(axes: Axes, history: History, dashes: _Dashes, color: str) -> None:
         axes.plot([tau, tau], [before, after], color=color, linewidth=0.7, alpha=alpha, zorder=1.5)
 
 
-def jumps(history: History) -> list[tuple[Points, Points]]:
+def jumps(history: History) -> list[tuple[Array, Array]]:
     """The two ends (tau, value) of each jump."""
     return [(before[-1], after[0]) for before, after in pairwise(history.stretches)]
 
 
-def thin_polyline(points: Points, count: int) -> Points:
+def thin_polyline(points: Array, count: int) -> Array:
     """The vertices of a polyline, `count` at most, that keep its shape: always the one farthest from those so far."""
     kept = [0, len(points) - 1]
     places = np.arange(len(points))
@@ -207,7 +208,7 @@ def thin_polyline(points: Points, count: int) -> Points:
     return points[sorted(set(kept))]
 
 
-def isolated_vertices(places: Points, others: Sequence[Points], near: float) -> Points:
+def isolated_vertices(places: Array, others: Sequence[Array], near: float) -> Array:
     """Those vertices of a curve that are not near another curve; all where there are hardly any."""
     distances = [np.abs(places[:, 1] - np.interp(places[:, 0], *other.T)) for other in others]
     alone = places[np.min(distances, axis=0) > near] if distances else places

@@ -17,12 +17,12 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.quantities import QUANTITIES
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.field import Field
 from wavesym.pictures.naming import heading
@@ -34,8 +34,6 @@ from wavesym.pictures.xt_nodes import draw_nodes, legend, name_rows
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.physical.scene import PhysicalScene
 from wavesym.systems.station import Lines, Station
-
-Array = NDArray[np.float64]
 
 _PANEL, _BELOW, _LINE = 3.4, 0.62, 0.21  # inches: a panel, the axis below it, a line of text
 _LEFT, _RIGHT = 0.9, 0.95  # inches beside the panels

@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.errors import SpacingError
 from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import common_measure, nearest, rational, relative
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.form import Form
@@ -132,8 +132,6 @@ def _pairs(model: Model) -> Iterator[tuple[str, str]]:
             if acting & {step.source, ramp.source}:
                 yield step.source, ramp.source
 
-
-Numbers = NDArray[np.float64]
 
 _UNIT = 2.0**-53
 _PER_SPACING = 4  # instants at which an output's largest value is looked for
@@ -258,7 +256,7 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     )
 
 
-def _superpose(record: RecordLoad, march: March, hat: Verdict) -> Numbers:
+def _superpose(record: RecordLoad, march: March, hat: Verdict) -> Array:
     """Of what hats add up to the largest error and what values do not exceed: (2, outputs)."""
     samples = np.abs([nearest(value) for value in record.samples])
     count, plan = len(samples), march.plan

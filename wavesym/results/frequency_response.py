@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from flint import acb, arb, ctx
-from numpy.typing import NDArray
 
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.modes.damped_modes import remove_dashpots
@@ -18,6 +17,7 @@ from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
+from wavesym.numbers.arrays import Array, Complex
 from wavesym.numbers.doubles import midpoint, nearest, upper_double
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.results.modal_transfer import ModalTransfer
@@ -29,7 +29,6 @@ from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-Vector = NDArray[np.float64]
 
 _MODES_SHOWN, _STEPS = 5, 400
 _RIGID = 1e-6  # of what is above a frequency, one that is 0 but for rounding
@@ -61,11 +60,11 @@ class FrequencyResponse(OutputRows):
     name: str
     load: str
     load_unit: str
-    frequency: NDArray[np.float64]
+    frequency: Array
     frequency_label: str
     outputs: tuple[str, ...]
     units: tuple[str, ...]
-    values: NDArray[np.complex128]
+    values: Complex
     bound: float
     poles: tuple[float, ...]
     possible_poles: tuple[float, ...]
@@ -81,12 +80,12 @@ class FrequencyResponse(OutputRows):
         )
 
     @property
-    def amplitude(self) -> NDArray[np.float64]:
+    def amplitude(self) -> Array:
         """The absolute values, (outputs, n)."""
         return np.abs(self.values)
 
     @property
-    def phase(self) -> NDArray[np.float64]:
+    def phase(self) -> Array:
         """By how much each output is ahead of the load, in degrees from -180 to 180, (outputs, n)."""
         return np.degrees(np.angle(self.values))
 
@@ -134,7 +133,7 @@ class FrequencyResponse(OutputRows):
         return json.dumps({"name": self.name, **about, "frequency": self.frequency.tolist(), **more}, indent=2) + "\n"
 
 
-def _numbers(row: NDArray[np.float64]) -> list[float | None]:
+def _numbers(row: Array) -> list[float | None]:
     return [None if np.isnan(value) else value for value in row.tolist()]
 
 
@@ -194,7 +193,7 @@ def frequency_response(model: Model, load: HarmonicLoad, frequencies: ArrayLike)
     )
 
 
-def equally_spaced(model: Model, low: float | None, high: float | None, points: int) -> Vector:
+def equally_spaced(model: Model, low: float | None, high: float | None, points: int) -> Array:
     """Frequencies from `low` to `high`, ends included, where these are None from one step above 0 to the fifth mode.
 
     (That is the mode without dashpots. At 0 nothing but supports holds the chain: it may have no answer.)
@@ -286,7 +285,7 @@ def _is_sharp(value: acb, radius: arb, bits: int) -> bool:
     return bits >= _BITS_OF_ZERO and bool(abs(value) < arb(2) ** -_ZERO)
 
 
-def _modal(model: Model, load: HarmonicLoad, given: Vector, values: NDArray[np.complex128]) -> Vector:
+def _modal(model: Model, load: HarmonicLoad, given: Array, values: Complex) -> Array:
     """Fill in sums over as many modes as the tolerance needs; what each output is wrong by at most.
 
     ToleranceError where that are too many.

@@ -16,12 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.loads import Roughness, scaled_roughness
 from wavesym.programs.modes.records import RecordResponse
 from wavesym.programs.modes.truncation import ModalModel
 from wavesym.results.near_zero import zero_within
-from wavesym.results.tops import Numbers, Places, SuspectSteps, tops
+from wavesym.results.tops import Places, SuspectSteps, tops
 
 _PARTS = 2
 _PER_STEP, _PER_CROSSING = 16, 4  # samples of a closer look, as of `stepping`
@@ -40,11 +41,11 @@ class ManyRecords:
     tau = `begin`, and `spacing` apart; `rough` are those of each record and load, of samples 1 apart and `factors`
     (records, loads) times smaller."""
 
-    samples: Numbers
+    samples: Array
     begin: float
     spacing: float
     rough: Sequence[Sequence[Roughness]]
-    factors: Numbers
+    factors: Array
 
     def select(self, which: Sequence[int]) -> ManyRecords:
         """Those of them."""
@@ -77,11 +78,11 @@ class RecordedExtremes:
     `histories` are the outputs at the instants that were asked for, (records, outputs, instants).
     """
 
-    values: Numbers
-    taus: Numbers
-    bounds: Numbers
+    values: Array
+    taus: Array
+    bounds: Array
     modes: int
-    histories: Numbers
+    histories: Array
 
 
 class SharedModes:
@@ -167,7 +168,7 @@ def _by_modes(modes: _Modes, records: ManyRecords) -> RecordedExtremes:
     return RecordedExtremes(values, taus, bounds, count, np.empty((*values.shape[:2], 0)))
 
 
-def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) -> Numbers:
+def _histories(response: RecordResponse, records: ManyRecords, taus: Array) -> Array:
     """Values at tau, (records, outputs, instants)."""
     count, n, _ = records.samples.shape
     made = np.zeros((count, len(response.system.direct), len(taus)))
@@ -188,7 +189,7 @@ def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) ->
     return made
 
 
-def _extremes(response: RecordResponse, model: Model, begin: float, samples: Numbers) -> tuple[Numbers, Numbers]:
+def _extremes(response: RecordResponse, model: Model, begin: float, samples: Array) -> tuple[Array, Array]:
     """Values and tau, (records, outputs, 2), under samples (records, n, loads)."""
     records, n, _ = samples.shape
     end = (model.horizon() - begin) / response.spacing  # in steps
@@ -222,7 +223,7 @@ def _extremes(response: RecordResponse, model: Model, begin: float, samples: Num
     return values, taus
 
 
-def _candidates(seen: Numbers, end: float) -> tuple[Places, Places, Places, Places]:
+def _candidates(seen: Array, end: float) -> tuple[Places, Places, Places, Places]:
     """Of what is seen in blocks the record, the output, the side (0 the least value, 1 the greatest) and the step, for
     each step before the `end` that may have an extreme."""
     _, blocks, outputs, _, steps = seen.shape
@@ -237,7 +238,7 @@ def _candidates(seen: Numbers, end: float) -> tuple[Places, Places, Places, Plac
     bent[..., 1:] += last[..., :-1]
     bent[:, 1:, :, 0] += last[:, :-1, :, -1]
     bent[:, after] = np.where(number[after] < whole, bent[:, after], 0.0)
-    higher: Numbers = _SAFE / 8 * np.maximum(bent.max(axis=1), -bent.min(axis=1)).max(axis=-1)
+    higher: Array = _SAFE / 8 * np.maximum(bent.max(axis=1), -bent.min(axis=1)).max(axis=-1)
     greatest = np.maximum(seen.max(axis=1).max(axis=(-2, -1)), 0.0)
     least = np.minimum(seen.min(axis=1).min(axis=(-2, -1)), 0.0)
     moved = greatest > least

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Numbers = NDArray[np.float64]
+from wavesym.numbers.arrays import Array
 
 
-def is_near_zero(values: Numbers, bounds: Numbers | float, others: Numbers | None = None) -> NDArray[np.bool_]:
+def is_near_zero(values: Array, bounds: Array | float, others: Array | None = None) -> NDArray[np.bool_]:
     """Which values are within the bound of 0; none where the bound is no part of an output's largest value.
 
     Args:
@@ -21,7 +21,7 @@ def is_near_zero(values: Numbers, bounds: Numbers | float, others: Numbers | Non
     return near
 
 
-def zero_within(values: Numbers, taus: Numbers, bounds: Numbers | float, first: Numbers | float) -> None:
+def zero_within(values: Array, taus: Array, bounds: Array | float, first: Array | float) -> None:
     """Set extremes that are within the bound of 0 to 0, at the `first` tau at which the output is that near to 0.
 
     Args:

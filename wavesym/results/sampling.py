@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.results.near_zero import zero_within
 
-Numbers = NDArray[np.float64]
-Evaluate = Callable[[Numbers], Numbers]
+Evaluate = Callable[[Array], Array]
 
 _FINER = 65
 _ROUNDS = 2  # each makes a part 1/32 as wide; a march goes over the whole horizon in each
@@ -25,8 +25,8 @@ _EQUAL = 1e-14  # of the largest value: rounding makes no later instant of a pla
 
 
 def sampled_extremes(
-    taus: Numbers, values: Numbers, each: Evaluate | None = None, bound: float = 0.0
-) -> tuple[Numbers, Numbers]:
+    taus: Array, values: Array, each: Evaluate | None = None, bound: float = 0.0
+) -> tuple[Array, Array]:
     """Values and tau, each (outputs, 2), of the least and the greatest value; the first of equal ones.
 
     `values` (outputs, taus) are those at `taus`, which are in order. What lies between is looked at where there is
@@ -48,7 +48,7 @@ def sampled_extremes(
     return best, when
 
 
-def _tops(both: Numbers) -> NDArray[np.intp]:
+def _tops(both: Array) -> NDArray[np.intp]:
     """The highest samples that no neighbour is above, of each output and side: (outputs, sides, tops)."""
     inner = both[:, :, 1:-1]
     top = np.where((inner >= both[:, :, :-2]) & (inner > both[:, :, 2:]), inner, -np.inf)
@@ -56,7 +56,7 @@ def _tops(both: Numbers) -> NDArray[np.intp]:
     return np.asarray(np.argpartition(top, -kept, axis=2)[:, :, -kept:]) + 1
 
 
-def _neighbours(taus: Numbers) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _neighbours(taus: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """The sample before each and the one after it: of the two sides of what may jump not the other side."""
     place = np.arange(taus.size)
     twins = np.diff(taus) <= _TWINS * np.abs(taus[1:])
@@ -66,7 +66,7 @@ def _neighbours(taus: Numbers) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return np.maximum(before, 0), np.minimum(after, taus.size - 1)
 
 
-def _refine(each: Evaluate, taus: Numbers, tops: NDArray[np.intp]) -> Iterator[tuple[Numbers, Numbers]]:
+def _refine(each: Evaluate, taus: Array, tops: NDArray[np.intp]) -> Iterator[tuple[Array, Array]]:
     """Of ever finer samples around the `tops` the highest values, top by top, (outputs, sides), and their tau."""
     before, after = _neighbours(taus)
     low, high = taus[before[tops]], taus[after[tops]]

@@ -23,20 +23,17 @@ from math import ceil, factorial, floor, log10, pi, sqrt
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import with_unit
+from wavesym.numbers.arrays import Array, Complex
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.hats import under_jumps
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.results.presentation import OutputRows, csv_line
 from wavesym.results.stepping import jumps, just_before, sample_program
-
-Numbers = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 PER_DECADE = 100  # periods, at numbers that are the same in all scenes; half as wide as peaks with 2 %
 _SHORTEST = 2  # crossings of the shortest rod: the period of its own first mode
@@ -62,8 +59,8 @@ class Spectra(OutputRows):
     units: tuple[str, ...]
     time_unit: str | None
     damping: float
-    periods: Numbers
-    values: Numbers
+    periods: Array
+    values: Array
     step: float
     change: float
 
@@ -127,7 +124,7 @@ def spectra(model: Model, damping: float, program: Program | None = None) -> Spe
     )
 
 
-def line_spectrum(lines: Sequence[Numbers], periods: Numbers, damping: float) -> Numbers:
+def line_spectrum(lines: Sequence[Array], periods: Array, damping: float) -> Array:
     """The spectrum of an acceleration that is known as polylines, a load for example.
 
     Args:
@@ -145,7 +142,7 @@ def line_spectrum(lines: Sequence[Numbers], periods: Numbers, damping: float) ->
     return np.asarray(_peaks(values, lengths, periods, damping)[0])
 
 
-def _periods(model: Model, per_tau: float) -> Numbers:
+def _periods(model: Model, per_tau: float) -> Array:
     """Periods in the time of results: between the shortest that a rod's own modes have and half the horizon."""
     shortest = _SHORTEST * nearest(model.network.shortest) * per_tau
     longest = nearest(model.until) * per_tau / 2
@@ -159,7 +156,7 @@ def _periods(model: Model, per_tau: float) -> Numbers:
     return np.asarray(10.0 ** (np.arange(first, last + 1) / PER_DECADE))
 
 
-def _stretches(model: Model, program: Program, step: float) -> list[tuple[Numbers, Numbers]]:
+def _stretches(model: Model, program: Program, step: float) -> list[tuple[Array, Array]]:
     """Stretches without jumps, each of an even number of equal steps: instants, and the outputs there."""
     if program.has_equal_steps or (program.hats and not jumps(under_jumps(program, model))):
         taus, values = sample_program(model, program, step)  # nothing jumps; steps of panels of one length are equal
@@ -173,7 +170,7 @@ def _stretches(model: Model, program: Program, step: float) -> list[tuple[Number
     return list(zip(every, np.split(program.evaluate(np.concatenate(every)), cuts, axis=1), strict=True))
 
 
-def _stretch(low: float, high: float, step: float) -> Numbers:
+def _stretch(low: float, high: float, step: float) -> Array:
     """Evenly from one jump to just before the next, in an even number of steps."""
     count = 2 * ceil((high - low) / (2 * step))
     taus = np.linspace(low, high, count + 1)
@@ -181,7 +178,7 @@ def _stretch(low: float, high: float, step: float) -> Numbers:
     return taus
 
 
-def _peaks(accelerations: Sequence[Numbers], lengths: Sequence[float], periods: Numbers, damping: float) -> Numbers:
+def _peaks(accelerations: Sequence[Array], lengths: Sequence[float], periods: Array, damping: float) -> Array:
     """Pseudo-accelerations (outputs, periods) from values (outputs, times) on stretches with steps of these lengths.
 
     What is stepped is y less what it takes of the present a, so that a step has one term.
@@ -219,14 +216,14 @@ def _step(x: Complex) -> tuple[Complex, ...]:
     return np.exp(x), 1 + x * second - second, second
 
 
-def _raise(largest: Numbers, u: Numbers) -> None:
+def _raise(largest: Array, u: Array) -> None:
     """Puts the largest |u| over the first axis into what is largest: the top of a parabola through three values."""
     highest = np.maximum(u.max(axis=0), -u.min(axis=0))
     near = highest > _TOP * largest
     largest[near] = np.maximum(largest[near], _tops(u[:, near]))
 
 
-def _tops(u: Numbers) -> Numbers:
+def _tops(u: Array) -> Array:
     """The largest |u| over the first axis, with a parabola through the largest value and its neighbours."""
     at = np.abs(u[1:-1]).argmax(axis=0)[None] + 1
     before, here, after = (np.take_along_axis(u, at + k, axis=0)[0] for k in (-1, 0, 1))

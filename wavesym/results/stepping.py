@@ -5,18 +5,16 @@ from __future__ import annotations
 from math import nextafter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wavesym.errors import CostError
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.hats import under_jumps
 from wavesym.programs.modes.records import Panels
 from wavesym.programs.program import Program
-
-Numbers = NDArray[np.float64]
 
 _PER_STEP, _PER_CROSSING = 16, 4
 _MOST_JUMPS = 20_000  # stretches of all joints: where there are more, jumps lie closer than most samples
@@ -36,7 +34,7 @@ def describe_step(model: Model, step: float) -> str:
     return f"{clock.time(rational(step)):.4g} {clock.unit} apart" if clock else f"{step:g} tau apart"
 
 
-def sample_program(model: Model, program: Program, step: float) -> tuple[Numbers, Numbers]:
+def sample_program(model: Model, program: Program, step: float) -> tuple[Array, Array]:
     """Instants no more than `step` apart, in order, with both sides of jumps, and the values of a program there."""
     if program.has_equal_steps and program.real is DOUBLE:
         return Panels.from_program(program).sample(step)

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes_and_averages
@@ -17,6 +16,7 @@ from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.exact.joints.fronts import has_more_fronts
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe, with_unit
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import midpoint, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
@@ -27,8 +27,6 @@ from wavesym.results.response import Response
 from wavesym.results.sampling import sampled_extremes
 from wavesym.results.statistics import STATISTICS, OutputSummary, OutputTime, Peak, cells, headings
 from wavesym.results.stepping import describe_step, sample_program, spacing
-
-Numbers = NDArray[np.float64]
 
 _MOST_SAMPLES = 8_000_000
 _MOST_DRIFTS = 50  # rods in which the largest is looked for, though nobody asked for them
@@ -257,7 +255,7 @@ def instant(model: Model, tau: float, exact: fmpq | None = None) -> OutputTime:
     return OutputTime(tau, nearest((rational(tau) if exact is None else exact) * model.clock.per_tau))
 
 
-def _extremes_at(model: Model, taus: Numbers) -> _Extremes:
+def _extremes_at(model: Model, taus: Array) -> _Extremes:
     """The extremes of values at these tau, as `run` has them."""
     response = Response(model)
     values = response(taus)
@@ -284,19 +282,19 @@ def _search_extremes(model: Model) -> _Extremes:
     return _Extremes(ranges, _averages(values, _trapezoids(taus)), program.error_bound, False, how, program)
 
 
-def _trapezoids(taus: Numbers) -> Numbers:
+def _trapezoids(taus: Array) -> Array:
     """The weights of samples in an integral by trapezoids; of the two sides of a jump both have theirs."""
     steps = np.diff(taus, prepend=taus[:1], append=taus[-1:])
     return np.asarray((steps[:-1] + steps[1:]) / 2 if taus.size > 1 else np.ones(1))
 
 
-def _averages(values: Numbers, weights: Numbers) -> list[tuple[float, float, float]]:
+def _averages(values: Array, weights: Array) -> list[tuple[float, float, float]]:
     """Of each row the mean and the root mean square, with weights, and the last value."""
     means, squares = (np.average(each, axis=1, weights=weights) for each in (values, values**2))
     return list(zip(means.tolist(), np.sqrt(squares).tolist(), values[:, -1].tolist(), strict=True))
 
 
-def _ranges(values: Numbers, taus: Numbers) -> list[Range]:
+def _ranges(values: Array, taus: Array) -> list[Range]:
     """As of pieces; all of these are values that are taken."""
     least, greatest = (
         [TrueExtreme(*each) for each in zip(values[:, side].tolist(), taus[:, side].tolist(), strict=True)]

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.programs.modes.records import RecordResponse
 
-Numbers = NDArray[np.float64]
 Places = NDArray[np.intp]
 
 _NEARER = 8  # times, in the second look at a top
@@ -23,12 +23,12 @@ class SuspectSteps:
     group: Places
     step: Places
     output: Places
-    sign: Numbers
-    length: Numbers
-    samples: Numbers
+    sign: Array
+    length: Array
+    samples: Array
 
 
-def tops(response: RecordResponse, steps: SuspectSteps, points: int) -> tuple[Numbers, Numbers]:
+def tops(response: RecordResponse, steps: SuspectSteps, points: int) -> tuple[Array, Array]:
     """Of each group, in order, the greatest value times its sign, as it is, and when, since records begin."""
     values = _signed_values(response, steps, points)
     before, here, after = values[:, :-2], values[:, 1:-1], values[:, 2:]
@@ -58,7 +58,7 @@ def tops(response: RecordResponse, steps: SuspectSteps, points: int) -> tuple[Nu
     return sign * value, steps.step[row] * response.spacing + s
 
 
-def _signed_values(response: RecordResponse, steps: SuspectSteps, points: int) -> Numbers:
+def _signed_values(response: RecordResponse, steps: SuspectSteps, points: int) -> Array:
     """Values times their sign at equally spaced instants of each step, its ends included: (steps, points)."""
     made = np.empty((len(steps.step), points))
     for length in np.unique(steps.length).tolist():
@@ -71,7 +71,7 @@ def _signed_values(response: RecordResponse, steps: SuspectSteps, points: int) -
     return made
 
 
-def _vertex(before: Numbers, here: Numbers, after: Numbers) -> Numbers:
+def _vertex(before: Array, here: Array, after: Array) -> Array:
     """Where a parabola through three values has its top, in steps from the middle one; 0 where it has none there."""
     bend = 2 * here - before - after
     safe = np.where(bend > 0, bend, 1.0)

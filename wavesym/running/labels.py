@@ -8,12 +8,10 @@ from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.results.optional import require_packages
 from wavesym.results.statistics import ARRAYS
-
-Array = NDArray[np.float64]
 
 SETS = "set"
 

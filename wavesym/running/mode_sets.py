@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import WavesymError
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.mode_sets.making import ModeSetsTables
@@ -23,8 +24,6 @@ from wavesym.running.native import FAST, address, library, struct_size
 from wavesym.running.sets import FoundSets, no_sets
 from wavesym.running.toolchain import compiler
 from wavesym.targets.files import runtime_sets
-
-Array = NDArray[np.float64]
 
 _WHERE, _MANY = ctypes.c_void_p, ctypes.c_size_t
 _BAD = 1

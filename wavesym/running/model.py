@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wavesym.errors import WavesymError
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.results.horizon import check_horizon
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from wavesym.programs.runtime.network import RuntimeField
     from wavesym.running.sets import FoundSets
 
-Array = NDArray[np.float64]
 
 _WHY = (
     "",

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.programs.program import Program
 from wavesym.running.native import FAST, address, library, struct_size
 from wavesym.running.toolchain import compiler
@@ -19,7 +20,6 @@ from wavesym.targets.files import runtime_sets
 _MANY, _WHERE = ctypes.c_size_t, ctypes.c_void_p
 _LARGEST_BATCH = 1 << 28  # bytes
 
-Array = NDArray[np.float64]
 Memory = NDArray[np.uint8]
 
 

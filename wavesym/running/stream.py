@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wavesym.errors import WavesymError
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.running.native import FAST, address, library, struct_size
 from wavesym.targets.files import sources
-
-Array = NDArray[np.float64]
 
 
 class StreamModel:

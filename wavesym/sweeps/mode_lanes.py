@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from wavesym.errors import WavesymError
+from wavesym.numbers.arrays import Array
 from wavesym.programs.mode_sets.parameters import ModeParameters, mode_parameters, names_of
-from wavesym.programs.modes.loads import Numbers
 from wavesym.programs.runtime.network import RuntimeField
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes
@@ -36,11 +36,11 @@ _SAME = 1e-13
 class ModeLanes:
     """The numbers of modes of a sweep: those of the first case, and the `places` and `factors` of each column."""
 
-    own: Numbers
+    own: Array
     places: dict[str, Any]
-    factors: dict[str, Numbers]
+    factors: dict[str, Array]
 
-    def rows(self, plan: SweepPlan, places: Sequence[Place]) -> Numbers:
+    def rows(self, plan: SweepPlan, places: Sequence[Place]) -> Array:
         """The numbers of cases, a row for each."""
         rows = np.tile(self.own, (len(places), 1))
         for axis, dimension in enumerate(plan.dimensions):
@@ -57,7 +57,7 @@ def mode_lanes(plan: SweepPlan, first: ModeParameters, bare: SweepPlan) -> ModeL
     if not all(_PATHS.fullmatch(column.path) and isinstance(column.coordinate[0], float) for column in columns):
         return None
     own = own_numbers(first.fields)
-    places, factors, taken = dict[str, Any](), dict[str, Numbers](), set[int]()
+    places, factors, taken = dict[str, Any](), dict[str, Array](), set[int]()
     for column in columns:
         try:
             probes = [_probe(bare, column, times) for times in _PROBES]
@@ -77,7 +77,7 @@ def mode_lanes(plan: SweepPlan, first: ModeParameters, bare: SweepPlan) -> ModeL
     return ModeLanes(own, places, factors)
 
 
-def own_numbers(fields: Sequence[RuntimeField]) -> Numbers:
+def own_numbers(fields: Sequence[RuntimeField]) -> Array:
     """All numbers of fields, in the units of the scene."""
     return np.array([float(value) for field in fields for value in field.values])
 
@@ -89,7 +89,7 @@ def structure_parameters(scene: Scene) -> ModeParameters:
     return mode_parameters(model, names, amplitudes(scene))
 
 
-def _probe(plan: SweepPlan, column: Column, times: Fraction) -> Numbers:
+def _probe(plan: SweepPlan, column: Column, times: Fraction) -> Array:
     """The numbers of the first case with another value of a column."""
     value = times * Fraction(column.coordinate[0])
     text = f"{value} {column.unit}" if column.unit else str(value)

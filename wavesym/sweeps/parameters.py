@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wavesym.errors import WavesymError
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.runtime.making import sets_program
 from wavesym.results.statistics import RUNTIME_ARRAYS
@@ -24,7 +25,7 @@ from wavesym.sweeps.lanes import lane
 from wavesym.sweeps.plan import RECORD, SweepPlan
 from wavesym.sweeps.single import instants, of_model, output_rows
 from wavesym.sweeps.topology import RuntimeCase, differing
-from wavesym.sweeps.values import CaseValues, Numbers
+from wavesym.sweeps.values import CaseValues
 
 _FEWEST = 8  # sets that are worth a program of their own
 _HOW = "parameters at run time, errors estimated"
@@ -65,13 +66,13 @@ def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool])
         spread[name][:, rows] = found
     fine = (peaks.checks.status == 0) & (peaks.checks.estimate <= nearest(own.model.tolerance))
     for k in np.flatnonzero(fine).tolist():
-        arrays: dict[str, Numbers | float] = {name: each[k] for name, each in spread.items()}
+        arrays: dict[str, Array | float] = {name: each[k] for name, each in spread.items()}
         yield served[k], CaseValues({**of_all, **arrays, "bound": float(peaks.checks.estimate[k])}, _HOW)
 
 
 def _numbers(
     plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool], own: RuntimeCase, model: RuntimeModel
-) -> tuple[list[Place], dict[str, Numbers]]:
+) -> tuple[list[Place], dict[str, Array]]:
     """The cases that the program is for, and their numbers by field, (cases, numbers)."""
     if _plain(plan, joined):
         given = {name: np.tile(values, (len(places), 1)) for name, values in model.parameters.items()}

@@ -18,13 +18,13 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from wavesym.errors import WavesymError, printable
+from wavesym.numbers.arrays import Array
 from wavesym.scene.paths import replace_at_path
 from wavesym.sweeps.manifest import Manifest
 from wavesym.sweeps.marks import BatchMark
 from wavesym.sweeps.sealed_files import DamagedError, StrictTable
 from wavesym.sweeps.status import SweepStatus, damage, marks_of, status_of
 from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, file_hash, folder_content
-from wavesym.sweeps.values import Numbers
 
 _DTYPE = re.compile("<f8|<U[1-9][0-9]{0,4}")
 
@@ -98,11 +98,11 @@ class SweepResults:
         """The largest of any case, of errors of values; NaN where no case is done."""
         return float(np.fmax.reduce(self.array("bound"), axis=None))
 
-    def values(self, statistic: str, output: int) -> Numbers:
+    def values(self, statistic: str, output: int) -> Array:
         """A statistic of an output over all dimensions, NaN where there is none."""
         return self.array(statistic, output=output)
 
-    def array(self, name: str, part: tuple[slice, ...] | None = None, output: int | None = None) -> Numbers:
+    def array(self, name: str, part: tuple[slice, ...] | None = None, output: int | None = None) -> Array:
         """An array over a part of the dimensions, or all, of one output or all; NaN where nothing is marked."""
         part = part or tuple(slice(0, n) for n in self.shape)
         beside = self.store.arrays[name] if output is None else ()

@@ -18,10 +18,10 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.mode_sets.making import ModeSetsTables
 from wavesym.programs.mode_sets.parameters import ModeParameters
-from wavesym.programs.modes.loads import Numbers
 from wavesym.programs.program import Tables
 from wavesym.results.near_zero import zero_within
 from wavesym.results.statistics import RUNTIME_ARRAYS
@@ -87,9 +87,9 @@ class _Likeness(NamedTuple):
     """A case as `numbers` of another's parameters, in the units of that one; its `tau` in that one's, and what
     `outputs` of these numbers are multiplied by."""
 
-    numbers: Numbers
+    numbers: Array
     tau: float
-    outputs: Numbers
+    outputs: Array
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class _Structure:
         return ModeSetsTables(self.parameters)
 
     def cases(
-        self, places: Sequence[Place], models: Sequence[Model], numbers: Numbers, likeness: Sequence[_Likeness] = ()
+        self, places: Sequence[Place], models: Sequence[Model], numbers: Array, likeness: Sequence[_Likeness] = ()
     ) -> Iterator[tuple[Place, CaseValues]]:
         """Cases that are sets of its numbers."""
         plan = self.plan

@@ -15,6 +15,7 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.modes.evaluator import modal_model
 from wavesym.programs.modes.loads import Roughness, sampled_roughness
@@ -27,7 +28,7 @@ from wavesym.sweeps.batches import Place
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.record_files import Unreadable
 from wavesym.sweeps.single import extremes_and_history, instants
-from wavesym.sweeps.values import CaseValues, Numbers
+from wavesym.sweeps.values import CaseValues
 
 _PROBES = {False: ["0", "1"], True: ["1", "1"]}
 """Samples of a record that tells what a scene makes of all records with the same spacing and units: of those whose
@@ -130,7 +131,7 @@ class _Samples:
     rises to its first sample."""
 
     jumps: bool
-    values: Numbers
+    values: Array
     early: Roughness
     late: Roughness
 

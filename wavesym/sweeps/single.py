@@ -8,6 +8,7 @@ import numpy as np
 
 from wavesym.errors import SceneError
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.results.response import Response
 from wavesym.results.rows import own_samples
@@ -16,14 +17,14 @@ from wavesym.results.summary import summarise
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import sample_comb
 from wavesym.sweeps.plan import SweepPlan
-from wavesym.sweeps.values import CaseValues, Numbers
+from wavesym.sweeps.values import CaseValues
 
 
 def single(plan: SweepPlan, scene: Scene, *, at_samples: bool = False) -> CaseValues:
     """The values of a scene, of a summary `at_samples` or true ones. WavesymError as for `summary` and `evaluator`."""
     model = lower(scene)
     rows = output_rows(plan, model)
-    made = dict[str, Numbers | float]()
+    made = dict[str, Array | float]()
     bounds, hows = [], []
     if plan.summary:
         found = summarise(model, own_samples(model, sample_comb(scene)) if at_samples else None)
@@ -41,12 +42,12 @@ def single(plan: SweepPlan, scene: Scene, *, at_samples: bool = False) -> CaseVa
 
 
 def extremes_and_history(
-    plan: SweepPlan, model: Model, bound: float, extremes: tuple[Numbers, Numbers], history: Numbers, how: str
+    plan: SweepPlan, model: Model, bound: float, extremes: tuple[Array, Array], history: Array, how: str
 ) -> CaseValues:
     """A case that was computed beside others: `extremes` are the least and greatest value of each of the model's
     outputs, (outputs, 2), and their tau; `history` has those at `instants`, (outputs, instants)."""
     rows = output_rows(plan, model)
-    made: dict[str, Numbers | float] = {**of_model(plan, model), "bound": bound}
+    made: dict[str, Array | float] = {**of_model(plan, model), "bound": bound}
     for side, name in enumerate(("min", "max")):
         for prefix, values in zip(("", "tau_"), extremes, strict=True):
             made[f"{prefix}{name}"] = spread_out(plan, rows, values[:, side])
@@ -78,7 +79,7 @@ def output_rows(plan: SweepPlan, model: Model) -> list[int]:
     return [place[probe.name, probe.unit] for probe in model.probes]
 
 
-def spread_out(plan: SweepPlan, rows: Sequence[int], values: Numbers) -> Numbers:
+def spread_out(plan: SweepPlan, rows: Sequence[int], values: Array) -> Array:
     """Values of a model's outputs as those of the sweep's."""
     made = np.full((len(plan.outputs), *values.shape[1:]), np.nan)
     made[list(rows)] = values

@@ -23,11 +23,12 @@ from typing import Any
 import numpy as np
 
 from wavesym.errors import WavesymError, install_command
+from wavesym.numbers.arrays import Array
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.dimension import SweepAxis
 from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, SweepPlan
 from wavesym.sweeps.sealed_files import DamagedError, refuse_other
-from wavesym.sweeps.values import Numbers, kept_arrays, sizes
+from wavesym.sweeps.values import kept_arrays, sizes
 
 NAME = "results.zarr"
 DIMENSIONS = "_ARRAY_DIMENSIONS"
@@ -63,7 +64,7 @@ class Store:
     def _shape(self, name: str) -> tuple[int, ...]:
         return (*self.batches.chunk, *self.arrays[name])
 
-    def write(self, batch: int, arrays: Mapping[str, Numbers]) -> dict[str, str | None]:
+    def write(self, batch: int, arrays: Mapping[str, Array]) -> dict[str, str | None]:
         """Put the arrays of a batch, over its cases, into its chunks; the hash of each of them."""
         made: dict[str, str | None] = {}
         counts = [part.stop - part.start for part in self.batches.region(batch)]
@@ -91,7 +92,7 @@ class Store:
         found = file_hash(path)
         return found and (found if path.stat().st_size == 8 * prod(self._shape(name)) else "")
 
-    def read(self, name: str, batch: int) -> Numbers:
+    def read(self, name: str, batch: int) -> Array:
         """The values of a batch in an array, (dimensions, rest); NaN where there is no chunk."""
         shape = self._shape(name)
         try:

@@ -7,13 +7,11 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.results.statistics import ARRAYS
 from wavesym.sweeps.batches import Place
 from wavesym.sweeps.plan import OUTPUT, SAMPLE, SweepPlan
-
-Numbers = NDArray[np.float64]
 
 
 class KeptArray(NamedTuple):
@@ -45,7 +43,7 @@ def sizes(plan: SweepPlan) -> dict[str, int]:
 class CaseValues:
     """What is kept of one case: arrays by name, over the outputs and samples that they have."""
 
-    arrays: Mapping[str, Numbers | float]
+    arrays: Mapping[str, Array | float]
     how: str
 
 
@@ -55,7 +53,7 @@ class BatchValues:
     of cases that failed, by place, and how the others were computed."""
 
     places: list[Place]
-    arrays: dict[str, Numbers]
+    arrays: dict[str, Array]
     failed: dict[Place, str] = field(default_factory=dict)
     how: dict[str, int] = field(default_factory=dict)
 

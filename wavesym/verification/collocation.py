@@ -25,8 +25,8 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
-from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import gauss
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.verification.problem import Change, CornerProblem
 

@@ -34,8 +34,8 @@ from numpy.typing import NDArray
 from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
-from wavesym.methods.problem import Array
 from wavesym.methods.quadrature import gauss
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
 from wavesym.verification.problem import CornerProblem, LinkLaw, corner_problem
 

@@ -12,7 +12,7 @@ from operator import mul
 
 import numpy as np
 
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.verification.problem import BranchChange, CornerProblem, LinkLaw
 
 # pulls of links are found as exactly as this, relative to the largest, in so many rounds

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.mechanics.gauge import Gauge
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
 from wavesym.verification.link_pulls import LinkPulls
 from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, match_changes

@@ -8,7 +8,7 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.mode_sets.parameters import mode_parameters, names_of
 from wavesym.running.mode_sets import ModalSets

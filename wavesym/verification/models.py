@@ -15,7 +15,7 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.exact.extremes import extremes
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.running.compilation import CompiledLibrary, CompiledModel
 from wavesym.verification.outcome import Integrals, IntegratedOutput, ProgramValues
 from wavesym.verification.reference import ReferenceOutputs, even_taus, sample_evenly

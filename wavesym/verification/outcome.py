@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.results.presentation import align_columns
 from wavesym.verification.reference import ReferenceOutputs
 

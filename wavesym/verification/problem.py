@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.methods.network_problem import network_problem, opening
-from wavesym.methods.problem import Array, Problem
+from wavesym.methods.problem import Problem
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 
 

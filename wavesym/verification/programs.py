@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, RangeError, ToleranceError, UnservedError
 from wavesym.mechanics.model import Model
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import SINGLE
 from wavesym.programs.making import make

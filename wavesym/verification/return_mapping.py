@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from wavesym.mechanics.gauge import Gauge
 from wavesym.methods.differences import Grid, fields, point_steps
 from wavesym.methods.elements import keep_places
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.verification.link_pulls import ROUNDS
 from wavesym.verification.problem import CornerProblem, LinkLaw

@@ -10,7 +10,7 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.mechanics.model import Model
-from wavesym.methods.problem import Array
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.programs.program import Program
 from wavesym.programs.request import SIMULATORS

@@ -17,7 +17,6 @@ from dataclasses import replace
 
 import numpy as np
 from flint import acb, arb, ctx
-from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
@@ -25,8 +24,7 @@ from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.shape import Mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.mechanics.network import Network
-
-Complex = NDArray[np.complex128]
+from wavesym.numbers.arrays import Complex
 
 _BITS = 224
 _BITS_A_ROW, _FEWER_BITS, _MANY_ROWS = 12, 6, 32  # fewer are tried first where there are many rows

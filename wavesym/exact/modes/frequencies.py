@@ -11,8 +11,9 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.equal_frequencies import WIDE, common_frequency, prove_cluster
 from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
-from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, Vector
+from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.mechanics.network import Network
+from wavesym.numbers.arrays import Array
 
 _BITS = 192
 _BITS_A_ROW = 6  # of which determinants in balls take about 4
@@ -117,7 +118,7 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
         n += len(made)
 
 
-def bisect_frequencies(stiffness: Stiffness, count: int) -> Vector:
+def bisect_frequencies(stiffness: Stiffness, count: int) -> Array:
     """The first frequencies in doubles, by bisection of all at once."""
     n = np.arange(1, count + 1)
     high = stiffness.upper_bounds(n)

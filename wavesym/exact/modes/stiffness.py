@@ -23,11 +23,11 @@ from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.network import Bar, Link, Network
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 
 # doubles (arrays of them), or balls
 Quantity = Any
-Vector = NDArray[np.float64]
 
 
 Weights = list[tuple[int, Quantity]]
@@ -278,7 +278,7 @@ class Stiffness:
             return None
         return sum(self.network.points[point].mass != 0 for point in self.points)
 
-    def upper_bounds(self, n: NDArray[np.int64]) -> Vector:
+    def upper_bounds(self, n: NDArray[np.int64]) -> Array:
         """Above each n-th frequency. Without bars the squares of all have the sum K_ii/m_i at most."""
         if self.modes is None:
             return np.asarray((n + len(self.network.bars)) * np.pi / nearest(self.delay))
@@ -286,7 +286,7 @@ class Stiffness:
         pairs = zip(law.stiffness, law.mass, strict=True)
         return np.full(len(n), 2 * float(np.sqrt(sum(k / mass for k, mass in pairs if mass != 0)) or 1))
 
-    def count_below(self, w: Vector) -> NDArray[np.int64]:
+    def count_below(self, w: Array) -> NDArray[np.int64]:
         """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
         angles = [w * delay for delay in self.doubles.delays]
         sines = [np.sin(angle) for angle in angles]
@@ -315,7 +315,7 @@ class Stiffness:
 
     def _eliminate(
         self, w: Quantity, angles: Sequence[Quantity], sines: Sequence[Quantity], rate: Quantity = None
-    ) -> tuple[list[Vector], list[Any]]:
+    ) -> tuple[list[Array], list[Any]]:
         csc = [1 / sine for sine in sines]
         cot = [np.cos(angle) / sine for angle, sine in zip(angles, sines, strict=True)]
         diagonal, up = self.doubles.matrix(w, cot, csc, rate)
@@ -336,7 +336,7 @@ class Stiffness:
         return count
 
 
-def _turns(angle: Vector, sine: Vector) -> NDArray[np.int64]:
+def _turns(angle: Array, sine: Array) -> NDArray[np.int64]:
     """floor(angle/pi), such that the sine has the sign that goes with it: a jump of both is at one double."""
     nearest_turn = np.rint(angle / np.pi).astype(np.int64)
     return nearest_turn - (np.where(nearest_turn % 2, -sine, sine) < 0)

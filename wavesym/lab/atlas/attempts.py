@@ -7,21 +7,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wavesym.errors import CostError, UnservedError
 from wavesym.lab.atlas.family import AtlasPoint
 from wavesym.lab.atlas.scenes import AIM
 from wavesym.lab.standard import Standard, standard
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.choice import MAKERS
 from wavesym.programs.closed_form import ClosedForm
 from wavesym.programs.making import program
 from wavesym.scene import Scene, lower
-
-Array = NDArray[np.float64]
 
 EVALUATORS = ("closed", "pieces", "march")
 ROUNDED = 2.0**-53

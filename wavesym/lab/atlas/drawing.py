@@ -16,12 +16,10 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
-from numpy.typing import NDArray
 
 from wavesym.lab.atlas.family import AtlasPoint, CurveFamily
+from wavesym.numbers.arrays import Array
 from wavesym.pictures.labels import Curve, label
-
-Places = NDArray[np.float64]
 
 _FONT = 8.5
 _PANEL = (5.6, 4.8)  # inches
@@ -98,19 +96,19 @@ def _parts(points: Sequence[AtlasPoint]) -> tuple[list[AtlasPoint], list[AtlasPo
     return valued, missing, [point for point in valued if math.isfinite(point.bound)]
 
 
-def _line(axes: Axes, places: Places, points: Sequence[AtlasPoint], **style: Any) -> None:
+def _line(axes: Axes, places: Array, points: Sequence[AtlasPoint], **style: Any) -> None:
     """A line through points; between the smallest x and exactly 0 nothing is known."""
     joined = [k for k, point in enumerate(points) if point.x]
     axes.plot(places[joined, 0], places[joined, 1], **style)
 
 
-def _places(family: CurveFamily, points: Sequence[AtlasPoint], values: Sequence[float]) -> Places:
+def _places(family: CurveFamily, points: Sequence[AtlasPoint], values: Sequence[float]) -> Array:
     """Where points are drawn: inside the axes."""
     heights = np.clip(values, family.least * 1.5, family.most / 1.5)
     return np.column_stack([[point.x or family.x.zero or 0.0 for point in points], heights])
 
 
-def _missing(family: CurveFamily, panel: str, name: str, points: Sequence[AtlasPoint]) -> Places:
+def _missing(family: CurveFamily, panel: str, name: str, points: Sequence[AtlasPoint]) -> Array:
     """Where points without a value are drawn: near the top, each curve's on a line of its own."""
     depth = (1.5 + family.curves(panel).index(name)) / _CROSSES
     height = family.most * (family.least / family.most) ** depth

@@ -11,7 +11,7 @@ import numpy as np
 
 from wavesym.errors import ToleranceError, WavesymError
 from wavesym.fields.numbers import decimal_text
-from wavesym.lab.atlas.attempts import Array, Truth, truth
+from wavesym.lab.atlas.attempts import Truth, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import atlas_scene, with_tolerance
 from wavesym.lab.standard import standard
@@ -19,6 +19,7 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.discrete import DiscreteModel
 from wavesym.methods.elements import Elements
 from wavesym.methods.network_problem import linear_problem
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.hats import hat_march

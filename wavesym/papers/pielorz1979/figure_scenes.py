@@ -15,12 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.errors import SceneError
 from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
+from wavesym.numbers.arrays import Array
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, without_brackets
 from wavesym.papers.pielorz1979.chains import Exact, LoadStep, exact_tables
 from wavesym.papers.pielorz1979.transcript import entry
@@ -30,8 +30,6 @@ from wavesym.papers.tree import Number, Product, Symbol, Tree, latex
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import named_chain
 from wavesym.systems.drive import DRIVE
-
-Array = NDArray[np.float64]
 
 SAMPLES = 201
 UNTIL = 20

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wavesym.numbers.arrays import Array
 from wavesym.papers.evaluation import MeaninglessError
-from wavesym.papers.pielorz1979.figure_scenes import Array
 from wavesym.papers.sentences import Words
 
 _SLIGHT, _CLEAR, _SWING, _UNEVEN, _TURN, _EXACT = 1 / 3, 1 / 2, 1 / 20, 1.5, 0.01, 1e-12

@@ -13,9 +13,9 @@ from wavesym.exact.contacts.events import ContactEnd, contact_ends
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.field import Field
-from wavesym.pictures.histories import Points
 from wavesym.pictures.line_histories import limit
 from wavesym.pictures.page.frame import Frame, PlotAxis
 from wavesym.pictures.page.places import colour_bar
@@ -91,7 +91,7 @@ def _formal(end: ContactEnd, x: PlotAxis, y: PlotAxis, until: float, long: float
     return element("polygon", points=points, class_="hatched")
 
 
-def _cells(field: Field, stations: tuple[Station, ...], until: float, quantity: int) -> Points:
+def _cells(field: Field, stations: tuple[Station, ...], until: float, quantity: int) -> Array:
     """A value for each row of time and each column of place, whatever rod it lies in."""
     tau = (np.arange(_ROWS) + _OFF) * until / _ROWS
     x = (np.arange(_COLUMNS) + _OFF) * float(stations[-1].x) / _COLUMNS

@@ -13,7 +13,8 @@ from math import floor
 
 import numpy as np
 
-from wavesym.pictures.histories import History, Points
+from wavesym.numbers.arrays import Array
+from wavesym.pictures.histories import History
 from wavesym.pictures.page.svg import Svg, element
 from wavesym.pictures.reduction import columns_of, reduce_vertices
 
@@ -37,11 +38,11 @@ class Grid:
         first = floor(low / step)
         return cls(columns, until, first * step, (first + HEIGHT) * step)
 
-    def path(self, stretches: Iterable[Points]) -> str:
+    def path(self, stretches: Iterable[Array]) -> str:
         """Polylines (n, 2) of tau and value, each begun anew."""
         return "".join("".join(self._draw(stretch)) for stretch in stretches)
 
-    def _draw(self, stretch: Points) -> Iterator[str]:
+    def _draw(self, stretch: Array) -> Iterator[str]:
         points = reduce_vertices(stretch, self.until, self.columns)
         x = columns_of(points[:, 0], self.until, self.columns)
         y = np.rint((self.high - points[:, 1]) / (self.high - self.low) * HEIGHT).astype(int)

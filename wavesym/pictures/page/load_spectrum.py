@@ -9,8 +9,9 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
-from wavesym.pictures.histories import History, Points
+from wavesym.pictures.histories import History
 from wavesym.pictures.page.frame import Frame, PlotAxis
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, csv_address, picture, spot
 from wavesym.pictures.page.svg import line, polyline, text
@@ -85,7 +86,7 @@ def floor_spectrum(
 
 
 def _picture(
-    key: str, title: str, periods: Points, values: Points, own: Points, unit: str, scale: Timescale
+    key: str, title: str, periods: Array, values: Array, own: Array, unit: str, scale: Timescale
 ) -> PagePicture:
     x = PlotAxis(log10(periods[0]), log10(periods[-1]), LEFT, WIDTH - RIGHT)
     y = PlotAxis(0.0, 1.3 * float(values.max()) or 1.0, TOP + _HEIGHT, TOP)

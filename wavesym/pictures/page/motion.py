@@ -13,8 +13,8 @@ import numpy as np
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.pictures.groups import axis_title
-from wavesym.pictures.histories import Points
 from wavesym.pictures.line_histories import LineHistories
 from wavesym.pictures.page.plots import WIDTH, PagePicture, picture
 from wavesym.pictures.page.svg import Svg, box, element, line, text
@@ -65,7 +65,7 @@ def motion(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Mo
     return Motion(PagePicture(title, drawn), "".join(f"{each:02x}" for each in bytes_.ravel().tolist()), count, sways)
 
 
-def _building(frame: Points, quantity: LineHistories) -> tuple[list[Svg], float]:
+def _building(frame: Array, quantity: LineHistories) -> tuple[list[Svg], float]:
     """Floors as bars, each in a group that the script moves aside by `_SWAY` pixels for the largest value."""
     spots = quantity.bands[0].spots
     storey = min(_STOREY, _TALLEST / max(1, len(spots) - 1))
@@ -84,7 +84,7 @@ def _building(frame: Points, quantity: LineHistories) -> tuple[list[Svg], float]
     return [ground, *floors], base + 24
 
 
-def _chain(frame: Points, quantity: LineHistories) -> tuple[list[Svg], float]:
+def _chain(frame: Array, quantity: LineHistories) -> tuple[list[Svg], float]:
     """The chain as a band, a piece for each place, which the script colours."""
     spots = quantity.bands[0].spots
     low, high = spots[0].low, spots[-1].high

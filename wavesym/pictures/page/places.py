@@ -8,8 +8,8 @@ import numpy as np
 
 from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
+from wavesym.numbers.arrays import Array
 from wavesym.pictures.groups import axis_title
-from wavesym.pictures.histories import Points
 from wavesym.pictures.line_histories import (
     Band,
     LineHistories,
@@ -110,7 +110,7 @@ def maps(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Iter
 
 
 def _map(
-    model: Model, quantity: LineHistories, band: Band, values: Points, largest: float, scale: Timescale
+    model: Model, quantity: LineHistories, band: Band, values: Array, largest: float, scale: Timescale
 ) -> tuple[Svg, float]:
     """Rows of equal height are asked for: places are spread evenly along a rod."""
     tall = max(120.0, min(16.0 * len(band.spots), 260.0))
@@ -126,7 +126,7 @@ def _map(
     return concatenate(frame.draw(), image, bar), TOP + tall + BELOW + 34
 
 
-def _evenly(band: Band, values: Points) -> Points:
+def _evenly(band: Band, values: Array) -> Array:
     """Rows of equal height, each that of the place whose stretch it lies in."""
     low, high = band.spots[0].low, band.spots[-1].high
     smallest = min(spot.high - spot.low for spot in band.spots)

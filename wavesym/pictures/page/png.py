@@ -8,7 +8,7 @@ from zlib import adler32, crc32
 
 import numpy as np
 
-from wavesym.pictures.histories import Points
+from wavesym.numbers.arrays import Array
 from wavesym.pictures.page.frame import PlotAxis
 from wavesym.pictures.page.svg import Svg, element
 
@@ -27,7 +27,7 @@ def colours(*, signed: bool) -> list[tuple[int, int, int]]:
     return [*((round(red), round(green), round(blue)) for red, green, blue in parts.tolist()), _FORMAL]
 
 
-def encode_png(values: Points, least: float, greatest: float, *, signed: bool) -> bytes:
+def encode_png(values: Array, least: float, greatest: float, *, signed: bool) -> bytes:
     """Values (rows, columns), the first row at the top, as a PNG; those beyond the limits have the last colours."""
     parts = np.clip((values - least) / (greatest - least), 0, 1)
     shades = np.rint(parts * (SHADES - 1))
@@ -42,7 +42,7 @@ def encode_png(values: Points, least: float, greatest: float, *, signed: bool) -
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(kind, data) for kind, data in chunks)
 
 
-def colour_image(values: Points, x: PlotAxis, y: PlotAxis, limits: tuple[float, float], *, signed: bool) -> Svg:
+def colour_image(values: Array, x: PlotAxis, y: PlotAxis, limits: tuple[float, float], *, signed: bool) -> Svg:
     """Values (rows, columns), the first row at the bottom, as an image between two axes inside a page."""
     image = encode_png(values[::-1], *limits, signed=signed)
     return element(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wavesym.pictures.histories import Points
+from wavesym.numbers.arrays import Array
 from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.places import colour_bar
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, labelled_spot, picture
@@ -29,15 +29,15 @@ class SweepOutput:
 
     name: str
     unit: str
-    least: Points
-    greatest: Points
+    least: Array
+    greatest: Array
 
     @property
     def title(self) -> str:
         return f"{self.name} in {self.unit}" if self.unit else f"{self.name} (dimensionless)"
 
     @property
-    def size(self) -> Points:
+    def size(self) -> Array:
         """The larger of both, without sign."""
         return np.fmax(np.abs(self.least), np.abs(self.greatest))
 
@@ -106,7 +106,7 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
     return PagePicture(title, picture(number, title, description, TOP + _TALL + BELOW, *parts, class_="plot"))
 
 
-def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis], beyond: list[str]) -> PagePicture:
+def _map(number: str, output: SweepOutput, size: Array, axes: list[StoredAxis], beyond: list[str]) -> PagePicture:
     """The size as colours, the first dimension to the right, the second upward, each value as wide as the next."""
     across, upward = axes
     low, high = float(np.nanmin(size)), float(np.nanmax(size))
@@ -131,7 +131,7 @@ def _map(number: str, output: SweepOutput, size: Points, axes: list[StoredAxis],
     )
 
 
-def _fewer(values: Points) -> Points:
+def _fewer(values: Array) -> Array:
     """As many cells as one sees, each the greatest of those that it stands for."""
     for axis, n in enumerate(values.shape):
         starts = np.unique(np.arange(_CELLS) * n // _CELLS)

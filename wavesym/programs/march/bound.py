@@ -30,10 +30,10 @@ from math import inf, sqrt
 
 import numpy as np
 from flint import fmpq, fmpq_mat
-from numpy.typing import NDArray
 
 from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.joints.joint_law import JointLaw
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.losses import Losses
@@ -41,8 +41,6 @@ from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, lar
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.march.tail import Tail, tail_of
 from wavesym.programs.schemes.march import Marching, MarchScheme, WindowBlock
-
-Array = NDArray[np.float64]
 
 SAMPLES = 16
 """Instants in a window at which the generator looks for an output's largest value."""

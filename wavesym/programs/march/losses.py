@@ -6,16 +6,14 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.march.plan import MarchPlan, Panel
 from wavesym.programs.march.responses import NEGLIGIBLE, body_roundings
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.schemes.march import MarchScheme, RunningLoads, WindowBlock
 from wavesym.programs.schemes.march_joints import Blocks, Bodies, JointGroup, Scatterers
-
-Array = NDArray[np.float64]
 
 # roundings of a product in a sum, besides those of the sum: of factors, pushes, loads and their times
 _SPARE = 24

@@ -44,13 +44,11 @@ from typing import NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
-from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import middle, midpoint, nearest
 from wavesym.programs.march.space import JointSpace
-
-Array = NDArray[np.float64]
 
 _BITS = 300
 SPARE = 16.0

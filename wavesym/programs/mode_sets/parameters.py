@@ -26,8 +26,9 @@ from wavesym.mechanics.loads import AppliedLoad, AppliedRecord, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Network
 from wavesym.mechanics.parameters import ModelParameter, PartParameters, describe_part
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.programs.modes.loads import Numbers, Roughness, linear_loads, sampled_roughness
+from wavesym.programs.modes.loads import Roughness, linear_loads, sampled_roughness
 from wavesym.programs.modes.truncation import truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.programs.request import OF_MODES, alternatives
@@ -57,7 +58,7 @@ class ModeParameters:
         """
         return min(int(_MORE * truncate(self.like).count) + 1, self.like.most)
 
-    def numbers(self, given: Numbers) -> dict[str, Numbers]:
+    def numbers(self, given: Array) -> dict[str, Array]:
         """The numbers of each field without units, (sets, numbers)."""
         ends = np.cumsum([len(field.values) for field in self.fields])
         rows = np.split(given, ends[:-1], axis=1)
@@ -75,7 +76,7 @@ class ModeParameters:
         other = UndampedModes(replace(self.model, network=_draw_network(self.model.network), preset=None))
         return tuple(a and b for a, b in zip(own, other.zero_outputs, strict=True))
 
-    def exact(self, given: Numbers) -> Model:
+    def exact(self, given: Array) -> Model:
         """The model with one set of numbers, (numbers,), which are exact but for the delay of a rod: a root."""
         numbers, damping = self.numbers(given[None]), self.model.damping
         if "damping" in numbers:
@@ -218,7 +219,7 @@ class SampledAmplitudes:
     is of, and its roughness, of samples that are 1 apart."""
 
     step: fmpq
-    samples: Numbers
+    samples: Array
     loads: tuple[int, ...]
     rough: tuple[Roughness, ...]
 

@@ -17,9 +17,10 @@ from wavesym.exact.modes.damped_modes import DampedSpectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
-from wavesym.programs.modes.dissipation import Complex, Dissipation, complexes, part
+from wavesym.numbers.arrays import Array, Complex
+from wavesym.programs.modes.dissipation import Dissipation, complexes, part
 from wavesym.programs.modes.harmonic_response import LowFrequency, dashpots, series
-from wavesym.programs.modes.loads import Numbers, Roughness
+from wavesym.programs.modes.loads import Roughness
 from wavesym.programs.modes.modal_system import ModalSystem
 from wavesym.programs.modes.projection import Driver, ModalOutput, share
 from wavesym.programs.modes.truncation import ModalModel
@@ -41,12 +42,12 @@ class ComplexProjection:
     rates: Complex
     outputs: Complex
     shares: Complex
-    slow: Numbers
-    load_remainders: Numbers
-    residuals: Numbers
+    slow: Array
+    load_remainders: Array
+    residuals: Array
 
     @property
-    def w(self) -> Numbers:
+    def w(self) -> Array:
         """The absolute values of their frequencies."""
         return np.abs(self.rates)
 
@@ -80,7 +81,7 @@ class ComplexModes(ModalModel[ComplexProjection]):
         with ctx.workprec(_BITS), series():
             return project_complex(found, self.cut, self.outputs, self.drivers)
 
-    def errors(self, known: ComplexProjection, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+    def errors(self, known: ComplexProjection, count: int, loads: Sequence[Roughness] | None = None) -> Array:
         """What the modes after the first `count` can add to each output, under its own or other `loads`."""
         taken = min(count, len(known.rates))
         made = np.zeros(len(self.model.probes))

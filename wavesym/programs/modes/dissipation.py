@@ -26,15 +26,12 @@ from typing import Any
 
 import numpy as np
 from flint import acb, acb_mat, arb
-from numpy.typing import NDArray
 
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Quantity
+from wavesym.numbers.arrays import Array, Complex
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.harmonic_response import TERMS, Dashpot, SlowPort
-from wavesym.programs.modes.loads import Numbers
-
-Complex = NDArray[np.complex128]
 
 POWERS = 4
 """p and q are less."""
@@ -50,13 +47,13 @@ class ModeEnergies:
     """
 
     rates: Complex
-    finer: Numbers
-    energy: Numbers
-    size: Numbers
+    finer: Array
+    energy: Array
+    size: Array
     extension_rates: Complex
 
     @property
-    def twice(self) -> Numbers:
+    def twice(self) -> Array:
         """How often each counts."""
         return np.where(self.rates.imag != 0, 2.0, 1.0)
 
@@ -99,7 +96,7 @@ class PortResponse:
         )
 
 
-def residual_norms(energies: ModeEnergies, ports: Sequence[PortResponse]) -> Numbers:
+def residual_norms(energies: ModeEnergies, ports: Sequence[PortResponse]) -> Array:
     """|A^-q (1 - P) B| for q = 0, 1, ..., once the first 0, 1, 2, ... modes are taken: (ports, POWERS, modes + 1)."""
     count = len(energies.rates)
     same, other = energies.products()
@@ -137,7 +134,7 @@ class Dissipation:
         self._fast = [[rate * e for e in row] for rate, row in zip(self.rates, self._extended, strict=True)]
         self._energies = [self._energy(rate, fast) for rate, fast in zip(self.rates, self._fast, strict=True)]
 
-    def residual_norms(self, ports: Sequence[SlowPort], shares: Sequence[Sequence[acb]]) -> Numbers:
+    def residual_norms(self, ports: Sequence[SlowPort], shares: Sequence[Sequence[acb]]) -> Array:
         """What is left of ports once the first 0, 1, 2, ... modes are taken: (ports, POWERS, modes + 1)."""
         responses = [self._response(port, row) for port, row in zip(ports, shares, strict=True)]
         energies = self._energies_in_doubles()

@@ -9,13 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.loads import AppliedLoad
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import common_measure, nearest
-
-Numbers = NDArray[np.float64]
 
 _STEPS_OF_ONE = 1000  # of a horizon, where there is nothing else to tell a spacing
 
@@ -53,7 +51,7 @@ class LinearLoads:
         """The largest absolute value at one of the times."""
         return max((abs(value) for row in self.samples for value in row), default=fmpq(0))
 
-    def sample(self, step: fmpq, count: int) -> Numbers:
+    def sample(self, step: fmpq, count: int) -> Array:
         """Loads at multiples of a step that all times are: (count, loads)."""
         at, times = np.arange(count), np.array([nearest(time / step) for time in self.times])
         values = np.array([[nearest(value) for value in row] for row in self.samples])
@@ -111,8 +109,8 @@ class Roughness:
     """The changes of slope of one load: `kinks` at `times`, in doubles, `steps` times a common measure where there is
     one; `steepest` is its largest slope."""
 
-    times: Numbers
-    kinks: Numbers
+    times: Array
+    kinks: Array
     steps: tuple[int, ...] | None
     steepest: float
 
@@ -146,7 +144,7 @@ class Roughness:
             step *= 2
         return float(np.max(total, initial=0.0) * _MORE)
 
-    def _decay(self, rate: float, count: int) -> Numbers | float:
+    def _decay(self, rate: float, count: int) -> Array | float:
         """What is left of a kink when so many others have followed."""
         return np.asarray(np.exp(-rate * (self.times[count:] - self.times[:-count])))
 
@@ -163,11 +161,11 @@ class ScaledRoughness(Roughness):
     def in_step(self) -> float:
         return self.unit.in_step * self.factor * _MORE if self.kinks.any() else 0.0
 
-    def _decay(self, rate: float, count: int) -> Numbers | float:
+    def _decay(self, rate: float, count: int) -> Array | float:
         return float(np.exp(-rate * self.spacing * count * (1 - 1e-12)))  # kinks are equally far apart
 
 
-def sampled_roughness(samples: Numbers) -> Roughness:
+def sampled_roughness(samples: Array) -> Roughness:
     """Of a load that is 0 until tau = 0, has these `samples` one unit of tau apart, the first of them 0, and then 0."""
     slopes = np.diff(samples, append=0.0)
     kinks = np.diff(slopes, prepend=0.0, append=0.0)
@@ -188,7 +186,7 @@ def scaled_roughness(unit: Roughness, begin: float, spacing: float, factor: floa
     return ScaledRoughness(times[counted], kinks, unit.steps, steepest, unit=unit, factor=by, spacing=spacing)
 
 
-def _partial(terms: Numbers) -> float:
+def _partial(terms: Array) -> float:
     """The largest |sum_{k <= n} terms_k z^k| for any n and |z| = 1, or a little more.
 
     A polynomial in z of degree d is nowhere on the circle larger than 1/cos(pi d/(2 M)) times its largest value at M

@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import middle, rational
 from wavesym.numbers.reals import Real
-from wavesym.programs.modes.loads import LinearLoads, Numbers
+from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.program import Tables
 
 
@@ -28,12 +29,12 @@ class ModalSystem:
     may be 0.
     """
 
-    frequency: Numbers
-    damping: Numbers
-    pushes: Numbers
-    displacement_weights: Numbers
-    velocity_weights: Numbers
-    direct: Numbers
+    frequency: Array
+    damping: Array
+    pushes: Array
+    displacement_weights: Array
+    velocity_weights: Array
+    direct: Array
 
     def drop_outputs(self, zero: Sequence[bool]) -> ModalSystem:
         """The same with some outputs that are 0."""
@@ -143,7 +144,7 @@ class Stepper:
             return [[made[o, k] for k in range(len(loads))] for o in range(len(weights))]
 
 
-def _rows(values: Numbers) -> list[list[object]]:
+def _rows(values: Array) -> list[list[object]]:
     rows: list[list[object]] = values.tolist()
     return rows
 
@@ -192,7 +193,7 @@ def stream_tables(stepper: Stepper, real: Real) -> Tables:
     return made | {"load_weight": _as(real, system.direct)}
 
 
-def rows_used(weights: Numbers) -> list[int]:
+def rows_used(weights: Array) -> list[int]:
     """The outputs that some mode counts in."""
     rows: list[int] = np.flatnonzero(weights.any(axis=1)).tolist()
     return rows
@@ -203,6 +204,6 @@ def padded_count(count: int) -> int:
     return -(-count // LANES) * LANES
 
 
-def _as(real: Real, values: Numbers) -> tuple[float, ...]:
+def _as(real: Real, values: Array) -> tuple[float, ...]:
     rounded: Iterable[float] = values.astype(f"f{real.bytes}").astype(np.float64).ravel().tolist()
     return tuple(rounded)

@@ -19,8 +19,8 @@ from wavesym.mechanics.gauge import motion_readings
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Network, Point
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.modes.loads import Numbers
 
 
 @dataclass(frozen=True)
@@ -139,23 +139,23 @@ class Projection:
     modes.
     """
 
-    w: Numbers
-    outputs: Numbers
-    shares: Numbers
-    imposed_shape: Numbers
-    static: Numbers
-    powers: tuple[Numbers, Numbers]
-    totals: tuple[Numbers, Numbers]
+    w: Array
+    outputs: Array
+    shares: Array
+    imposed_shape: Array
+    static: Array
+    powers: tuple[Array, Array]
+    totals: tuple[Array, Array]
 
     @cached_property
-    def spare(self) -> tuple[Numbers, Numbers]:
+    def spare(self) -> tuple[Array, Array]:
         """Of each output, and each load, the sum of squares over all modes but the first k: (rows, modes + 1)."""
         outputs, shares = (
             _spare(self.w, *each) for each in zip((self.outputs, self.shares), self.powers, self.totals, strict=True)
         )
         return outputs, shares
 
-    def rest(self, count: int) -> Numbers:
+    def rest(self, count: int) -> Array:
         """What the modes after the first `count` do to the outputs under loads that do not change: (outputs, loads)."""
         w = np.where(self.w > 0, self.w, np.inf)[:count]
         made = np.empty_like(self.static)
@@ -165,7 +165,7 @@ class Projection:
         return made
 
 
-def _spare(w: Numbers, rows: Numbers, powers: Numbers, totals: Numbers) -> Numbers:
+def _spare(w: Array, rows: Array, powers: Array, totals: Array) -> Array:
     strained = np.where(w > 0, w, np.inf)
     made = np.zeros((len(rows), len(w) + 1))
     for row, power, total, out in zip(rows, powers, totals, made, strict=True):
@@ -243,10 +243,10 @@ def share(network: Network, driver: Driver, mode: Mode) -> Quantity:
     return -pull * driver.gain / (mode.frequency * mode.frequency)
 
 
-def _array(rows: list[list[arb]], columns: int) -> Numbers:
+def _array(rows: list[list[arb]], columns: int) -> Array:
     return np.array([[float(value) for value in row] for row in rows]).reshape(len(rows), columns)
 
 
-def _round_up(values: Sequence[arb]) -> Numbers:
+def _round_up(values: Sequence[arb]) -> Array:
     """Doubles that are not below."""
     return np.asarray(np.nextafter([float(value.upper()) for value in values], np.inf), np.float64)

@@ -19,8 +19,9 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.modes.loads import LinearLoads, Numbers
+from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
 from wavesym.programs.program import Program
 from wavesym.programs.schemes.modes import ModesScheme
@@ -36,7 +37,7 @@ class Panels(ModesScheme):
         """Those of a program in double precision."""
         return cls(program.tables, program.constants, program.tau_max, np.float64)
 
-    def sample(self, step: float) -> tuple[Numbers, Numbers]:
+    def sample(self, step: float) -> tuple[Array, Array]:
         """Instants no more than `step` apart, each panel in an even number of equal parts, and the outputs there."""
         starts = self._time[self._time < self._tau_max]
         last = len(starts) - 1
@@ -71,11 +72,11 @@ class Panels(ModesScheme):
                     out[:, at] = (known @ reads(s)).T
         return taus, out
 
-    def turns(self, s: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    def turns(self, s: Array) -> tuple[Array, ...]:
         """What modes do in the times s: see `ModesScheme`."""
         return self._mode_functions(s)
 
-    def reads(self, s: NDArray[np.float64]) -> NDArray[np.float64]:
+    def reads(self, s: Array) -> Array:
         """What outputs take of displacements, velocities, and of each load's slope, value and integrals, s later.
 
         (times, 2 modes + 4 loads, outputs).
@@ -85,10 +86,10 @@ class Panels(ModesScheme):
         rows = [p11 * moved + p21 * moving, p12 * moved + p22 * moving]
         for k, (pushed, speed) in enumerate(((two, one), (one, p12))):
             rows.append(push @ (pushed * moved + speed * moving) + self._direct_part(k, s))
-        made: NDArray[np.float64] = np.concatenate([*rows, self._direct_part(2, s), self._direct_part(3, s)], axis=1)
+        made: Array = np.concatenate([*rows, self._direct_part(2, s), self._direct_part(3, s)], axis=1)
         return made
 
-    def _direct_part(self, part: int, s: NDArray[np.float64]) -> Numbers:
+    def _direct_part(self, part: int, s: Array) -> Array:
         """Of a slope (0), a load (1) or its integrals (2, 3), itself and integrated on: (times, loads, outputs)."""
         orders = ((k, k + 1 - part) for k in range(3))
         parts = [(s**order / factorial(order))[:, None, None] * self._direct[k] for k, order in orders if order >= 0]
@@ -133,7 +134,7 @@ class RecordResponse:
         return max(4, min(_LONGEST, fits))
 
     @cached_property
-    def _step(self) -> tuple[Numbers, Numbers]:
+    def _step(self) -> tuple[Array, Array]:
         """(2, 2, modes) turns displacement and velocity; (2, 2, loads, modes) is what the load where a step begins, and
         where it ends, adds to both."""
         h = self.spacing
@@ -144,7 +145,7 @@ class RecordResponse:
         return np.array([[p11, p12], [p21, p22]]), np.stack([begin, end])
 
     @cached_property
-    def _matrices(self) -> tuple[Numbers, Numbers]:
+    def _matrices(self) -> tuple[Array, Array]:
         """What the values in a block take of the state at its start and of the samples, (2 modes + (steps + 1) loads,
         outputs * parts * steps), and what the state at its end takes of the samples, ((steps + 1) loads, 2 modes)."""
         count, modes, (turn, push) = self.steps, self._modes, self._step
@@ -171,11 +172,11 @@ class RecordResponse:
         return values.reshape(len(values), -1), states[count].reshape(-1, 2 * modes)
 
     @property
-    def _parts(self) -> Numbers:
+    def _parts(self) -> Array:
         """The instants of a step, after its start."""
         return self.spacing * np.arange(1, self.parts + 1) / self.parts
 
-    def block_states(self, samples: Numbers) -> Numbers:
+    def block_states(self, samples: Array) -> Array:
         """Displacements and velocities of the modes where blocks begin, and the samples in them: (records, blocks,
         2 modes + (steps + 1) loads)."""
         records, n, loads = samples.shape
@@ -194,7 +195,7 @@ class RecordResponse:
             known[:, block + 1, : 2 * self._modes] = state.reshape(records, -1)
         return known
 
-    def in_blocks(self, known: Numbers, samples: Numbers, room: Numbers | None = None) -> Numbers:
+    def in_blocks(self, known: Array, samples: Array, room: Array | None = None) -> Array:
         """All outputs: (records, blocks, outputs, parts, steps), also after the last sample; of records `known`.
 
         They are in `room` where that is given: an array of that many numbers.
@@ -208,7 +209,7 @@ class RecordResponse:
             self._add_sums(made, samples)
         return made
 
-    def respond(self, samples: Numbers) -> Numbers:
+    def respond(self, samples: Array) -> Array:
         """All outputs in the order of time: (records, instants, outputs)."""
         records, n, _ = samples.shape
         made = self.in_blocks(self.block_states(samples), samples)
@@ -220,7 +221,7 @@ class RecordResponse:
         """Whether integrals of loads count in outputs."""
         return bool(self.system.direct[:, :, 1:].any())
 
-    def _integrals(self, samples: Numbers) -> Numbers:
+    def _integrals(self, samples: Array) -> Array:
         """The two integrals of loads at the samples: (2, records, n, loads)."""
         h, now, then = self.spacing, samples[:, :-1], samples[:, 1:]
         made = np.zeros((2, *samples.shape))
@@ -228,7 +229,7 @@ class RecordResponse:
         made[1, :, 1:] = np.cumsum(h * made[0, :, :-1] + h * h * (2 * now + then) / 6, axis=1)
         return made
 
-    def _add_sums(self, values: Numbers, samples: Numbers) -> None:
+    def _add_sums(self, values: Array, samples: Array) -> None:
         """Add to values in blocks what the integrals up to the start of a step count in them."""
         records, n, loads = samples.shape
         padded = np.zeros((2, records, values.shape[1] * self.steps, loads))
@@ -238,7 +239,7 @@ class RecordResponse:
             first, second = reads[-2 * loads :].reshape(2, loads, -1)
             values[:, :, :, part] += (once @ first + twice @ second).transpose(0, 1, 3, 2)
 
-    def step_states(self, samples: Numbers, known: Numbers, record: Places, step: Places) -> Numbers:
+    def step_states(self, samples: Array, known: Array, record: Places, step: Places) -> Array:
         """What is known where a `step` of a `record` begins: (cases, 2 modes + 4 loads), to be multiplied with `reads`.
 
         `known` is that of the samples.
@@ -259,11 +260,11 @@ class RecordResponse:
         sums = self._integrals(samples)[:, record, step] if self._has_sums else np.zeros((2, *now.shape))
         return np.hstack([moved, (then - now) / self.spacing, now, *sums])
 
-    def reads(self, s: Numbers) -> Numbers:
+    def reads(self, s: Array) -> Array:
         """What outputs take of `inside`, the times s after the start of a step: (times, 2 modes + 4 loads, outputs)."""
         return self._panels.reads(s)
 
-    def value_at(self, known: Numbers, s: Numbers, output: Places) -> Numbers:
+    def value_at(self, known: Array, s: Array, output: Places) -> Array:
         """One `output` of each row of `inside`, s after the start of its step: (cases,)."""
         modes, loads, system = self._modes, self.system.pushes.shape[1], self.system
         y, v = known[:, :modes], known[:, modes : 2 * modes]
@@ -279,7 +280,7 @@ class RecordResponse:
         return np.asarray(made)
 
     @cached_property
-    def _powers(self) -> Numbers:
+    def _powers(self) -> Array:
         """What k steps make of a state, for all k of a block: (steps, 2, 2, modes)."""
         turn, _ = self._step
         made = np.zeros((self.steps, 2, 2, self._modes))
@@ -289,7 +290,7 @@ class RecordResponse:
         return made
 
     @cached_property
-    def _lead(self) -> Numbers:
+    def _lead(self) -> Array:
         """What a sample adds to a step that ends with it, k steps later: (steps, 2 modes, loads)."""
         _, push = self._step
         return np.asarray(np.einsum("kabm,bjm->kamj", self._powers, push[1])).reshape(self.steps, 2 * self._modes, -1)

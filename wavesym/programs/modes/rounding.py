@@ -14,9 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
-from wavesym.programs.modes.loads import LinearLoads, Numbers
+from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem
 from wavesym.programs.schemes.modes import ModesScheme
 
@@ -27,8 +28,8 @@ _MORE = 1.01  # for the roundings of this file
 class RoundingErrors(NamedTuple):
     """Of each output: how wrong rounding can make it on the horizon, and a value that it is not below somewhere."""
 
-    errors: Numbers
-    largest: Numbers
+    errors: Array
+    largest: Array
 
 
 def rounding_errors(
@@ -53,7 +54,7 @@ def rounding_errors(
     return RoundingErrors(_MORE * errors, np.maximum(at_times - _MORE * errors, 0.0))
 
 
-def _sum_over_panels(system: ModalSystem, lengths: Numbers, swift: Numbers, tau_max: float) -> Numbers:
+def _sum_over_panels(system: ModalSystem, lengths: Array, swift: Array, tau_max: float) -> Array:
     """The sum over panels of 1 + (1 + 2 damping) w s, each as far as it is not damped away until it counts."""
     w, count = system.frequency, len(lengths) + 1
     whole = count + swift * tau_max
@@ -64,7 +65,7 @@ def _sum_over_panels(system: ModalSystem, lengths: Numbers, swift: Numbers, tau_
     return np.where(fading, np.minimum(lasting * (1 + swift * lengths.max()), whole), whole)
 
 
-def _size(scheme: ModesScheme, reach: Numbers) -> Numbers:
+def _size(scheme: ModesScheme, reach: Array) -> Array:
     """The largest |y|/T + |v| of each mode at the instants."""
     size = np.zeros(len(reach))
     last = scheme.load.shape[1] - 1
@@ -75,7 +76,7 @@ def _size(scheme: ModesScheme, reach: Numbers) -> Numbers:
     return size
 
 
-def _integrals(scheme: ModesScheme, slopes: Numbers, lengths: Numbers, unit: float) -> Numbers:
+def _integrals(scheme: ModesScheme, slopes: Array, lengths: Array, unit: float) -> Array:
     """How wrong loads and their integrals are: (loads, 3). They are sums of as many terms as there are panels."""
     h, tau, count = lengths.max(), lengths.sum(), len(lengths) + 8
     load, once, twice = np.abs(scheme.load[1:]).astype(np.float64).max(axis=1)

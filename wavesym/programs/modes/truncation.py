@@ -19,9 +19,10 @@ from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.modes.loads import LinearLoads, Numbers, Roughness, linear_loads, roughness
+from wavesym.programs.modes.loads import LinearLoads, Roughness, linear_loads, roughness
 from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
 from wavesym.programs.modes.projection import Driver, ModalOutput, drivers_of, modal_output, places
 from wavesym.programs.modes.rounding import rounding_errors
@@ -34,7 +35,7 @@ class ModeProjection(Protocol):
     """What modes are of loads and outputs, by columns."""
 
     @property
-    def w(self) -> Numbers:
+    def w(self) -> Array:
         """The absolute values of their frequencies, ascending."""
 
 
@@ -120,10 +121,10 @@ class ModalModel(ABC, Generic[K]):
         """The first modes. UnservedError for what modes do not serve."""
 
     @abstractmethod
-    def errors(self, known: K, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+    def errors(self, known: K, count: int, loads: Sequence[Roughness] | None = None) -> Array:
         """What the modes after the first `count` can add to each output, under its own or other `loads`."""
 
-    def looseness(self, count: int) -> Numbers:
+    def looseness(self, count: int) -> Array:
         """About how wrong outputs are, relative to the largest value, because modes are: 0, as these are proved."""
         return np.zeros(len(self.model.probes))
 
@@ -157,7 +158,7 @@ class ModalModel(ABC, Generic[K]):
             return
         raise CostError(f"system: {rods} rods in modes, the limit is {most} (fewer rods or march helps)")
 
-    def output_bounds(self, known: K, count: int) -> Numbers:
+    def output_bounds(self, known: K, count: int) -> Array:
         """What each output reaches, but for what is left out."""
         system, until = self.system(known, count), self.model.horizon()
         scheme = ModesScheme(scheme_tables(system, self.loads, DOUBLE), {"loads": len(self.drivers)}, until, np.float64)
@@ -182,10 +183,10 @@ class ModalModes:
     system: ModalSystem
     sources: tuple[tuple[str, str], ...]
     loads: LinearLoads
-    errors: Numbers
-    largest: Numbers
-    frequencies: Numbers
-    damping: Numbers
+    errors: Array
+    largest: Array
+    frequencies: Array
+    damping: Array
     proved: bool = True
 
     @property
@@ -194,7 +195,7 @@ class ModalModes:
         return len(self.frequencies)
 
     @cached_property
-    def bounds(self) -> Numbers:
+    def bounds(self) -> Array:
         """Of each output, relative to its largest value."""
         return _relative(self.errors, self.largest)
 
@@ -250,7 +251,7 @@ def truncate(chain: ModalModel[K]) -> ModalModes:
     )
 
 
-def _tolerance_error(chain: ModalModel[K], errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
+def _tolerance_error(chain: ModalModel[K], errors: Array, largest: Array, better: float) -> ToleranceError:
     model = chain.model
     bounds = _relative(errors, largest)
     worst = int(np.argmax(bounds))
@@ -263,6 +264,6 @@ def _tolerance_error(chain: ModalModel[K], errors: Numbers, largest: Numbers, be
     return unmet_tolerance(model.tolerance, {"modes": f"{chain.most} modes, the most taken, {what}"}, bound)
 
 
-def _relative(errors: Numbers, largest: Numbers) -> Numbers:
+def _relative(errors: Array, largest: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(errors > 0, errors / largest, 0.0)

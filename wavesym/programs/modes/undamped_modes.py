@@ -32,8 +32,9 @@ import numpy as np
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.mechanics.damping import Damping
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.modes.loads import Numbers, Roughness
+from wavesym.programs.modes.loads import Roughness
 from wavesym.programs.modes.modal_system import ModalSystem
 from wavesym.programs.modes.projection import Projection, project
 from wavesym.programs.modes.truncation import ModalModel
@@ -46,7 +47,7 @@ class DampingRatios:
     ratios: tuple[float, ...] = (0.0,)
     rayleigh: tuple[float, float] | None = None
 
-    def ratios_at(self, w: Numbers) -> Numbers:
+    def ratios_at(self, w: Array) -> Array:
         """The ratios at ascending frequencies from the first on; 0 for a motion without strain."""
         strained = w > 0
         made = np.zeros(len(w))
@@ -169,7 +170,7 @@ class UndampedModes(ModalModel[Projection]):
         taken = known.w[:count]
         return TruncatedModes(self.rule(known), float(np.nextafter(taken[-1], 0.0)), int(np.count_nonzero(taken)))
 
-    def errors(self, known: Projection, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+    def errors(self, known: Projection, count: int, loads: Sequence[Roughness] | None = None) -> Array:
         """What the modes after the first `count` can add to each output, under its own or other `loads`."""
         tail, rest = self.tail(known, count), known.rest(count)
         left = [rows[:, count] for rows in known.spare]

@@ -9,11 +9,9 @@ from math import cos, pi
 import numpy as np
 from flint import arb, ctx, fmpq
 from numpy.polynomial.chebyshev import chebval
-from numpy.typing import NDArray
 
+from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import midpoint
-
-Array = NDArray[np.float64]
 
 ORDERS = 3
 _BITS = 128

@@ -8,7 +8,6 @@ from math import sqrt
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -19,8 +18,6 @@ from wavesym.programs.march.tables import MarchTables, term_tables
 from wavesym.programs.program import Tables, firsts
 from wavesym.programs.stream.interpolation import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
-
-Array = NDArray[np.float64]
 
 _OF_HORIZON = ("events", "slots", "cycle", "span", "step")  # constants of a march that a stream has not
 _LONGEST = 10**6  # panels of a step, each of which takes its time

@@ -1,0 +1,9 @@
+"""Arrays of doubles, as all rooms name them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
