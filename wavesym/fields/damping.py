@@ -8,15 +8,13 @@ from typing import Annotated, Any
 
 from pydantic import PlainSerializer, PlainValidator
 
-from wavesym.errors import did_you_mean
 from wavesym.fields.numbers import decimal_text, exact, percentage
-from wavesym.fields.table import refusal, show
+from wavesym.fields.table import check_keys, refusal, show
 from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import fraction, rational
 
 _MOST = 1000
 _LARGEST = 10**9  # in whose squares doubles keep their digits
-_KEYS = ("modes", "ratio")
 
 
 def damping_ratio(value: object, *at: str | int) -> Fraction:
@@ -64,14 +62,7 @@ def _damping(value: object) -> Damping | None:
 
 
 def _rayleigh(table: Mapping[Any, object]) -> Damping:
-    for key in table:
-        if key not in _KEYS:
-            meant = did_you_mean(str(key)[:40], _KEYS)
-            raise refusal(f"unknown key; write modes or ratio{meant and f'. {meant}'}", str(key))
-    for key in _KEYS:
-        if key not in table:
-            form = "the numbers of two modes" if key == "modes" else "a ratio"
-            raise refusal(f"missing; write {form}", key)
+    check_keys(table, modes="the numbers of two modes", ratio="a ratio")
     modes = table["modes"]
     if not isinstance(modes, Sequence) or isinstance(modes, str) or len(modes) != 2:
         raise refusal(f"{show(modes)} is not a list of two modes; write [1, 3]", "modes")

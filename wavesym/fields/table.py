@@ -148,6 +148,27 @@ def scene_error(error: PydanticCustomError | ValidationError, file: str = "scene
     return SceneError(first.what, first.path, file, others=tuple(others))
 
 
+def check_keys(table: Mapping[Any, object], **needed: str) -> None:
+    """Refuse a table without one of these keys, of each of which is said what to write, or with another."""
+    _key_faults(table, list(needed), needed, {}).refuse()
+
+
+def _key_faults(
+    table: Mapping[Any, object], known: Sequence[str], needed: Mapping[str, str], instead: Mapping[str, str]
+) -> Faults:
+    others = [str(key) for key in table if key not in known]
+    unknown = [
+        Fault(f"unknown key; {instead.get(key) or _known_keys(key, known, guess=k < MOST_FAULTS)}", (key,))
+        for k, key in enumerate(others)
+    ]
+    missing = [
+        Fault(f"missing; write {what}", (key,))
+        for key, what in needed.items()
+        if key not in table and not any(f'mean "{key}"?' in said for said, _ in unknown)
+    ]
+    return Faults([*unknown, *missing])
+
+
 class SceneTable(BaseModel):
     """A table of a scene: every key is known, none that is needed is missing; a field's description says what it is."""
 
@@ -165,18 +186,8 @@ class SceneTable(BaseModel):
         if not isinstance(value, Mapping):
             raise refusal(f"{show(value)} is not a table; write its keys and values")
         fields = {field.alias or name: field for name, field in cls.model_fields.items()}
-        others = [str(key) for key in value if key not in fields]
-        known = list(fields)
-        unknown = [
-            Fault(f"unknown key; {cls.instead.get(key) or _known_keys(key, known, guess=k < MOST_FAULTS)}", (key,))
-            for k, key in enumerate(others)
-        ]
-        missing = [
-            Fault(f"missing; write {field.description}", (key,))
-            for key, field in fields.items()
-            if field.is_required() and key not in value and not any(f'mean "{key}"?' in what for what, _ in unknown)
-        ]
-        faults = Faults([*unknown, *missing])
+        needed = {key: str(field.description) for key, field in fields.items() if field.is_required()}
+        faults = _key_faults(value, list(fields), needed, cls.instead)
         if faults.found:
             with faults.gather():  # also what is wrong with the other keys
                 handler({key: each for key, each in value.items() if key in fields})

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import NamedTuple, Self
 
 from wavesym.fields.numbers import exact, number_text
-from wavesym.fields.table import refusal
+from wavesym.fields.table import check_keys
 from wavesym.fields.titles import check_title
 
 
@@ -45,12 +45,7 @@ _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?")
 
 def read_titled_place(value: Mapping[str, object]) -> tuple[object, str]:
     """The place and the name for people of an output that is a table. Raises the error of `table.refusal`."""
-    for key in value:
-        if key not in ("at", "name"):
-            raise refusal("unknown key; write at or name", str(key))
-    for key in ("at", "name"):
-        if key not in value:
-            raise refusal(f"missing; write {'a place' if key == 'at' else 'a name for people'}", key)
+    check_keys(value, at="a place", name="a name for people")
     return value["at"], check_title(value["name"], "name")
 
 
