@@ -19,30 +19,10 @@ from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.memory import Memory
 from wavesym.targets.c.selftest import selftest
-from wavesym.targets.c.tables import program_tables
+from wavesym.targets.c.tables import program_tables, sizes
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_literal, c_literals
 
-_SIZES = (
-    "windows",
-    "strands",
-    "degree",
-    "panels",
-    "joints",
-    "points",
-    "states",
-    "squares",
-    "bodies",
-    "widest",
-    "ports",
-    "tracks",
-    "slots",
-    "forces",
-    "gains",
-    "events",
-    "lanes",
-    "groups",
-)
 _MODEL, _READ, _LANES = (f"runtime/{name}.c" for name in ("model", "read", "lanes"))
 """Models of one set, and what stands below them: what reads them, and where many march in lanes."""
 _OF_PARTS = {"peaks": "runtime/peaks.c", "gradients": "runtime/tangents.c", "bound": "runtime/bound.c"}
@@ -83,7 +63,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         render,
         "c/runtime/structs.h.j2",
         scene=scene,
-        sizes=tuple((name.upper(), str(program.constants[name])) for name in _SIZES),
+        sizes=tuple(sizes("runtime/tables.h", program)),
         fields=fields,
         work="\n\n".join((kernel("runtime/wide.h", scene), _one_set(scene), kernel("runtime/work.h", scene))),
         model=kernel("runtime/model.h", scene),

@@ -52,6 +52,13 @@ def _is_text(item: str) -> bool:
     return item.startswith("/*") or bool(_ENUM.fullmatch(item) and not re.search(r"\bNAME_\w+ =", item))
 
 
+def sizes(file: str, program: Program) -> Iterator[tuple[str, str]]:
+    """The constants of a program that are enumerated there under the scene's name: those of its header."""
+    for name in re.findall(r"\bNAME_(\w+) = \d", text_of(f"c/{file}")):
+        if name.lower() in program.constants:
+            yield name, str(program.constants[name.lower()])
+
+
 def program_tables(file: str, scene: Description, program: Program, constants: Mapping[str, str] | None = None) -> str:
     """The tables and constants of a program, and more `constants`."""
     known = c_constants(program.constants, program.real) | dict(constants or {})
