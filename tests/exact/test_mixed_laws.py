@@ -205,6 +205,25 @@ def test_what_leaves_rest_presses_on_a_rod_that_rests_or_parts_from_it(velocity:
 
 
 @pytest.mark.slow
+def test_a_spring_that_lets_go_makes_no_other_one_hold_for_no_time() -> None:
+    """What lets go is known less closely than contacts are: "holds" and "yields" were told within 1e-62 of it."""
+    parts = [
+        *[{"mass": "1/2", "name": "n0", "velocity": 1}, {"friction": "2/5"}, {"joint": True, "name": "n1"}],
+        *[{"rod": "1/2"}, {"joint": True, "name": "n2"}, {"spring": 3, "yield": "3/10"}],
+        *[{"mass": 1, "name": "n3", "friction": "1/3"}, {"spring": 3, "gap": [0, "1/5"]}],
+        {"mass": "1/2", "name": "n4", "friction": "1/2", "velocity": 1},
+    ]
+    loads = [
+        {"at": "n0", "times": [0, 1], "steps": ["-1/4", "1/4"]},
+        {"at": "n1", "times": [0, 1], "ramps": ["1/4", "-1/2"]},
+        {"at": "n3", "times": [1, 2], "ramps": [-1, 2]},
+    ]
+    output = {"until": 4, "velocity": ["n0", "n1", "n3", "n4"]}
+    table = {"name": "lets_go", "system": {"type": "chain", "parts": parts}, "load": loads, "output": output}
+    assert wrong(table, first="0") == []
+
+
+@pytest.mark.slow
 def test_three_masses_that_rub_between_two_contacts_come_to_rest() -> None:
     """As two of them stop, no number of bits told what the contacts bear."""
     parts = [

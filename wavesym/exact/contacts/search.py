@@ -375,7 +375,7 @@ class Search:
 
 
 def lasting(changes: Iterable[Change], width: fmpq) -> list[Change]:
-    """Join the changes of a link that lie close together, where its branch was left open, into one.
+    """Join the changes of a link between which its branch was certain for no time, or hardly any, into one.
 
     Args:
         changes: in order of time.
@@ -387,7 +387,7 @@ def lasting(changes: Iterable[Change], width: fmpq) -> list[Change]:
     kept: dict[int, list[Change]] = {}
     for change in changes:
         of_link = kept.setdefault(change.link, [])
-        if of_link and change.high - of_link[-1].low <= width:
+        if of_link and change.low - of_link[-1].high <= width:
             last = of_link.pop()
             change = Change(last.link, last.before, change.after, last.low, change.high)
         if change.before != change.after:
