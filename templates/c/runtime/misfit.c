@@ -1,6 +1,14 @@
 /* misfit.c: sums of squares of what models miss of data, taken from coefficients. */
 #include "batch.c"
 
+/* Whether a tau is on the section. */
+static int belongs(real tau, int window, int section)
+{
+    const real t = tau - cycle_begin(window);
+    const int at = in_cycle(window, section);
+    return tau >= 0 && tau <= NAME_TAU_MAX && t >= from[at] && t < from[at + 1];
+}
+
 /* A group is an output on a section of a window. `numbers` has of each blocks of ROWS rows of its triangle R, interlaced:
  * their weights, z, lowest degrees and all columns; then what all rows from some one on add to the rest, by that row. The
  * columns go degree by degree, so that polynomials of low degree need the first blocks and columns alone. */

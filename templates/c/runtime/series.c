@@ -71,14 +71,6 @@ static real section_end(int window, int section)
     return end < reach ? end : reach;
 }
 
-/* Whether a tau is on the section. */
-static int belongs(real tau, int window, int section)
-{
-    const real t = tau - cycle_begin(window);
-    const int at = in_cycle(window, section);
-    return tau >= 0 && tau <= NAME_TAU_MAX && t >= from[at] && t < from[at + 1];
-}
-
 /* Of a strand the u on [-1, 1] at t after the start of its window's cycle. */
 static real place_on(int strand, int window, real t)
 {
