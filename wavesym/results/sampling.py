@@ -49,11 +49,18 @@ def sampled_extremes(
 
 
 def _tops(both: Array) -> NDArray[np.intp]:
-    """The highest samples that no neighbour is above, of each output and side: (outputs, sides, tops)."""
-    inner = both[:, :, 1:-1]
-    top = np.where((inner >= both[:, :, :-2]) & (inner > both[:, :, 2:]), inner, -np.inf)
+    """The highest samples that no neighbour is above, of each output and side: (outputs, sides, tops).
+
+    A parabola through three samples rises above the middle one by at most an eighth of its height over the lower one.
+    What would have to rise by all of that, and does not reach the highest sample then, gives its place to that one.
+    """
+    inner, before, after = both[:, :, 1:-1], both[:, :, :-2], both[:, :, 2:]
+    top = np.where((inner >= before) & (inner > after), inner, -np.inf)
     kept = min(_TOPS, inner.shape[2])
-    return np.asarray(np.argpartition(top, -kept, axis=2)[:, :, -kept:]) + 1
+    at = np.argpartition(top, -kept, axis=2)[:, :, -kept:]
+    reach = np.take_along_axis(2 * inner - np.minimum(before, after), at, axis=2)
+    highest = top.argmax(axis=2)[:, :, None]
+    return np.asarray(np.where(reach < np.take_along_axis(inner, highest, axis=2), highest, at)) + 1
 
 
 def _neighbours(taus: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
