@@ -315,3 +315,22 @@ def test_no_folder_of_a_sweep_is_said(tmp_path: Path) -> None:
         status(tmp_path)
     with pytest.raises(SceneError):
         run(tmp_path / "none.toml", tmp_path)
+
+
+def test_a_table_has_times_in_the_unit_of_results(tmp_path: Path) -> None:
+    """The times of `summary`, in ms; tau stays beside them."""
+    bar = '{ rod = "1 m", A = "8 cm^2", E = "210 GPa", rho = "7850 kg/m^3" }'
+    (tmp_path / "bar.toml").write_text(
+        'name = "bar"\nunits = { time = "ms" }\noutput = { until = "1 ms", force = ["0.5 m"] }\n'
+        f'system = {{ type = "chain", parts = [{{ mass = "2 kg", velocity = "5 m/s" }}, {bar}, "fixed"] }}\n'
+    )
+    sweep, folder, table = tmp_path / "sweep.toml", tmp_path / "out", tmp_path / "t.csv"
+    sweep.write_text('scene = "bar.toml"\n[vary]\n"system.parts[0].velocity" = ["5 m/s", "8 m/s"]\n')
+    assert main(["sweep", str(sweep), "-o", str(folder)]) == 0
+    assert main(["sweep", str(folder), "--table", str(table)]) == 0
+    header, *rows = (line.split(",") for line in table.read_text().splitlines())
+    assert header[-4:] == [f"force@0.5 m.{name}" for name in ("tau_min", "tau_max", "time_min [ms]", "time_max [ms]")]
+    output = api.summary(Scene.from_toml(str(tmp_path / "bar.toml"))).outputs[0]
+    times = [peak.at.in_scene_time for peak in (output.min, output.max)]
+    for row in rows:
+        assert [float(cell) for cell in row[-2:]] == pytest.approx(times, rel=1e-12)

@@ -94,6 +94,12 @@ class SweepResults:
         return tuple(self.manifest.keep.summary)
 
     @property
+    def time_unit(self) -> str:
+        """The unit of time of results; empty for scenes without units."""
+        units = self.manifest.scene.get("units")
+        return "" if units is None else str(units.get("time", "s"))
+
+    @property
     def bound(self) -> float:
         """The largest of any case, of errors of values; NaN where no case is done."""
         return float(np.fmax.reduce(self.array("bound"), axis=None))

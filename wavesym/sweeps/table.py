@@ -21,6 +21,8 @@ from wavesym.writing import write_whole
 _ROWS = 4096
 _FORMULAS = tuple("=+-@\t\r\uff1d\uff0b\uff0d\uff20")
 _NUMBER = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?")
+_TIMES = {"tau_min": "time_min", "tau_max": "time_max", "arrival": "arrival_time"}
+_PER_TAU = "time_per_tau"
 Columns = dict[str, Any]
 
 
@@ -28,7 +30,8 @@ def write_table(folder: Path, path: Path) -> None:
     """Write the table of the sweep in a folder. WavesymError for a suffix that is neither .csv nor .parquet.
 
     Columns are the values that were varied, by path, and of each output NAME.min, NAME.max, NAME.tau_min, NAME.tau_max,
-    as far as they were kept. What there is no value of is empty.
+    as far as they were kept; of scenes with units the same as times, NAME.time_min [s], NAME.time_max [s], in the unit
+    of time of results. What there is no value of is empty.
     """
     if path.suffix not in (".csv", ".parquet"):
         raise WavesymError(f"--table: {path} is not a table; write a file .csv or .parquet")
@@ -53,8 +56,12 @@ def _columns(found: SweepResults) -> Iterator[Columns]:
         place = np.unravel_index(np.arange(prod(counts)), counts)
         made: Columns = {name: values[part[axis]][place[axis]] for axis, name, values in varied}
         values = {name: found.array(name, part).reshape(len(place[0]), -1) for name in found.statistics}
+        if found.time_unit:
+            per_tau = found.array(_PER_TAU, part).reshape(-1, 1)
+            times = {f"{_TIMES[name]} [{found.time_unit}]": values[name] * per_tau for name in _TIMES if name in values}
+            values |= times
         for k, output in enumerate(found.outputs):
-            made |= {f"{output}.{name}": values[name][:, k] for name in found.statistics}
+            made |= {f"{output}.{name}": values[name][:, k] for name in values}
         yield made
 
 
