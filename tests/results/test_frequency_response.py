@@ -613,6 +613,24 @@ def test_a_loss_is_for_frequency_responses_alone() -> None:
     assert peak.amplitude == pytest.approx(sampled, rel=1e-4)
 
 
+def test_the_command_serves_a_loss(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """That of a layer on a dashpot: the notes that it puts are those of a scene whose loads do not act."""
+    (tmp_path / "lossy.toml").write_text("""
+        name = "lossy"
+        load = [{ at = "g", times = [0], steps = [1] }]
+        output = { until = 1, velocity = [1] }
+        system.type = "chain"
+        system.parts = [{ joint = true, dashpot = 4, name = "g" }, { rod = 1, loss = "5 %" }, "free"]
+    """)
+    assert main(["frf", str(tmp_path / "lossy.toml"), "--from", "1", "--to", "2", "--points", "2"]) == 0
+    rows = capsys.readouterr().out.splitlines()[1:]
+    w = np.array([1.0, 2.0])
+    root = np.sqrt(1 + 0.05j)  # of the modulus, and so the speed
+    free = 1j * w / np.cos(w / root) / (4j * w - w * root * np.tan(w / root))
+    for row, right in zip(rows, free, strict=True):
+        assert complex(*map(float, row.split(",")[1:])) == pytest.approx(right, rel=1e-12)
+
+
 def test_without_a_band_it_goes_to_the_fifth_mode_without_dashpots() -> None:
     """Of soil on rock, which nothing but a dashpot holds, the first of these has no strain, and the fifth 4 pi."""
     scene = Scene(

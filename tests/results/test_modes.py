@@ -91,6 +91,15 @@ def test_damping_of_modes_is_that_of_the_scene() -> None:
     assert [mode.damping for mode in wavesym.modes(frame, 4)] == [0.1, 0.02, 0.02, 0.02]
 
 
+def test_rayleigh_damping_may_name_modes_that_are_not_asked_for() -> None:
+    frame = Scene.from_toml("building_m2").with_({"system.base": "ground"})
+    damped = frame.with_({"system.damping": {"modes": [1, 3], "ratio": "1/20"}})
+    for count in (1, 2, 3):
+        first = [mode.damping for mode in wavesym.modes(damped, 3)]
+        assert [mode.damping for mode in wavesym.modes(damped, count)] == pytest.approx(first[:count], rel=1e-12)
+        assert first[::2] == pytest.approx([0.05, 0.05])
+
+
 PUBLISHED = {
     "friswell963": [0, 10.304, 20.479, 24.423],
     "five": [0.2439 / 2 / pi, 0.6689 / 2 / pi, 1 / 2 / pi, 1.286 / 2 / pi, 1.685 / 2 / pi],

@@ -275,6 +275,7 @@ def test_generated_programs_say_by_how_much_speeds_were_changed(tmp_path: Path) 
 def test_a_result_says_that_speeds_were_changed() -> None:
     found = Scene.from_toml(TWO_RODS).run(samples=3)
     (note,) = found.notes
+    assert note in wavesym.frf(Scene.from_toml(TWO_RODS), [1.0]).notes
     assert "speeds of waves are changed by" in note
     assert note in found._repr_html_()
     assert Scene.from_toml(TWO_RODS.replace("speed_adjustment", "# ")).run(samples=3).notes == ()

@@ -148,6 +148,33 @@ def test_modes_in_doubles_are_the_proved_ones(name):
     assert np.abs(signs * outputs - true.outputs[:, :count])[moved].max() <= 1e-7 * np.abs(true.outputs[moved]).max()
 
 
+def test_no_frequency_is_lost_where_counting_passes_a_resonance_of_a_bar(monkeypatch):
+    """Halving begins at multiples of pi over the delay of a bar, where its ends are held by what is beyond all digits:
+    what is found is a zero of what the wave equation asks of this chain, also where products are contracted."""
+    monkeypatch.setattr(mode_sets, "FAST", ("-O2", "-march=native", "-ffp-contract=fast"))
+    parts = [{"motion": "acceleration", "name": "g"}, {"spring": "1/2"}, {"mass": 1, "name": "a"}, {"rod": "13/10"}]
+    parts += [{"mass": 1}, {"spring": 2}, {"mass": "1/10"}]
+    push = {"at": "g", "times": [0, 1], "ramps": [1, -2]}
+    parameters = parameters_of(chain(parts, [push], tolerance="1e-1", relative=["a"], until=20))
+    own = np.array([float(value) for field in parameters.fields for value in field.values])
+    names = [field.name for field in parameters.fields for _ in field.values]
+
+    def asked(w, row):
+        given = {name: [x for x, other in zip(row, names, strict=True) if other == name] for name in names}
+        (rod, first, last), (heavy,), (a, b, c) = given["stiffness"], given["rod_mass"], given["mass"]
+        w, z = w[:, None] * [1 - 1e-10, 1 + 1e-10], np.sqrt(rod * heavy)
+        x, left, tip = w * np.sqrt(heavy / rod), first - w**2 * a, last - w**2 * c
+        right = -(w**2) * b * tip - last * w**2 * c  # times the tip, so that nothing has a pole
+        sides, ends = left * right - (z * w) ** 2 * tip, left * tip + right
+        return sides * np.sin(x) + z * w * np.cos(x) * ends
+
+    for changed in own * RNG.uniform(0.999, 1.001, (12, len(own))):
+        w = BuiltModel(parameters, changed).frequency[: parameters.fewest]
+        assert np.all(np.diff(w) > 0)
+        below, above = np.sign(asked(w, changed)).T
+        assert np.all(below * above <= 0), changed
+
+
 def test_equal_frequencies_are_known_to_be_loose():
     """Three branches alike have two modes in which the rest is still: which shapes doubles find is open."""
     arms = [[{"spring": 1}, {"mass": 1, "name": f"end_{name}"}] for name in "abc"]

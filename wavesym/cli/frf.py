@@ -79,7 +79,8 @@ def frf(
         if ranges:
             box = read_box(ranges)
             over = api.frf(scene, frequencies, load, low=low, high=high, points=points or few, ranges=box)
-            text, notes = over.json() if format == "json" else "".join(over.csv()), over.notes
+            text = over.json() if format == "json" else "".join(over.csv())
+            notes = (*api.scene_notes(scene, values=False), *over.notes)
         else:
             found = api.frf(scene, frequencies, load, low=low, high=high, points=points or few)
             table = found.peaks() if peaks else found
@@ -89,6 +90,6 @@ def frf(
             api.plot_frf(found, out)
         elif out is not None:
             write_whole({out: text})
-    put_notes(scene, [*api.scene_notes(scene, values=False), *notes])
+    put_notes(scene, notes)
     if out is None or (drawn and peaks):
         put(text)

@@ -99,10 +99,11 @@ class FrequencyResponse(OutputRows):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """How good values are, and where there are none: lines for people."""
+        """What is to be known of the scene, how good values are, and where there are none: lines for people."""
         unit = "Hz" if self.frequency_label.endswith("[Hz]") else "rad per tau"
         poles, undecided = (", ".join(f"{each:g}" for each in found) for found in (self.poles, self.possible_poles))
         return (
+            *self._model.labels.notes,
             f"per unit of {self.load}{self.load_unit and ' '}{self.load_unit}; right to {self.bound:.1e} of each "
             "output's largest amplitude here, proved",
             *([f"no value at {poles} {unit}: there is none, or nothing limits it"] if poles else []),

@@ -239,7 +239,7 @@ def modes(
         found = [mode for mode in found if abs(complex(mode.frequency)) <= limit]
     rows = tuple(_row(model, k, mode, per_tau) for k, mode in enumerate(found, 1))
     if not damped:
-        rows = _with_ratios(model, rows, per_tau)
+        rows = _with_ratios(model, rows, spectrum, per_tau)
     why = _INCOMPLETE if damped else _COMPLETE
     unit = "s" if model.clock else None
     along = line_shapes(found, spectrum.cut, model, lines, points) if lines and points else ()
@@ -271,12 +271,19 @@ def _row(model: Model, number: int, mode: Mode, per_tau: float) -> ModeRow:
     )
 
 
-def _with_ratios(model: Model, rows: Sequence[ModeRow], per_tau: float) -> tuple[ModeRow, ...]:
+def _with_ratios(
+    model: Model, rows: Sequence[ModeRow], spectrum: Spectrum | DampedSpectrum, per_tau: float
+) -> tuple[ModeRow, ...]:
     """Modes with the damping that the scene gives them; rigid ones have none."""
     if model.damping is None:
         return tuple(rows)
-    elastic = np.array([row.omega * per_tau for row in rows if row.omega])
-    ratios = iter(damping_ratios(model.damping, elastic.tolist()).ratios_at(elastic).tolist())
+    elastic = [row.omega * per_tau for row in rows if row.omega]
+    named = max(model.damping.modes or (0,))
+    known = elastic
+    if len(elastic) < named:
+        frequencies = [midpoint(abs(mode.frequency)) for mode in spectrum.first(named + 1)]  # one may be rigid
+        known = [w for w in frequencies if w]
+    ratios = iter(damping_ratios(model.damping, known).ratios_at(np.array(elastic)).tolist())
     return tuple(replace(row, damping=next(ratios)) if row.omega else row for row in rows)
 
 

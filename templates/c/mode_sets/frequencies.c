@@ -30,6 +30,24 @@ typedef struct {
     real across[PLACES + 1];
 } bonds;
 
+/* Of each bar, were its impedance 1: a spring, what holds its ends, and what couples them. The spring is for what they
+ * do against each other, or, where the bar is nearer to moving as much at both ends, for what they do alike: at a
+ * resonance the other one would be as large as what holds its ends, and cancel it with all that else holds them. */
+typedef struct {
+    real spring[BARS + 1];
+    real hold[BARS + 1];
+    real couple[BARS + 1];
+} bar_bonds;
+
+/* By the sine and cosine of half of w times the delay. */
+static void bond_bar(real w, real sine, real cosine, int bar, bar_bonds *of)
+{
+    const int against = fabs(sine) <= fabs(cosine);
+    of->couple[bar] = w / (2 * sine * cosine);
+    of->spring[bar] = against ? of->couple[bar] : -of->couple[bar];
+    of->hold[bar] = against ? -w * sine / cosine : w * cosine / sine;
+}
+
 static void chain_of(const real *value, chain *c)
 {
     for (int place = 0; place <= PLACES; ++place) {
@@ -47,8 +65,9 @@ static void chain_of(const real *value, chain *c)
     }
 }
 
-/* Join two places by a spring. A row and its parent are coupled, others are at rest and hold the row. */
-static void join(bonds *b, int left, real left_ratio, int right, real right_ratio, int row, real k)
+/* Join two places by a spring, and by what couples them: k, or -k. A row and its parent are coupled, others are at rest
+ * and hold the row. */
+static void join(bonds *b, int left, real left_ratio, int right, real right_ratio, int row, real k, real couple)
 {
     const real at_left = left_ratio * left_ratio * k;
     const real at_right = right_ratio * right_ratio * k;
@@ -59,11 +78,11 @@ static void join(bonds *b, int left, real left_ratio, int right, real right_rati
     }
     b->here[row] += row == left ? at_left : at_right;
     b->there[row] += row == left ? at_right : at_left;
-    b->across[row] += left_ratio * right_ratio * k;
+    b->across[row] += left_ratio * right_ratio * couple;
 }
 
-/* From w^2 and, for each bar, were its impedance 1, its stiffness and what holds its ends. */
-static void assemble(const chain *c, real square, const real *stretch, const real *hold, bonds *b)
+/* From w^2 and the bonds of bars. */
+static void assemble(const chain *c, real square, const bar_bonds *bars, bonds *b)
 {
     for (int place = 0; place <= PLACES; ++place) {
         b->own[place] = c->held[place] - square * c->mass[place];
@@ -77,12 +96,13 @@ static void assemble(const chain *c, real square, const real *stretch, const rea
         const real left_ratio = bar_left_ratio[bar];
         const real right_ratio = bar_right_ratio[bar];
         const real z = c->impedance[bar];
-        b->own[left] += left_ratio * left_ratio * z * hold[bar];
-        b->own[right] += right_ratio * right_ratio * z * hold[bar];
-        join(b, left, left_ratio, right, right_ratio, bar_up[bar], z * stretch[bar]);
+        b->own[left] += left_ratio * left_ratio * z * bars->hold[bar];
+        b->own[right] += right_ratio * right_ratio * z * bars->hold[bar];
+        join(b, left, left_ratio, right, right_ratio, bar_up[bar], z * bars->spring[bar], z * bars->couple[bar]);
     }
     for (int link = 0; link < LINKS; ++link) {
-        join(b, link_left[link], link_ratio[link], link_right[link], 1, link_up[link], c->link[link]);
+        const real k = c->link[link];
+        join(b, link_left[link], link_ratio[link], link_right[link], 1, link_up[link], k, k);
     }
 }
 
@@ -116,8 +136,7 @@ static void eliminate(const bonds *b, real *held, real *pivot)
 /* How many frequencies lie below w: those of bars whose ends rest, and negative pivots. */
 static int count_below(const chain *c, real w)
 {
-    real stretch[BARS + 1];
-    real hold[BARS + 1];
+    bar_bonds bars;
     real held[ROWS];
     real pivot[ROWS];
     bonds b;
@@ -130,10 +149,9 @@ static int count_below(const chain *c, real w)
         const int odd = fmod(turn, 2) != 0;
         /* such that the sine has the sign that goes with it */
         count += (int)turn - ((odd ? -sine : sine) * cosine < 0);
-        stretch[bar] = w / (2 * sine * cosine);
-        hold[bar] = -w * sine / cosine;
+        bond_bar(w, sine, cosine, bar, &bars);
     }
-    assemble(c, w * w, stretch, hold, &b);
+    assemble(c, w * w, &bars, &b);
     eliminate(&b, held, pivot);
     for (int row = 0; row < ROWS; ++row) {
         count += pivot[row] < 0;

@@ -130,8 +130,7 @@ typedef struct {
  * mode needs no force, and from there its shape is what each branch does (Parlett and Dhillon 1997). */
 static void find_shape(const chain *c, const angles *a, real w, shape *found)
 {
-    real stretch[BARS + 1];
-    real hold[BARS + 1];
+    bar_bonds bars;
     real held[ROWS];
     real pivot[ROWS];
     real beyond[ROWS];
@@ -141,10 +140,9 @@ static void find_shape(const chain *c, const angles *a, real w, shape *found)
     real *const moved = found->moved;
     real lost;
     for (int bar = 0; bar < BARS; ++bar) {
-        stretch[bar] = w * a->csc[bar];
-        hold[bar] = -w * a->half_sine[bar] / a->half_cosine[bar];
+        bond_bar(w, a->half_sine[bar], a->half_cosine[bar], bar, &bars);
     }
-    assemble(c, w * w, stretch, hold, &b);
+    assemble(c, w * w, &bars, &b);
     eliminate(&b, held, pivot);
     eliminate_beyond(&b, held, beyond);
     for (int place = 0; place < PLACES; ++place) {
@@ -175,11 +173,13 @@ static void find_shape(const chain *c, const angles *a, real w, shape *found)
     found->reach = most_of(1, 1 / (sqrt(weight[root]) * fabs(moved[root])));
     /* an angle is as wrong as its last digit: near a resonance of a bar that counts */
     for (int bar = 0; bar < BARS; ++bar) {
-        const real x = a->angle[bar];
-        stretch[bar] = fabs(w * a->csc[bar]) * (1 + fabs(x * a->csc[bar]));
-        hold[bar] = fabs(w * a->half_sine[bar] / a->half_cosine[bar]) * (1 + fabs(x * a->csc[bar]));
+        const real grown = 1 + fabs(a->angle[bar] * a->csc[bar]);
+        const int against = bars.spring[bar] == bars.couple[bar];
+        bars.spring[bar] = fabs(bars.spring[bar]) * grown;
+        bars.hold[bar] = fabs(bars.hold[bar]) * grown;
+        bars.couple[bar] = against ? bars.spring[bar] : -bars.spring[bar];
     }
-    assemble(c, -w * w, stretch, hold, &b);
+    assemble(c, -w * w, &bars, &b);
     found->wrong = rounding * energy(&b, moved);
 }
 

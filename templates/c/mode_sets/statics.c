@@ -31,14 +31,13 @@ static real linear_mass(const chain *c, const real *moved, int broken, int side,
 
 static void springs_of(const chain *c, springs *s)
 {
-    real stretch[BARS + 1];
-    real hold[BARS + 1];
+    bar_bonds bars;
     real held[ROWS];
     for (int bar = 0; bar < BARS; ++bar) {
-        stretch[bar] = 1 / c->delay[bar];
-        hold[bar] = 0;
+        bars.spring[bar] = bars.couple[bar] = 1 / c->delay[bar];
+        bars.hold[bar] = 0;
     }
-    assemble(c, 0, stretch, hold, &s->bond);
+    assemble(c, 0, &bars, &s->bond);
     eliminate(&s->bond, held, s->pivot);
     for (int place = 0; place < PLACES; ++place) {
         s->still[place] = FREE ? rigid[place] : 0;

@@ -74,7 +74,8 @@ class DampingRatios:
 def damping_ratios(damping: Damping | None, w: Sequence[float]) -> DampingRatios:
     """What a scene says of damping, for modes whose first frequencies with strain are w.
 
-    UnservedError where two modes with one frequency have ratios of their own, as then it is open which modes they are.
+    UnservedError where two modes with one frequency have ratios of their own, as then it is open which modes they are,
+    and where there are not as many as it names.
     """
     if damping is None:
         return DampingRatios()
@@ -88,6 +89,8 @@ def damping_ratios(damping: Damping | None, w: Sequence[float]) -> DampingRatios
                     f"frequency, {w[number]:g} (write the same ratio for both)"
                 )
         return DampingRatios(ratios)
+    if max(damping.modes) > len(w):
+        raise UnservedError(f"system.damping.modes: {max(damping.modes)}, of {len(w)} modes with strain")
     first, second = (w[number - 1] for number in damping.modes)
     return DampingRatios(rayleigh=(2 * ratio * first * second / (first + second), 2 * ratio / (first + second)))
 
