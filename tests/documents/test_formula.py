@@ -140,6 +140,27 @@ def test_what_has_no_formula_says_so() -> None:
         wavesym.formula(parting, "strain@1-")
 
 
+@pytest.mark.parametrize(
+    ("written", "others"),
+    [
+        ("strain@0.5", ["strain@1/2", "strain@0.50", "strain@5e-1", "strain@2/4"]),
+        ("strain@n-", ["strain@1-", "strain@1.0-", "strain@2/2-"]),
+        ("displacement@n", ["displacement@1", "displacement@1.0"]),
+        ("force@b:1/4", ["force@b:0.25", "force@b:2.5e-1"]),
+    ],
+)
+def test_a_place_may_be_written_in_any_way(written: str, others: list[str]) -> None:
+    system = {"type": "chain", "parts": [{"rod": 1}, {"mass": 1, "name": "n"}, {"rod": 1}, "fixed"]}
+    system["branch"] = [{"from": "n", "name": "b", "parts": [{"rod": 1}, "free"]}]
+    quantity, _, place = written.partition("@")
+    load = [{"at": 0, "times": [0], "steps": [1]}]
+    made = Scene(name="s", system=system, load=load, output={"until": 3, quantity: ["3/2", place]})
+    expected = wavesym.formula(made, written)
+    assert [wavesym.formula(made, each) for each in others] == [expected] * len(others)
+    with pytest.raises(WavesymError, match="is no output of s"):
+        wavesym.formula(made, f"{quantity}@1/3")
+
+
 def test_the_command_writes_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["formula", "drive_m1", "--output", "strain@0", "--until", "5/2"]) == 0
     assert capsys.readouterr().out == wavesym.formula(Scene.from_toml("drive_m1"), "strain@0", 2.5)

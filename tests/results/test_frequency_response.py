@@ -369,6 +369,26 @@ def test_what_nothing_damps_has_no_greatest_amplitude() -> None:
     assert wavesym.frf(free, [0.0, 1.0], load=0).poles == (0.0,)
 
 
+@pytest.mark.parametrize("beside", [0, -1, -20, 1])
+def test_a_band_that_ends_just_before_a_pole_has_a_greatest_amplitude(beside: int) -> None:
+    """A held rod under a force at its end moves tan(w)/w: pi/2 lies 2e-17 above 1.5707963267948966."""
+    below = float(np.pi / 2)
+    high = below + beside * float(np.spacing(below))
+    system = {"type": "chain", "parts": ["fixed", {"rod": 1}, {"joint": True, "name": "end"}]}
+    load = [{"at": "end", "times": [0], "steps": [1]}]
+    made = Scene(name="s", system=system, load=load, output={"until": 1, "displacement": ["end"]})
+    (peak,) = wavesym.frf(made, low=1, high=high, points=2).peaks()
+    with ctx.workprec(200):
+        w = arb(repr(high))  # as it is written
+        expected = float((w.tan() / w).mid())
+    if beside > 0:
+        assert peak.amplitude == float("inf")
+    else:
+        assert peak.low <= expected * (1 + 1e-15)
+        assert expected <= peak.high <= expected * (1 + 1e-9)
+        assert (peak.frequency, peak.amplitude) == (high, pytest.approx(expected, rel=1e-15))
+
+
 def test_units_are_those_of_one_unit_of_the_load() -> None:
     """A mass of 100 kg on a rod that weighs nothing to speak of: 1 kN moves it by 1/(k - m w^2)."""
     parts = [

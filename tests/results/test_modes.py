@@ -43,11 +43,35 @@ def test_effective_masses_are_those_of_a_rod_and_add_up_to_all() -> None:
     assert 0.99 < every < 1
 
 
+def test_nodes_at_rest_are_0_in_shapes() -> None:
+    """Two rods of length 1 with a mass between: at k pi it is at rest, and both rods vibrate: 1 along them, 0 there."""
+    parts = ["fixed", {"rod": 1}, {"mass": "1/3", "name": "m"}, {"rod": 1}, "fixed"]
+    scene = chain(*parts, name="two").with_({"load": [{"at": "m", "times": [0], "steps": [1]}]})
+    found = wavesym.modes(scene, 6, points=5)
+    resting = [mode for mode in found if abs(mode.omega / pi - round(mode.omega / pi)) < 1e-12]
+    assert len(resting) == 3
+    for mode in resting:
+        assert set(mode.shape.values()) == {0}
+        assert mode.loads["m"].factor == 0
+        along = np.abs(found.line_shapes[0].displacements[mode.number - 1])
+        assert along.max() == pytest.approx(1)
+    assert all(mode.shape["m"] == 1 for mode in found if mode not in resting)
+
+
+def test_participation_of_a_mode_whose_nodes_rest_is_of_its_rods() -> None:
+    """sin(k pi x) on two rods of length 1, the ground moves at x = 0: the integral of it times 1 - x/2 is 1/(k pi)."""
+    parts = [{"motion": "acceleration", "name": "g"}, {"rod": 1}, {"mass": "1/3"}, {"rod": 1}, "fixed"]
+    for mode in wavesym.modes(chain(*parts), 6):
+        k = round(mode.omega / pi)
+        if abs(mode.omega / pi - k) < 1e-12:
+            assert abs(mode.loads["g"].factor) == pytest.approx(1 / (k * pi), rel=1e-12)
+
+
 def test_a_dashpot_makes_frequencies_complex() -> None:
     """A held rod of impedance 1 that ends in a dashpot r: exp(2 i w) = -(1 - r)/(1 + r), so Im w is constant."""
     r = 0.5
     found = wavesym.modes(chain("fixed", {"rod": 1}, {"joint": True, "dashpot": "1/2"}), 4)
-    assert not found.complete
+    assert found.complete
     decay = -np.log((1 - r) / (1 + r)) / 2
     for n, mode in enumerate(found, 1):
         w = complex((2 * n - 1) * pi / 2, decay)

@@ -299,6 +299,16 @@ def test_marches_do_not_take_numbers_of_modes():
         runtime_program(undamped, Request(runtime=("stiffness",)), ())
 
 
+def test_sets_beyond_the_tolerance_are_marked(sprung):
+    """Storeys of 900 and 1e12 in turn, beside plain ones: what is estimated worse than the scene asks says so."""
+    checks = sprung.peaks(stiffness=[[900.0] * 4, [900.0, 1e12, 900.0, 1e12]], mass=[[2.0] * 4] * 2).checks
+    assert checks.tolerance == 1e-6
+    assert (checks.is_poor == (checks.estimate > 1e-6)).all()
+    assert checks.why[0] == ""
+    assert checks.is_poor[1]
+    assert checks.why[1] == "an estimate above 1e-06, the tolerance"
+
+
 def test_where_doubles_have_no_shape_nothing_is_claimed():
     """The node between two rods alike is at rest in some modes: there K has no value."""
     scene = wavesym.Scene(
@@ -320,6 +330,8 @@ def test_where_doubles_have_no_shape_nothing_is_claimed():
     model = wavesym.model(scene, ["mass"])
     values, checks = model.values([4.0, 9.0], mass=[1.0, 1.2]), model.check(mass=[1.0, 1.2])
     assert np.all(np.isfinite(values[np.isfinite(checks.estimate)]))
+    assert (checks.is_poor == (checks.estimate > 1e-2)).all()
+    assert [bool(why) for why in checks.why] == checks.is_poor.tolist()
     true = np.stack([wavesym.run(scene, times=[4.0, 9.0])[name] for name in model.outputs])
     assert np.abs(values[0] - true).max() <= checks.estimate[0] * np.abs(true).max() * 2
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -94,7 +95,7 @@ def formula(
 
     Args:
         scene: whose contacts do not open, and whose modes are not damped.
-        output: its name, such as "strain@0.5".
+        output: its name, such as "strain@0.5"; its place may be written in any way that a scene has for it.
         until: in the time unit of the results, or tau; None for the horizon.
         format: "text", "latex", "sympy" (one expression in `tau`) or "c" (a function).
         symbolic: whether coefficients are functions of the parameters: of the paper's systems only.
@@ -117,7 +118,7 @@ def formula(
     from wavesym.numbers.doubles import rational
 
     refuse_unknown("format", format, ("text", "latex", "sympy", "c"))
-    model = lower(scene)
+    model, output = lower(scene), _output_name(scene, output)
     if until is not None:
         last = rational(Fraction(repr(float(until)) if isinstance(until, float) else until)) / (
             model.clock.per_tau if model.clock else 1
@@ -132,6 +133,20 @@ def formula(
 
     chain = _paper_chain(scene, model, "--symbolic", "formula")
     return symbolic_formula(model, output, in_rates(in_letters(chain)), chain.nodes[-1].velocity).render(format)
+
+
+def _output_name(scene: Scene, output: str) -> str:
+    """What a scene calls an output whose place may be written in another way; the same where it has none there."""
+    quantity, _, place = output.partition("@")
+    if not place or all(each.quantity != quantity or each.name == output for each in scene.outputs):
+        return output
+    with suppress(WavesymError):
+        written = scene.with_({f"output.{quantity}": [place]}).outputs
+        places = [each.place for each in written if each.quantity == quantity]
+        return next(
+            (each.name for each in scene.outputs if (each.quantity, [each.place]) == (quantity, places)), output
+        )
+    return output
 
 
 class Derivation(str):

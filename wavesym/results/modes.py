@@ -1,7 +1,8 @@
 """The modes of vibration of a scene: frequencies, damping, effective masses and shapes.
 
 Undamped frequencies are the zeros of the determinant of the dynamic stiffness; how many lie below a number is counted
-in balls (Wittrick and Williams, 1971), so that none is missed. With dashpots motions are exp(i w tau) with complex w.
+in balls (Wittrick and Williams, 1971), so that none is missed. With dashpots motions are exp(i w tau) with complex w,
+by their absolute values, which are counted by the turns of the determinant around a circle.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from math import inf, pi
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,7 @@ COUNT = 10
 _MOST = 2000
 _FIRST_GUESS = 16  # modes, where it is not known how many lie below a frequency
 _COMPLETE = "none is missed: the frequencies below the last one are counted in balls (Wittrick and Williams)"
-_INCOMPLETE = "each is proved; that none is missed is not, as of complex frequencies"
+_COUNTED = "none is missed: a determinant turns so often around a circle beyond the last one, in balls"
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ class Modes:
                 for node, moved in mode.shape.items():
                     row |= {f"shape@{node}": moved.real} | ({} if self._is_real else {f"shape@{node}.imag": moved.imag})
             lines.append(row)
-        return "".join(map(csv_line, [lines[0], *(row.values() for row in lines)]))
+        return "".join(map(csv_line, [*lines[:1], *(row.values() for row in lines)]))
 
     def _along_csv(self) -> str:
         real = self._is_real
@@ -162,17 +163,19 @@ class Modes:
             numbers = [str(mode.number), f"{mode.omega:.9g}", f"{mode.hz:.9g}", period, damping]
             rows.append([*numbers, *[mass] * massive, *shares])
         lines = align_columns(rows, left=())
-        if shapes:
+        if shapes and self.modes:
             nodes = list(self.modes[0].shape)
             table = [["node", *(f"mode {mode.number}" for mode in self.modes)]]
             table += [[node, *(_shape_text(mode.shape[node]) for mode in self.modes)] for node in nodes]
             lines += ["", *align_columns(table, left=())]
+        if not self.modes:
+            return f"no mode; {self.why}\n"
         radius = max((mode.radius for mode in self.modes), default=0.0)
         return "\n".join([*lines, "", f"right to {radius:.1e} {per}, proved; {self.why}"]) + "\n"
 
     def _repr_html_(self) -> str:
         rows = self._rows(shapes=False)
-        return html_table(repr(self), rows[0], (map(_cell, row.values()) for row in rows))
+        return html_table(repr(self), rows[0] if rows else (), (map(_cell, row.values()) for row in rows))
 
     @property
     def _is_real(self) -> bool:
@@ -228,22 +231,35 @@ def modes(
     model.network.refuse_loss()
     damped = is_damped(model.network)
     spectrum = DampedSpectrum(model.network) if damped else Spectrum(model.network)
-    found = list(spectrum.first(count if below is None else _FIRST_GUESS))
+    found, reach = _first(spectrum, count if below is None else _FIRST_GUESS)
     per_tau = 1.0 if model.clock is None else nearest(model.clock.seconds)
     if below is not None:
         limit = below * (2 * pi * per_tau if model.clock else 1.0)
-        while abs(complex(found[-1].frequency)) <= limit:
+        wanted = _FIRST_GUESS
+        while len(found) == wanted and abs(complex(found[-1].frequency)) <= limit:
             if len(found) >= _MOST:
                 raise CostError(f"--below: {below:g} has more modes below it, the limit is {_MOST} (a lower one helps)")
-            found = list(spectrum.first(2 * len(found)))
+            wanted *= 2
+            found, reach = _first(spectrum, wanted)
         found = [mode for mode in found if abs(complex(mode.frequency)) <= limit]
     rows = tuple(_row(model, k, mode, per_tau) for k, mode in enumerate(found, 1))
     if not damped:
         rows = _with_ratios(model, rows, spectrum, per_tau)
-    why = _INCOMPLETE if damped else _COMPLETE
+    complete = not found or reach >= abs(complex(found[-1].frequency))
+    why = _COMPLETE if not damped else _COUNTED if complete else _incomplete(reach / per_tau, model)
     unit = "s" if model.clock else None
     along = line_shapes(found, spectrum.cut, model, lines, points) if lines and points else ()
-    return Modes(model.name, rows, not damped, why, unit, tuple(found), spectrum.cut, along)
+    return Modes(model.name, rows, complete, why, unit, tuple(found), spectrum.cut, along)
+
+
+def _first(spectrum: Spectrum | DampedSpectrum, count: int) -> tuple[list[Mode], float]:
+    """The first modes, and up to which absolute value of a frequency none is missed."""
+    return spectrum.complete_modes(count) if isinstance(spectrum, DampedSpectrum) else (spectrum.first(count), inf)
+
+
+def _incomplete(reach: float, model: Model) -> str:
+    per = "rad/s" if model.clock else "rad/tau"
+    return f"none is missed up to {reach:.6g} {per}; beyond, each is proved, and that none is missed is not"
 
 
 def is_damped(network: Network) -> bool:
@@ -288,9 +304,15 @@ def _with_ratios(
 
 
 def _largest(network: Network, mode: Mode) -> arb:
-    """How far that point of the network moves that moves most; 1 where none does."""
-    moved = max(mode.points[: len(network.points)], key=lambda q: abs(float(q)))
-    return arb(1) if moved.contains(0) else moved
+    """How far that point of the network moves that moves most; where all rest, how far rods do between them."""
+    count = len(network.points)
+    moved: arb = max(mode.points[:count], key=lambda q: abs(float(q)))
+    if not moved.contains(0):
+        return moved
+    bars = (bar for bar in mode.stiffness.network.bars if min(bar.left, bar.right) < count <= max(bar.left, bar.right))
+    sizes = (mode.points[max(bar.left, bar.right)] / (mode.frequency * bar.delay).sin() for bar in bars)
+    largest: arb = max(map(abs, sizes), key=float, default=arb(1))
+    return largest
 
 
 def _numbers(load: Participation) -> Iterator[tuple[str, float | None]]:
@@ -300,13 +322,14 @@ def _numbers(load: Participation) -> Iterator[tuple[str, float | None]]:
 
 
 def _shape(network: Network, mode: Mode) -> dict[str, complex]:
-    """How far the points of the network move, those of its cuts left out, in parts of the largest."""
-    moved = [complex(mode.points[number]) for number in range(len(network.points))]
-    largest = max(moved, key=abs)
+    """How far the points of the network move, those of its cuts left out, in parts of the largest; 0 of all at rest."""
+    own = mode.points[: len(network.points)]
+    moved = [0j if each.contains(0) else complex(each) for each in own]
+    largest = max(moved, key=abs) or 1.0
     names: dict[str, complex] = {}
     for point, each in zip(network.points, moved, strict=True):
         name = point.label
-        names.setdefault(name if name not in names else f"{name}+", each / largest if largest else 0j)
+        names.setdefault(name if name not in names else f"{name}+", each / largest if each else 0j)
     return names
 
 

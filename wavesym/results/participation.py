@@ -41,7 +41,8 @@ def participations(network: Network, mode: Mode, largest: arb) -> dict[str, Part
         point = network.points[number]
         name = point.label
         if point.motion is None:
-            found[name] = Participation(midpoint(mode.points[number] / largest), None)
+            moved = mode.points[number]
+            found[name] = Participation(0.0 if moved.contains(0) else midpoint(moved / largest), None)
         elif not mode.frequency.contains(0):
             taken = -share(mode.stiffness.network, Driver(number, fmpq(1), "", ""), mode)
             statics = Statics(mode.stiffness)

@@ -269,7 +269,10 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
                 if fractions is not None and fractions.stays_below(k, found[k].square * (1 + _SHARE), half):
                     continue
                 width, wide = each.high - each.low, (last - first).min(each.high)
-                if width < wide * _LEAST and transfer.has_pole(k, each.low - width, each.high + width):
+                below, above = each.low - width, each.high + width
+                if width > wide * _SHORTEST:  # what is nearer to an end of the band than that is at it
+                    below, above = below.max(edges[0]), above.min(edges[-1])
+                if width < wide * _LEAST and transfer.has_pole(k, below, above):
                     found[k].pole, found[k].at = True, each.middle
                 elif width < wide * (_SHORTEST if transfer.lowest_terms(k) is None else _LEAST):
                     found[k].is_open, found[k].at = True, each.middle

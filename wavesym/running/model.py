@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf
 from typing import TYPE_CHECKING, Any, NoReturn, Protocol
 
 import numpy as np
@@ -36,16 +37,25 @@ _WHY = (
 class SetChecks:
     """Of each set its `status`, 0, or 1 for a bad number, or 2 for rates beyond what the degree of the program can
     follow; and its `estimate`, about the largest error of any output relative to its largest value, with a margin (not
-    proved; NaN where the status is not 0).
+    proved; NaN where the status is not 0). `is_poor` says of each set whether that is more than the `tolerance` of the
+    scene, which no number of modes, or no degree, that there is room for meets: `bounds` prove such a set, a sweep
+    computes it by programs of its own.
     """
 
     status: NDArray[np.int32]
     estimate: Array
+    tolerance: float = inf
+
+    @property
+    def is_poor(self) -> NDArray[np.bool_]:
+        """Whether the estimate is above the tolerance."""
+        return np.asarray(self.estimate > self.tolerance)
 
     @property
     def why(self) -> list[str]:
         """In words, empty for a set that is fine."""
-        return [_WHY[status] for status in self.status]
+        poor = f"an estimate above {self.tolerance:.3g}, the tolerance"
+        return [poor if short else _WHY[status] for status, short in zip(self.status, self.is_poor, strict=True)]
 
 
 @dataclass(frozen=True, repr=False)
@@ -218,7 +228,7 @@ class RuntimeModel:
         places = {name: slice(*of) for name, of in zip(self.parameters, pairwise(ends), strict=True)}
         by = {name: lanes[:, place] for name, place in places.items()}
         estimates = {name: found.estimate[:, place] for name, place in places.items()}
-        return SetGradients(lanes[:, 0], by, SetChecks(found.status, found.estimate[:, 0]), estimates)
+        return SetGradients(lanes[:, 0], by, self._checks(found.status, found.estimate[:, 0]), estimates)
 
     def peaks(self, **parameters: ArrayLike) -> SetPeaks:
         """Extremes on the whole horizon, between samples, too."""
@@ -227,8 +237,11 @@ class RuntimeModel:
         values, taus = found.values[..., ::2].copy(), found.values[..., 1::2].copy()
         zero_within(values, taus, found.estimate[:, None, None], self._first_zeros(given, values, taus, found.estimate))
         (least, greatest), (tau_least, tau_greatest) = np.moveaxis(values, 2, 0), np.moveaxis(taus, 2, 0)
-        checks = SetChecks(found.status, found.estimate)
+        checks = self._checks(found.status, found.estimate)
         return SetPeaks(least, tau_least, greatest, tau_greatest, checks, self._labels(parameters))
+
+    def _checks(self, status: NDArray[np.int32], estimate: Array) -> SetChecks:
+        return SetChecks(status, estimate, nearest(self._model.tolerance))
 
     def _first_zeros(self, given: Array, values: Array, taus: Array, estimate: Array) -> Array:
         """When outputs whose extremes are within the estimate of 0 first are that near: at the start, or then."""
@@ -273,7 +286,7 @@ class RuntimeModel:
     def check(self, **parameters: ArrayLike) -> SetChecks:
         """Which sets are refused, and what errors the others have."""
         found = self._engine.values(self._parameter_rows(parameters), np.empty(0))
-        return SetChecks(found.status, found.estimate)
+        return self._checks(found.status, found.estimate)
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{len(values)} of {name}" for name, values in self.parameters.items())

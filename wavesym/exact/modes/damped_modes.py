@@ -6,8 +6,9 @@ others, as zeros of a polynomial are (Aberth, 1973). So none is found twice, als
 one swings no more, and has become two that creep.
 
 Each is polished in complex balls, and proved: a ball that Newton's method (with all slopes that occur in it) maps into
-its inside has one zero. That none is missed is not proved here. What all modes together have is known otherwise, and
-bounds count what is left of it (programs/modes/dissipation.py): a mode that was missed makes a bound worse, not wrong.
+its inside has one zero. That none is missed is proved where all are counted (turns.py). Programs do not count: what all
+modes together have is known otherwise, and bounds count what is left of it (programs/modes/dissipation.py): a mode that
+was missed makes a bound worse, not wrong.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.shape import Mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
+from wavesym.exact.modes.turns import Circles, absorb
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Complex
 
@@ -42,6 +44,7 @@ _FOUND = 1e-11
 _AWAY = 4.0  # times the last one wanted: what is still on its way there is no matter
 _CREEPING = 1e-4, 1e2  # where they are sought, spacings of frequencies from 0
 _CREEPERS = 24
+_SEARCHES, _BEYOND = 4, 3  # with some modes more, between which a circle has room
 _I = acb(0, 1)
 
 
@@ -56,18 +59,36 @@ def remove_dashpots(network: Network) -> Network:
 class DampedSpectrum(CutNetwork):
     """The modes of a network with dashpots that is cut at places (bar, part of it)."""
 
-    def first(self, count: int) -> list[Mode]:
+    def complete_modes(self, count: int) -> tuple[list[Mode], float]:
+        """The first `count` modes, and up to which absolute value none is missed: proved by counting (turns.py).
+
+        Where counts differ from what was found it is sought again, from more places. UnservedError as `first`.
+        """
+        found: list[Mode] = []
+        circles, reach = Circles(self.cut.network), 0.0
+        for again in range(_SEARCHES):
+            before = self.cut
+            more = self.first(count + _BEYOND, again)
+            found = _distinct([*(found if self.cut is before else []), *more])
+            frequencies = [complex(mode.frequency) for mode in found]
+            reach = circles.largest_complete(frequencies, count)
+            enough = circles.is_finite or len(found) >= count
+            if circles.is_exhausted or (enough and reach >= max(map(abs, frequencies[:count]), default=0.0)):
+                break
+        return found[:count], reach
+
+    def first(self, count: int, again: int = 0) -> list[Mode]:
         """About the first `count` modes, by the absolute values of their frequencies, with real parts of at least 0.
 
         Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it. UnservedError where
-        frequencies coincide, as of equal branches.
+        frequencies coincide, as of equal branches. `again` says how often they were sought before.
         """
         stiffness = Stiffness(self.cut.network)
-        guesses = estimate_frequencies(stiffness, count) if stiffness.points else np.zeros(1, complex)
+        guesses = estimate_frequencies(stiffness, count, again) if stiffness.points else np.zeros(1, complex)
         found = _all_proved(stiffness, guesses) if stiffness.points else [None]
         for k in (k for k, mode in enumerate(found) if mode is None):
             if self.cut_again():  # all points may be at rest
-                return self.first(count)
+                return self.first(count, again)
             if np.count_nonzero(np.abs(guesses - guesses[k]) < _MEETING * abs(guesses[k])) > 1:
                 raise UnservedError(
                     f"system: two frequencies meet near {abs(guesses[k]):.6g}, which modes with dashpots cannot "
@@ -88,16 +109,17 @@ def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
     return found
 
 
-def estimate_frequencies(stiffness: Stiffness, count: int) -> Complex:
-    """The first frequencies in doubles, those with a real part of at least 0."""
+def estimate_frequencies(stiffness: Stiffness, count: int, again: int = 0) -> Complex:
+    """The first frequencies in doubles, those with a real part of at least 0; from more places `again` and again."""
+    stiffness = Stiffness(absorb(stiffness.network))
     if not stiffness.network.bars:
         return _of_matrix(stiffness)[:count]
-    many = int(_MORE * count) + len(stiffness.network.bars) + 4
+    many = (int(_MORE * count) + len(stiffness.network.bars) + 4) << again
     start = bisect_frequencies(Stiffness(remove_dashpots(stiffness.network)), many)
-    draw = np.random.default_rng(0)  # nothing is to stay symmetric by chance
+    draw = np.random.default_rng(again)  # nothing is to stay symmetric by chance
     apart = np.pi / float(stiffness.delay)
     start = start + apart * (0.1j + 0.02 * (draw.normal(size=many) + 1j * draw.uniform(size=many)))
-    creeping = apart * (np.geomspace(*_CREEPING, _CREEPERS) * 1j + 1e-3)
+    creeping = apart * (np.geomspace(*_CREEPING, _CREEPERS << again) * 1j + 1e-3)
     w = np.concatenate([start, -start.conjugate() + 1e-3 * apart, creeping])
     moving, resting = np.arange(len(w)), _RESTING * np.pi / float(stiffness.delay)
     for _ in range(_ROUNDS):

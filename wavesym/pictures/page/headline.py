@@ -17,7 +17,7 @@ from wavesym.pictures.line_histories import LineHistories
 from wavesym.pictures.page.page_tables import PageTable
 from wavesym.pictures.timescale import Timescale, timescale
 from wavesym.pictures.units import unit_text
-from wavesym.results.modes import modes
+from wavesym.results.modes import is_damped, modes
 from wavesym.results.presentation import number_text
 from wavesym.results.statistics import OutputSummary
 from wavesym.results.summary import Summary, summarise
@@ -92,9 +92,8 @@ def headline(
 def longest_periods(model: Model) -> list[float]:
     """Up to three in the time of results; none where waves leave a chain, or contacts open and close."""
     with suppress(WavesymError):
-        known = modes(model, _PERIODS)
-        if known.complete:
-            return [row.period for row in known if row.period]
+        if not is_damped(model.network):
+            return [row.period for row in modes(model, _PERIODS) if row.period]
     return []
 
 

@@ -1,0 +1,258 @@
+"""How many complex frequencies a circle about 0 has inside, by the turns of a function around it, in complex balls.
+
+From the tips of the tree of points to its root each branch resists by a ratio A/B of functions of w without poles, as
+in harmonic.py. The last A is det K times sin(w T)/w of all bars, so its zeros are the frequencies, each as often as it
+is one; w = 0 is as often one as its power series in s = i w, which is exact, says. How many there are with |w| < R is
+how often A turns as w goes around that circle (argument principle).
+
+A(-conj w) is the conjugate of A(w), so half a circle is enough. Where A is nowhere on an arc so far from its value in
+the middle as that is from 0, what it turns by from end to end is the angle between its values there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import inf, pi
+
+from flint import acb, acb_series, arb, ctx, fmpq, fmpq_series
+
+from wavesym.exact.modes.harmonic import BallFrequency, Quantity, Turn
+from wavesym.exact.modes.stiffness import Stiffness
+from wavesym.mechanics.network import Bar, Network
+from wavesym.numbers.doubles import nearest
+
+_BITS = 96
+_ARCS, _ARCS_A_RADIAN = 8, 1  # at first
+_MOST_WORK = 40_000  # arcs times rows, of all circles
+_SPARE = 8  # times as many arcs as at first may be needed where there are many rows
+_BESIDE = 1e-9  # between frequencies of nearly one absolute value is no circle
+_BEYOND_LAST = {True: 1e3, False: 1.5}  # times the last one, where there are finitely many and where not
+_POWERS = 12  # of A on an arc
+_TERMS = 8  # of A at w = 0
+_I = acb(0, 1)
+_ZERO, _ONE = fmpq(0), fmpq(1)
+
+
+def absorb(network: Network) -> Network:
+    """The same network without rods that lead to nothing but a dashpot as large as their impedance.
+
+    From there nothing returns: such a rod is that dashpot at its other end, and has no frequencies of its own.
+    """
+    while (ends := _absorbing_bar(network)) is not None:
+        number, side = ends
+        bar = network.bars[number]
+        near = bar.right if side == 0 else bar.left
+        points = list(network.points)
+        points[near] = replace(points[near], damping=points[near].damping + bar.ratios[1 - side] ** 2 * bar.impedance)
+        far = bar.left if side == 0 else bar.right
+        points[far] = replace(points[far], damping=fmpq(0), motion="fixed")
+        bars = tuple(other for k, other in enumerate(network.bars) if k != number)
+        network = replace(network, points=tuple(points), bars=bars)
+    return network
+
+
+def _absorbing_bar(network: Network) -> tuple[int, int] | None:
+    """A bar that ends so, and at which side."""
+    held = [end for bar in network.bars for end in (bar.left, bar.right)]
+    held += [end for link in network.links for end in (link.left, link.right)]
+    for number, bar in enumerate(network.bars):
+        for side, at in enumerate((bar.left, bar.right)):
+            point = network.points[at]
+            bare = point.mass == 0 and point.stiffness == 0 and point.motion is None and held.count(at) == 1
+            if bare and point.damping == bar.ratios[side] ** 2 * bar.impedance:
+                return number, side
+    return None
+
+
+@dataclass
+class _Branch:
+    """What holds a row to its parent: a bar, if there is one, and a spring and a dashpot; how fast their ends move."""
+
+    near_ratio: fmpq = _ONE
+    far_ratio: fmpq = _ONE
+    bar: Bar | None = None
+    stiffness: fmpq = _ZERO
+    damping: fmpq = _ZERO
+
+
+@dataclass
+class _Row:
+    """A point that is free to move: what it has, bars to what is at rest, each with how fast its end moves."""
+
+    mass: fmpq
+    stiffness: fmpq
+    damping: fmpq
+    resting_bars: list[tuple[Bar, fmpq]] = field(default_factory=list)
+    branch: _Branch = field(default_factory=_Branch)
+
+
+class Circles:
+    """Circles about 0, and how many frequencies of a network with dashpots are inside.
+
+    UnservedError for a ring of parts.
+
+    Attributes:
+        is_exhausted: whether a circle would have taken too long.
+        is_finite: whether there are finitely many frequencies, as without rods.
+    """
+
+    def __init__(self, network: Network) -> None:
+        network = absorb(network)
+        self._stiffness = stiffness = Stiffness(network)
+        self._left, self.is_exhausted, self.is_finite = _MOST_WORK, False, not network.bars
+        points = (network.points[point] for point in stiffness.points)
+        self._rows = [_Row(point.mass, point.stiffness, point.damping) for point in points]
+        for bar in network.bars:
+            for row, ratio, parent, other in self._ends(bar.left, bar.right, bar.ratios):
+                if parent is None:
+                    self._rows[row].resting_bars.append((bar, ratio))
+                else:
+                    self._rows[row].branch = replace(self._rows[row].branch, bar=bar, near_ratio=other, far_ratio=ratio)
+        for link in network.links:
+            for row, ratio, parent, other in self._ends(link.left, link.right, (link.ratio, _ONE)):
+                here, k, c = self._rows[row], link.stiffness, link.damping
+                if parent is None:
+                    here.stiffness, here.damping = here.stiffness + ratio**2 * k, here.damping + ratio**2 * c
+                else:
+                    branch = here.branch
+                    k, c = branch.stiffness + k, branch.damping + c
+                    here.branch = replace(branch, near_ratio=other, far_ratio=ratio, stiffness=k, damping=c)
+
+    def _ends(self, left: int, right: int, ratios: tuple[fmpq, fmpq]) -> Iterator[tuple[int, fmpq, int | None, fmpq]]:
+        """The row that hangs by a part, or is held to what is at rest; how fast its end moves; its parent; that end."""
+        rows = self._stiffness.rows
+        ends = [(rows.get(left), ratios[0]), (rows.get(right), ratios[1])]
+        for (row, ratio), (parent, other) in (ends, ends[::-1]):
+            if row is not None and (parent is None or self._stiffness.parents[row] == parent):
+                yield row, ratio, parent, other
+
+    def largest_complete(self, found: Sequence[complex], count: int) -> float:
+        """Up to which absolute value `found` has all frequencies but 0: beyond its first `count`, if it has those.
+
+        Args:
+            found: frequencies of modes by their absolute values, in rad per tau, with real parts of at least 0.
+            count: how many of them are wanted.
+        """
+        if not self._stiffness.points:
+            return inf
+        sizes = [abs(w) for w in found] or [1.0]
+        gaps = [k for k in range(1, len(sizes)) if sizes[k] > sizes[k - 1] * (1 + _BESIDE)]
+        radii: list[float] = [(sizes[k - 1] * sizes[k]) ** 0.5 for k in gaps]
+        if len(found) <= count:
+            gaps.append(len(sizes))
+            radii.append(_BEYOND_LAST[self.is_finite] * sizes[-1])
+        # the widest gap beyond those that are wanted, and where that fails nearer ones
+        widest = max(
+            (k for k in range(len(gaps)) if gaps[k] >= count), key=lambda k: radii[k] / sizes[gaps[k] - 1], default=None
+        )
+        low, high = 0, len(gaps)
+        if widest is not None:
+            if self._is_complete(found, radii[widest]):
+                return radii[widest]
+            high = widest
+        while low < high:
+            middle = (low + high) // 2
+            low, high = (middle + 1, high) if self._is_complete(found, radii[middle]) else (low, middle)
+        return radii[low - 1] if low else 0.0
+
+    def _is_complete(self, found: Sequence[complex], radius: float) -> bool:
+        inside = sum(2 if w.real else 1 for w in found if abs(w) < radius)
+        return self._at_rest is not None and self.count(radius) == inside + self._at_rest
+
+    @cached_property
+    def _at_rest(self) -> int | None:
+        """As how many frequencies w = 0 counts; None where it is very many."""
+        s = fmpq_series([0, 1], prec=_TERMS + 2)
+
+        def turn(delay: fmpq) -> Turn:
+            """sinh(s T)/s and cosh(s T)."""
+            up, down = ((s * fmpq_series([sign * delay])).exp() for sign in (1, -1))
+            half = fmpq_series([fmpq(1, 2)])
+            return Turn(fmpq_series(((up - down) * half).coeffs()[1:], prec=_TERMS + 1), (up + down) * half)
+
+        found = fmpq_series(self._resistance(-s * s, s, turn, lambda each: fmpq_series([each])), prec=_TERMS)
+        return next((k for k, c in enumerate(found.coeffs()[:_TERMS]) if c != 0), None)
+
+    def count(self, radius: float) -> int | None:
+        """How many frequencies have absolute values below `radius`, 0 among them; None where that would take too long.
+
+        Half a turn of the right half of the circle is one.
+        """
+        arcs = _ARCS + int(_ARCS_A_RADIAN * radius * nearest(self._stiffness.delay))
+        if _SPARE * arcs * len(self._rows) > self._left:
+            self.is_exhausted = True
+            return None
+        with ctx.workprec(_BITS):
+            total, first = 0.0, self._value(_on_circle(radius, arb(-1) / 2))
+            coming = [(fmpq(2 * k - arcs, 2 * arcs), fmpq(2 * k + 2 - arcs, 2 * arcs)) for k in reversed(range(arcs))]
+            while coming:
+                low, high = coming.pop()
+                middle = (low + high) / 2
+                centre, size = _on_circle(radius, arb(middle)), (arb(2 * (high - low)) * radius).upper()  # pi/2 < 2
+                if self._stays_beside(centre, size):
+                    last = self._value(_on_circle(radius, arb(high)))
+                    total += float((last / first).arg())
+                    first = last
+                elif self._left < 0:
+                    self.is_exhausted = True
+                    return None
+                else:
+                    coming += [(middle, high), (low, middle)]
+                self._left -= len(self._rows)
+        return round(total / pi)
+
+    def _stays_beside(self, centre: acb, size: arb) -> bool:
+        """Whether A is nowhere so far from A(centre) as that is from 0, where |w - centre| <= size.
+
+        By its Taylor polynomial there, and the next coefficient on a ball.
+        """
+        ball = centre + acb(arb(0, size), arb(0, size))
+        near = self._value(acb_series([centre, 1], prec=_POWERS)).coeffs()
+        around = self._value(acb_series([ball, 1], prec=_POWERS + 1)).coeffs()
+        powers = [*near, *[acb(0)] * (_POWERS - len(near)), around[_POWERS] if len(around) > _POWERS else acb(0)]
+        others = sum((abs(c) * size**k for k, c in enumerate(powers[1:], 1)), start=arb(0))
+        return bool(others < abs(powers[0]))
+
+    def _value(self, w: Quantity) -> Quantity:
+        frequency = BallFrequency(w)
+        return self._resistance(frequency.square, frequency.rate, frequency.turn, arb)
+
+    def _resistance(
+        self,
+        square: Quantity,
+        rate: Quantity,
+        turn: Callable[[fmpq], Turn],
+        number: Callable[[fmpq], Quantity],
+    ) -> Quantity:
+        """A of all trees, from w^2, i w, and the turns of delays."""
+        delays, _ = self._stiffness.delays
+        turns = dict(zip(map(str, delays), map(turn, delays), strict=True))
+        total = number(fmpq(1))
+        above = [number(r.stiffness) - square * number(r.mass) + rate * number(r.damping) for r in self._rows]
+        below = [total] * len(self._rows)
+        for row, (here, parent) in enumerate(zip(self._rows, self._stiffness.parents, strict=True)):
+            a, b = above[row], below[row]
+            for bar, ratio in here.resting_bars:
+                sine, cosine = turns[str(bar.delay)]
+                a, b = a * sine + b * number(ratio**2 * bar.impedance) * cosine, b * sine
+            if parent is None:
+                total = total * a
+                continue
+            branch = here.branch
+            b, k = b * number(branch.far_ratio**2), number(branch.stiffness) + rate * number(branch.damping)
+            if branch.bar is None:
+                n, d = a * k, a + b * k
+            else:
+                (sine, cosine), z = turns[str(branch.bar.delay)], number(branch.bar.impedance)
+                both = z * cosine + k * sine
+                n, d = a * both + b * (2 * z * k * (cosine - 1) - z * z * square * sine), a * sine + b * both
+            above[parent] = above[parent] * d + below[parent] * n * number(branch.near_ratio**2)
+            below[parent] = below[parent] * d
+        return total
+
+
+def _on_circle(radius: float, part: arb) -> acb:
+    """At an angle of so many times pi."""
+    return (acb(part) * _I * arb.pi()).exp() * radius
