@@ -603,7 +603,7 @@ REFUSED = [
         '"-1 N/m" is negative; write a stiffness of 0 or more',
     ),
     ("chain", "system.parts.2.inertia", "-1 N/m", "system.parts[2].inertia", "unknown key"),
-    ("chain", "system.parts", [{"mass": "1 kg"}], "system.parts", "no rod, spring or dashpot; write at least one"),
+    ("chain", "system.parts", [{"mass": "1 kg"}], "system.branch[0].from", '"hammer" is not a node before it'),
     ("chain", "system.parts", ["loose"], "system.parts[0]", "free, fixed, absorbing"),
     (
         "chain",
@@ -650,6 +650,11 @@ def test_wrong_scenes_are_refused_where_they_are_wrong(
     error = refused(changed(ALL[name], path, value))
     assert error.path == where
     assert what in error.what
+
+
+def test_a_mass_without_branches_needs_what_holds_it() -> None:
+    error = refused(changed(changed(CHAIN, "system.parts", [{"mass": "1 kg"}]), "system.branch", None))
+    assert (error.path, error.what) == ("system.parts", "no rod, spring or dashpot; write at least one")
 
 
 def paths(value: Any, path: str = "") -> list[str]:
