@@ -221,7 +221,6 @@ WITHIN void acting_slices(const progress *b, const ends_of_joint *at, int joint,
         }
         size[point] = MAGNITUDE(acting[point]);
     }
-    UNROLLED
     for (int side = 0; side < ends; ++side) {
         const slice pushed = b->law->push[first_port[joint] + side] * *slice_at(at->arriving[side], k);
         const int point = points > 1 ? point_of[first_port[joint] + side] : 0;
@@ -260,7 +259,6 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
         begins[i] = last[i] = sizes[i] = x_sizes[i] = x[i] = x_size[i] = nothing;
     }
     ends_of_joint at = {{NULL}, {NULL}};
-    UNROLLED
     for (int side = 0; side < ends; ++side) {
         aparts[side] = sums[side] = waves[side] = reads[side] = nothing;
         at.arriving[side] = m->waves[now->arrived[arrive[ports + side]]][panel];
@@ -283,7 +281,6 @@ WITHIN void add_residual(const progress *b, const places *now, errors *w, int jo
             sizes[i] += size;
             x_sizes[i] += x_size[i];
         }
-        UNROLLED
         for (int side = 0; side < ends; ++side) {
             const int row = points > 1 ? point_of[ports + side] : 0;
             const slice out = *slice_at(at.sent[side], end), a = *slice_at(at.arriving[side], end);
