@@ -35,6 +35,7 @@ def scene(damping, kind="building"):
         ("0.05", ["1/20"], None),
         (0.05, ["1/20"], None),
         ("5 %", ["1/20"], None),
+        ("5 percent", ["1/20"], None),
         ("5%", ["1/20"], None),
         (1, ["1"], None),
         ("150 %", ["3/2"], None),

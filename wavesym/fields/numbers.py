@@ -66,10 +66,10 @@ def exact(value: object) -> Fraction:
 
 
 def percentage(value: object) -> Fraction | None:
-    """The ratio that text such as "5 %" writes, 1/20 here; None of anything else. Raises as `exact` does."""
-    if not isinstance(value, str) or isinstance(value, WrittenDecimal) or not value.endswith("%"):
+    """The ratio of text such as "5 %" or "5 percent", 1/20 here; None of anything else. Raises as `exact` does."""
+    if not isinstance(value, str) or isinstance(value, WrittenDecimal) or not value.endswith(("%", " percent")):
         return None
-    return _parse(value[:-1].removesuffix(" "), value) / 100
+    return _parse(value.removesuffix("%").removesuffix("percent").removesuffix(" "), value) / 100
 
 
 def _fraction(value: Rational) -> Fraction:

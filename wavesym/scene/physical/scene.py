@@ -26,7 +26,7 @@ from wavesym.systems import PHYSICAL, SYSTEMS, ExplicitChain, ExplicitPreset, Sy
 from wavesym.systems.dimensionless import DimensionlessSystem
 from wavesym.systems.place import read_titled_place
 
-_QUANTITY = re.compile(r"\s*[+-]?[\d./eE+-]+\s+[A-Za-z]")
+_QUANTITY = re.compile(r"\s*[+-]?[\d./eE+-]+\s+(?!percent)[A-Za-z]")
 _LENGTHS = {each.name for each in QUANTITIES.values() if each.place_quantity}
 """Outputs whose places are lengths on a chain; a drift counts rods."""
 
