@@ -12,6 +12,7 @@ from textwrap import wrap
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -29,6 +30,7 @@ CHARACTERS = 66  # in a line of text across the figure
 _LEFT, _RIGHT, _GAP = 1.05, 0.1, 0.22  # inches
 _TITLE = 0.62  # of an axis, to its left
 _LINE = 0.21  # height of a line of text
+_WIDEST_TIME, _WIDEST_VALUE = 4, 5  # characters of a tick that there is room for: right of the last, beside the title
 _AXIS = 0.55  # below the last panel
 _BEYOND = 1.01  # what happens at the end of the horizon is not hidden by the frame
 _Dashes = str | tuple[int, tuple[int, ...]]
@@ -104,7 +106,27 @@ def stack_panels(
         axes.tick_params(labelbottom=k == len(panels) - 1)
         _fill(axes, panel, instants)
     axes.set_xlabel(scale.title)
+    _shorten_times(axes)
     return figure
+
+
+def _ticks(axis: Axis) -> list[float]:
+    """Those that are seen."""
+    low, high = sorted(axis.get_view_interval())
+    return [tick for tick in axis.get_majorticklocs() if low <= tick <= high]
+
+
+def _characters(axis: Axis) -> int:
+    """Of the longest number beside an axis."""
+    return max(map(len, axis.get_major_formatter().format_ticks(_ticks(axis))), default=0)
+
+
+def _shorten_times(axes: Axes) -> None:
+    """Write long times with no more digits than they need, and the last one so that it ends within the figure."""
+    if _characters(axes.xaxis) > _WIDEST_TIME:
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set_xticks(_ticks(axes.xaxis))
+        axes.get_xticklabels()[-1].set_horizontalalignment("right")
 
 
 def _in_scene_time(panel: PlotPanel, scale: Timescale) -> PlotPanel:
@@ -130,6 +152,8 @@ def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
         _curve(axes, history, dashes, color)
     axes.margins(x=0, y=0.14)
     axes.autoscale_view(scalex=False)
+    if _characters(axes.yaxis) > _WIDEST_VALUE:
+        axes.ticklabel_format(axis="y", scilimits=(-1, 4))
     for instant in instants:
         axes.axvline(instant.tau, color="black", linestyle=instant.dashes, linewidth=0.9, zorder=1)
     for mark in panel.marks:
