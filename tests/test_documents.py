@@ -325,6 +325,7 @@ def test_the_example_in_the_help_of_a_command_works(
 ) -> None:
     line = shlex.join(["wavesym", *example(name, capsys)]).replace(" '>' ", " > ")
     if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", book(GUIDE), re.MULTILINE):
+        (tmp_path / "ground.csv").write_text("0,0\n0.02,0.3\n0.04,-0.2\n0.06,0\n")  # the record that `init` is given
         assert Reader(tmp_path, patience=True).line(line) is not None  # what is in the guide too is run there
 
 

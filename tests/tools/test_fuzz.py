@@ -71,7 +71,11 @@ BREAKS = {
         "(lane + 1) * RUNTIME_DOUBLE_OUTPUTS",
         "lane * RUNTIME_DOUBLE_OUTPUTS",
     ),
-    "a section": ("runtime_double_runtime", "t >= from[at] && t < from[at + 1];", "t >= from[at];"),
+    "a section": (
+        "runtime_double_runtime",
+        "tau <= RUNTIME_DOUBLE_TAU_MAX && t < from[at + 1];",
+        "tau <= RUNTIME_DOUBLE_TAU_MAX;",
+    ),
     "a set too many": ("runtime_double_batch", "built = set >= 0 && set <", "built = set <"),
     "a weight": ("runtime_double_batch", "v[k] * v[k]", "v[k]"),
 }

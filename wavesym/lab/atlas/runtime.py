@@ -70,7 +70,8 @@ def _points(panel: str, kappa: Sequence[Fraction], until: int, x: float) -> list
     model = compiled_model(sets_program(lower(own), ["kappa"]))
     values = np.array([float(value) for value in kappa])
     checks = model.check(kappa=values)
-    (why,), (estimate,) = checks.why, checks.estimate
+    (estimate,) = checks.estimate
+    why = checks.why[0] if checks.status[0] else ""  # an estimate above the tolerance is no refusal
     wrong = known.errors(model.run(known.taus, kappa=values)[0])
     bound = float(np.nan_to_num(np.max(model.bounds(kappa=values)), nan=np.inf))
     return [
