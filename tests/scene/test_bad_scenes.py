@@ -331,7 +331,7 @@ LARGE: dict[str, tuple[Callable[[int], str], str]] = {
     "lines of quoted keys": (lambda n: "".join(f"'a' . \"b\".k{k} = 1\n" for k in range(n)), "more than 20000 tables"),
     "dotted keys in a line": (lambda n: "a = [" + "{b.c=1}," * n + "]", "more than 20000 tables"),
     "comments": (lambda n: "# a\n" * (1_000_000 + n), "more than 1000000 lines"),
-    "quotes": (lambda n: '"\\' * 10 * n, "no TOML, "),
+    "quotes": (lambda n: '"\\' * 10 * n, "more than 100000 backslashes"),
     "a long word": (lambda n: "a" * 20 * n, "no TOML, "),
 }
 

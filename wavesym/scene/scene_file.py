@@ -91,15 +91,18 @@ _MOST_TABLES = 20_000
 _MOST_ASSIGNED = 60_000  # keys of all tables: a chain of thousands of rods in units has fewer
 _MOST_VALUES = 300_000
 _MOST_LINES = 1_000_000
+_MOST_ESCAPES = 100_000  # the parser may copy a text for each of them
 
 
 def _refuse_large(file: str, text: str) -> None:
-    """SceneError for what would take long to parse: deep keys, more lines, tables, keys or values than a scene has.
+    """SceneError for what would take long to parse: deep keys, more lines, escapes, tables, keys or values than any has.
 
     A key with dots makes a table, as a header does.
     """
     if text.count("\n") > _MOST_LINES:
         raise SceneError(f"more than {_MOST_LINES} lines; a scene has no more", file=file)
+    if text.count("\\") > _MOST_ESCAPES:
+        raise SceneError(f"more than {_MOST_ESCAPES} backslashes; a scene has no more", file=file)
     bare = _STRINGS.sub("_", text)
     if found := _DEEP_KEY.search(bare):
         line = bare.count("\n", 0, found.start()) + 1
