@@ -95,7 +95,7 @@ _MOST_ESCAPES = 100_000  # the parser may copy a text for each of them
 
 
 def _refuse_large(file: str, text: str) -> None:
-    """SceneError for what would take long to parse: deep keys, more lines, escapes, tables, keys or values than any has.
+    """SceneError for what would take long to parse: deep keys, many lines, escapes, tables, keys or values.
 
     A key with dots makes a table, as a header does.
     """

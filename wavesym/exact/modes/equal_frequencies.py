@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from flint import acb, arb
 
 from wavesym.exact.modes.shape import Mode, moved_mass
-from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, circular
+from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, cot_csc
 
 _NEWTON = 12
 WIDE = 560
@@ -44,7 +44,7 @@ def prove_cluster(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> lis
     below, above = stiffness.proved_count(law, ball.lower()), stiffness.proved_count(law, ball.upper())
     if below != n - 1 or above is None or above < n:
         return None
-    if not all(csc.is_finite() for csc in circular(law, ball)[1]):
+    if not all(csc.is_finite() for csc in cot_csc(law, ball)[1]):
         return None  # a bar may vibrate between points at rest: they do not tell how
     for apart in _APART:
         aside = arb(2) ** -apart
@@ -61,7 +61,7 @@ def common_frequency(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) 
     force = [arb(0)] * len(stiffness.points)
     force[root] = arb(1)
     for _ in range(_NEWTON):
-        cot, csc = circular(law, w)
+        cot, csc = cot_csc(law, w)
         moved = stiffness.solve(*law.matrix(w, cot, csc), force)
         better = (w * w + moved[root] / moved_mass(law, w, moved, stiffness.parents, cot, csc)).sqrt().mid()
         if not better.is_finite():
@@ -88,9 +88,9 @@ def _shapes(stiffness: Stiffness, law: HarmonicLaw, w: arb, aside: arb, count: i
     """`count` shapes at right angles; other frequencies are `aside` of w or more away from it, relative to it."""
     v = (w * (1 + aside * arb(2) ** -_BETWEEN)).mid()
     square = w * w - v * v
-    near = law.matrix(v, *circular(law, v))
+    near = law.matrix(v, *cot_csc(law, v))
     still = acb(0, w.mid())
-    quiet = law.matrix(still, *circular(law, still))
+    quiet = law.matrix(still, *cot_csc(law, still))
     calm = [g.real.upper().sqrt() for g in _compliances(stiffness, *quiet)]
     far = [((1 + side * aside) * w) ** 2 for side in (-1, 1)]
     others = max((abs(square) * (x + w * w) / abs(x - v * v)).upper() for x in far)

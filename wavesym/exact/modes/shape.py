@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from flint import arb, fmpq
 
-from wavesym.exact.modes.stiffness import HarmonicLaw, Quantity, Stiffness, circular
+from wavesym.exact.modes.stiffness import HarmonicLaw, Quantity, Stiffness, cot_csc
 from wavesym.mechanics.network import End, Network
 
 
@@ -92,7 +92,7 @@ def trial(stiffness: Stiffness, law: HarmonicLaw, w: Quantity, root: int, rate: 
 
     Determinants of branches instead of pivots: a part of the chain may have the same frequency as the whole.
     """
-    cot, csc = circular(law, w)
+    cot, csc = cot_csc(law, w)
     diagonal, up = law.matrix(w, cot, csc, rate)
     order = stiffness.orders(root)
     # of each branch its determinant, and that without the row it hangs by: the product of those of its branches

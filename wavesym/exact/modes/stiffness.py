@@ -91,7 +91,7 @@ class Stiffness:
     @cached_property
     def points(self) -> tuple[int, ...]:
         """The point of each row: those that are free to move, tips first, each before its parent."""
-        return tuple(point for point, _ in reversed(self._found))
+        return tuple(point for point, _ in reversed(self._tree))
 
     @cached_property
     def rows(self) -> dict[int, int]:
@@ -101,10 +101,10 @@ class Stiffness:
     @cached_property
     def parents(self) -> tuple[int | None, ...]:
         """The row that each row hangs on."""
-        return tuple(None if parent is None else self.rows[parent] for _, parent in reversed(self._found))
+        return tuple(None if parent is None else self.rows[parent] for _, parent in reversed(self._tree))
 
     @cached_property
-    def _found(self) -> list[tuple[int, int | None]]:
+    def _tree(self) -> list[tuple[int, int | None]]:
         """Free points, each with the one that it was reached from."""
         network = self.network
         beside: dict[int, list[int]] = {n: [] for n, point in enumerate(network.points) if point.motion is None}
@@ -329,7 +329,7 @@ class Stiffness:
             if turns is None:
                 return None
             count += bars * int(turns)
-        for pivot in self.pivots(*law.matrix(w, *circular(law, w))):
+        for pivot in self.pivots(*law.matrix(w, *cot_csc(law, w))):
             if not (pivot > 0 or pivot < 0):
                 return None
             count += bool(pivot < 0)
@@ -342,7 +342,7 @@ def _turns(angle: Array, sine: Array) -> NDArray[np.int64]:
     return nearest_turn - (np.where(nearest_turn % 2, -sine, sine) < 0)
 
 
-def circular(law: HarmonicLaw, w: Quantity) -> tuple[list[Quantity], list[Quantity]]:
+def cot_csc(law: HarmonicLaw, w: Quantity) -> tuple[list[Quantity], list[Quantity]]:
     """cot and 1/sin of w times each delay."""
     pairs = [(w * delay).sin_cos() for delay in law.delays]
     return [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs]
