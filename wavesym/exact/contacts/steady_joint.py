@@ -17,8 +17,7 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, connected_sets
 from wavesym.exact.contacts.cluster_states import ClusterStates
-from wavesym.exact.contacts.crossing import shortfall
-from wavesym.exact.contacts.guards import lasts_until, margins
+from wavesym.exact.contacts.friction_stops import FrictionStops
 from wavesym.exact.contacts.holding_forces import HoldingForces
 from wavesym.exact.contacts.joint_springs import JointSprings
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
@@ -29,15 +28,10 @@ from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.exact.joints.network_waves import LoadPolynomial
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
-from wavesym.numbers.doubles import middle
 
 _ONE = fmpq(1)
 _ROUNDS = 4  # in which a bound of springs' forces must hold
 _SHORTER = 4  # where it does not, as a spring answers to its own force
-_LATER = 2  # times: when friction has stopped a mass is not known closely
-_SPARE = (
-    64  # bits of the working precision: the others tell how closely it is known since when friction is beyond its limit
-)
 _MISSED = 16  # bits: what has died away is that much more than rounding errors, at most
 
 
@@ -68,16 +62,13 @@ class SteadyJoint(ABC):
         first = {k: PointState.from_exact(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
         self._states = ClusterStates(self.law, self.springs, sets, first)
         self.forces = HoldingForces(self.law, self.touches)
-        grounded = {self._mass_on_ground(n) for n, touch in self.touches.items() if touch.friction != 0} - {-1}
-        self._stopping: dict[int, int] = {}  # masses that friction stops, and which way they may be moving yet
-        self._states.resting = {k for k in grounded if network.points[joint.points[k]].velocity == 0}
+        self.stops = FrictionStops(self.law, self.touches, self.forces, self._states)
 
     def take(self, moved: JointStretch) -> None:
         """Go on to the end of a stretch."""
         self._states.take(moved)
         self.springs.take(moved)
-        self._states.resting = {self._mass_on_ground(n) for n in moved.rests.keys() - moved.excesses}
-        self._stopping = {k: sign for n, (k, sign) in moved.stops.items() if n not in moved.excesses}
+        self.stops.take(moved)
 
     def rate_on_motion(self, n: int, start: fmpq) -> arb | None:
         """How fast a mass slides on what moves as is given, from an instant on; None of other friction."""
@@ -276,11 +267,11 @@ class SteadyJoint(ABC):
         begun = self._states.exact_state(cluster)
         before = {k: result.state[k] for k in points if k in result.state}
         assumed: dict[int, arb] = {}
-        self._find_stops(cluster, result)
+        self.stops.find_ways(cluster, result)
         for _ in range(_ROUNDS):
             result.velocities |= self._less_known(cluster, result, moving_points, sum(assumed.values(), arb(0)))
             result.pushes |= self.forces.of_cluster(cluster, result, forces, acting, motion or places, begun)
-            slipped = {} if trial else self._slips(cluster, result)
+            slipped = {} if trial else self.stops.slips(cluster, result)
             if all(root <= assumed.get(n, arb(0)) for n, root in slipped.items()):
                 break
             assumed = {n: (2 * root).upper() for n, root in slipped.items()}
@@ -289,7 +280,7 @@ class SteadyJoint(ABC):
         else:
             raise ArithmeticError("what friction bears has no bound")
         self.springs.strain(cluster, result, self._states.of_point, places if motion is None else motion)
-        self._find_rests(cluster, result)
+        self.stops.find_rests(cluster, result)
 
     def _less_known(
         self, cluster: Cluster, result: JointStretch, velocities: Mapping[int, Terms], root: arb
@@ -306,113 +297,10 @@ class SteadyJoint(ABC):
                 rates[k] = (rates.get(k, arb(0)) + abs(arb(ratio)) * known[group]).upper()
         one_way = {k: sign for n, (k, sign) in result.stops.items() if n not in result.excesses}
         return {
-            k: [*terms, (_ONE, _slow_enclosure(slow, self._way(cluster, k, one_way)))] if slow != 0 else terms
+            k: [*terms, (_ONE, _slow_enclosure(slow, self.stops.way(cluster, k, one_way)))] if slow != 0 else terms
             for k, terms in velocities.items()
             for slow in [rates.get(k, arb(0))]
         }
-
-    @staticmethod
-    def _way(cluster: Cluster, k: int, one_way: Mapping[int, int]) -> int:
-        """Which way a point may be moving that moves as a mass that friction stops; 0 where that is not known."""
-        for j, sign in one_way.items():
-            if cluster.group(j) == cluster.group(k):
-                return sign if cluster.ratio(k) / cluster.ratio(j) > 0 else -sign
-        return 0
-
-    def _find_stops(self, cluster: Cluster, result: JointStretch) -> None:
-        """Which way the masses that friction holds on the ground may be moving yet.
-
-        One that certainly moved that way does not turn round as long as friction may bear what would hold it: N is what
-        drives it beyond friction, so that r' = 0 or -sign(r) (R - N sign(r)) w, and r has the sign it had or is 0.
-        """
-        for n in cluster.pushes:
-            if (k := self._mass_on_ground(n)) < 0 or not self._is_alone(cluster, k):
-                continue
-            velocity = self._states.of_point[k].velocity
-            velocity += arb(0, (2 * self._states.of_point[k].error_energy / arb(self.law.mass[k])).sqrt().upper())
-            sign = self._stopping.get(k, int(velocity > 0) - int(velocity < 0))
-            if sign:
-                result.stops[n] = (k, sign)
-
-    def _is_alone(self, cluster: Cluster, k: int) -> bool:
-        """Whether no other mass moves as one does."""
-        return [j for j in self._states.held_masses(cluster) if cluster.group(j) == cluster.group(k)] == [k]
-
-    def _mass_on_ground(self, n: int) -> int:
-        """The mass that rubs on the ground, and on nothing else; -1 of other friction, or if it bears more at rest."""
-        touch = self.touches[n]
-        for k, other in (touch.sides, touch.sides[::-1]):
-            if self.law.motions[other] == "fixed" and self.law.motions[k] is None and self.law.mass[k] != 0:
-                rubs = [m for m, each in self.touches.items() if each.friction != 0 and k in each.sides]
-                return k if rubs == [n] and touch.breakaway == 0 else -1
-        return -1
-
-    def _find_rests(self, cluster: Cluster, result: JointStretch) -> None:
-        """When what friction holds on the ground has certainly stopped: beside what it bears at rest, it has some left.
-
-        The rate r of its right side then has |r|' <= -(R - |N|) w, with w its `lightness`. Nothing else may rub on it.
-        """
-        rates = self._states.unseen_rates(cluster, result.state)
-        for n in cluster.pushes:
-            touch, k = self.touches[n], self._mass_on_ground(n)
-            if k < 0 or not self._is_alone(cluster, k):
-                continue
-            rate = rates.get(k, arb(0)) * arb(1 if k == touch.right else touch.ratio)
-            since = self._stops(result, n, rate)
-            if since is not None:
-                result.rests[n] = since
-
-    def _stops(self, result: JointStretch, n: int, rate: arb) -> fmpq | None:
-        """When a mass on the ground that is this fast at most has stopped; None where that is not certain."""
-        if rate == 0:
-            return fmpq(0)
-        stopping = (arb(self.touches[n].friction) - abs(result.pushes[n].evaluate(fmpq(0)))) * self.forces.lightness(n)
-        if not stopping > 0:
-            return None
-        since = min(middle((_LATER * rate / stopping.lower()).upper()), result.length)
-        worst = abs(result.pushes[n].evaluate_on(arb(0).union(arb(since))))
-        stopping = (arb(self.touches[n].friction) - worst) * self.forces.lightness(n)
-        return since if rate < stopping * arb(since) else None
-
-    def _lose_excess(self, cluster: Cluster, result: JointStretch) -> None:
-        """What sticks and is pulled beyond its limits may slide meanwhile: energy that is not known."""
-        for root in self._slips(cluster, result).values():
-            for j in cluster.points:
-                result.state[j] = result.state.get(j, self._states.of_point[j]).lose(root**2)
-
-    def _slips(self, cluster: Cluster, result: JointStretch) -> dict[int, arb]:
-        """The root of the energy that is not known of what sticks and is pulled beyond its limits, where it may be.
-
-        By dE/dt <= e d, with a force that is off by d, sqrt(E) grows by at most the integral of d sqrt(w/2), with w the
-        `lightness` of what it holds. Where contacts are vague, that may have any value in its range at any time.
-        """
-        found = {}
-        for n in cluster.pushes:
-            touch = self.touches[n]
-            if touch.friction == 0 or touch.breakaway != 0 or not set(touch.sides).intersection(cluster.stuck_points):
-                continue
-            if result.vague:
-                force = result.pushes[n].evaluate_on(arb(0).union(arb(result.length)))
-                impulse = (abs(force) - arb(touch.friction)).upper() * arb(result.length)
-            else:
-                impulse = sum(
-                    (_shortfall_integral(each, result.length) for each in margins(touch.friction, result.pushes[n])),
-                    arb(0),
-                )
-            if impulse > 0:
-                result.excesses.add(n)
-                lightness = sum((1 / self.law.mass[j] for j in touch.sides if self.law.mass[j] != 0), fmpq(0))
-                found[n] = (impulse * (arb(lightness) / 2).sqrt()).upper()
-        return found
-
-    def excess(self, n: int, force: Enclosure, tau: fmpq | arb) -> arb:
-        """By how much what sticks bears more than its limit at an instant, or anywhere in a span, at most."""
-        touch = self.touches[n]
-        if touch.friction == 0 or touch.breakaway != 0:
-            return arb(0)
-        if isinstance(tau, fmpq) and force.exact is not None:
-            return arb(abs(force.exact(tau)) - touch.friction).upper()
-        return (abs(force.evaluate_on(arb(tau))) - arb(touch.friction)).upper()
 
     def _relax(
         self,
@@ -487,12 +375,6 @@ def _slow_enclosure(most: arb, way: int) -> Enclosure:
     """A rate that is unknown but for its size, and perhaps for its sign."""
     bounds = (fmpq_poly() if way > 0 else None, fmpq_poly() if way < 0 else None)
     return with_bounds(Enclosure(arb_poly(), most), None, *bounds)
-
-
-def _shortfall_integral(margin: Enclosure, length: fmpq) -> arb:
-    """How much a function may be below 0 on a stretch, integrated, at most."""
-    end = lasts_until(margin, fmpq(0), length, length / fmpq(2) ** (ctx.prec - _SPARE))
-    return arb(0) if end is None else shortfall(margin, length) * arb(length - end.length)
 
 
 def group_forces(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:

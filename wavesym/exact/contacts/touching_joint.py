@@ -94,8 +94,8 @@ class TouchingJoint(SteadyJoint):
         }
         result.state |= after
         self.springs.strain(cluster, result, self._states.of_point, motion)
-        self._lose_excess(cluster, result)
-        self._find_rests(cluster, result)
+        self.stops.lose_excess(cluster, result)
+        self.stops.find_rests(cluster, result)
 
     def _hidden_rates(
         self, cluster: Cluster, after: Mapping[int, PointState], pushes: Mapping[int, Enclosure], length: fmpq
@@ -104,7 +104,7 @@ class TouchingJoint(SteadyJoint):
         rates = {k: rate for k, rate in self._states.unseen_rates(cluster, after).items() if self.law.mass[k] != 0}
         for n in cluster.pushes:
             touch = self.touches[n]
-            excess = self.excess(n, pushes[n], arb(0).union(arb(length)))
+            excess = self.stops.excess(n, pushes[n], arb(0).union(arb(length)))
             for k, factor in ((touch.right, _ONE), (touch.left, abs(touch.ratio))) if excess > 0 else ():
                 if self.law.mass[k] != 0 and self.law.motions[k] is None:
                     gained = excess * arb(length * factor / self.law.mass[k])
