@@ -70,6 +70,13 @@ class _Slopes(NamedTuple):
     scale: Array
 
 
+def _relative_error(wrong: Array, largest: Array) -> Array:
+    """How wrong what is found is, relative to the largest true value: of that no more is known than `largest`, which is
+    as `wrong`, leaves. Infinite where it leaves nothing."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(wrong > 0, np.where(wrong < largest, wrong / (largest - wrong), np.inf), wrong)
+
+
 class ModalSets:
     """Sets of numbers of a model with modes. `given` has a row for each set, with all fields side by side.
 
@@ -141,9 +148,8 @@ class ModalSets:
             if finer is not None:
                 change = np.abs(self._difference(given, finer, parameter, taken, tau, more=1).slopes - best.slopes)
                 largest = np.abs(best.slopes).max(axis=2, initial=0.0)
-                with np.errstate(divide="ignore", invalid="ignore"):
-                    relative = np.nan_to_num(change.max(axis=2, initial=0.0) / largest, nan=0.0)
-                found.estimate[:, 1 + parameter] += 2 * relative.max(axis=1)
+                added = 2 * change.max(axis=2, initial=0.0)
+                found.estimate[:, 1 + parameter] += _relative_error(added, largest).max(axis=1)
         return found
 
     def _largest_steps(self, given: Array) -> Array:
@@ -193,10 +199,11 @@ class ModalSets:
         noise = weight[:, None] * rounded / step[:, None]
         wrong = curved + noise
         with np.errstate(divide="ignore", invalid="ignore"):
-            relative = np.where(wrong > 0, np.where(wrong < largest, wrong / (largest - wrong), np.inf), wrong)
             ratio = np.nanmax(noise / largest, axis=1) / np.nanmax(2 * curved / largest, axis=1)
         scale = np.nan_to_num(np.cbrt(ratio), nan=1.0, posinf=_MOST_SCALE)
-        return _Slopes(slopes, relative.max(axis=1), np.clip(scale, 1 / _MOST_SCALE, _MOST_SCALE))
+        return _Slopes(
+            slopes, _relative_error(wrong, largest).max(axis=1), np.clip(scale, 1 / _MOST_SCALE, _MOST_SCALE)
+        )
 
     def _missed_turns(self, given: Array, parameter: int, step: Array) -> Array:
         """What these differences miss of derivatives by turns of modes, (sets, outputs): in w t half of a change of a
