@@ -559,7 +559,7 @@ def test_peaks_of_many_parts_against_transfer_matrices(parts: int) -> None:
 
 
 def test_taylor_polynomials_enclose_a_response_and_its_slopes() -> None:
-    lowered = lower(drill_string(6), loads=False)
+    lowered = lower(drill_string(6), in_time=False)
     transfer = Transfer(lowered, harmonic_load(lowered, ["bit:step"], None))
     with ctx.workprec(128):
         for middle, radius in ((2.0, 0.03), (7.5, 0.01), (11.0, 0.002)):

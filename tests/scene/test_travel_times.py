@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +15,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wavesym
-from wavesym import Scene, SceneError, ToleranceError, UnservedError
+from wavesym import Scene, SceneError, ToleranceError, UnservedError, api
 from wavesym.cli import main
+from wavesym.documents.inspection.units import in_units
 from wavesym.mechanics.network import Bar
 from wavesym.mechanics.travel_times import FINEST, adjust_speeds, percent, speed_change
 from wavesym.numbers.doubles import common_measure
+from wavesym.pictures.page.headline import longest_periods
 from wavesym.programs.making import make
 from wavesym.scene import lower
 from wavesym.scene.explicit_text import explicit_text
@@ -245,10 +249,7 @@ def test_storeys_that_differ_take_a_speed_adjustment_too() -> None:
     assert [delay / delays[0] for delay in delays] == [delay / written_out[0] for delay in written_out]
 
 
-@pytest.mark.parametrize(
-    "command",
-    [["tables"], ["formula", "--output", "velocity@surface"], ["modes"], ["frf", "--points", "3"], ["inspect"]],
-)
+@pytest.mark.parametrize("command", [["tables"], ["formula", "--output", "velocity@surface"], ["inspect"]])
 def test_every_command_tells_that_speeds_were_changed(
     command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -259,6 +260,65 @@ def test_every_command_tells_that_speeds_were_changed(
     told = capsys.readouterr()
     assert "speeds of waves are changed by" in (told.out if command == ["inspect"] else told.err)
     assert "speeds of waves are changed by" not in told.out or command == ["inspect"]
+
+
+def transfer_of_layers(hertz: np.ndarray) -> np.ndarray:
+    """The surface's velocity over the outcrop's acceleration, by transfer matrices of the layers as they are written.
+
+    Of velocity and force over i w, from the free surface down: (1, 0) there.
+    """
+    found = []
+    for w in 2 * np.pi * hertz:
+        moved, force = 1.0 + 0j, 0j
+        for length, speed, z in reversed(LAYERS):
+            angle = w * float(length.split()[0]) / speed
+            cos, sin = np.cos(angle), np.sin(angle)
+            moved, force = cos * moved + sin * force / (z * w), cos * force - z * w * sin * moved
+        found.append(1 / (1j * w * (moved + force / (1j * w * ROCK))))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("command", [["modes"], ["frf", "--points", "3"]])
+def test_frequencies_and_responses_take_speeds_as_they_are_written(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """They need no common measure: nothing differs from the same scene without the key, and nothing is to be told."""
+    told = []
+    for name, text in (("two", TWO_RODS), ("plain", TWO_RODS.replace("speed_adjustment", "# "))):
+        (tmp_path / f"{name}.toml").write_text(text)
+        assert main([command[0], str(tmp_path / f"{name}.toml"), *command[1:]]) == 0
+        told.append(capsys.readouterr())
+    assert told[0].out == told[1].out
+    assert told[0].err == told[1].err
+
+
+def test_adjusted_columns_respond_as_their_layers_do() -> None:
+    """Whether or not a motion in time, whose speeds are changed, was asked for first."""
+    hertz = np.linspace(0.5, 60, 40)
+    expected = transfer_of_layers(hertz)
+    for marched in (False, True):
+        scene = column(speed_adjustment="0.5 %", until="0.1 s")
+        if marched:
+            assert lower(scene).written_speeds
+        assert wavesym.frf(scene, hertz)["velocity@24.3 m"] == pytest.approx(expected, rel=1e-12)
+    assert lower(scene).written_speeds, "a march has the model of frequencies"
+
+
+def test_periods_are_those_of_the_speeds_as_written() -> None:
+    """Those of a page and of `inspect`, and ranges."""
+    scenes = [column((), speed_adjustment=adjusted, damping="0.02", until="0.1 s") for adjusted in ("1 %", "0 %")]
+    stiff = {"system.parts[1].speed": ("451 m/s", "460 m/s")}
+    pages, ranges = ([each(scene) for scene in scenes] for each in (longest_periods, partial(_ranges, stiff)))
+    assert pages[0] == pages[1] != []
+    assert ranges[0] == ranges[1]
+    inspected = [json.loads(api.inspect(scene, "model", "json"))["modes"] for scene in scenes]
+    assert inspected[0] == inspected[1]
+    seconds = [next(in_units(scene.physical, lower(scene))).values["periods"].value for scene in scenes]
+    assert seconds[0] == seconds[1] == pytest.approx([*pages[0], *seconds[0][3:]], rel=1e-14)
+
+
+def _ranges(box: dict[str, tuple[str, str]], scene: Scene) -> str:
+    return wavesym.modes(scene, 3, ranges=box).text()
 
 
 def test_generated_programs_say_by_how_much_speeds_were_changed(tmp_path: Path) -> None:
@@ -275,7 +335,6 @@ def test_generated_programs_say_by_how_much_speeds_were_changed(tmp_path: Path) 
 def test_a_result_says_that_speeds_were_changed() -> None:
     found = Scene.from_toml(TWO_RODS).run(samples=3)
     (note,) = found.notes
-    assert note in wavesym.frf(Scene.from_toml(TWO_RODS), [1.0]).notes
     assert "speeds of waves are changed by" in note
     assert note in found._repr_html_()
     assert Scene.from_toml(TWO_RODS.replace("speed_adjustment", "# ")).run(samples=3).notes == ()

@@ -63,7 +63,7 @@ def plot_modes(scene: Scene, found: Modes, path: Path) -> None:
     from wavesym.pictures.result_pictures import draw_modes
     from wavesym.pictures.saving import save
 
-    save(draw_modes(found, lower(scene, loads=False), scene.system.lines), path)
+    save(draw_modes(found, lower(scene, in_time=False), scene.system.lines), path)
 
 
 def plot_frf(found: FrequencyResponse, path: Path) -> None:

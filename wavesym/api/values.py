@@ -226,5 +226,5 @@ def scene_notes(scene: Scene, *, values: bool = True) -> list[str]:
     """
     from wavesym.results.notes import value_notes
 
-    model = lower(scene, loads=values)
+    model = lower(scene)
     return value_notes(model) if values else list(model.labels.notes)

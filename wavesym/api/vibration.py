@@ -69,7 +69,7 @@ def modes(
     chain = scene if isinstance(scene, Scene) else Scene.chain_from_toml(scene)
     if ranges is not None:
         return mode_ranges(chain, count, ranges)
-    return modes_of(lower(chain, loads=False), count, below, chain.system.lines, points)
+    return modes_of(lower(chain, in_time=False), count, below, chain.system.lines, points)
 
 
 @overload
@@ -144,7 +144,7 @@ def frf(
     from wavesym.results.transfer import harmonic_load
     from wavesym.scene.lowering import sources
 
-    lowered = lower(scene, loads=False)
+    lowered = lower(scene, in_time=False)
     acting = harmonic_load(lowered, sources(scene), load)
     at = equally_spaced(lowered, low, high, points) if frequencies is None else frequencies
     if ranges is not None:

@@ -80,7 +80,7 @@ def frf(
             box = read_box(ranges)
             over = api.frf(scene, frequencies, load, low=low, high=high, points=points or few, ranges=box)
             text = over.json() if format == "json" else "".join(over.csv())
-            notes = (*api.scene_notes(scene, values=False), *over.notes)
+            notes = over.notes
         else:
             found = api.frf(scene, frequencies, load, low=low, high=high, points=points or few)
             table = found.peaks() if peaks else found

@@ -66,15 +66,14 @@ def modes(
     with progress(f"modes {scene.name}"):
         if ranges:
             box = api.modes(scene, count or COUNT, ranges=read_box(ranges))
-            text = {"text": box.text, "json": box.json, "csv": box.csv}[format]()
+            text, notes = {"text": box.text, "json": box.json, "csv": box.csv}[format](), box.notes
         else:
             found = api.modes(scene, count or COUNT, below, points=points)
-            text = {"text": found.text, "json": found.json, "csv": found.csv}[format](shapes=shapes)
+            text, notes = {"text": found.text, "json": found.json, "csv": found.csv}[format](shapes=shapes), found.notes
         if drawn and out is not None:
             api.plot_modes(scene, found, out)
         elif out is not None:
             write_whole({out: text})
-        notes = api.scene_notes(scene, values=False)
     put_notes(scene, notes)
     if out is None or drawn:
         put(text)

@@ -80,6 +80,14 @@ class Model:
     written_speeds: tuple[fmpq, ...] = ()
 
     @property
+    def network_as_written(self) -> Network:
+        """The network with speeds of waves as they were before they were adjusted: that of frequencies."""
+        if not self.written_speeds:
+            return self.network
+        pairs = zip(self.network.bars, self.written_speeds, strict=True)
+        return replace(self.network, bars=tuple(replace(bar, speed=speed) for bar, speed in pairs))
+
+    @property
     def parameters(self) -> Parametrization:
         """Its numbers by name: those of a preset, or of the parts of the network."""
         return self.preset or PartParameters(self.network)

@@ -46,10 +46,9 @@ def _step(model: Model) -> fmpq:
 
 def _lasts(model: Model, ratio: fmpq, step: fmpq) -> bool:
     """Whether speeds that change by so much give longer windows, and two marches of these are served."""
-    network = model.network
-    written = [replace(bar, speed=speed) for bar, speed in zip(network.bars, model.written_speeds, strict=True)]
+    written = model.network_as_written
     try:
-        other = replace(model, network=replace(network, bars=adjust_speeds(written, ratio)))
+        other = replace(model, network=replace(written, bars=adjust_speeds(written.bars, ratio)))
         if _step(other) <= step:
             return False
         for plan in _plans(other):

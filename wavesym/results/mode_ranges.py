@@ -45,6 +45,7 @@ class ModeRanges:
     modes: tuple[FrequencyRange, ...]
     box: Mapping[str, tuple[str, str]]
     time_unit: str | None
+    notes: tuple[str, ...] = ()
     why: str = "each is exact: of the box's corners no frequency is missed, and between them frequencies are monotone"
 
     def __len__(self) -> int:
@@ -140,7 +141,8 @@ def mode_ranges(scene: Scene, count: int, box: Mapping[str, tuple[str, str]]) ->
                 f"--range: the first end is above the second ({', '.join(box)}); write the lesser one first"
             )
         rows.append(FrequencyRange(number, _lower_double(first), upper_double(last)))
-    return ModeRanges(scene.name, tuple(rows), dict(box), "s" if scene.scale else None)
+    notes = lower(scene, in_time=False).labels.notes
+    return ModeRanges(scene.name, tuple(rows), dict(box), "s" if scene.scale else None, notes)
 
 
 def _lower_double(value: arb) -> float:
@@ -148,7 +150,7 @@ def _lower_double(value: arb) -> float:
 
 
 def _angular(scene: Scene, count: int) -> list[arb]:
-    model = lower(scene, loads=False)
+    model = lower(scene, in_time=False)
     model.network.refuse_loss()
     if is_damped(model.network):
         raise UnservedError("--range: dashpots make frequencies complex, and these follow no parameter one way")

@@ -72,7 +72,7 @@ class Modes:
     """The modes of a scene, by their frequencies; `wavesym.modes` makes it.
 
     `complete` says whether none is missed up to the last one, `why` in words; `time_unit` is "s", or None for tau.
-    `line_shapes` are the shapes along lines, where they were asked for.
+    `notes` are lines of how the scene was read, where that may surprise. `line_shapes` are the shapes along lines, where they were asked for.
     """
 
     name: str
@@ -83,6 +83,7 @@ class Modes:
     exact: tuple[Mode, ...]
     cut: Cut
     line_shapes: tuple[LineShapes, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -249,7 +250,7 @@ def modes(
     why = _COMPLETE if not damped else _COUNTED if complete else _incomplete(reach / per_tau, model)
     unit = "s" if model.clock else None
     along = line_shapes(found, spectrum.cut, model, lines, points) if lines and points else ()
-    return Modes(model.name, rows, complete, why, unit, tuple(found), spectrum.cut, along)
+    return Modes(model.name, rows, complete, why, unit, tuple(found), spectrum.cut, along, model.labels.notes)
 
 
 def _first(spectrum: Spectrum | DampedSpectrum, count: int) -> tuple[list[Mode], float]:

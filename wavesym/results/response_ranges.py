@@ -56,6 +56,7 @@ class ResponseRanges:
     low: NDArray[np.float64]
     high: NDArray[np.float64]
     box: Mapping[str, tuple[str, str]]
+    scene_notes: tuple[str, ...] = ()
 
     def csv(self) -> Iterator[str]:
         """Lines of CSV: the frequency, then the least and the greatest amplitude of each output."""
@@ -79,9 +80,10 @@ class ResponseRanges:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the numbers are, in a line for people."""
+        """How the scene was read, and what the numbers are: lines for people."""
         box = ", ".join(f"{path} from {low} to {high}" for path, (low, high) in self.box.items())
-        return (f"amplitudes over {box}: enclosed, and no more than {_WIDER:.0%} of the largest wider than is reached",)
+        about = f"amplitudes over {box}: enclosed, and no more than {_WIDER:.0%} of the largest wider than is reached"
+        return (*self.scene_notes, about)
 
 
 @dataclass(frozen=True)
@@ -136,13 +138,14 @@ def response_ranges(
         np.array([low for low, _ in ends]).T.reshape(len(model.probes), -1),
         np.array([high for _, high in ends]).T.reshape(len(model.probes), -1),
         texts,
+        model.labels.notes,
     )
 
 
 def _box(scene: Scene, box: Mapping[str, tuple[str, str]]) -> _Box:
     """The model over a box, exact. UnservedError where its numbers are not linear in the parameters."""
     low = {path: ends[0] for path, ends in box.items()}
-    model = lower(scene.with_(low), loads=False)
+    model = lower(scene.with_(low), in_time=False)
     if model.damping is not None and model.damping.acts:
         raise UnservedError(
             "system.damping: that of modes is not supported with --range (write dashpots, or leave damping out)"
@@ -151,7 +154,7 @@ def _box(scene: Scene, box: Mapping[str, tuple[str, str]]) -> _Box:
     added = []
     for path, (first, last) in box.items():
         middle, end = (
-            lower(scene.with_({**low, path: value}), loads=False) for value in (_middle(path, first, last), last)
+            lower(scene.with_({**low, path: value}), in_time=False) for value in (_middle(path, first, last), last)
         )
         numbers = [_numbers(each.network) for each in (middle, end)]
         if any(_without_numbers(each) != _without_numbers(model) for each in (middle, end)) or any(

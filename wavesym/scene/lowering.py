@@ -30,19 +30,21 @@ from wavesym.scene.notes import changed_speeds, damping_in_time, reading_notes, 
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
+from wavesym.systems import ExplicitChain
 from wavesym.systems.place import Place
 
 _KEPT = "lowered"  # beside the fields of a scene
 
 
-def lower(scene: Scene, *, loads: bool = True) -> Model:
+def lower(scene: Scene, *, in_time: bool = True) -> Model:
     """The model of a scene; every number in it is an fmpq.
 
     It is made once and kept with the scene, so that whoever asks again gets the same one.
 
     Args:
         scene: what the user wrote, validated.
-        loads: whether its loads act; frequencies and frequency responses take no notice of what they do over time.
+        in_time: whether its motion in time is computed: its loads act, and speeds of waves are adjusted. Frequencies
+            and frequency responses need neither: loads never change, and speeds are as they are written.
 
     Raises:
         SceneError: for what is no Scene: a path, say.
@@ -55,10 +57,10 @@ def lower(scene: Scene, *, loads: bool = True) -> Model:
     kept = vars(scene).get(_KEPT)  # a copy of a scene with other parts has the model of the first
     if kept is None or any(one is not other for one, other in zip(kept.parts, parts, strict=True)):
         kept = vars(scene)[_KEPT] = _LoweredScene(parts, {})
-    if True not in kept.models and loads not in kept.models:
-        kept.models[loads] = _build_model(scene if loads else _without_loads(scene))
-    model = kept.models.get(True) or kept.models[loads]
-    if loads and any(bar.loss != 0 for bar in model.network.bars):
+    model = kept.models.get(in_time) or kept.models.get(True)
+    if model is None or (model.written_speeds and not in_time):
+        model = kept.models[in_time] = _build_model(scene if in_time else _in_frequency(scene))
+    if in_time and any(bar.loss != 0 for bar in model.network.bars):
         model.network.refuse_loss(damping_in_time(scene, model.network))
     return model
 
@@ -70,13 +72,15 @@ class _LoweredScene(NamedTuple):
     models: dict[bool, Model]
 
 
-def _without_loads(scene: Scene) -> Scene:
-    """The same scene, its loads never changing: they act where they do, by nothing."""
+def _in_frequency(scene: Scene) -> Scene:
+    """The same scene, its loads never changing: they act where they do, by nothing; speeds are as they are written."""
     still = tuple(
         load.truncate(Fraction(0), Fraction(1)) if isinstance(load, ShapedLoad) else load for load in scene.load
     )
     other = scene.model_copy()
     vars(other)["load"] = still
+    if isinstance(scene.system, ExplicitChain):
+        vars(other)["system"] = scene.system.unadjusted
     return other
 
 

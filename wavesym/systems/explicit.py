@@ -83,6 +83,13 @@ class ExplicitChain(SceneTable):
         except MeasureError as error:
             raise refusal(f"{percent_text(self.speed_adjustment)} is {error}", "speed_adjustment") from None
 
+    @property
+    def unadjusted(self) -> ExplicitChain:
+        """The same chain with the speeds that were written."""
+        if not self.speed_adjustment:
+            return self
+        return ExplicitChain.model_construct(**{**dict(self), "speed_adjustment": Fraction(0)})
+
     @cached_property
     def drawing_as_written(self) -> Drawing:
         """The same with the speeds that were written."""

@@ -140,7 +140,7 @@ def _damped_modes(model: Model) -> Iterator[Section]:
         return
     count = max(_MODES, len(damping.ratios), *(damping.modes or (0,)))
     try:
-        found = np.array([float(w) for w in frequencies(model.network, count + _RIGID)])
+        found = np.array([float(w) for w in frequencies(model.network_as_written, count + _RIGID)])
     except (CostError, UnservedError) as refusal:
         yield Facts("modes", "Modes are not known", {"refusal": str(refusal)})
         return

@@ -72,7 +72,7 @@ def _exact_delay(rods: Rods) -> str:
 def _periods(model: Model, seconds: float) -> tuple[list[float], str]:
     """The longest periods in s, or why they are not known."""
     try:
-        found = frequencies(model.network, _PERIODS + _RIGID)
+        found = frequencies(model.network_as_written, _PERIODS + _RIGID)
     except (CostError, UnservedError) as error:
         return [], f"not known: {error}"
     turning = [2 * arb.pi() / w * seconds for w in found if not w.contains(0)]

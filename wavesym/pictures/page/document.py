@@ -108,7 +108,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     loads = load_histories(model)[:_LOADS]
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
-    lines, periods = scene.system.lines, longest_periods(model)
+    lines, periods = scene.system.lines, longest_periods(scene)
     found, refused = _line_pictures(scene, model, None if searched else drawn_by, refusal)
     structured = structure(model, lines)
     block = scene.title_block

@@ -21,7 +21,7 @@ from wavesym.results.modes import is_damped, modes
 from wavesym.results.presentation import number_text
 from wavesym.results.statistics import OutputSummary
 from wavesym.results.summary import Summary, summarise
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import probes
 from wavesym.scene.outputs import Output, observables
 
@@ -89,9 +89,10 @@ def headline(
         yield Figure("Period" + "s" * (len(periods) > 1), f"{values}{unit}", "" if unit else "in tau")
 
 
-def longest_periods(model: Model) -> list[float]:
+def longest_periods(scene: Scene) -> list[float]:
     """Up to three in the time of results; none where waves leave a chain, or contacts open and close."""
     with suppress(WavesymError):
+        model = lower(scene, in_time=False)
         if not is_damped(model.network):
             return [row.period for row in modes(model, _PERIODS) if row.period]
     return []
