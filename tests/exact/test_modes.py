@@ -204,8 +204,8 @@ def gram(modes):
             angle = float(mode.frequency) * float(bar.delay)
             left, right = (float(mode.displacement(End(number, side))) for side in (0, 1))
             shape = (
-                left + 0 * s
-                if angle == 0
+                left + float(mode.amplitudes.get(number, 0)) * np.sin(angle * s)
+                if angle == 0 or mode.amplitudes
                 else (left * np.sin(angle * (1 - s)) + right * np.sin(angle * s)) / np.sin(angle)
             )
             moved.append(shape)

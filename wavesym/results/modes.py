@@ -308,6 +308,8 @@ def _largest(network: Network, mode: Mode) -> arb:
     """How far that point of the network moves that moves most; where all rest, how far rods do between them."""
     count = len(network.points)
     moved: arb = max(mode.points[:count], key=lambda q: abs(float(q)))
+    if mode.amplitudes:
+        return max(mode.amplitudes.values(), key=lambda a: abs(float(a)))
     if not moved.contains(0):
         return moved
     bars = (bar for bar in mode.stiffness.network.bars if min(bar.left, bar.right) < count <= max(bar.left, bar.right))

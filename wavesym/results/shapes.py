@@ -89,10 +89,13 @@ def _in_bar(mode: Mode, pieces: Cut, number: int, part: NDArray[np.float64]) -> 
     for k, (low, high) in enumerate(pairwise(edges)):
         bar = pieces.firsts[number] + k
         a, b = (complex(mode.displacement(End(bar, side))) for side in (0, 1))
+        own = float(mode.amplitudes.get(bar, 0.0))
         angle = complex(mode.frequency) * nearest(pieces.network.bars[bar].delay)
         here = (part >= low) & (part <= high)
         t = (part[here] - low) / (high - low)
-        if abs(angle) < _STRAIGHT:
+        if mode.amplitudes:
+            moved[here] = own * np.sin(angle * t)
+        elif abs(angle) < _STRAIGHT:
             moved[here] = a * (1 - t) + b * t
         else:
             moved[here] = (a * np.sin(angle * (1 - t)) + b * np.sin(angle * t)) / np.sin(angle)

@@ -22,6 +22,7 @@ from flint import acb, arb, ctx
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.frequencies import bisect_frequencies
+from wavesym.exact.modes.resting import resting_modes
 from wavesym.exact.modes.shape import Mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.exact.modes.turns import Circles, absorb
@@ -85,6 +86,8 @@ class DampedSpectrum(CutNetwork):
         """
         stiffness = Stiffness(self.cut.network)
         guesses = estimate_frequencies(stiffness, count, again) if stiffness.points else np.zeros(1, complex)
+        resting = _undamped_at_rest(stiffness, float(np.abs(guesses).max(initial=0.0)) * (1 + _MEETING))
+        guesses = _leave_out(guesses, resting)
         found = _all_proved(stiffness, guesses) if stiffness.points else [None]
         for k in (k for k, mode in enumerate(found) if mode is None):
             if self.cut_again():  # all points may be at rest
@@ -94,7 +97,24 @@ class DampedSpectrum(CutNetwork):
                     f"system: two frequencies meet near {abs(guesses[k]):.6g}, which modes with dashpots cannot "
                     "tell apart (take pieces or march)"
                 )
-        return _distinct([mode for mode in found if mode])
+        return _distinct([*resting, *(mode for mode in found if mode)])
+
+
+def _undamped_at_rest(stiffness: Stiffness, limit: float) -> list[Mode]:
+    """The modes of which all points rest, whatever dashpots there are: their numbers are complex, as those of others."""
+    with ctx.workprec(_BITS):
+        still = [acb(0)] * len(stiffness.network.points)
+        modes = resting_modes(stiffness, limit)
+        return [replace(mode, frequency=acb(mode.frequency), points=still) for mode in modes]
+
+
+def _leave_out(guesses: Complex, modes: Sequence[Mode]) -> Complex:
+    """Guesses without one for each of some modes, the nearest."""
+    for mode in modes:
+        off = np.abs(guesses - complex(mode.frequency))
+        if len(off) and off.min() < _MEETING * abs(complex(mode.frequency)):
+            guesses = np.delete(guesses, np.argmin(off))
+    return guesses
 
 
 def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
@@ -209,7 +229,7 @@ def _prove_mode(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: in
     here, around = (trial(stiffness, law, v, root, _I * v) for v in (w, ball))
     slope = -2 * ball * around.mass / around.rows[root] ** 2
     inside = w - here.rest / here.rows[root] / slope
-    if not ball.contains_interior(inside):
+    if not ball.contains_interior(inside) or abs(complex(w) - guess) > _MEETING * abs(guess):
         return None
     if creeps:  # and so does the mirror image of the zero, which is the only one in the ball
         inside = acb(0, inside.imag)
@@ -223,11 +243,17 @@ def _prove_mode(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: in
 
 
 def _distinct(modes: Sequence[Mode]) -> list[Mode]:
-    """Each mode once, in their order."""
+    """Each mode once, in their order; of those whose points rest several may have one frequency."""
     sizes = np.array([abs(complex(mode.frequency)) for mode in modes])
     kept: list[int] = []
     for k in np.argsort(sizes, kind="stable").tolist():
         beside = [j for j in kept[-_FEW:] if sizes[j] > sizes[k] * (1 - _BESIDE)]
-        if not any(modes[k].frequency.overlaps(modes[j].frequency) for j in beside):
+        if not any(_is_same(modes[k], modes[j]) for j in beside):
             kept.append(k)
     return [modes[k] for k in kept]
+
+
+def _is_same(one: Mode, other: Mode) -> bool:
+    pairs = [(a, other.amplitudes.get(bar)) for bar, a in one.amplitudes.items()]
+    apart = other.amplitudes and any(b is None or not a.overlaps(b) for a, b in pairs)
+    return not apart and bool(one.frequency.overlaps(other.frequency))

@@ -10,6 +10,7 @@ from flint import arb, ctx, fmpq
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.equal_frequencies import WIDE, common_frequency, prove_cluster
+from wavesym.exact.modes.resting import resting_modes
 from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.mechanics.network import Network
@@ -102,12 +103,14 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
     guesses = bisect_frequencies(stiffness, count)
     roots = stiffness.softest_rows(guesses * (1 - _OFF)).tolist()
     together = np.diff(guesses) < _TOGETHER * guesses[1:]
+    with ctx.workprec(laws[0][0]):
+        resting = resting_modes(stiffness, float(guesses[-1]) * (1 + _OFF)) if len(guesses) else []
     n = known + 1
     while n <= count:
         if n == 1 and free:
             with ctx.workprec(_BITS):
                 made = [_still(stiffness, free)]
-        else:
+        elif not (made := _prove_resting(stiffness, laws[0], n, float(guesses[n - 1]), resting)):
             # one that may be several is not tried as one alone
             tried = laws[2:] if together[max(n - 2, 0) : n].any() else laws
             found = (_prove_modes(stiffness, law, n, float(guesses[n - 1]), roots[n - 1], bits) for bits, law in tried)
@@ -116,6 +119,17 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
             raise CoincidenceError(f"two frequencies meet near {guesses[n - 1]:.6g}")
         yield from made
         n += len(made)
+
+
+def _prove_resting(
+    stiffness: Stiffness, law: tuple[int, HarmonicLaw], n: int, guess: float, resting: Sequence[Mode]
+) -> list[Mode]:
+    """The modes near a guess of which all points rest, if they are the n-th and those after it, and no other is there."""
+    found = [mode for mode in resting if abs(float(mode.frequency) - guess) < _OFF * guess]
+    with ctx.workprec(law[0]):
+        sides = [found[0].frequency * (1 + sign * arb(_OFF)) for sign in (-1, 1)] if found else []
+        counts = [stiffness.proved_count(law[1], side.mid()) for side in sides]
+    return found if counts == [n - 1, n - 1 + len(found)] else []
 
 
 def bisect_frequencies(stiffness: Stiffness, count: int) -> Array:

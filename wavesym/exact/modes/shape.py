@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -18,12 +18,14 @@ class Mode:
     """A frequency, and how far each point moves in the shape whose kinetic energy at velocity 1 is 1/2: balls.
 
     `points` are by their numbers in the network, and 0 where one does not move. Energies count those of the bars, too.
-    Where there are dashpots all is complex, and the mass is that of `Trial`.
+    Where there are dashpots all is complex, and the mass is that of `Trial`. Bars that swing between ends at rest have
+    `amplitudes`: u = a sin w s, s the delay from the left end.
     """
 
     stiffness: Stiffness
     frequency: Quantity
     points: Sequence[Quantity]
+    amplitudes: Mapping[int, Quantity] = field(default_factory=dict)
 
     def displacement(self, end: End) -> Quantity:
         """How far the end of a bar moves."""
@@ -36,6 +38,9 @@ class Mode:
             return arb(0)
         here, there = self.displacement(end), self.displacement(End(end.bar, 1 - end.side))
         sine, cosine = self.turn(self.stiffness.network.bars[end.bar].delay)
+        if self.amplitudes:
+            slope = self.frequency * self.amplitudes.get(end.bar, arb(0))
+            return slope * cosine if end.side else slope
         slope = self.frequency * (there - here * cosine) / sine
         return -slope if end.side else slope
 
