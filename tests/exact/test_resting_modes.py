@@ -1,4 +1,4 @@
-"""Modes of which all points rest while rods swing between them: none is missed beside dashpots, springs and dead ends."""
+"""Modes of which all points rest while rods swing between them: none is missed beside dashpots and springs."""
 
 from __future__ import annotations
 

@@ -72,7 +72,8 @@ class Modes:
     """The modes of a scene, by their frequencies; `wavesym.modes` makes it.
 
     `complete` says whether none is missed up to the last one, `why` in words; `time_unit` is "s", or None for tau.
-    `notes` are lines of how the scene was read, where that may surprise. `line_shapes` are the shapes along lines, where they were asked for.
+    `notes` are lines of how the scene was read, where that may surprise. `line_shapes` are the shapes along lines,
+    where they were asked for.
     """
 
     name: str
@@ -309,7 +310,7 @@ def _largest(network: Network, mode: Mode) -> arb:
     count = len(network.points)
     moved: arb = max(mode.points[:count], key=lambda q: abs(float(q)))
     if mode.amplitudes:
-        return max(mode.amplitudes.values(), key=lambda a: abs(float(a)))
+        moved = max(mode.amplitudes.values(), key=lambda a: abs(float(a)))
     if not moved.contains(0):
         return moved
     bars = (bar for bar in mode.stiffness.network.bars if min(bar.left, bar.right) < count <= max(bar.left, bar.right))

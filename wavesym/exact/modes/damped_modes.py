@@ -101,7 +101,7 @@ class DampedSpectrum(CutNetwork):
 
 
 def _undamped_at_rest(stiffness: Stiffness, limit: float) -> list[Mode]:
-    """The modes of which all points rest, whatever dashpots there are: their numbers are complex, as those of others."""
+    """The modes of which all points rest, whatever dashpots there are; their numbers are complex, as of others."""
     with ctx.workprec(_BITS):
         still = [acb(0)] * len(stiffness.network.points)
         modes = resting_modes(stiffness, limit)

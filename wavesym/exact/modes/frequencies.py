@@ -124,7 +124,7 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
 def _prove_resting(
     stiffness: Stiffness, law: tuple[int, HarmonicLaw], n: int, guess: float, resting: Sequence[Mode]
 ) -> list[Mode]:
-    """The modes near a guess of which all points rest, if they are the n-th and those after it, and no other is there."""
+    """The modes near a guess of which all points rest, if they are the n-th and following ones and no other is."""
     found = [mode for mode in resting if abs(float(mode.frequency) - guess) < _OFF * guess]
     with ctx.workprec(law[0]):
         sides = [found[0].frequency * (1 + sign * arb(_OFF)) for sign in (-1, 1)] if found else []
