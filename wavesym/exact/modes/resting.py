@@ -25,12 +25,12 @@ _ZERO = fmpq(0)
 def resting_modes(stiffness: Stiffness, limit: float) -> list[Mode]:
     """Those with frequencies up to a limit in rad per tau, ascending; of mass 1, and at right angles."""
     network = stiffness.network
-    able = _balanced(network, range(len(network.bars)))
+    able = _strip_lone_bars(network, range(len(network.bars)))
     delays = {str(bar.delay): bar.delay for bar in (network.bars[n] for n in able)}
     turns = {k / delay for delay in delays.values() for k in range(1, floor(limit / pi * nearest(delay)) + 1)}
     found: list[Mode] = []
     for q in sorted(turns):
-        swinging = _balanced(network, [n for n in able if (q * network.bars[n].delay).q == 1])
+        swinging = _strip_lone_bars(network, [n for n in able if (q * network.bars[n].delay).q == 1])
         if swinging:
             found += [
                 Mode(stiffness, arb.pi() * q, [arb(0)] * len(network.points), _of_mass_1(network, amplitudes))
@@ -39,7 +39,7 @@ def resting_modes(stiffness: Stiffness, limit: float) -> list[Mode]:
     return found
 
 
-def _balanced(network: Network, bars: Sequence[int]) -> list[int]:
+def _strip_lone_bars(network: Network, bars: Sequence[int]) -> list[int]:
     """Those of some bars that need not rest: at a point that is free no bar pulls alone."""
     left = list(bars)
     while True:
