@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flint import arb, ctx
 
 import wavesym
 from wavesym.cli import main
@@ -29,6 +30,14 @@ def test_a_rod_has_the_frequencies_of_its_closed_form() -> None:
     assert (free[0].omega, free[0].period, free[0].effective_mass) == (0.0, None, None)
     assert held.complete
     assert all(mode.radius < 1e-15 for mode in held)
+
+
+def test_a_radius_holds_the_rounding_of_the_printed_number() -> None:
+    """pi/2 and its odd multiples are no doubles."""
+    for n, mode in enumerate(wavesym.modes(chain("fixed", {"rod": 1}, "free"), 5), 1):
+        with ctx.workprec(128):
+            error = abs(arb.pi() * (2 * n - 1) / 2 - mode.omega)
+        assert 0 < error <= mode.radius
 
 
 def test_effective_masses_are_those_of_a_rod_and_add_up_to_all() -> None:

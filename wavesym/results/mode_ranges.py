@@ -22,9 +22,11 @@ from wavesym.results.modes import is_damped
 from wavesym.results.presentation import csv_line
 from wavesym.scene import Scene, lower
 from wavesym.scene.outputs import NoOutput
+from wavesym.scene.paths import leaves
 
 RISING = ("spring", "stiffness", "E", "G", "I", "speed")
 FALLING = ("mass", "floor_mass", "foundation_mass", "column_mass", "rho", "inertia")
+_ONE_WAY = f"with {', '.join(RISING)} they rise, with {', '.join(FALLING)} they fall"
 _LAST_KEY = re.compile(r"([A-Za-z_]+)(?:\[\d+\])?$")
 
 
@@ -103,6 +105,8 @@ def direction(scene: Scene, path: str) -> int:
     key = found[1] if found else path
     if not path.startswith("system.") or found is None:
         raise WavesymError(f"--range {path}: no number of the system; a mass, spring, modulus or density is one")
+    if key in ("E", "G", "rho") and f"{path[: found.start()]}speed" in leaves(scene.model_dump()):
+        raise UnservedError(f"--range {path}: beside a speed it changes mass and stiffness together; {_ONE_WAY}")
     if key in RISING:
         return 1
     if key == "kappa" and scene.system.type in ("building", "collision") and scene.scale is None:
@@ -110,8 +114,7 @@ def direction(scene: Scene, path: str) -> int:
     if key in FALLING and not (key == "inertia" and scene.scale is None):
         return -1
     raise UnservedError(
-        f"--range {path}: frequencies may rise or fall with it, as where mass and stiffness change together; with "
-        f"{', '.join(RISING)} they rise, with {', '.join(FALLING)} they fall"
+        f"--range {path}: frequencies may rise or fall with it, as where mass and stiffness change together; {_ONE_WAY}"
     )
 
 

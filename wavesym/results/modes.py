@@ -14,7 +14,7 @@ from math import inf, pi
 from typing import Any
 
 import numpy as np
-from flint import acb, arb
+from flint import acb, arb, ctx, fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
@@ -34,6 +34,7 @@ from wavesym.systems.station import Lines
 
 COUNT = 10
 _MOST = 2000
+_BITS = 128
 _FIRST_GUESS = 16  # modes, where it is not known how many lie below a frequency
 _COMPLETE = "none is missed: the frequencies below the last one are counted in balls (Wittrick and Williams)"
 _COUNTED = "none is missed: a determinant turns so often around a circle beyond the last one, in balls"
@@ -49,7 +50,7 @@ class ModeRow:
         hz: omega / 2 pi.
         period: 1 / hz; None of a rigid mode.
         damping: the ratio to critical damping.
-        radius: omega is right to so much: proved.
+        radius: omega, as the double it is, is right to so much: proved.
         effective_mass: what of the mass moves with all supports, in parts of the whole; None where nothing holds the
             chain, or gears make it mean nothing.
         shape: how far each node moves, the largest 1; complex where there are dashpots.
@@ -234,7 +235,8 @@ def modes(
     damped = is_damped(model.network)
     spectrum = DampedSpectrum(model.network) if damped else Spectrum(model.network)
     found, reach = _first(spectrum, count if below is None else _FIRST_GUESS)
-    per_tau = 1.0 if model.clock is None else nearest(model.clock.seconds)
+    seconds = fmpq(1) if model.clock is None else model.clock.seconds
+    per_tau = nearest(seconds)
     if below is not None:
         limit = below * (2 * pi * per_tau if model.clock else 1.0)
         wanted = _FIRST_GUESS
@@ -244,7 +246,7 @@ def modes(
             wanted *= 2
             found, reach = _first(spectrum, wanted)
         found = [mode for mode in found if abs(complex(mode.frequency)) <= limit]
-    rows = tuple(_row(model, k, mode, per_tau) for k, mode in enumerate(found, 1))
+    rows = tuple(_row(model, k, mode, seconds) for k, mode in enumerate(found, 1))
     if not damped:
         rows = _with_ratios(model, rows, spectrum, per_tau)
     complete = not found or reach >= abs(complex(found[-1].frequency))
@@ -271,10 +273,13 @@ def is_damped(network: Network) -> bool:
     )
 
 
-def _row(model: Model, number: int, mode: Mode, per_tau: float) -> ModeRow:
+def _row(model: Model, number: int, mode: Mode, seconds: fmpq) -> ModeRow:
     w = mode.frequency
     size = abs(w) if isinstance(w, acb) else w
-    omega = midpoint(size) / per_tau
+    with ctx.workprec(_BITS):  # what a double leaves off an exact frequency is in its radius
+        angular = size / arb(seconds)
+        omega = midpoint(angular)
+        radius = upper_double(abs(angular - omega))
     ratio = midpoint(w.imag / size) if isinstance(w, acb) and not size.contains(0) else 0.0
     return ModeRow(
         number=number,
@@ -282,7 +287,7 @@ def _row(model: Model, number: int, mode: Mode, per_tau: float) -> ModeRow:
         hz=omega / (2 * pi),
         period=2 * pi / omega if omega else None,
         damping=ratio,
-        radius=upper_double(size.rad()) / per_tau,
+        radius=radius,
         effective_mass=None if isinstance(w, acb) else effective_mass(model.network, mode),
         shape=_shape(model.network, mode),
         loads={} if isinstance(w, acb) else participations(model.network, mode, _largest(model.network, mode)),
