@@ -23,11 +23,16 @@ class Progress:
 
     def __init__(self, what: str) -> None:
         self.what = self._doing = what
+        self._detail = ""
         self._start = monotonic()
 
     def tell(self, step: str) -> None:
         """The step that is taken now."""
-        self._doing = f"{self.what}: {step}"
+        self._doing, self._detail = f"{self.what}: {step}", ""
+
+    def tell_detail(self, detail: str) -> None:
+        """How far that step has come."""
+        self._detail = f", {detail}"
 
     def count(self, cases: int, done: int, before: int) -> None:
         """How many cases are done, `before` of them before this line; how fast, and how long the rest will take."""
@@ -52,10 +57,13 @@ class Progress:
         width = _columns() - 1
         with suppress(OSError):  # of a terminal that has gone
             while not done.is_set():
-                line = f"{self._doing} ({monotonic() - start:.0f} s)"
+                line = f"{self._doing}{self._detail} ({monotonic() - start:.0f} s)"
                 _put(f"\r{line[:width]:{width}}")
                 done.wait(STEP)
             _put(f"\r{'':{width}}\r")
+
+
+_shown: list[Progress] = []
 
 
 @contextmanager
@@ -66,6 +74,7 @@ def progress(what: str) -> Iterator[Progress]:
         yield line
         return
     done = Event()
+    _shown.append(line)
     shower = Thread(target=line.show, args=(done,), daemon=True)
     shower.start()
     try:
@@ -73,6 +82,13 @@ def progress(what: str) -> Iterator[Progress]:
     finally:
         done.set()
         shower.join()
+        _shown.remove(line)
+
+
+def tell_detail(detail: str) -> None:
+    """How far what takes long has come, on the line that is shown, if there is one."""
+    if _shown:
+        _shown[-1].tell_detail(detail)
 
 
 def _put(text: str) -> None:

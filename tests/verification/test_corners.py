@@ -26,7 +26,7 @@ from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
 from wavesym.scene import Scene, lower
-from wavesym.verification import checks, integrations
+from wavesym.verification import checks, integrations, link_pulls
 from wavesym.verification.independent import independent_model
 from wavesym.verification.invariants import Balancing
 from wavesym.verification.midpoint import MidpointGrid
@@ -127,6 +127,62 @@ def test_friction_beside_other_laws_passes_every_check(draw: Mix, seed: int) -> 
     seen = known(draw(seed))
     for check in CHECKS:
         assert all(outcome.passed for outcome in judged(check(seen)))
+
+
+COMES_TO_REST = {
+    "name": "rests",
+    "system": {
+        "type": "chain",
+        "parts": [
+            "absorbing",
+            {"rod": "1/2"},
+            {"joint": True, "name": "n1", "friction": "1/5"},
+            {"contact": "1/8"},
+            {"mass": 2, "name": "n2", "velocity": "-1/4"},
+        ],
+    },
+    "output": {"until": 3, "tolerance": 1e-9, "velocity": ["n1", "n2"]},
+}
+
+
+def test_a_contact_without_force_as_both_sides_come_to_rest_may_be_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The midpoint rule turns a mass back by what friction does to it in a step; one that is pulled off is seen."""
+    seen = known(COMES_TO_REST)
+    outcomes = judged(integrations.corner_changes(seen))
+    assert [outcome.subject for outcome in outcomes] == ["1/2 closes", "1/2 slips", "1/2 sticks"]
+    assert all(outcome.passed for outcome in outcomes)
+    pulled = COMES_TO_REST | {"load": [{"at": "n2", "times": ["9/4"], "ramps": ["1/50"]}]}
+    assert "1/2 opens" in [each.subject for each in integrations.corner_changes(known(pulled))]
+    assert [
+        each.subject for each in judged(integrations.corner_changes(known(pulled, COMES_TO_REST))) if not each.passed
+    ] == ["1/2 opens"]
+    monkeypatch.setattr(link_pulls, "_TURNED", 0.0)
+    assert [each.subject for each in integrations.corner_changes(seen) if not each.passed] == ["1/2 opens"]
+
+
+@pytest.mark.parametrize("light", [1e-2, 1e-5, 1e-8])
+def test_pulls_are_found_in_a_few_rounds(light: float) -> None:
+    """A mass rubs on a joint that rubs on the ground: one link after another takes some 1/light rounds."""
+    compliance = [[1 + light, -1.0], [-1.0, 1.0]]
+    asked = 0
+
+    def respond(number: int, rate: float) -> tuple[float, float]:
+        nonlocal asked
+        asked += 1
+        held, limit = rate / compliance[number][number], (0.4, 0.25)[number]
+        return (held, 1 / compliance[number][number]) if abs(held) < limit else (np.copysign(limit, held), 0.0)
+
+    # held both; the upper one slides; the lower one; both
+    for rates, right in (
+        ([0.1 * light, 0.0], [0.1, 0.1]),
+        ([0.5, 0.1], [0.4, 0.25]),
+        ([-0.15, 0.0], [(-0.15 - 0.25) / (1 + light), -0.25]),
+        ([5.0, 5.0], [0.4, 0.25]),
+    ):
+        pulls, asked = [0.0, 0.0], 0
+        link_pulls.find_pulls(compliance, rates, pulls, respond, 1e-15)
+        assert pulls == pytest.approx(right, rel=1e-6)
+        assert asked < 40
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ An integration is refined until it tells its own error. It judges the reference,
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from math import inf
@@ -343,6 +343,12 @@ class CornerHistory:
         """At one of them."""
         return CornerHistory([each for each in self.changes if each[0].corner == corner], self.shortest)
 
+    def fit(self, claimed: Sequence[ContactEvent]) -> CornerHistory:
+        """Without what is faint, where that is not claimed."""
+        if self._fits(claimed, self.visible(claimed)):
+            return self
+        return replace(self, changes=[each for each in self.changes if not each[0].faint])
+
     def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
         """The numbers of events that it can have seen: without those at the start or that hardly last, if it must."""
         kept = list(range(len(claimed)))
@@ -375,6 +381,7 @@ def compare_events(
         if method is None:
             rows = [row | {name: "refused"} for row in rows]
             continue
+        method = method.fit(claimed)
         visible = method.visible(claimed)
         for k, event in enumerate(claimed):
             if k not in visible:

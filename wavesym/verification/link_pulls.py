@@ -2,11 +2,13 @@
 
 What they pull depends on the mean velocity in the step: a contact pushes as little as keeps its gap from being
 negative, friction takes what keeps its sides together, as much as it can, and springs have the mean of their pulls at
-both ends of the step. Each of these is monotone, so they are found one after another, again and again.
+both ends of the step. Each of these is monotone and linear in parts: they are found one after another, again and again,
+and in between all at once, as if each stayed on its part (Newton's rounds).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from operator import mul
 
@@ -15,8 +17,17 @@ import numpy as np
 from wavesym.numbers.arrays import Array
 from wavesym.verification.problem import BranchChange, CornerProblem, LinkLaw
 
-# pulls of links are found as exactly as this, relative to the largest, in so many rounds
-_EXACT, ROUNDS = 1e-15, 1000
+# pulls of links are found as exactly as this, relative to the largest, and as rates are rounded
+_EXACT, _NOISE = 1e-15, 4e-16
+
+# rounds, and the first of them after which there is one of Newton's
+_ROUNDS, _NEWTON = 1000, 20
+
+Response = Callable[[int, float], tuple[float, float]]
+"""What a link pulls at a rate that it has without itself, and how much more for more of that."""
+
+# what comes to rest within a step is turned back by twice what its force does in one
+_TURNED = 2
 
 # parts of what pushes and gaps are worth that tell whether a contact is closed
 _SIGN = 1e-9
@@ -31,14 +42,17 @@ class _Spring:
     pull: float = 0.0
     trial: float = 0.0
 
-    def mean(self, rate: float, longer: float, compliance: float, h: float) -> float:
+    def mean(self, rate: float, longer: float, compliance: float, h: float) -> tuple[float, float]:
         """Its mean pull in a step, where it gets longer at a `rate` without: less by `compliance` times the pull."""
         law, stiff = self.law, self.law.stiffness * h / 2
+        slope = stiff / (1 + stiff * compliance)
         if law.side:
             self.trial = law.stiffness * (longer + h / 2 * rate - law.side * law.gap) / (1 + stiff * compliance)
-            return law.limit(self.trial)
-        self.trial = 2 * (self.pull + stiff * rate) / (1 + stiff * compliance) - self.pull
-        return (self.pull + law.limit(self.trial)) / 2
+            pull, mean = self.trial, law.limit(self.trial)
+        else:
+            self.trial = 2 * (self.pull + stiff * rate) / (1 + stiff * compliance) - self.pull
+            pull, mean = (self.pull + self.trial) / 2, (self.pull + law.limit(self.trial)) / 2
+        return mean, slope if mean == pull else 0.0
 
     def finish(self) -> None:
         """Go on to the next step."""
@@ -59,7 +73,7 @@ class _Friction:
     trial: float = 0.0
     _fastest: float = 0.0
 
-    def mean(self, rate: float, _: float, compliance: float, __: float) -> float:
+    def mean(self, rate: float, _: float, compliance: float, __: float) -> tuple[float, float]:
         """Its mean pull in a step, where it would go at a mean `rate` without: less by `compliance` times the pull.
 
         What comes to rest and goes back is pulled one way first, and the other way for the rest of the step.
@@ -70,16 +84,18 @@ class _Friction:
         held = (rate - self.inertia * self.speed) / compliance  # what keeps it at rest
         if before == 0 or (self.branch == 0 and before <= _SIGN * self._fastest):
             self.trial = held
-            return self.law.limit(held)
+            mean = self.law.limit(held)
+            return mean, 1 / compliance if mean == held else 0.0
         after = 2 * (way * rate - compliance * most) - before
         self.trial = 2 * self.law.rest * way
         if after >= 0:
-            return most * way
+            return most * way, 0.0
         if abs(held) <= self.law.rest:
             self.trial = held
-            return (rate - self.speed / 2) / compliance
+            return (rate - self.speed / 2) / compliance, 1 / compliance
         self.trial = -self.trial
-        return most * way * (2 * before / (before - after) - 1)
+        part = before / (before - after)
+        return most * way * (2 * part - 1), 4 * most * part**2 / before
 
     def finish(self) -> None:
         """Go on to the next step."""
@@ -98,6 +114,9 @@ class LinkPulls:
         self._gaps: list[float] = problem.gaps.tolist()
         self._laws = [self._link(law, inverse) for law in problem.laws]
         self._open = problem.gaps > 0
+        # how fast a step turns masses beside a contact back for each unit of its push; the push; and when it parted
+        self._turned = [_TURNED * h * problem.lightness(row) for row in problem.parting]
+        self._hardest, self._parted = [0.0] * len(self._gaps), dict[int, int]()
         self.changes: list[BranchChange] = []
 
     def _link(self, law: LinkLaw, inverse: Array) -> _Spring | _Friction:
@@ -117,37 +136,80 @@ class LinkPulls:
         rates: list[float] = (self._rows @ free).tolist()
         longer, pulls = self._rows @ u, self._pulls
         lengths: list[float] = longer.tolist()
-        for _ in range(ROUNDS):
-            before = pulls.copy()
-            for k, row in enumerate(self._compliance):
-                rate = rates[k] - sum(map(mul, row, pulls)) + row[k] * pulls[k]
-                pulls[k] = self._mean(k, rate, lengths[k], row[k])
-            changed = max(abs(pull - last) for pull, last in zip(pulls, before, strict=True))
-            if changed <= _EXACT * max(map(abs, pulls)):
-                break
+        find_pulls(self._compliance, rates, pulls, lambda k, rate: self._mean(k, rate, lengths[k]), _EXACT)
         v = free - self._influence @ pulls
         self._record_branches((longer + self._h * (self._rows @ v)).tolist(), step)
         return np.asarray(v)
 
-    def _mean(self, k: int, rate: float, longer: float, compliance: float) -> float:
-        contacts = len(self._gaps)
+    def _mean(self, k: int, rate: float, longer: float) -> tuple[float, float]:
+        contacts, compliance = len(self._gaps), self._compliance[k][k]
         if k >= contacts:
             return self._laws[k - contacts].mean(rate, longer, compliance, self._h)
-        return min(((self._gaps[k] + longer) / self._h + rate) / compliance, 0.0)
+        push = ((self._gaps[k] + longer) / self._h + rate) / compliance
+        return (push, 1 / compliance) if push < 0 else (0.0, 0.0)
 
     def _record_branches(self, longer: list[float], step: int) -> None:
         """On which branches links are at the end of a step."""
         problem = self._problem
         length, force = problem.worth
         for k, number in enumerate(problem.contacts):
-            apart = self._gaps[k] + longer[k]
-            if -self._pulls[k] > _SIGN * force if self._open[k] else apart > _SIGN * length:
+            apart, push = self._gaps[k] + longer[k], -self._pulls[k]
+            self._hardest[k] = max(self._hardest[k], push)
+            if push > _SIGN * force if self._open[k] else apart > _SIGN * length:
                 self._open[k] ^= True
                 closed = int(not self._open[k])
-                self.changes.append(BranchChange(number, 1 - closed, closed, step))
+                self.changes.append(BranchChange(number, 1 - closed, closed, step, not closed or k in self._parted))
+                self._parted.pop(k, None)
+                if not closed:
+                    self._parted[k] = len(self.changes) - 1
+            if k in self._parted:
+                opening = self.changes[self._parted[k]]
+                if apart > (step + 1 - opening.step) * self._h * self._turned[k] * self._hardest[k]:
+                    self.changes[self._parted.pop(k)] = opening._replace(faint=False)
         for moving in self._laws:
             law, before = moving.law, moving.branch
             moving.finish()
             moving.branch = law.branch(moving.trial, _SIGN * force, before)
             if moving.branch != before and step:  # what it is from the start is no event
                 self.changes.append(BranchChange(law.corner, before, moving.branch, step))
+
+
+def find_pulls(
+    compliance: list[list[float]], rates: list[float], pulls: list[float], respond: Response, exact: float
+) -> None:
+    """Find what links pull, as exactly as that relative to the largest; `pulls` are those to begin with.
+
+    Args:
+        compliance: by how much a pull (column) makes a rate (row) less.
+        rates: how fast links would get longer without any pull.
+        pulls: as many; they are replaced.
+        respond: a link's pull for the rate that the others leave it.
+        exact: rounds end when they change no more than that, and what rates are rounded by.
+    """
+    for number in range(_ROUNDS):
+        before, noise = pulls.copy(), 0.0
+        for k, row in enumerate(compliance):
+            pulls[k], slope = respond(k, rates[k] - sum(map(mul, row, pulls)) + row[k] * pulls[k])
+            noise = max(noise, _NOISE * slope * abs(rates[k]))
+        changed = max(abs(pull - last) for pull, last in zip(pulls, before, strict=True))
+        if len(pulls) == 1 or changed <= exact * max(map(abs, pulls)) + noise:
+            return
+        if number < _NEWTON:  # those may go round in circles, the others come closer each time
+            _step_on(compliance, rates, pulls, respond)
+
+
+def _step_on(compliance: list[list[float]], rates: list[float], pulls: list[float], respond: Response) -> None:
+    """Newton's round: to where all pulls would be, if each stayed on its part; no step where that is nowhere."""
+    size = len(pulls)
+    matrix, missing = np.eye(size), np.empty(size)
+    for k, row in enumerate(compliance):
+        pull, slope = respond(k, rates[k] - sum(map(mul, row, pulls)) + row[k] * pulls[k])
+        matrix[k] += slope * np.array(row)
+        matrix[k, k] = 1.0
+        missing[k] = pull - pulls[k]
+    try:
+        step = np.linalg.solve(matrix, missing)
+    except np.linalg.LinAlgError:
+        return
+    if np.all(np.isfinite(step)):
+        pulls[:] = (np.array(pulls) + step).tolist()

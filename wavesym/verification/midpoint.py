@@ -163,7 +163,7 @@ class MidpointGrid:
             if change.before != change.after:
                 here.append(change)
         return tuple(
-            Change(corner, self.problem.happens(change), float(change.step * self.step))
+            Change(corner, self.problem.happens(change), float(change.step * self.step), change.faint)
             for corner in sorted(kept)
             for change in kept[corner]
         )

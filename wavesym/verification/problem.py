@@ -24,11 +24,15 @@ from wavesym.numbers.doubles import nearest
 
 @dataclass(frozen=True)
 class Change:
-    """What happens at tau at the link with this number among those with corners: a contact opens, a spring yields."""
+    """What happens at tau at the link with this number among those with corners: a contact opens, a spring yields.
+
+    It is `faint` where steps do not tell it from nothing.
+    """
 
     corner: int
     kind: str
     tau: float
+    faint: bool = False
 
 
 KnownChanges = list[tuple[Change, float]]
@@ -36,10 +40,12 @@ KnownChanges = list[tuple[Change, float]]
 
 
 def match_changes(finer: Sequence[Change], coarser: Sequence[Change]) -> KnownChanges | None:
-    """What happens in two solutions, and how far apart in time; None where it is not the same."""
+    """What happens in two solutions, and how far apart in time; None where it differs in more than what is faint."""
     found: KnownChanges = []
     for corner in {change.corner for change in (*finer, *coarser)}:
         both = [[change for change in changes if change.corner == corner] for changes in (finer, coarser)]
+        if [change.kind for change in both[0]] != [change.kind for change in both[1]]:
+            both = [[change for change in changes if not change.faint] for changes in both]
         if [change.kind for change in both[0]] != [change.kind for change in both[1]]:
             return None
         found += [(one, abs(one.tau - other.tau)) for one, other in zip(*both, strict=True)]
@@ -116,12 +122,16 @@ class LinkLaw:
 
 
 class BranchChange(NamedTuple):
-    """A link with a corner goes from one branch to another in a step: 1 is a closed contact, else see `LinkLaw`."""
+    """A link with a corner goes from one branch to another in a step: 1 is a closed contact, else see `LinkLaw`.
+
+    It is `faint` where a contact parts no faster than what comes to rest within a step is turned back.
+    """
 
     corner: int
     before: int
     after: int
     step: int
+    faint: bool = False
 
 
 @dataclass(frozen=True)
@@ -172,7 +182,12 @@ class CornerProblem(Problem):
     def sliding_mass(self, law: LinkLaw) -> float:
         """The mass that a force against its sliding slows down; 0 where a side has none."""
         free = (law.row != 0) & self.is_free
-        return float(1 / np.sum(law.row[free] ** 2 / self.mass[free])) if np.all(self.mass[free] > 0) else 0.0
+        return 1 / self.lightness(law.row) if np.all(self.mass[free] > 0) else 0.0
+
+    def lightness(self, row: Array) -> float:
+        """How much faster a force of 1 between points, by `row`, makes those of them grow apart that have a mass."""
+        heavy = self.is_free & (self.mass > 0)
+        return float(np.sum(row[heavy] ** 2 / self.mass[heavy]))
 
     @cached_property
     def soonest(self) -> float:

@@ -8,7 +8,6 @@ Nothing is known of events. Fronts stay as sharp as they are, and outputs are re
 from __future__ import annotations
 
 from fractions import Fraction
-from operator import mul
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from wavesym.methods.differences import Grid, fields, point_steps
 from wavesym.methods.elements import keep_places
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
-from wavesym.verification.link_pulls import ROUNDS
+from wavesym.verification.link_pulls import find_pulls
 from wavesym.verification.problem import CornerProblem, LinkLaw
 
 REACH = 4
@@ -90,20 +89,20 @@ class _ReturnMapping:
         passed: list[float] = (self._rows @ before).tolist()
         known: list[float] = (self._rows @ (2 * now + before)).tolist()
         earlier, pulls = self._pulls, [0.0] * len(self._laws)
-        for _ in range(ROUNDS):
-            last = pulls.copy()
-            for number, (law, coupling) in enumerate(zip(self._laws, self._coupling, strict=True)):
-                compliance = coupling[number]
-                free = longest[number] - sum(map(mul, coupling, pulls)) + compliance * pulls[number]
-                if law.friction:
-                    pulls[number], _way = _rub(law, self._ways[number], (free - passed[number]) / compliance)
-                else:
-                    kept = 0.0 if law.side else earlier[number] - law.stiffness * self._longer[number]
-                    trial = kept + law.stiffness * ((free + known[number]) / 4 - law.side * law.gap)
-                    pulls[number] = law.limit(trial / (1 + law.stiffness * compliance / 4))
-            changed = max(abs(pull - before) for pull, before in zip(pulls, last, strict=True))
-            if len(pulls) == 1 or changed <= _EXACT * max(map(abs, pulls)):
-                break
+
+        def respond(number: int, free: float) -> tuple[float, float]:
+            law, compliance = self._laws[number], self._coupling[number][number]
+            if law.friction:
+                held = (free - passed[number]) / compliance
+                pull = _rub(law, self._ways[number], held)[0]
+                return pull, 1 / compliance if pull == held else 0.0
+            kept = 0.0 if law.side else earlier[number] - law.stiffness * self._longer[number]
+            trial = kept + law.stiffness * ((free + known[number]) / 4 - law.side * law.gap)
+            softer = 1 + law.stiffness * compliance / 4
+            pull = law.limit(trial / softer)
+            return pull, law.stiffness / (4 * softer) if pull == trial / softer else 0.0
+
+        find_pulls(self._coupling, longest, pulls, respond, _EXACT)
         after -= self._yields @ pulls
         lengths: list[float] = (self._rows @ after).tolist()
         for number, (law, length) in enumerate(zip(self._laws, lengths, strict=True)):

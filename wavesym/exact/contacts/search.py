@@ -27,6 +27,7 @@ from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
 from wavesym.exact.joints.enclosure import Enclosure
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
+from wavesym.numbers.doubles import nearest
 
 # an instant is known this closely, in shortest delays
 _WIDTH = fmpq(1, 2**230)
@@ -138,15 +139,16 @@ class Search:
         touching = any(each.friction == 0 for each in joint.touches.values())
         return Friction.begin(n, link.friction, joint.is_inert(n), touching, rate)
 
-    def steps(self) -> Iterator[None]:
-        """Joints are moved in order of time."""
+    def steps(self) -> Iterator[float]:
+        """Joints are moved in order of time: how much of it has passed, as a part of all, after each."""
+        until = max(course.last for course in self.courses.values())
         coming = [(fmpq(0), number) for number in self.courses]
         while coming:
             time, number = heappop(coming)
             course = self.courses[number]
             if time <= course.last:
                 self._advance(course, time)
-                yield
+                yield nearest(time / until) if until else 1.0
                 heappush(coming, (course.reach, number))
 
     def _advance(self, course: Course, time: fmpq) -> None:
