@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import threading
 import time
@@ -13,9 +14,11 @@ import pytest
 from tests.papers.small import Paper
 from wavesym import progress
 from wavesym.cli import main
+from wavesym.exact.contacts.events import events
 from wavesym.papers import verdict_page
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.record import Record
+from wavesym.scene import Scene, lower
 
 pty = pytest.importorskip("pty", reason="no terminals to open here")
 
@@ -186,3 +189,22 @@ def test_commands_put_out_the_same_with_it_and_without(
     assert capsys.readouterr().out == out
     assert screen(written) == aside.split("\n")
     assert any(line.startswith(step) for line in format_value(written))
+
+
+def test_it_says_how_far_the_search_for_events_has_come(soon: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten slips of a mass under a load that turns: the search is never silent for long."""
+    terminal = opened(monkeypatch)
+    scene = Scene(
+        name="slips",
+        system={"type": "chain", "parts": ["fixed", {"spring": 1}, {"mass": 1, "friction": "1/4", "name": "n"}]},
+        load=[{"at": "n", "times": list(range(8)), "steps": [1, *[-2, 2] * 3, -1]}],
+        output={"until": 8, "velocity": ["n"]},
+    )
+    with progress.progress("run slips"):
+        events(lower(scene))
+    told = [
+        float(part)
+        for part in re.findall(r"run slips, events up to (\d+)% of the time, with \d+ bits", terminal.close())
+    ]
+    assert told
+    assert told == sorted(told)
