@@ -69,16 +69,14 @@ def test_what_frequencies_do_not_follow_one_way_is_refused(path: str, ends: tupl
         wavesym.modes(damped, 1, ranges={"system.parts[2].mass": ("1", "2")})
 
 
-@pytest.mark.parametrize(("given", "changes"), [("rho", "1800 kg/m^3"), ("G", "60 MPa")])
-def test_what_changes_mass_and_stiffness_beside_a_speed_is_refused(given: str, changes: str) -> None:
-    """G = rho c^2: with c given, the one takes the other with it, and where rods differ frequencies go either way."""
-    layer = {"rod": "4 m", "speed": "180 m/s", "A": "1 m^2", given: changes}
+def test_a_density_beside_a_speed_is_refused() -> None:
+    """G = rho c^2 goes with it, and where rods differ frequencies go either way."""
+    layer = {"rod": "4 m", "speed": "180 m/s", "A": "1 m^2", "rho": "1800 kg/m^3"}
     below = {"rod": "6 m", "speed": "240 m/s", "A": "1 m^2", "rho": "1900 kg/m^3"}
     held = {"type": "chain", "parts": ["free", layer, below, "fixed"]}
     column = Scene(name="column", units={"kind": "shear"}, system=held, output={"until": "1 s", "velocity": ["0 m"]})
-    path = f"system.parts[1].{given}"
     with pytest.raises(UnservedError, match="beside a speed it changes mass and stiffness together"):
-        wavesym.modes(column, 1, ranges={path: (changes, changes.replace("0 ", "9 "))})
+        wavesym.modes(column, 1, ranges={"system.parts[1].rho": ("1800 kg/m^3", "1900 kg/m^3")})
     slower = {"system.parts[1].speed": ("150 m/s", "180 m/s")}
     assert wavesym.modes(column, 1, ranges=slower)[0].low < wavesym.modes(column, 1)[0].omega
 

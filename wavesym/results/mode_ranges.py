@@ -105,7 +105,7 @@ def direction(scene: Scene, path: str) -> int:
     key = found[1] if found else path
     if not path.startswith("system.") or found is None:
         raise WavesymError(f"--range {path}: no number of the system; a mass, spring, modulus or density is one")
-    if key in ("E", "G", "rho") and f"{path[: found.start()]}speed" in leaves(scene.model_dump()):
+    if key == "rho" and f"{path[: found.start()]}speed" in leaves(scene.model_dump()):
         raise UnservedError(f"--range {path}: beside a speed it changes mass and stiffness together; {_ONE_WAY}")
     if key in RISING:
         return 1

@@ -7,7 +7,7 @@ import json
 from wavesym.programs.program import Program, ProgramOutput
 from wavesym.targets.description import Description
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 # What NAME.c compiles to besides its tables, with clang -Os for a Cortex-M4: no more than this; a test compiles it.
 SMALL_TARGET = "Cortex-M4, -Os"
 CODE_AT_MOST = {
