@@ -106,3 +106,31 @@ def test_an_instant_is_not_missed_by_the_number_that_is_drawn(monkeypatch):
     for drawn in (3, 10**30 + 7):
         monkeypatch.setattr(arrivals, "_T", drawn)
         assert found(made) == answers
+
+
+@pytest.mark.parametrize(("end", "outputs"), [("free", (True, False, False)), ("joint", (False, False, False))])
+def test_what_a_free_end_bears_is_followed_nowhere(
+    end: str, outputs: tuple[bool, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is 0 whatever moves, also where bars are strained at first; not where a load acts, or beside the end."""
+    parts = [
+        {"mass": 1},
+        {"rod": 1, "strain": 1},
+        {"rod": 2, "velocity": 1},
+        {"joint": True} if end == "joint" else end,
+    ]
+    load = [{"at": "0", "times": [0], "steps": [1]}]
+    load += [{"at": "3", "times": [0], "steps": [1]}] if end == "joint" else []
+    made = Scene(
+        name="bars",
+        system={"type": "chain", "parts": parts},
+        load=load,
+        output={"until": 40, "strain": ["3", "2999/1000", "1-"]},
+    )
+    model = lower(made)
+    by_fronts = [first is None for first in arrivals.arrivals(model, model.until)]
+    assert (found(made), tuple(by_fronts)) == (list(outputs), outputs)
+    free = model.watching(model.probes[:1])
+    monkeypatch.setattr(arrivals, "arrivals", lambda *_: pytest.fail("fronts are followed"))
+    if end == "free":
+        assert identically_zero(free, model.until) == [True]

@@ -79,7 +79,8 @@ def test_waves_are_what_is_compared_with(monkeypatch, part):
         evaluator, error_bound = "wrong", 0.0
 
         def __init__(self, *asked):
-            self.evaluate = lambda taus: 1.1 * program(*asked).evaluate(taus)
+            right = program(*asked)
+            self.outputs, self.evaluate = right.outputs, lambda taus: 1.1 * right.evaluate(taus)
 
     monkeypatch.setattr(advice, "program", Wrong)
     found = {candidate.name: candidate for candidate in advise(lower(tower(1e-3)), 0.01).candidates}

@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from math import nextafter, pi
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +23,9 @@ from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.model import Model
+from wavesym.pictures.page.document import page
+from wavesym.programs import choice
+from wavesym.programs.form import Form
 from wavesym.programs.making import make
 from wavesym.programs.modes.records import Panels
 from wavesym.programs.request import Request
@@ -381,6 +385,78 @@ def test_no_program_is_made_for_drifts_that_nobody_asked_for(monkeypatch: pytest
     assert found.largest_drift is None
     assert found.drifts_cost_too_much
     assert "the largest drift would cost too much" in summary_text(found, "text")
+
+
+@pytest.fixture
+def column() -> Scene:
+    """Layers whose speeds are adjusted, on rock under a record: a march alone serves them, and drifts lose digits."""
+    layers = ((12, 451), ("7.3", 333), (5, 210))
+    rods = [{"rod": f"{h} m", "speed": f"{c} m/s", "rho": "2000 kg/m^3", "A": "1 m^2"} for h, c in layers]
+    outcrop = {"motion": "acceleration", "name": "outcrop"}
+    samples = [0, *(Fraction((7 * k * k + 3 * k) % 17 - 8, 8) for k in range(49)), 0]
+    return Scene(
+        name="column",
+        units={"kind": "shear"},
+        system={
+            "type": "chain",
+            "speed_adjustment": "0.5 %",
+            "parts": [outcrop, {"dashpot": "2400 kN*s/m"}, *rods, "free"],
+        },
+        load=[{"at": "outcrop", "spacing": "0.02 s", "samples": list(map(str, samples)), "unit": "m/s^2"}],
+        output={"until": "1 s", "tolerance": 1e-8, "acceleration": ["24.3 m"]},
+    )
+
+
+@pytest.fixture
+def marched(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
+    """The outputs of each march that is tried."""
+    outputs: list[tuple[str, ...]] = []
+    maker = choice.MAKERS["march"]
+
+    def count(model: Model, *more: Any) -> Form:
+        outputs.append(tuple(probe.name for probe in model.probes))
+        return maker(model, *more)
+
+    monkeypatch.setitem(choice.MAKERS, "march", count)
+    return outputs
+
+
+def test_drifts_that_miss_the_tolerance_cost_no_second_solution(column: Scene, marched: list[tuple[str, ...]]) -> None:
+    """They were refused with it, and all was solved again without them."""
+    found = wavesym.summary(column)
+    assert marched == [("acceleration@24.3 m", "drift@1", "drift@2", "drift@3")]
+    assert found.bound <= 1e-8 < found.drift_bound < 1e-4
+    assert f"(right to {found.drift_bound:.2g} of it)" in summary_text(found, "text")
+    # the same by displacements, to which the tolerance is applied; the outputs move, too, as the outcrop does
+    ends = ["0 m+", "12 m", "19.3 m", "24.3 m"]
+    output = {"until": "1 s", "tolerance": 1e-4, "displacement": ends}
+    moved = wavesym.run(column.with_({"output": output}))
+    drifts = np.abs(np.diff([moved[f"displacement@{x}"] for x in ends], axis=0)).max(axis=1)
+    assert found.largest_drift is not None
+    assert found.largest_drift.name == f"drift@{drifts.argmax() + 1}"
+    assert abs(found.largest_drift.largest.value) == pytest.approx(drifts.max(), rel=1e-3)
+
+
+def test_outputs_that_miss_the_tolerance_are_refused_beside_drifts(column: Scene) -> None:
+    tried = choice.attempt(lower(column.with_({"output.drift": [3]})), "march")
+    assert tried.refusal.endswith("for drift@3")
+
+
+def test_a_drift_that_is_hardly_known_is_not_told(column: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(summary, "_MOST_ERROR", 1e-8)
+    found = wavesym.summary(column)
+    assert (found.largest_drift, found.drifts_cost_too_much) == (None, True)
+
+
+@pytest.mark.slow
+def test_a_page_marches_for_its_outputs_once_and_once_along_the_chain(
+    column: Scene, marched: list[tuple[str, ...]]
+) -> None:
+    """Not for the curves, nor for what simpler models are compared with."""
+    page(column)
+    assert len(marched) == 2
+    assert marched[0] == ("acceleration@24.3 m", "drift@1", "drift@2", "drift@3")
+    assert marched[1][0] == "strain@0+"
 
 
 def test_numbers_for_people_have_no_power_of_ten_below_ten_million() -> None:

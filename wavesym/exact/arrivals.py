@@ -28,7 +28,7 @@ from wavesym.exact.joints.fronts import departures
 from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Bar, End
+from wavesym.mechanics.network import Bar, End, Network
 
 _PRIME = 2**127 - 1
 _MODULUS = _PRIME**2
@@ -39,7 +39,7 @@ _T = 0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357 % _PRIME  # drawn once, so that the 
 def identically_zero(model: Model, until: fmpq) -> list[bool]:
     """Whether each output is 0 on all of [0, until].
 
-    Most outputs differ from 0 soon, and only those that do not are followed for longer.
+    Most outputs differ from 0 soon, and only those that do not are followed for longer; what a free end bears is known.
 
     Args:
         model: a scene's model.
@@ -50,12 +50,23 @@ def identically_zero(model: Model, until: fmpq) -> list[bool]:
     """
     if model.network.corners:
         return [False] * len(model.probes)
-    still = dict(enumerate(model.probes))
+    free = {k for k, probe in enumerate(model.probes) if _is_at_free_end(model.network, model.sums[probe])}
+    still = {k: probe for k, probe in enumerate(model.probes) if k not in free}
     for part in (64, 8, 1):
         if still:
             found = arrivals(model.watching([*still.values()]), until / part)
             still = {k: still[k] for k, first in zip(still, found, strict=True) if first is None}
-    return [k in still for k in range(len(model.probes))]
+    return [k in still or k in free for k in range(len(model.probes))]
+
+
+def _is_at_free_end(network: Network, terms: Sum) -> bool:
+    """Whether an output is a strain of ends on which nothing acts, so that there is none."""
+    return all(
+        reading.quantity == "strain"
+        and reading.place in (0, 1)
+        and network.is_free(End(reading.rod - 1, int(reading.place)))
+        for _, reading in terms
+    )
 
 
 def smooth_starts(model: Model, until: fmpq) -> list[fmpq | None]:

@@ -22,6 +22,7 @@ class Probe:
 
     A `point` that no rod shows is watched itself (`rod` is 0 then). A drift is that of the whole rod. What users get is
     `factor` times the dimensionless value, in `unit`. `title` is its name for people. gauge.py has what it is a sum of.
+    An `incidental` one is computed beside what the scene wants: its error need not meet the scene's tolerance.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Probe:
     factor: fmpq = _ONE
     unit: str = ""
     title: str = ""
+    incidental: bool = False
 
     @property
     def computed_quantity(self) -> str:

@@ -28,12 +28,13 @@ _INSTANTS, _MOST_INSTANTS = 8, 20_000
 _EXACT = fmpq(1, 100)
 
 
-def advise(model: Model, tolerance: float) -> Advice:
+def advise(model: Model, tolerance: float, known: Program | None = None) -> Advice:
     """Compare models in place of waves with waves.
 
     Args:
         model: a scene's model.
         tolerance: the largest difference that is allowed, in parts of the largest value of each output.
+        known: a program of the waves to the model's tolerance, where there is one already; it may have more outputs.
 
     Raises:
         ToleranceError, CostError: there is no program of the waves either.
@@ -49,8 +50,9 @@ def advise(model: Model, tolerance: float) -> Advice:
             refused[name] = str(error)
     if not histories:
         return Advice(model.name, tolerance, tuple(Candidate(name, refusal=why) for name, why in refused.items()))
-    soonest = _soonest(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
-    waves = soonest.evaluate(taus)
+    soonest = known or _soonest(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
+    names = [output.name for output in soonest.outputs]
+    waves = soonest.evaluate(taus)[[names.index(probe.name) for probe in model.probes]]
     return Advice(
         model.name,
         tolerance,

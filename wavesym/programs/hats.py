@@ -250,7 +250,7 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     return replace(
         made,
         outputs=tuple(
-            ProgramOutput(probe.name, relative(error, size), size)
+            ProgramOutput(probe.name, relative(error, size), size, incidental=probe.incidental)
             for probe, error, size in zip(model.probes, errors.tolist(), largest.tolist(), strict=True)
         ),
     )

@@ -241,7 +241,9 @@ class _Fits:
                 if size > most:
                     raise _too_large(size, most)
             grids.append(cuts.grid(members, columns))
-        outputs = tuple(ProgramOutput(probe.name, *bounds[k]) for k, probe in enumerate(probes))
+        outputs = tuple(
+            ProgramOutput(probe.name, *bounds[k], incidental=probe.incidental) for k, probe in enumerate(probes)
+        )
         return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
 
     def _course(self, output: int, bits: int, keep: bool) -> _Course:

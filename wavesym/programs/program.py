@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
 from math import ceil
@@ -38,12 +38,14 @@ class ProgramOutput:
     """An output: its name, its proved largest error relative to its largest value, and a lower bound of that value.
 
     Where contacts open and close, one that is 0 as far as can be told has the largest value 0, and what it may be
-    nevertheless is the `bound`, relative to the scene's largest wave.
+    nevertheless is the `bound`, relative to the scene's largest wave. An `incidental` one (`Probe`) is held to no
+    tolerance.
     """
 
     name: str
     bound: float
     largest: float
+    incidental: bool = field(default=False, kw_only=True)
 
 
 class BoundedOutputs:
@@ -53,13 +55,19 @@ class BoundedOutputs:
 
     @property
     def worst(self) -> ProgramOutput:
-        """The output with the largest bound."""
-        return max(self.outputs, key=lambda output: output.bound)
+        """The output with the largest bound, of those that the tolerance is for."""
+        return max((output for output in self.outputs if not output.incidental), key=lambda output: output.bound)
 
     @property
     def error_bound(self) -> float:
-        """The largest error of any output relative to its largest value."""
+        """The largest error of any output relative to its largest value, incidental ones left out."""
         return self.worst.bound
+
+    @property
+    def bounds(self) -> tuple[float, ...]:
+        """The error of each output: what all of them share, of an incidental one its own."""
+        shared = self.error_bound
+        return tuple(output.bound if output.incidental else shared for output in self.outputs)
 
 
 @dataclass(frozen=True)

@@ -63,6 +63,12 @@ class Response:
         return program.error_bound if program else 2.0**-53
 
     @property
+    def bounds(self) -> tuple[float, ...]:
+        """That of each output: `error_bound`, unless an output is held to no tolerance."""
+        program = self.program
+        return program.bounds if program else (2.0**-53,) * len(self.outputs)
+
+    @property
     def program(self) -> Program | None:
         """The program that values are of; None where they are right to the last bit. CostError as where it is called.
 

@@ -25,13 +25,13 @@ _EQUAL = 1e-14  # of the largest value: rounding makes no later instant of a pla
 
 
 def sampled_extremes(
-    taus: Array, values: Array, each: Evaluate | None = None, bound: float = 0.0
+    taus: Array, values: Array, each: Evaluate | None = None, bound: Array | float = 0.0
 ) -> tuple[Array, Array]:
     """Values and tau, each (outputs, 2), of the least and the greatest value; the first of equal ones.
 
     `values` (outputs, taus) are those at `taus`, which are in order. What lies between is looked at where there is
     `each`, which gives each output at instants of its own, (outputs, n). What is within the `bound` of the error of
-    values (relative to an output's largest) of 0 is 0, at the first sample that is, too.
+    values (relative to an output's largest, one for all or (outputs, 1)) of 0 is 0, at the first sample that is, too.
     """
     both = np.stack([-values, values], axis=1)  # (outputs, sides, taus): greatest values are looked for in each
     equal = _EQUAL * np.abs(values).max(axis=1)[:, None]

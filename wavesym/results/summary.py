@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,6 +31,7 @@ from wavesym.results.stepping import describe_step, sample_program, spacing
 _MOST_SAMPLES = 8_000_000
 _MOST_DRIFTS = 50  # rods in which the largest is looked for, though nobody asked for them
 _MOST_FRONTS = 60_000  # for these; where contacts open and close: seconds, beside those for the outputs
+_MOST_ERROR = 0.01  # of a drift that is told
 
 
 @dataclass(frozen=True, repr=False)
@@ -40,8 +41,9 @@ class Summary:
     `bound` is that of the error of values, relative to each output's largest. Where it is `proved` that no value lies
     beyond an extreme it holds for the extremes, else only for what outputs are at these instants. `how` says how they
     were found. `largest_drift` is that of the rod, of all in the main line, whose drift is the largest; None where it
-    was not asked for, no rod changes, or `drifts_cost_too_much`. `time_unit` is None for a scene without units. `links`
-    are those with friction and the springs that yield; None where they would cost too much.
+    was not asked for, no rod changes, or `drifts_cost_too_much`; its bound is `drift_bound`, as what nobody asked for
+    need not meet the tolerance. `time_unit` is None for a scene without units. `links` are those with friction and the
+    springs that yield; None where they would cost too much.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Summary:
     largest_drift: OutputSummary | None = None
     drifts_cost_too_much: bool = False
     links: tuple[LinkSummary, ...] | None = ()
+    drift_bound: float = 0.0
 
     def __getitem__(self, name: str) -> OutputSummary:
         return self.outputs[output_number(name, [output.name for output in self.outputs], self.name)]
@@ -74,7 +77,7 @@ class Summary:
             yield "-  it comes up to this value, and jumps then"
         if (drift := self.largest_drift) is not None:
             peak, when = drift.largest, number_text(drift.largest.at.in_scene_time, self.time_unit or "")
-            yield f"largest drift: {drift.label}, {number_text(peak.value, drift.unit)} at {when}"
+            yield f"largest drift: {drift.label}, {number_text(peak.value, drift.unit)} at {when}{self.drift_accuracy}"
         if self.drifts_cost_too_much:
             yield "the largest drift would cost too much (drifts as outputs help)"
         yield from map(str, self.links or ())
@@ -114,6 +117,11 @@ class Summary:
         return tuple(link.note for link in self.links or () if link.note)
 
     @property
+    def drift_accuracy(self) -> str:
+        """How right the largest drift is, in a few words; none where it is as right as the outputs are."""
+        return f" (right to {self.drift_bound:.2g} of it)" if self.drift_bound > self.bound else ""
+
+    @property
     def accuracy(self) -> str:
         """How right values are, in a few words."""
         if self.proved:
@@ -144,15 +152,14 @@ def summary_and_program(
     drifts = drifts if len(drifts) <= _MOST_DRIFTS else ()
     known = {probe.rod for probe in model.probes if probe.quantity == "drift"}
     others = [probe for probe in drifts if probe.rod not in known]
-    models = [model.watching([*model.probes, *others]), model] if others else [model]
+    beside = (replace(probe, incidental=True) for probe in others)
+    models = [model.watching([*model.probes, *beside]), model] if others else [model]
     if model.network.corners and has_more_fronts(models[0], _MOST_FRONTS):
         models, drifts, others = [model], (), []
     solved, found = _solve_extremes(models, samples)
     outputs = _outputs(solved, found)
-    every = (
-        [*zip(solved.probes, outputs, strict=True), *_drift_groups(model, solved, others, samples)] if drifts else []
-    )
-    missing = wanted - {probe.rod for probe, _ in every if probe.quantity == "drift"}
+    every = [*_drifts(solved, outputs, found), *_drifts_alone(model, solved, others, samples)] if drifts else []
+    missing = wanted - {rod for rod, _, _ in every}
     summary = Summary(
         model.name,
         outputs[: len(model.probes)],
@@ -160,16 +167,26 @@ def summary_and_program(
         found.proved,
         found.how,
         model.clock.unit if model.clock else None,
-        None if missing else _largest(every),
+        None if missing else _largest(each for _, each, _ in every),
         bool(missing),
         link_summaries(model, solved),
+        max((bound for _, _, bound in every), default=0.0),
     )
     return summary, found.program
 
 
-def _drift_groups(
+def _drifts(
+    model: Model, outputs: Sequence[OutputSummary], found: _Extremes
+) -> Iterator[tuple[int, OutputSummary, float]]:
+    """Drifts with their rods and bounds; of incidental ones those that are right enough to be told."""
+    for probe, each, bound in zip(model.probes, outputs, found.bounds, strict=True):
+        if probe.quantity == "drift" and (bound < _MOST_ERROR or not probe.incidental):
+            yield probe.rod, each, bound
+
+
+def _drifts_alone(
     model: Model, solved: Model, others: Sequence[Probe], samples: Sequence[float] | None
-) -> Iterator[tuple[Probe, OutputSummary]]:
+) -> Iterator[tuple[int, OutputSummary, float]]:
     """Drifts that cost too much beside the outputs, by themselves; none where that does, too.
 
     No program is made for them: that would take longer than all that was asked for.
@@ -178,16 +195,21 @@ def _drift_groups(
         with suppress(WavesymError):
             alone = model.watching(others)
             found = _exact(alone) if samples is None else _extremes_at(alone, np.asarray(samples))
-            yield from zip(others, _outputs(alone, found), strict=True)
+            yield from _drifts(alone, _outputs(alone, found), found)
 
 
 class _Extremes(NamedTuple):
     ranges: list[Range]
     averages: list[tuple[float, float, float]]
-    bound: float
+    bounds: tuple[float, ...]
     proved: bool
     how: str
     program: Program | None = None
+
+    @property
+    def bound(self) -> float:
+        """That of the outputs that are held to the tolerance."""
+        return self.program.error_bound if self.program else max(self.bounds)
 
     @property
     def modal(self) -> bool:
@@ -216,7 +238,7 @@ def _exact(model: Model) -> _Extremes:
             0.0 if abs(middle) <= least else middle for middle in map(midpoint, (each.mean, each.rms, each.residual))
         )
         averaged.append((mean, rms, residual))
-    return _Extremes([extreme for extreme, _ in found], averaged, BOUND, True, "true extremes")
+    return _Extremes([extreme for extreme, _ in found], averaged, (BOUND,) * len(found), True, "true extremes")
 
 
 def _outputs(model: Model, found: _Extremes) -> tuple[OutputSummary, ...]:
@@ -237,9 +259,8 @@ def _outputs(model: Model, found: _Extremes) -> tuple[OutputSummary, ...]:
     )
 
 
-def _largest(outputs: Iterable[tuple[Probe, OutputSummary]]) -> OutputSummary | None:
-    """The largest of the outputs that are drifts; None where no rod changes."""
-    drifts = [each for probe, each in outputs if probe.quantity == "drift"]
+def _largest(drifts: Iterable[OutputSummary]) -> OutputSummary | None:
+    """The largest of some drifts; None where no rod changes."""
     largest = min(drifts, key=lambda output: (-abs(output.largest.value), output.largest.at.tau), default=None)
     return largest if largest is not None and largest.largest.value else None
 
@@ -259,11 +280,11 @@ def _extremes_at(model: Model, taus: Array) -> _Extremes:
     """The extremes of values at these tau, as `run` has them."""
     response = Response(model)
     values = response(taus)
-    ranges = _ranges(*sampled_extremes(taus, values, bound=response.error_bound))
+    ranges = _ranges(*sampled_extremes(taus, values, bound=_column(response.bounds)))
     made = response.program
     how = f"the values{f' of {made.evaluator}' if made else ''} at {taus.size} samples"
     averaged = _averages(values, np.ones(taus.size))
-    return _Extremes(ranges, averaged, response.error_bound, made is None or made.proved, how, made)
+    return _Extremes(ranges, averaged, response.bounds, made is None or made.proved, how, made)
 
 
 def _search_extremes(model: Model) -> _Extremes:
@@ -277,9 +298,13 @@ def _search_extremes(model: Model) -> _Extremes:
             "help)"
         )
     taus, values = sample_program(model, program, step)
-    ranges = _ranges(*sampled_extremes(taus, values, program.each, program.error_bound))
+    ranges = _ranges(*sampled_extremes(taus, values, program.each, _column(program.bounds)))
     how = f"{program.evaluator} at {taus.size} samples, {describe_step(model, step)}, then refined"
-    return _Extremes(ranges, _averages(values, _trapezoids(taus)), program.error_bound, False, how, program)
+    return _Extremes(ranges, _averages(values, _trapezoids(taus)), program.bounds, False, how, program)
+
+
+def _column(bounds: Sequence[float]) -> Array:
+    return np.array(bounds)[:, None]
 
 
 def _trapezoids(taus: Array) -> Array:

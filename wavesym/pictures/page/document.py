@@ -134,7 +134,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         time=scale.unit,
         columns=most,
         extremes=first_rows(extremes_table(model, summary, scale)),
-        advice=first_rows(advice_table(model)),
+        advice=first_rows(advice_table(model, searched)),
         maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         line_pictures=tuple(along_pictures(model, found, scale)),
         refusal=refused,

@@ -11,8 +11,9 @@ from wavesym.exact.contacts.events import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.methods.advice import advise
 from wavesym.pictures.timescale import Timescale
+from wavesym.programs.program import Program
 from wavesym.results.presentation import number_text
-from wavesym.results.statistics import OutputSummary, cells, headings
+from wavesym.results.statistics import cells, headings
 from wavesym.results.summary import Summary
 
 _DIGITS = 4  # people read no more; `summary` has them
@@ -50,7 +51,7 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
     notes = [
         "After a contact has opened they are those of the formal continuation, as if it stayed closed"
         * bool(contact_ends(model)),
-        _drift(found.largest_drift, scale),
+        _drift(found, scale),
         "The largest drift would cost too much; drifts as outputs help" * found.drifts_cost_too_much,
         *(f"{line[:1].upper()}{line[1:]}" for line in (*_links(found), *found.notes)),
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
@@ -63,18 +64,18 @@ def _links(found: Summary) -> Iterator[str]:
     return (link.describe(_DIGITS) for link in found.links or ())
 
 
-def _drift(found: OutputSummary | None, scale: Timescale) -> str:
-    if found is None:
+def _drift(found: Summary, scale: Timescale) -> str:
+    if (drift := found.largest_drift) is None:
         return ""
-    value = number_text(found.largest.value, found.unit, _DIGITS)
-    when = f"{scale.symbol} = {number_text(found.largest.at.in_scene_time, scale.unit, _DIGITS)}"
-    return f"Largest drift of a rod: {found.label}, {value} at {when}"
+    value = number_text(drift.largest.value, drift.unit, _DIGITS)
+    when = f"{scale.symbol} = {number_text(drift.largest.at.in_scene_time, scale.unit, _DIGITS)}"
+    return f"Largest drift of a rod: {drift.label}, {value} at {when}{found.drift_accuracy}"
 
 
-def advice_table(model: Model) -> PageTable:
-    """Which of three models is enough for each output, over the horizon of the scene."""
+def advice_table(model: Model, known: Program | None) -> PageTable:
+    """Which of three models is enough for each output, over the horizon of the scene; a program of it may be known."""
     try:
-        found = advise(model, _TOLERANCE)
+        found = advise(model, _TOLERANCE, known)
     except WavesymError as error:
         return PageTable((), (), (f"Not compared: {error}",))
     kept = [each for each in found.candidates if not each.refusal]

@@ -147,8 +147,9 @@ def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
             error += len(output.terms) * unit * held[o]  # one is added to the other
         errors.append(MARGIN * float(error))
     # what rounding could have made may be nothing at all: programs then return exactly 0
-    if any(size <= error for size, error in zip(largest, errors, strict=True)):
-        for o, nothing in enumerate(identically_zero(plan.model, rational(plan.tau_max))):
+    if doubtful := [o for o, (size, error) in enumerate(zip(largest, errors, strict=True)) if size <= error]:
+        asked = plan.model.watching(plan.model.probes[o] for o in doubtful)
+        for o, nothing in zip(doubtful, identically_zero(asked, rational(plan.tau_max)), strict=True):
             if nothing:
                 errors[o] = largest[o] = height[o] = slope[o] = 0.0
     sizes, heights, slopes = (tuple(of.tolist()) for of in (largest, height, slope))

@@ -157,8 +157,10 @@ def judge_degree(plan: MarchPlan, degree: int, real: Real, what: str = "march") 
 def _march_of_degree(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
     verdict = judge_degree(plan, degree, real)
     outputs = tuple(
-        ProgramOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
-        for output, error, size in zip(plan.outputs, verdict.bounds, verdict.largest, strict=True)
+        ProgramOutput(
+            probe.name, bound(arb(error)) if math.isfinite(error) else error, size, incidental=probe.incidental
+        )
+        for probe, error, size in zip(plan.model.probes, verdict.bounds, verdict.largest, strict=True)
     )
     return March(plan, degree, real, outputs, plan.tau_max), verdict
 

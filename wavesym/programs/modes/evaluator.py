@@ -189,7 +189,7 @@ def modes(model: Model, real: Real) -> ModesEvaluator:
     )
     totals = made.errors + evaluator.rounding.errors
     outputs = tuple(
-        ProgramOutput(probe.name, relative(error, size), size)
+        ProgramOutput(probe.name, relative(error, size), size, incidental=probe.incidental)
         for probe, error, size in zip(model.probes, totals.tolist(), made.largest.tolist(), strict=True)
     )
     return replace(evaluator, outputs=outputs)
