@@ -40,6 +40,26 @@ def test_a_radius_holds_the_rounding_of_the_printed_number() -> None:
         assert 0 < error <= mode.radius
 
 
+@pytest.mark.parametrize("link", [{"spring": 9}, {}])
+def test_rigid_motion_stays_the_first_mode_where_no_dashpot_resists_it(link: dict[str, int]) -> None:
+    """Two bodies alone: w = 0, and the zeros of (K + i w c) (1/m + 1/M) = w^2; a dashpot to ground leaves no motion."""
+
+    def bodies(*parts: object) -> Scene:
+        return Scene(name="bodies", system={"type": "chain", "parts": parts}, output={"until": 1, "velocity": ["0-"]})
+
+    dashpot = link | {"dashpot": "1/10"}
+    free = wavesym.modes(bodies({"mass": 1}, dashpot, {"mass": 2}), 3)
+    k, c = link.get("spring", 0) * 1.5, 0.15
+    swinging = [sqrt(k)] if k else [c]  # without a spring the two creep towards each other
+    assert [mode.omega for mode in free] == pytest.approx([0.0, *swinging], rel=1e-14)
+    assert (free[0].period, free[0].damping, set(free[0].shape.values())) == (None, 0.0, {1.0})
+    assert free[1].damping == pytest.approx(c / (2 * sqrt(k)) if k else 1.0, rel=1e-14)
+    assert free.complete
+    held = wavesym.modes(bodies({"mass": 1, "dashpot": 1}, dashpot, {"mass": 2}), 3)
+    assert all(mode.omega > 0 for mode in held)
+    assert json.loads(free.json(shapes=True))["modes"][0]["omega"] == 0.0
+
+
 def test_effective_masses_are_those_of_a_rod_and_add_up_to_all() -> None:
     """A held rod: 8/((2 n - 1) pi)^2 of its mass in mode n."""
     held = wavesym.modes(chain("fixed", {"rod": 1}, "free"), 40)

@@ -23,7 +23,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.resting import resting_modes
-from wavesym.exact.modes.shape import Mode, trial
+from wavesym.exact.modes.shape import Mode, rigid, rigid_mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.exact.modes.turns import Circles, absorb
 from wavesym.mechanics.network import Network
@@ -63,7 +63,8 @@ class DampedSpectrum(CutNetwork):
     def complete_modes(self, count: int) -> tuple[list[Mode], float]:
         """The first `count` modes, and up to which absolute value none is missed: proved by counting (turns.py).
 
-        Where counts differ from what was found it is sought again, from more places. UnservedError as `first`.
+        Rigid motion comes first, where no dashpot resists it. Where counts differ from what was found it is sought
+        again, from more places. UnservedError as `first`.
         """
         found: list[Mode] = []
         circles, reach = Circles(self.cut.network), 0.0
@@ -76,7 +77,21 @@ class DampedSpectrum(CutNetwork):
             enough = circles.is_finite or len(found) >= count
             if circles.is_exhausted or (enough and reach >= max(map(abs, frequencies[:count]), default=0.0)):
                 break
-        return found[:count], reach
+        return [*self._rigid_modes, *found][:count], reach
+
+    @property
+    def _rigid_modes(self) -> list[Mode]:
+        """Motion that neither springs nor dashpots resist; its numbers are complex, as of others."""
+        network = self.cut.network
+        if any(point.damping != 0 for point in network.points):
+            return []
+        links = tuple(replace(link, stiffness=link.stiffness + link.damping) for link in network.links)
+        free = rigid(replace(network, links=links))
+        if free is None:
+            return []
+        with ctx.workprec(_BITS):
+            mode = rigid_mode(Stiffness(network), free)
+            return [replace(mode, frequency=acb(0), points=[acb(q) for q in mode.points])]
 
     def first(self, count: int, again: int = 0) -> list[Mode]:
         """About the first `count` modes, by the absolute values of their frequencies, with real parts of at least 0.

@@ -11,7 +11,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.equal_frequencies import WIDE, common_frequency, prove_cluster
 from wavesym.exact.modes.resting import resting_modes
-from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
+from wavesym.exact.modes.shape import Mode, Trial, rigid, rigid_mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Array
@@ -109,7 +109,7 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
     while n <= count:
         if n == 1 and free:
             with ctx.workprec(_BITS):
-                made = [_still(stiffness, free)]
+                made = [rigid_mode(stiffness, free)]
         elif not (made := _prove_resting(stiffness, laws[0], n, float(guesses[n - 1]), resting)):
             # one that may be several is not tried as one alone
             tried = laws[2:] if together[max(n - 2, 0) : n].any() else laws
@@ -218,12 +218,3 @@ def _normal(stiffness: Stiffness, found: Trial) -> list[arb]:
     """The points of a shape, of mass 1."""
     scale = found.mass.rsqrt()
     return stiffness.point_motions([row * scale for row in found.rows])
-
-
-def _still(stiffness: Stiffness, free: tuple[fmpq, ...]) -> Mode:
-    """The motion without strain."""
-    network = stiffness.network
-    mass = sum((point.mass * q * q for point, q in zip(network.points, free, strict=True)), fmpq(0))
-    mass += sum((bar.impedance * bar.delay * (bar.ratios[0] * free[bar.left]) ** 2 for bar in network.bars), fmpq(0))
-    scale = arb(mass).rsqrt()
-    return Mode(stiffness, arb(0), [scale * q for q in free])

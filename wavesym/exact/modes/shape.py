@@ -73,6 +73,15 @@ def rigid(network: Network) -> tuple[fmpq, ...] | None:
     return tuple(found[number] for number in range(len(network.points)))
 
 
+def rigid_mode(stiffness: Stiffness, free: tuple[fmpq, ...]) -> Mode:
+    """The motion without strain, by how far each point moves in it; of mass 1."""
+    network = stiffness.network
+    mass = sum((point.mass * q * q for point, q in zip(network.points, free, strict=True)), fmpq(0))
+    mass += sum((bar.impedance * bar.delay * (bar.ratios[0] * free[bar.left]) ** 2 for bar in network.bars), fmpq(0))
+    scale = arb(mass).rsqrt()
+    return Mode(stiffness, arb(0), [scale * q for q in free])
+
+
 class Trial(NamedTuple):
     """How far each row moves; all of them are in balance but row `root`, on which the `rest` acts; and the mass.
 
