@@ -12,6 +12,9 @@ from pathlib import Path
 import pytest
 from hypothesis import Phase, is_hypothesis_test, settings
 
+# each worker has one core: threads of matrix products would wait for each other, which takes twice the processor time
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
 from tests.support.kept_builds import KeptBuilds
 from wavesym.running import mode_sets, native, sets, stream
 from wavesym.running.toolchain import Compiler, CompilerError, compiler
