@@ -30,6 +30,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--processor", action="store_true", help="list the processor seconds of each file and test")
 
 
+def pytest_report_header(config: pytest.Config) -> str:
+    return "" if config.getoption("--run-slow") else "without what is slow: --run-slow"
+
+
 def pytest_configure(config: pytest.Config) -> None:
     _without_compiler()
     if config.getoption("--processor"):
@@ -40,6 +44,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if config.getoption("--run-slow"):
         return
     cases = Counter[tuple[pytest.Item | pytest.Collector | None, str]]()
+    patient = []
     for item in items:
         slow = "slow" in item.keywords
         if not slow and (quick := item.get_closest_marker("quick")):
@@ -47,7 +52,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             cases[key] += 1
             slow = cases[key] > quick.args[0]
         if slow:
-            item.add_marker(pytest.mark.skip(reason="slow: run with --run-slow"))
+            patient.append(item)
+    # left out here, none costs the time of a test that is skipped: what is slow is a third of all
+    config.hook.pytest_deselected(items=patient)
+    left_out = {*patient}
+    items[:] = [item for item in items if item not in left_out]
     for test in {item.obj for item in items if isinstance(item, pytest.Function) and is_hypothesis_test(item.obj)}:
         # Hypothesis has no other way to change the settings of a test that has its own
         every = test._hypothesis_internal_use_settings
@@ -125,8 +134,8 @@ def _without_compiler() -> str:
 
 
 def quick_examples(every: int) -> int:
-    """How many examples are drawn without --run-slow: a sixth, but as many as 2 where there are so many."""
-    return max(min(every, 2), every // 6)
+    """How many examples are drawn without --run-slow: a tenth, but as many as 2 where there are so many."""
+    return max(min(every, 2), every // 10)
 
 
 class ProcessorSeconds:

@@ -47,7 +47,10 @@ TUTORIALS = [page for page in PAGES if page.startswith("docs/tutorials/")]
 EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("*.md"))
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "llms.txt", *PAGES, *EXAMPLES)
 QUICK = [name for name in DOCUMENTS if name not in EXAMPLES and name not in TUTORIALS]
-SECONDS = {f"docs/guide/{page}.md" for page in ("bound", "chains", "pictures", "results")}  # whose commands others have
+SECONDS = {  # whose commands others have
+    "docs/reference/commands.md",
+    *(f"docs/guide/{page}.md" for page in ("bound", "c", "chains", "pictures", "results", "units")),
+}
 READ_ELSEWHERE = {"order", "exceptions", "exact", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(
@@ -448,6 +451,7 @@ PROGRAM = "```c main.c\nint main(void) { return 0; }\n```\n```sh\ncc main.c -o m
 SOUND = SCENE + RUN + SHOWN + PROGRAM + "```python\nprint(1)\n```\n```text\n1\n```\n"
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("patience", [False, True])
 def test_a_sound_document_passes(patience: bool, tmp_path: Path) -> None:
     assert Reader(tmp_path, patience).read(SOUND) == SOUND.count("```") // 2

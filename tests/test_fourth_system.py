@@ -65,7 +65,7 @@ def test_its_table_has_the_rate_of_the_braked_roof():
     assert Fraction(1, 5) not in rates
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("kind", ["closed", "pieces", "march"])
 def test_its_programs_are_those_of_an_integrator_that_is_not_derived(kind):
     model = lower(scene())

@@ -75,6 +75,7 @@ def test_check_names_what_is_wrong_and_the_command_it_prints_mends_it(tmp_path, 
     assert other.read_text() == "not mine"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="signals are of another kind there")
 def test_check_names_what_a_killed_process_left(tmp_path, monkeypatch, capsys):
     """Drafts, and the locks of their files; the command that is printed removes them."""

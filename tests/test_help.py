@@ -23,6 +23,7 @@ def own(documented: Any, name: str) -> list[doctest.DocTest]:
     return [doctest.DocTestParser().get_doctest(text, {}, name, None, 0)]
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize("name", EXPLAINED)
 def test_the_example_in_a_help_works(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

@@ -165,7 +165,7 @@ strain = ["0.7"]
 """Fronts between its layers make a million stretches."""
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("way", [each for each in WAYS if each not in ("inspect", "verify")])
 def test_what_corners_do_is_searched_for_once(searches: list[object], way: str, tmp_path: Path) -> None:
     """Also for the largest drift, and for pictures of all of the chain. (`inspect` has two precisions, so two ends of
@@ -175,6 +175,7 @@ def test_what_corners_do_is_searched_for_once(searches: list[object], way: str, 
     assert len(searches) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "way", ["report", *(pytest.param(each, marks=pytest.mark.slow) for each in ("run", "summary", "generate", "plot"))]
 )

@@ -260,6 +260,7 @@ def test_tables_are_as_long_as_those_in_c(name: str, tmp_path: Path) -> None:
     assert size == pytest.approx(read["program"]["bytes"], rel=0.04), "but for what finds the place, and a block"
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_the_program_is_the_one_that_is_generated(name: str) -> None:
     model, read = lower(short(name)), builtin(name, "program")
@@ -332,6 +333,7 @@ def test_contacts_that_are_not_known_in_time(monkeypatch: pytest.MonkeyPatch) ->
     assert "for which generate refuses the scene" in inspection(given)
 
 
+@pytest.mark.slow
 def test_what_takes_long_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     tried = []
     attempt: Callable[..., choice.Attempt] = choice.attempt
@@ -492,6 +494,7 @@ def test_a_scene_that_is_no_stream_says_why() -> None:
     }
 
 
+@pytest.mark.slow
 def test_what_the_model_is_comes_before_programs_are_tried(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

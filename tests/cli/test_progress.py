@@ -155,7 +155,7 @@ def test_it_is_quiet_where_there_is_no_terminal(soon: None, capsys: pytest.Captu
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("arguments", "step"),
     [

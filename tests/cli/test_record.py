@@ -47,6 +47,7 @@ def test_what_the_file_does_not_say(tmp_path, capsys):
     assert told(capsys, path, "--unit", "m/s^2")["peak"] == ".5 m/s^2 at 0 s"
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("suffix", ["svg", "png"])
 def test_it_is_drawn_with_its_peak(tmp_path, capsys, suffix):
     out = tmp_path / f"quake.{suffix}"

@@ -176,6 +176,7 @@ def test_a_scene_to_start_from_takes_a_record(capsys: pytest.CaptureFixture[str]
     assert refused(capsys, "init", "frame", "--record", "none.csv").startswith("none.csv: No such file or directory")
 
 
+@pytest.mark.slow
 def test_a_scene_to_start_from_has_the_unit_of_its_record(capsys: pytest.CaptureFixture[str]) -> None:
     """1 m/s^2 is 1/9.80665 g: the same file acts so much less."""
     Path("quake.csv").write_text("time,acc\n0,0\n0.5,1\n1,-2\n")
@@ -285,6 +286,7 @@ def test_names_of_files_are_no_commands_to_a_terminal(capsys: pytest.CaptureFixt
         assert "a\\x1b[2J\\x07.csv" in lines[0]
 
 
+@pytest.mark.slow
 def test_a_column_of_soil_under_a_record_that_begins_with_a_jump_has_accelerations() -> None:
     """No place without mass is accelerated by a jump: the load rises to the first sample."""
     record = Path(__file__).parents[2] / "examples/records/elcentro_1940_ns_peknold.at2"

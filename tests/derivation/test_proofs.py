@@ -51,6 +51,7 @@ SLOW_WHERE_BODIES_STRIKE = [
 ]
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("system", SLOW_WHERE_BODIES_STRIKE, ids=lambda system: system.name)
 def test_every_change_of_an_equation_breaks_the_proof(system):
     equations = list(delay_equations(system))
@@ -92,7 +93,7 @@ def test_a_changed_line_breaks_the_theorem(line):
     assert list(residuals(e, wrong, 2))[2] != 0
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(("system", "pattern"), CASES)
 def test_what_is_printed_solves_the_delay_equations(system, pattern):
     laws = recurrence(system, pattern.parameters)

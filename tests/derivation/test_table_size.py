@@ -36,7 +36,7 @@ def told(made, interval, intervals):
     return table_size(made, interval, wanted, made.sources)
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("kind", "m", "kappa", "intervals", "most"),
     [

@@ -84,7 +84,7 @@ def test_the_smallest_written_out(system, m):
         assert len(statement["families"]) == 2
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("source", [*SYSTEMS, *NAMED])
 @pytest.mark.parametrize("m", [None, 4])
 def test_latex_and_text_say_as_much(source, m):

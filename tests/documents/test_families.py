@@ -146,7 +146,7 @@ def runner(chain, laws, found):
     return Run(laws, found, chain.m, lambda part, places: number(part, places, chain.parameters))
 
 
-@pytest.mark.quick(7)
+@pytest.mark.quick(3)
 @pytest.mark.parametrize(("system", "m", "pattern", "numbers"), CASES)
 def test_lists_run_to_the_exact_tables(system, m, pattern, numbers):
     one = chain(system, m, numbers, pattern)

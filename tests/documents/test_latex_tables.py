@@ -23,6 +23,7 @@ def value(latex: str) -> sympy.Expr:
     return sympy.sympify(text, {name: sympy.Symbol(name) for name in re.findall(r"[a-z]+_\d+", text)})
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("symbolic", [[], ["--symbolic"]])
 @pytest.mark.parametrize("scene", ["drive_m1", "building_m2", "collision_m4"])
 def test_rows_are_those_of_the_csv(scene: str, symbolic: list[str], capsys: pytest.CaptureFixture[str]) -> None:

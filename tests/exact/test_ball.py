@@ -180,7 +180,7 @@ def nearest(scene, tau):
     return value.numerator / value.denominator
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("route", ["tables", "windows"])
 @pytest.mark.parametrize("weight", ["1", "-1e-200", "1e-252", "-1e-255", "-1e-300"])
 def test_values_just_behind_a_far_front_are_right_to_the_last_bit(weight, route, monkeypatch):

@@ -38,7 +38,7 @@ def instants(made: PiecewiseChain, until: Fraction) -> list[float]:
     )
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", KEPT)
 def test_contacts_open_and_close_as_they_should(seed: int) -> None:
     assert wrong(seeded(seed)) == []
@@ -57,7 +57,7 @@ LIFTED = {
 }
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("where", [pytest.param(k, marks=pytest.mark.slow) if k == "rod" else k for k in LIFTED])
 def test_a_cushion_without_mass_lifts_off_as_it_should(where: str) -> None:
     parts = LIFTED[where]

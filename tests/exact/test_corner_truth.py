@@ -201,6 +201,7 @@ def test_what_goes_on_as_it_was_has_no_event() -> None:
     assert wrong(drawn(LASTING)) == []
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", KEPT[:2])
 def test_a_limit_that_is_slightly_off_is_seen(seed: int) -> None:
     table = drawn(seed)

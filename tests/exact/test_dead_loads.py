@@ -94,6 +94,7 @@ def test_what_comes_to_rest_is_in_the_balance() -> None:
     assert resting["displacement@m"][0] == 0
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("gap", ["1/2", "1e-9"])
 def test_what_falls_on_a_floor_or_a_spring_meets_it_when_it_has_fallen_so_far(gap: str) -> None:
     when = sqrt(2 * float(Fraction(gap)) * 10)

@@ -105,7 +105,7 @@ DRAWN = [(friction_beside_contacts, CONTACTS[0]), (light_friction, LIGHT[0])]
 DRAWN += [*((friction_beside_contacts, seed) for seed in CONTACTS[1:]), *((light_friction, seed) for seed in LIGHT[1:])]
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(("draw", "seed"), DRAWN)
 def test_mixed_laws_do_as_they_should(draw: Mix, seed: int) -> None:
     assert wrong(draw(seed), first="0") == []
@@ -173,6 +173,7 @@ RESTS: dict[str, list[Any]] = {
 """A mass that friction stops, and a contact without force from then on, beside it or at the other end of a rod."""
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", RESTS)
 def test_what_friction_has_stopped_bears_on_a_rod_with_just_0(name: str) -> None:
     output = {"until": 14, "displacement": ["m"], "velocity": ["m"]}
@@ -196,6 +197,7 @@ def test_what_a_front_moves_on_a_rod_is_known_at_that_instant() -> None:
     assert list(wrong_values(model, PiecewiseChain(table, 7), [2.0, 4.0, 6.0])) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("velocity", [-6, pytest.param(6, marks=pytest.mark.slow)])
 def test_what_leaves_rest_presses_on_a_rod_that_rests_or_parts_from_it(velocity: int) -> None:
     """The contact bears exactly 0 until the mass slips, and then less than the square of any time that is not known."""

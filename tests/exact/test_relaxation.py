@@ -170,6 +170,7 @@ def test_a_stiff_cushion_lifts_off_when_it_should(spring: int, dashpot: str, cap
     assert {event.kind for event in events(lower(Scene(**table)))} == {"opens", "closes"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seed", [3, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (0, 1, 2, *range(4, 58)))]
 )

@@ -47,7 +47,7 @@ def until(made: dict[str, Any]) -> fmpq:
     return fmpq(*Fraction(str(made["output"]["until"])).as_integer_ratio())
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("stiffness", [10**4, 10**6])
 @pytest.mark.parametrize("middle", [GROUND, BETWEEN], ids=["to ground", "between"])
 def test_stiff_springs_are_right_to_the_last_bit(middle: list[dict[str, Any]], stiffness: int) -> None:
@@ -166,7 +166,7 @@ UNEQUAL = [
 ]
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("made", UNEQUAL, ids=["longer", "shorter", "no measure", "stiffest", "massless"])
 def test_between_unequal_rods_cuts_end_when_what_is_fast_has_died_away(made: dict[str, Any]) -> None:
     """A front that no cut has made is followed by cuts for a while; half a minute of cuts throughout before."""

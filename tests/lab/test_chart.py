@@ -197,6 +197,7 @@ def drawn(tmp_path_factory):
     return figures[0], [(folder / f"{k}.svg").read_bytes() for k in range(2)]
 
 
+@pytest.mark.slow
 def test_same_numbers_same_bytes(drawn):
     _, (first, second) = drawn
     assert first == second

@@ -108,7 +108,7 @@ def test_characteristics_converge(name, method, order):
     assert last < 1e-12 or math.log(first / last, 4) > order
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_laplace_converges(name):
     first, last = (np.max(errors(laplace.METHOD, name, n)) for n in (400, 2000))
@@ -149,7 +149,7 @@ def test_elements_converge_where_nothing_jumps(name, method, coarse, order):
 def test_a_fault_is_seen(method, name, broken, thorough):
     if name in REFUSED.get(method, ()):
         pytest.skip("the method does not take it")
-    if not thorough and method is discrete.MODAL and name == "springs and dashpots":
+    if not thorough and method is discrete.MODAL and name not in ("unequal rods", "branch with gears"):
         pytest.skip("seconds, which the other scenes do not take")
     resolution = RESOLUTIONS.get(method, 100)
     right, wrong = np.median(errors(method, name, resolution)), np.max(errors(method, name, resolution, broken))

@@ -20,6 +20,7 @@ def test_what_is_wrong_is_stated_beside_what_holds():
     assert {id for id, e in ENTRIES.items() if e.kind == "condition" and e.slip} == SLIPS.keys()
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("id", "changes"),
     [

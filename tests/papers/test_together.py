@@ -284,7 +284,7 @@ def test_all_formulas_of_an_example_hold_on_one_chain() -> None:
     assert disagreeing() == set()
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("id", "term", "instead", "noticed"),
     [

@@ -75,6 +75,7 @@ def slopes(made: Histories) -> list[tuple[str, float]]:
     ]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_histories_jump_where_waves_do_and_nowhere_else(name: str) -> None:
     made = histories(lower(scene(name)))
@@ -151,6 +152,7 @@ def test_loose_tolerances_stay_and_tight_ones_do_not_hinder() -> None:
     assert len(histories(lower(impossible)).outputs) == len(THIRDS.outputs)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", ["drive_m1", "building_m2"])
 def test_labels_are_the_proved_extremes_to_their_digits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     short = Scene.from_toml(name)

@@ -282,6 +282,7 @@ def test_the_spectrum_of_the_load_is_what_an_oscillator_does() -> None:
     assert [f"T{k} = {period:.3g} s" in text for k, period in enumerate(periods, 1)] == [True] * len(periods)
 
 
+@pytest.mark.slow
 def test_the_page_has_the_spectrum_of_the_highest_acceleration() -> None:
     """Its values are those of `spectrum`, whose program is another one; without such an output there is none."""
     scene = Scene(**FRAME).with_({"output.acceleration": [1, 2]})
@@ -322,6 +323,7 @@ def test_a_link_has_the_values_of_its_curve(building: str) -> None:
         assert size == pytest.approx(peak, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_the_animation_moves_with_the_cursor(tmp_path: Path, thorough: bool) -> None:
     """In a browser: floors are where the frames of the page, read here, have them; those are exact values."""
     scene = Scene.from_toml("building_m2")

@@ -147,6 +147,7 @@ def test_names_do_not_lie_over_one_another():
     assert not any(box.overlaps(tick) for box in boxes for tick in ticks)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("branch", ["1/2", "2", "20"])
 def test_numbers_below_a_branch_do_not_lie_over_those_beside_them(branch):
     own = {**CHAIN, "branch": [{"from": "a", "name": "b", "parts": [{"rod": branch}, "fixed"]}]}

@@ -110,6 +110,7 @@ def test_a_pulse_counts_from_its_arrival_not_from_the_next_number():
             assert abs(truth.value(0, Fraction(tau)) - arb(value)) <= allowed
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize(("maker", "real", "name"), CASES, ids=lambda each: getattr(each, "name", each))
 def test_no_error_is_above_the_bound(maker, real, name):
     assert holds(SCENES[name], MAKERS[maker](SCENES[name], real))

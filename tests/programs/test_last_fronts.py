@@ -71,6 +71,7 @@ def assert_right(parts, until, real, loads, evaluators):
         assert not each.reached or right([each.tau]) == [each.value]
 
 
+@pytest.mark.quick(2)
 @REALS
 @pytest.mark.parametrize("until", ["2.3", "0.1", "3", "10/3"])  # the nearest double is below, above, the number itself
 def test_a_front_between_the_last_numbers_is_seen(until, real):

@@ -69,6 +69,7 @@ def test_a_drive_with_shafts_1_3_half_and_2_to_24() -> None:
     assert np.all(missed(model, made, 16) <= 1)
 
 
+@pytest.mark.quick(1)
 @REALS
 def test_every_kind_of_joint(real, thorough) -> None:
     model = lower(every(2))
@@ -242,6 +243,7 @@ def test_windows_that_never_begin_at_a_whole_number_again() -> None:
     assert check(chain_of(parts, 10, strain=[0, "1.234567"]), 20).plan.cycle[0] == 9
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("stiffness", ["1/1000000", 1, 1000])
 def test_springs_soft_and_stiff(stiffness) -> None:
     parts = [{"rod": 1, "velocity": 1}, {"mass": 1, "velocity": 0, "spring": stiffness}, {"rod": "1/2"}]

@@ -193,6 +193,7 @@ def test_what_sums_and_the_mean_lose_is_counted_by_itself(slack, loss, degree) -
     assert counted <= claimed <= 30 * counted
 
 
+@pytest.mark.slow
 def test_what_one_coefficient_loses_is_handed_on_to_all_below_it() -> None:
     """With ratios of 1, to which those of light bodies come; a product that underflows is then lost in all of them."""
     degree = 64

@@ -124,6 +124,7 @@ def test_other_records_begin_when_they_say(load, damping):
     assert lower(made).labels.notes == ()
 
 
+@pytest.mark.slow
 def test_el_centro_shakes_a_damped_frame_without_a_start(tmp_path, capsys):
     """Our own example, whose first sample is not 0: what `start` says is done, and said."""
     frame = (EXAMPLES / "frames" / "steel.toml").read_text().replace("../records", str(EXAMPLES / "records"))

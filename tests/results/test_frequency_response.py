@@ -495,6 +495,7 @@ FLAT = {
 }
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("band", [(0.0, 0.5), (0.1, 7.0), (0.3, 0.30000000001)])
 @pytest.mark.parametrize("name", FLAT)
 def test_an_amplitude_that_is_the_same_everywhere_is_found_at_once(
@@ -511,7 +512,7 @@ def test_an_amplitude_that_is_the_same_everywhere_is_found_at_once(
         assert peak.frequency == pytest.approx(band[0], abs=1e-11)
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(("low", "high"), [(0.0, 1e6), (1e-6, 1e6), (1e-6, 1e8), (1e-3, 1e6)])
 def test_no_resonance_is_missed_in_a_band_that_is_very_wide(low: float, high: float) -> None:
     """The ball of a part whose ends differ by 2^30 and more has 0 in it, where no slope and no bend are known."""
@@ -527,6 +528,7 @@ def test_no_resonance_is_missed_in_a_band_that_is_very_wide(low: float, high: fl
     assert largest <= peak.high <= largest * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_an_acceleration_beside_a_velocity_without_limit_at_0() -> None:
     """Times i w a ball near 0 had 0 in it, and its power series no inverse: a traceback."""
     parts = [{"motion": "acceleration", "name": "a"}, {"rod": 1}, {"joint": True, "name": "b"}]
@@ -540,6 +542,7 @@ def test_an_acceleration_beside_a_velocity_without_limit_at_0() -> None:
     assert acceleration.low <= 1 <= acceleration.high < 1 + 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parts", [14, pytest.param(50, marks=pytest.mark.slow)])
 def test_peaks_of_many_parts_against_transfer_matrices(parts: int) -> None:
     """(u, force) from the free top to the bit, in doubles, at 40 000 frequencies."""

@@ -34,6 +34,7 @@ def bar(at: str) -> Scene:
     return chain(parts, at, displacement=["mid", "l"], strain=["0"])
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("second", [("2/3", "1/5"), ("4/3", "2/5"), ("10/9", "1/3")])
 def test_two_branches_that_hold_still_between_them(second: tuple[str, str]) -> None:
     """Masses m on springs k, all of one frequency w: at w they take the force alone, each by its stiffness."""
@@ -93,6 +94,7 @@ def test_a_bar_that_is_loaded_or_read_in_the_middle() -> None:
     assert aside["displacement@l"].frequency == pytest.approx(np.pi / 2)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("load", [0, 1])
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 6))])
 def test_masses_against_their_fractions_in_lowest_terms(load: int, seed: int) -> None:
@@ -155,6 +157,7 @@ def test_what_is_not_decided_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> N
     assert (peak.frequency, peak.high) == (pytest.approx(1), np.inf)
 
 
+@pytest.mark.slow
 def test_delays_without_a_useful_measure() -> None:
     """Too long a fraction: a mode that the output does not see stays open, and a pole beside a dashpot, too."""
     rods = [{"rod": "1"}, {"rod": "12347/10001"}]

@@ -57,6 +57,7 @@ def test_the_self_test_can_fail(made):
         assert program.selftest() == 1
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     "flaw", ["int small_extra(void) { return 0; }", "static int unused(void) { return 0; }", "syntax error"]
 )

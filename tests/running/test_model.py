@@ -43,6 +43,7 @@ def exact():
     return [(wavesym.evaluator(each), wavesym.summary(each).outputs) for each in scenes]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("tau", [np.linspace(0, 3, 25), np.array([0.0, 0.3, 2.9, 1.5, 3.0])], ids=["even", "uneven"])
 def test_each_set_is_its_scene(model, tau):
     true = np.array([response(tau) for response, _ in exact()])

@@ -54,6 +54,7 @@ def test_without_any_the_python_package_is_taken(bare):
     assert "clang" in chosen.version
 
 
+@pytest.mark.slow
 @needs_zig
 def test_it_is_all_that_verify_needs(bare, capsys):
     assert main(["verify", "drive_m1", "--evaluator", "closed"]) == 0

@@ -365,6 +365,7 @@ def test_as_much_as_is_parsed_is_refused_soon(text):
     assert time.process_time() - start < 4  # 13 s, once; one second where nothing else runs
 
 
+@pytest.mark.slow
 def test_as_many_positions_and_times_as_are_served_are_looked_at_and_no_more(monkeypatch):
     """250 000 positions took 100 s and 2.4 GB, 140 000 times 14 s until every program had refused them."""
     zeros = "[" + "0, " * 50_001 + "]"

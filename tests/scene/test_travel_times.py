@@ -97,6 +97,7 @@ def by_transfer_function(times: np.ndarray) -> np.ndarray:
     return np.asarray(np.interp(times, t, velocities))
 
 
+@pytest.mark.slow
 def test_layers_as_measured_run_under_a_record_once_speeds_may_change_a_little(thorough: bool) -> None:
     """Refused with what to write; written so it answers as the layers do by their transfer function."""
     with pytest.raises(ToleranceError, match="travel times of the rods have no common measure") as caught:

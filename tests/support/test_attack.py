@@ -31,7 +31,7 @@ def test_every_program_of_a_plain_scene_holds():
     assert all(outcome.values > 500 and 0 < outcome.worst <= 1 for outcome in outcomes)
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("language", ["c", "numpy"])
 @pytest.mark.parametrize("wrong", ["bound", "zero"])
 def test_a_wrong_program_is_found(monkeypatch, language, wrong):

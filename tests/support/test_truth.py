@@ -139,6 +139,7 @@ def test_a_free_collision_keeps_momentum_and_energy():
     assert np.allclose(energy, 12 + 0.25 * 7, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_moments_change_the_momentum_of_a_drive_and_then_leave_it():
     loads = [{"body": 1, "times": [0, 2], "steps": [1, -1]}, {"body": 3, "times": [1, 2], "steps": [3, -3]}]
     found = momentum_and_energy(DRIVE, loads, [Fraction(5, 2), Fraction(13, 2), Fraction(19, 2)])

@@ -90,6 +90,7 @@ def test_cases_side_by_side_are_what_they_are_alone(vary: Mapping[str, Any], tho
     assert_as_alone(made, found, 3 if thorough else 6)
 
 
+@pytest.mark.slow
 def test_a_case_alone_has_the_same_bits() -> None:
     made = planned(FRAME, COLUMNS)
     every, place = batches(made, *kind(made)), (1, 2)

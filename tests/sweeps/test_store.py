@@ -325,7 +325,7 @@ def test_links_and_pipes_are_not_followed(folder: Path, name: str, pipe: bool) -
             run(SWEEP, folder)
 
 
-@pytest.mark.quick(5)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     "place", ["mark", f"{NAME}/max/2.0", f"{NAME}/output/0", f"{NAME}/max/.zarray", "manifest.json"]
 )

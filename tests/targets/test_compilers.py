@@ -44,6 +44,7 @@ def named(name, tally):
     return pytest.skip(f"no {name} here")
 
 
+@pytest.mark.quick(3)
 @each_source
 def test_the_default_compiler_takes_it_and_it_is_right(of, tmp_path, tally):
     assert built(source(*of), compiler(), FLAGS, tmp_path) <= 1
@@ -166,7 +167,7 @@ def object_file(text, name, folder, found):
     return folder / f"{name}.o"
 
 
-@pytest.mark.quick(6)
+@pytest.mark.quick(2)
 @needs_binutils
 @each_source
 @each_compiler

@@ -44,7 +44,7 @@ def complaint(file, folder, *flags, step="-c"):
     return ""
 
 
-@pytest.mark.quick(len(READ))
+@pytest.mark.quick(4)
 @pytest.mark.parametrize("kernel", READ)
 @pytest.mark.parametrize("precision", FORMATS)
 def test_a_kernel_is_c_as_it_stands(kernel, precision):
@@ -103,7 +103,7 @@ def test_a_broken_kernel_is_seen(kernel, right, wrong, tmp_path):
     assert complaint(kernel, tmp_path)
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("of", SOURCES, ids="-".join)
 def test_a_program_writes_all_tables_that_it_has(of):
     made = source(*of)
@@ -124,6 +124,7 @@ def test_tables_are_written_as_they_are_declared():
     assert second.endswith("where they begin in it. */\nstatic const real span = 2.0;")
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("of", SOURCES, ids="-".join)
 def test_a_program_is_its_kernel_under_its_own_name(of):
     made = source(*of)

@@ -175,6 +175,7 @@ def test_few_states_are_no_warning(level: str, states: str, tmp_path: Path) -> N
     assert (tmp_path / "made.o").stat().st_size > 0
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("build", "precision"), [("plain", "double"), ("contracted", "double"), ("contracted", "single")]
 )

@@ -82,7 +82,7 @@ def drawn_rows(parameters, sets, wide=0.3):
     return rows
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", MODELS)
 def test_sets_are_what_proved_modes_say(name):
     """For chains of all kinds: held, free, with gears, springs and branches, damped or not."""

@@ -70,6 +70,7 @@ class Stream:
         return status, out
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("precision", REALS)
 def test_a_stream_gives_what_numpy_gives(precision, tmp_path):
     system, real = storeys(4, 5, 0.03), REALS[precision]
@@ -116,6 +117,7 @@ def test_what_a_stream_refuses_changes_nothing(tmp_path):
     assert all((status == 2) == (not np.isfinite(out).all()) for status, out in told)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("precision", REALS)
 def test_a_stream_is_strict_cpp_too(precision, tmp_path):
     written(evaluator(storeys(2, 3, 0.05), uniform([0, 1], fmpq(1)), 9.0, REALS[precision]), tmp_path)
@@ -138,7 +140,7 @@ BREAKS = {
 }
 
 
-@pytest.mark.quick(4)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("fault", BREAKS)
 def test_a_broken_stream_is_seen_by_its_selftest(fault, tmp_path):
     written(evaluator(storeys(3, 3, 0.05), uniform([0, *SAMPLES], fmpq(1)), 80.0), tmp_path)

@@ -114,6 +114,7 @@ def assert_refused(changes, case, folder):
         check(made, scene, {name: choices[0] for name, choices in numbers.items()})
 
 
+@pytest.mark.slow
 def test_waves_that_are_sent_wrong_add_up_at_an_instant(tmp_path):
     assert_refused((SENT, ("w->instant += w->passes[port]", "w->instant += 0 * w->passes[port]")), "building", tmp_path)
 

@@ -206,6 +206,7 @@ def test_it_compiles_without_a_warning(language, tmp_path):
         assert (tmp_path / f"{file}.o").stat().st_size > 0
 
 
+@pytest.mark.slow
 @needs_binutils
 def test_it_has_its_own_names_alone(tmp_path):
     written(BUILDING, ["kappa"], tmp_path)

@@ -146,7 +146,7 @@ WIDEST = "-D__AVX512F__"
 """Makes every compiler take vectors of 64 bytes, in pieces where the machine has narrower ones."""
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [(), (WIDEST, "-Wno-psabi")], ids=["vectors", "widest"])
 @pytest.mark.parametrize("case", ["building", *["many panels", "chain in double precision"]])
 def test_a_model_is_the_same_wherever_it_is_built(case, width, tmp_path):

@@ -73,7 +73,7 @@ def test_there_is_what_is_asked_for_and_nothing_else(case):
         assert told["command"].endswith(f"--runtime {','.join(runtime)}{named}")
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("language", ["c99", "c++17"])
 @pytest.mark.parametrize("parts", CHOICES, ids=lambda parts: "-".join(parts) or "values")
 @pytest.mark.parametrize("case", SCENES)
@@ -85,7 +85,7 @@ def test_each_choice_compiles_without_a_warning(case, parts, language, tmp_path)
         assert (tmp_path / f"{file}.o").stat().st_size  # a warning is an error, which `run` raises
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @needs_binutils
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_values_alone_are_small(precision, tmp_path):
@@ -115,7 +115,7 @@ def test_a_smaller_kappa_makes_a_smaller_model(tmp_path):
     assert model_size(SMALL, tmp_path, Fraction(1, 1000))[1]["degree"] <= sizes[0][1]["degree"]
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("largest", [1, 4, 40])
 @pytest.mark.parametrize("scene", [wavesym.Scene.from_toml("bench/c.toml"), BUILDING, COLLISION], ids=lambda s: s.name)
 def test_every_set_up_to_the_largest_kappa_is_taken_and_far_beyond_it_none(scene, largest, tmp_path):

@@ -86,6 +86,7 @@ def made():
     return files(lower(SCENE), "c", "pieces")
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("flags", BUILDS, ids=" ".join)
 def test_short_runs_have_the_bits_of_single_values(made, flags):
     """Every count to 40, both ways, across fronts, beyond both ends, at NaN and infinity."""

@@ -155,6 +155,7 @@ def unseen(program, name, right):
     return found
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(("evaluator", "precision", "tolerance"), CASES)
 def test_every_coefficient_matters_to_it(evaluator, precision, tolerance, tmp_path):
     program = mutable(evaluator, precision, tolerance, tmp_path)

@@ -128,6 +128,7 @@ def differs(model, windows):
     return not np.array_equal(driven(model, state, 200, 70), driven(model, later, 200, 70))
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("windows", [1, BILLION - 1, 10**18 + 3])
 def test_a_billion_windows_later_every_bit_is_the_same(windows):
     assert not differs(Open(), windows)

@@ -52,6 +52,7 @@ def test_a_chain_is_fitted_to_a_degree(monkeypatch):
     assert min(aim.form.degrees) <= aim.degree <= max(aim.form.degrees)
 
 
+@pytest.mark.slow
 def test_a_scene_takes_as_long_as_itself():
     """Nothing is asserted of the time itself."""
     one = fit_pieces(CHAINS["S"], fmpq(1, 10**6))
@@ -69,6 +70,7 @@ def test_a_record_has_rows_of_modes_and_elements(monkeypatch):
     assert errors[0] > 2 * errors[-1] > 0
 
 
+@pytest.mark.slow
 def test_frames_have_a_row(monkeypatch):
     """Errors are within estimates."""
     monkeypatch.setattr(frames, "_SETS", (3,))

@@ -98,7 +98,7 @@ def test_contacts_beside_springs_pass_every_check(seed: int) -> None:
         assert all(outcome.passed for outcome in judged(check(seen)))
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(("draw", "seed"), [(friction_beside_contacts, 14), (light_friction, 2)])
 def test_friction_beside_other_laws_keeps_its_balances(draw: Mix, seed: int) -> None:
     assert all(outcome.passed for outcome in judged(checks.invariants(known(draw(seed)))))
@@ -113,6 +113,7 @@ NEARLY = [
 ]
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(("check", "draw", "seed"), NEARLY)
 def test_what_grids_hardly_see_is_not_said_to_be_wrong(check: Any, draw: Mix, seed: int) -> None:
     outcomes = judged(check(known(draw(seed))))
@@ -250,7 +251,7 @@ def test_another_law_is_seen_by_both_integrators(table: dict[str, Any], key: str
     assert not all(outcome.passed for outcome in check(known(*changed(table, key))))
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("check", [integrations.differences, integrations.midpoints])
 def test_another_limit_at_rest_is_seen_by_both_integrators(check: Any) -> None:
     parts = [{"motion": "velocity", "velocity": "1/4"}, {"rod": 1}, {"mass": 1, "name": "m", "velocity": 0}]

@@ -103,6 +103,7 @@ def test_an_instant_that_is_there_twice_has_no_slope():
     assert IntegratedOutput([0.0, 2.0, 2.0], values, 0.0).steepest == 0.5
 
 
+@pytest.mark.slow
 def test_modes_whose_numbers_are_given_are_verified(monkeypatch):
     """They pass, and one whose dampings are 2 % more is seen."""
     names = mode_set_names(lower(frame()))

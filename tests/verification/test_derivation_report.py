@@ -94,6 +94,7 @@ def test_a_wrong_equation_fails(monkeypatch):
     assert "Not so: the equation of f of rod 1 leaves" in text
 
 
+@pytest.mark.slow
 def test_wrong_tables_fail_by_every_route_that_can_see_them(monkeypatch):
     right = tables.solve
     monkeypatch.setattr(tables, "solve", lambda own, right_side, jump: right(own, right_side, jump + 1))

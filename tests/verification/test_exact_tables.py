@@ -60,6 +60,7 @@ RANGE = [
 ]
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("parameters", KAPPAS)
 @pytest.mark.parametrize(("make", "m", "intervals"), RANGE)
 def test_tables_are_right(make, m, intervals, parameters):

@@ -99,6 +99,7 @@ def test_all_checks_hold_where_contacts_open_and_close() -> None:
     assert {"0 opens", "momentum", "energy", "contacts"} <= {outcome.subject for outcome in outcomes}
 
 
+@pytest.mark.slow
 def test_what_happens_is_found_by_both_integrations() -> None:
     outcomes = corner_changes(known_outputs(on_a_bar()))
     assert [outcome.subject for outcome in outcomes] == ["0 opens", "0 closes", "0 opens"]

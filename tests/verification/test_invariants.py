@@ -77,6 +77,7 @@ def balances(books, evaluate, errors):
     return books.balances(evaluate, errors)
 
 
+@pytest.mark.quick(2)
 @FOUR
 def test_balances_hold_to_the_last_digits(scene):
     for balance in balances(*exactly(scene, 6)):
@@ -120,6 +121,7 @@ def test_a_collision_keeps_what_it_brings_along_the_rods():
         assert energy == pytest.approx(masses @ velocities**2 / 2, rel=1e-13)
 
 
+@pytest.mark.slow
 def test_the_impulse_of_the_moments_turns_the_drive():
     """Moments in units of G J_01 / l: 1 from 0, -1 from 1/3 on the first disc, and -1 from 10/7 on the last."""
     for tau in (2, 3):
@@ -145,6 +147,7 @@ def test_another_system_is_seen(scene):
     assert all(balance.error > balance.error_bound for balance in balances(seen, exactly(other, 6)[1], errors))
 
 
+@pytest.mark.quick(2)
 @FOUR
 def test_a_leak_is_seen(scene):
     """Everything 1e-9 too small."""

@@ -62,6 +62,7 @@ def model(scene: dict[str, Any]) -> Model:
     return made.watching(replace(probe, factor=fmpq(-(10**6) * (k + 1), 7)) for k, probe in enumerate(made.probes))
 
 
+@pytest.mark.quick(1)
 @EACH
 def test_what_is_right_passes(scene: dict[str, Any], judge: Any) -> None:
     outcomes = judge(known_outputs(model(scene)))
@@ -70,6 +71,7 @@ def test_what_is_right_passes(scene: dict[str, Any], judge: Any) -> None:
     assert any("at 4N" in outcome.cells for outcome in outcomes)
 
 
+@pytest.mark.quick(1)
 @EACH
 def test_a_term_that_is_a_little_wrong_is_seen(
     scene: dict[str, Any], judge: Any, monkeypatch: pytest.MonkeyPatch

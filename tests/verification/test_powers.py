@@ -49,7 +49,7 @@ SOON = [
 ]
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(("system", "family"), SOON)
 def test_upper_bounds_by_induction(system, family):
     proof = list(steps(system, family))
@@ -83,7 +83,7 @@ def stated(family: PowerFamily, row: PowerRow, m: int, rod: int, n: int, body: i
     return max(-1, budget // family.period) if arrives else -1
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(("system", "family"), GENERIC)
 def test_degrees_of_walk_polynomials_are_the_formulas(system, family):
     """A degree with numbers modulo a prime for the other letters is at most the true one, which the proof bounds."""
