@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flint import fmpq
+from flint import arb, fmpq
 
 import wavesym
 from tests.support.modal import chain
 from wavesym.exact.modes import damped_modes
+from wavesym.exact.modes import turns as found_by
 from wavesym.exact.modes.damped_modes import DampedSpectrum
 from wavesym.exact.modes.turns import Circles, absorb
 from wavesym.scene import Scene
@@ -34,6 +35,37 @@ def test_a_rod_with_a_dashpot_has_as_many_as_its_closed_form(size: Any) -> None:
     w = (k + (c < 1) / 2) * pi + 1j * atanh(c if c < 1 else 1 / c).real
     for radius in (0.3, 1.0, 4.0, 4.75, 9.4, 23.5, 40.1):
         assert circles.count(radius) == np.count_nonzero(np.abs(w) < radius)
+
+
+def test_both_counts_agree() -> None:
+    """Zeros of the power series, and turns around the circle: rods, masses, springs, dashpots, a branch with a gear."""
+    parts = ["free", {"rod": 1, "dashpot": 1}, {"mass": 2, "name": "a"}, {"rod": "1/3", "impedance": 4}, "absorbing"]
+    branch = [{"from": "a", "name": "b", "ratio": 2, "parts": [{"spring": 3, "dashpot": "1/5"}, {"mass": "1/2"}]}]
+    circles = Circles(chain(parts, branch=branch).network)
+    counts = [(circles.count(radius), circles._count_turns(radius)) for radius in (0.02, 0.7, 2.0, 5.0, 11.0, 25.0)]
+    assert all(one == other for one, other in counts)
+    assert counts[-1][0] > counts[-2][0] > counts[0][0] > 0
+
+
+@pytest.mark.parametrize("left_out", ["rest", "terms"])
+def test_a_series_that_is_cut_off_too_early_tells_nothing(left_out: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a look at what is left out a count would be wrong: with it more terms are taken."""
+    circles = Circles(chain(["fixed", {"rod": 1}, HALF]).network)
+    monkeypatch.setattr(found_by, "_TERMS", 8)
+    monkeypatch.setattr(found_by, "_TERMS_A_RADIAN", 0)
+    if left_out == "rest":
+        monkeypatch.setattr(Circles, "_rest", lambda *_: arb(0))
+    right = circles.count(9.4) == 6
+    assert right == (left_out == "terms")
+
+
+def test_a_column_of_many_layers_is_counted_without_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 400 layers arcs took too long, and only the first mode was counted; a power series needs as many terms as one
+    rod of the same delay."""
+    monkeypatch.setattr(Circles, "_count_turns", lambda *_: None)
+    layers = [{"rod": "1/60", "impedance": f"{100 + 37 * k % 90}/100"} for k in range(60)]
+    found = modes(["free", *layers, "absorbing"], 10)
+    assert (len(found), found.complete) == (10, True)
 
 
 @pytest.mark.parametrize("seed", range(6))

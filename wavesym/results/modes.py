@@ -2,7 +2,7 @@
 
 Undamped frequencies are the zeros of the determinant of the dynamic stiffness; how many lie below a number is counted
 in balls (Wittrick and Williams, 1971), so that none is missed. With dashpots motions are exp(i w tau) with complex w,
-by their absolute values, which are counted by the turns of the determinant around a circle.
+by their absolute values; the zeros of the determinant in a circle are counted.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _MOST = 2000
 _BITS = 128
 _FIRST_GUESS = 16  # modes, where it is not known how many lie below a frequency
 _COMPLETE = "none is missed: the frequencies below the last one are counted in balls (Wittrick and Williams)"
-_COUNTED = "none is missed: a determinant turns so often around a circle beyond the last one, in balls"
+_COUNTED = "none is missed: so many zeros of a determinant are counted in balls, in a circle beyond the last one"
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,8 @@ from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Complex
 
 _BITS = 224
-_BITS_A_ROW, _FEWER_BITS, _MANY_ROWS = 12, 6, 32  # fewer are tried first where there are many rows
-_BALL, _BALL_A_ROW = 80, 4  # bits: what is not known of a frequency grows from row to row
+_BALL = 80  # bits of a frequency; what is not known of it grows from row to row
+_BITS_A_ROW, _MANY_ROWS = ((2, 1), (6, 4), (12, 4)), 32  # of all, and of a frequency; fewer first where rows are many
 _NEWTON = 12
 _MEETING = 1e-5  # frequencies that no step tells apart
 _BESIDE, _FEW = 1e-9, 64  # modes that are so near each other, and at most how many
@@ -40,6 +40,7 @@ _OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it
 _RESTING = 1e-10  # spacings of frequencies from 0: what only dashpots hold may rest anywhere, and that is no mode
 _STRAIGHT = 1e-9  # of what creeps, which has no real part
 _MORE = 1.15  # as many are sought, as those at the edge are pushed off by fewer
+_BARS = 48  # for each of which one more is sought, but of so many
 _ROUNDS = 400
 _FOUND = 1e-11
 _AWAY = 4.0  # times the last one wanted: what is still on its way there is no matter
@@ -136,11 +137,11 @@ def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
     near, rows = guesses * (1 + _OFF), len(stiffness.points)
     roots = stiffness.softest_rows(near, 1j * near).tolist()
     found: list[Mode | None] = [None] * len(guesses)
-    for bits in (_FEWER_BITS, _BITS_A_ROW) if rows > _MANY_ROWS else (_BITS_A_ROW,):
+    for bits, sharp in _BITS_A_ROW if rows > _MANY_ROWS else _BITS_A_ROW[-1:]:
         with ctx.workprec(_BITS + bits * rows):
-            law = stiffness.law(arb)
+            law, small = stiffness.law(arb), arb(2) ** -(_BALL + sharp * rows)
             for k, (guess, root) in enumerate(zip(guesses.tolist(), roots, strict=True)):
-                found[k] = found[k] or _prove_mode(stiffness, law, guess, root)
+                found[k] = found[k] or _prove_mode(stiffness, law, guess, root, small)
     return found
 
 
@@ -149,7 +150,7 @@ def estimate_frequencies(stiffness: Stiffness, count: int, again: int = 0) -> Co
     stiffness = Stiffness(absorb(stiffness.network))
     if not stiffness.network.bars:
         return _of_matrix(stiffness)[:count]
-    many = (int(_MORE * count) + len(stiffness.network.bars) + 4) << again
+    many = (int(_MORE * count) + min(len(stiffness.network.bars), _BARS) + 4) << again
     start = bisect_frequencies(Stiffness(remove_dashpots(stiffness.network)), many)
     draw = np.random.default_rng(again)  # nothing is to stay symmetric by chance
     apart = np.pi / float(stiffness.delay)
@@ -222,10 +223,9 @@ def _pull(stiffness: Stiffness, w: Complex) -> Complex:
     return np.asarray(total)
 
 
-def _prove_mode(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -> Mode | None:
-    """The mode near a guess, in which row `root` moves much; None where that cannot be proved."""
+def _prove_mode(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int, small: arb) -> Mode | None:
+    """The mode near a guess, in which row `root` moves much, to `small` of it; None where that cannot be proved."""
     creeps = abs(guess.real) < _STRAIGHT * abs(guess)
-    small = arb(2) ** -(_BALL + _BALL_A_ROW * len(stiffness.points))
     w = acb(0.0 if creeps else guess.real, guess.imag)
     for _ in range(_NEWTON):
         tried = trial(stiffness, law, w, root, _I * w)

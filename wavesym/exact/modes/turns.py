@@ -1,12 +1,17 @@
-"""How many complex frequencies a circle about 0 has inside, by the turns of a function around it, in complex balls.
+"""How many complex frequencies a circle about 0 has inside, in balls.
 
 From the tips of the tree of points to its root each branch resists by a ratio A/B of functions of w without poles, as
 in harmonic.py. The last A is det K times sin(w T)/w of all bars, so its zeros are the frequencies, each as often as it
-is one; w = 0 is as often one as its power series in s = i w, which is exact, says. How many there are with |w| < R is
-how often A turns as w goes around that circle (argument principle).
+is one.
 
-A(-conj w) is the conjugate of A(w), so half a circle is enough. Where A is nowhere on an arc so far from its value in
-the middle as that is from 0, what it turns by from end to end is the angle between its values there.
+As a power series in s = i w no coefficient of A is negative: s^2 m, s c, k, sinh(s T)/s and cosh(s T) are added and
+multiplied, and nothing is taken off. So those of s^n and beyond add A(r) (R/r)^n/(1 - R/r) at most where |s| = R < r,
+and zeros of the others are counted by numbers/zero_counts.py. That takes n^2 operations and one sum over the tree,
+and n is about 7 R times the delay of all bars.
+
+Where that would be more than to go around the circle, how often A turns is counted (argument principle): A(-conj w) is
+the conjugate of A(w), so half a circle is enough, and where A is nowhere on an arc so far from its value in the middle
+as that is from 0, what it turns by from end to end is the angle between its values there.
 """
 
 from __future__ import annotations
@@ -16,12 +21,13 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, pi
 
-from flint import acb, acb_series, arb, ctx, fmpq, fmpq_series
+from flint import acb, acb_series, arb, arb_series, ctx, fmpq
 
 from wavesym.exact.modes.harmonic import BallFrequency, Quantity, Turn
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Bar, Network
 from wavesym.numbers.doubles import nearest
+from wavesym.numbers.zero_counts import zeros_in_disc
 
 _BITS = 96
 _ARCS, _ARCS_A_RADIAN = 8, 1  # at first
@@ -30,7 +36,10 @@ _SPARE = 8  # times as many arcs as at first may be needed where there are many 
 _BESIDE = 1e-9  # between frequencies of nearly one absolute value is no circle
 _BEYOND_LAST = {True: 1e3, False: 1.5}  # times the last one, where there are finitely many and where not
 _POWERS = 12  # of A on an arc
-_TERMS = 8  # of A at w = 0
+_LONG = 900  # terms of A's power series: beyond, arcs take less
+_TERMS, _TERMS_A_RADIAN, _TERMS_A_ROW = 48, 7, 2  # of a series, a row being one with a mass or a spring
+_BITS_A_RADIAN = 22
+_AGAIN = 3  # with twice as many bits and half as many terms more
 _I = acb(0, 1)
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
@@ -101,6 +110,7 @@ class Circles:
     def __init__(self, network: Network) -> None:
         network = absorb(network)
         self._stiffness = stiffness = Stiffness(network)
+        self._series, self._series_bits = list[arb](), 0
         self._left, self.is_exhausted, self.is_finite = _MOST_WORK, False, not network.bars
         points = (network.points[point] for point in stiffness.points)
         self._rows = [_Row(point.mass, point.stiffness, point.damping) for point in points]
@@ -159,27 +169,71 @@ class Circles:
 
     def _is_complete(self, found: Sequence[complex], radius: float) -> bool:
         inside = sum(2 if w.real else 1 for w in found if abs(w) < radius)
-        return self._at_rest is not None and self.count(radius) == inside + self._at_rest
+        return self.count(radius) == inside + self._at_rest
 
     @cached_property
-    def _at_rest(self) -> int | None:
-        """As how many frequencies w = 0 counts; None where it is very many."""
-        s = fmpq_series([0, 1], prec=_TERMS + 2)
-
-        def turn(delay: fmpq) -> Turn:
-            """sinh(s T)/s and cosh(s T)."""
-            up, down = ((s * fmpq_series([sign * delay])).exp() for sign in (1, -1))
-            half = fmpq_series([fmpq(1, 2)])
-            return Turn(fmpq_series(((up - down) * half).coeffs()[1:], prec=_TERMS + 1), (up + down) * half)
-
-        found = fmpq_series(self._resistance(-s * s, s, turn, lambda each: fmpq_series([each])), prec=_TERMS)
-        return next((k for k, c in enumerate(found.coeffs()[:_TERMS]) if c != 0), None)
+    def _at_rest(self) -> int:
+        """As how many frequencies w = 0 counts: its power series begins with so many zeros, which are exact."""
+        terms = _TERMS
+        while not (found := [k for k, c in enumerate(self._coefficients(terms, _BITS)) if c != 0]):
+            terms *= 2
+        return found[0]
 
     def count(self, radius: float) -> int | None:
-        """How many frequencies have absolute values below `radius`, 0 among them; None where that would take too long.
+        """How many frequencies have absolute values below a radius, 0 among them; None where that takes too long."""
+        turned = radius * nearest(self._stiffness.delay)
+        bare = sum(row.mass == 0 and row.stiffness == 0 and row.branch.bar is not None for row in self._rows)
+        terms = _TERMS + int(_TERMS_A_RADIAN * turned) + _TERMS_A_ROW * (len(self._rows) - bare)
+        bits = _BITS + int(_BITS_A_RADIAN * turned)
+        if terms > _LONG:
+            return self._count_turns(radius)
+        for _ in range(_AGAIN):
+            with ctx.workprec(bits):
+                found = zeros_in_disc(self._coefficients(terms, bits), arb(radius), self._rest(terms, arb(radius)))
+            if found is not None:
+                return found
+            terms, bits = terms * 3 // 2, 2 * bits
+        return self._count_turns(radius)
 
-        Half a turn of the right half of the circle is one.
-        """
+    def _coefficients(self, terms: int, bits: int) -> Sequence[arb]:
+        """Those of A, the first ones, as a power series in s = i w."""
+        if len(self._series) < terms or self._series_bits < bits:
+            self._series, self._series_bits = self._power_series(terms, bits), bits
+        return self._series
+
+    def _power_series(self, terms: int, bits: int) -> list[arb]:
+        def turn(delay: fmpq) -> Turn:
+            """sinh(s T)/s and cosh(s T)."""
+            powers = [arb(1)]
+            for k in range(1, terms + 1):
+                powers.append(powers[-1] * delay / k)
+            odd, even = ([c * (k % 2 == parity) for k, c in enumerate(powers)] for parity in (1, 0))
+            return Turn(arb_series(odd[1:], prec=terms), arb_series(even[:terms], prec=terms))
+
+        cap = ctx.cap
+        try:
+            ctx.cap = terms
+            with ctx.workprec(bits):
+                s = arb_series([0, 1], prec=terms)
+                found = arb_series(self._resistance(-s * s, s, turn, arb), prec=terms).coeffs()
+        finally:
+            ctx.cap = cap
+        return [*found, *[arb(0)] * (terms - len(found))]
+
+    def _rest(self, terms: int, radius: arb) -> arb:
+        """What terms beyond so many add at most where |s| is a radius."""
+        if self.is_finite and terms > 2 * len(self._rows):
+            return arb(0)
+        far = radius + terms / (self._stiffness.delay or 1)
+
+        def turn(delay: fmpq) -> Turn:
+            return Turn((far * delay).sinh() / far, (far * delay).cosh())
+
+        whole = arb(self._resistance(-far * far, far, turn, arb))
+        return whole * (radius / far) ** terms / (1 - radius / far)
+
+    def _count_turns(self, radius: float) -> int | None:
+        """The same by the turns of A: half a turn of the right half of the circle is one."""
         arcs = _ARCS + int(_ARCS_A_RADIAN * radius * nearest(self._stiffness.delay))
         if _SPARE * arcs * len(self._rows) > self._left:
             self.is_exhausted = True
@@ -246,8 +300,10 @@ class Circles:
                 n, d = a * k, a + b * k
             else:
                 (sine, cosine), z = turns[str(branch.bar.delay)], number(branch.bar.impedance)
-                both = z * cosine + k * sine
-                n, d = a * both + b * (2 * z * k * (cosine - 1) - z * z * square * sine), a * sine + b * both
+                both, held = z * cosine, -z * z * square * sine
+                if branch.stiffness != 0 or branch.damping != 0:
+                    both, held = both + k * sine, held + 2 * z * k * (cosine - 1)
+                n, d = a * both + b * held, a * sine + b * both
             above[parent] = above[parent] * d + below[parent] * n * number(branch.near_ratio**2)
             below[parent] = below[parent] * d
         return total
