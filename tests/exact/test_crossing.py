@@ -5,9 +5,15 @@ from __future__ import annotations
 import pytest
 from flint import arb, arb_poly, ctx, fmpq
 
-from wavesym.exact.contacts.crossing import positive_until
+from tests.support.cornered import sliding_chain
+from wavesym.exact.contacts import friction_stops
+from wavesym.exact.contacts.crossing import positive_until, shortfall
+from wavesym.exact.contacts.friction_stops import shortfall_integral
 from wavesym.exact.contacts.guards import spread
+from wavesym.exact.contacts.search import Search
 from wavesym.exact.joints.enclosure import Enclosure
+from wavesym.numbers.doubles import rational
+from wavesym.scene import Scene, lower
 
 RESOLUTION = fmpq(1, 2**500)
 
@@ -45,3 +51,37 @@ def test_how_far_off_the_place_is_at_which_a_slope_is_nearly_0() -> None:
         known = Enclosure(touching(arb(2) ** -800), arb(2) ** -400)
         off = spread(known, fmpq(1, 3) - fmpq(1, 2**400))
         assert fmpq(1, 2**201) < off < fmpq(1, 2**197)
+
+
+@pytest.mark.parametrize("bits", [40, 100, 300])
+def test_what_is_held_beyond_its_limit_counts_from_where_it_may_be(bits: int) -> None:
+    """What is left, (1 - x - d)(3 + x), falls to 0 at 1 - d and is nearly -4 d at 1.
+
+    The whole stretch would count some 1/d times as much; not to count it would be no bound.
+    """
+    with ctx.workprec(900):
+        late = arb(2) ** -bits
+        left = arb_poly([1 - late, -1]) * arb_poly([3, 1])
+        beyond = (left.integral()(1 - late) - left.integral()(arb(1))).lower()
+        counted = shortfall_integral(Enclosure(left, arb(2) ** -800), fmpq(1))
+        assert beyond <= counted < 3 * beyond
+        assert shortfall_integral(Enclosure(left, arb(2) ** -800), fmpq(1) - fmpq(1, 2 ** (bits - 1))) == 0
+
+
+def test_bits_that_slips_cost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Counted for the whole stretch they would take bits at each slip; not counted they take none, and are no bound."""
+    model = lower(Scene(**sliding_chain(41)))
+    until = rational(model.horizon())
+
+    def known_bits() -> float:
+        with ctx.workprec(448):
+            search = Search(model.network, model.loads_until(until), model.joints_in_reach(until), relaxing=True)
+            for _ in search.steps():
+                pass
+            return search.known_bits()
+
+    known = known_bits()
+    monkeypatch.setattr(
+        friction_stops, "shortfall_integral", lambda each, length: shortfall(each, length) * arb(length)
+    )
+    assert known_bits() < known - 4

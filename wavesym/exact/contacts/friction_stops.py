@@ -122,7 +122,7 @@ class FrictionStops:
                 impulse = (abs(force) - arb(touch.friction)).upper() * arb(result.length)
             else:
                 impulse = sum(
-                    (_shortfall_integral(each, result.length) for each in margins(touch.friction, result.pushes[n])),
+                    (shortfall_integral(each, result.length) for each in margins(touch.friction, result.pushes[n])),
                     arb(0),
                 )
             if impulse > 0:
@@ -141,7 +141,7 @@ class FrictionStops:
         return (abs(force.evaluate_on(arb(tau))) - arb(touch.friction)).upper()
 
 
-def _shortfall_integral(margin: Enclosure, length: fmpq) -> arb:
+def shortfall_integral(margin: Enclosure, length: fmpq) -> arb:
     """How much a function may be below 0 on a stretch, integrated, at most."""
     end = lasts_until(margin, fmpq(0), length, length / fmpq(2) ** (ctx.prec - _SPARE))
     return arb(0) if end is None else shortfall(margin, length) * arb(length - end.length)
