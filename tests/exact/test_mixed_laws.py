@@ -245,3 +245,23 @@ def test_three_masses_that_rub_between_two_contacts_come_to_rest() -> None:
     output = {"until": 10, "displacement": ["m0", "m1", "m2"], "velocity": ["m0", "m1", "m2"]}
     table = {"name": "three", "system": {"type": "chain", "parts": parts}, "load": loads, "output": output}
     assert wrong(table, first="0") == []
+
+
+def test_what_changes_its_branch_for_ever_is_refused_at_once() -> None:
+    """Two springs at their limits and a load that turns, all at tau = 1: each makes the next one change."""
+    parts = [
+        {"mass": 1, "name": "n0", "friction": "1/2"},
+        {"spring": 1, "yield": "1/2", "preload": "1/2"},
+        {"mass": "1/2", "name": "n1"},
+        {"spring": 2, "yield": "1/2", "preload": "1/2"},
+        {"mass": "1/2", "name": "n2", "friction": "1/2"},
+    ]
+    loads = [
+        {"at": "n0", "times": [1, 2], "ramps": [1, -2]},
+        {"at": "n1", "times": ["1/2", "5/2"], "steps": ["1/4", "-1/4"]},
+        {"at": "n2", "times": [0, 1], "ramps": [1, -2]},
+    ]
+    output = {"until": 4, "velocity": ["n0", "n1", "n2"]}
+    table = {"name": "tie", "system": {"type": "chain", "parts": parts}, "load": loads, "output": output}
+    with pytest.raises(GrazingError, match="^spring at 0: changes its branch 8 times within no time at tau = 1, "):
+        events(lower(Scene(**table)))

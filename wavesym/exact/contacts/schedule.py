@@ -10,7 +10,7 @@ from typing import TypeVar
 from flint import ctx, fmpq
 
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.search import Change, Search, UndecidedError, lasting
+from wavesym.exact.contacts.search import CHATTER, Change, Search, UndecidedError, lasting
 from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replay
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.network import Network
@@ -117,6 +117,8 @@ def _attempt(
                 if first is not None:
                     return first
                 undecided = error
+                if error.chatters:
+                    break
             else:
                 if first is not None or not springs or search.known_bits() >= _KEPT_BITS:
                     return found
@@ -129,6 +131,11 @@ def _attempt(
         reached = undecided.tau
     link = network.links[undecided.link]
     tau = f"{nearest(undecided.tau):.17g}"
+    if undecided.chatters:
+        raise GrazingError(
+            f"{link.law} at {link.place}: changes its branch {CHATTER} times within no time at tau = {tau}, as others "
+            "do theirs (another limit, load or length helps)"
+        )
     if link.friction != 0:
         raise GrazingError(
             f"friction at {link.place}: {bits} bits do not show whether it sticks or slips at tau = {tau} "

@@ -7,6 +7,7 @@ that, a contact that opens or closes on the way cuts the stretch there. `docs/co
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
@@ -31,6 +32,8 @@ from wavesym.numbers.doubles import nearest
 
 # an instant is known this closely, in shortest delays
 _WIDTH = fmpq(1, 2**230)
+# what changes its branch so often within so many shortest delays goes on for ever
+CHATTER, _MOMENT = 8, fmpq(1, 2**128)
 # bits with which instants are had
 _INSTANT_BITS = 320
 # how much longer each next stretch is on which it is left open what a contact does, in bits
@@ -64,11 +67,11 @@ class Change:
 
 
 class UndecidedError(Exception):
-    """A contact whose branch so many bits do not show."""
+    """A contact whose branch so many bits do not show; or one that `chatters`, as no number of bits would show."""
 
-    def __init__(self, link: int, closed: bool, tau: fmpq) -> None:
+    def __init__(self, link: int, closed: bool, tau: fmpq, chatters: bool = False) -> None:
         super().__init__()
-        self.link, self.closed, self.tau = link, closed, tau
+        self.link, self.closed, self.tau, self.chatters = link, closed, tau, chatters
 
 
 class Search:
@@ -86,6 +89,8 @@ class Search:
         self.waves = TouchingWaves(network, last, loads)
         self.changes: list[Change] = []
         self.width = shortest * _WIDTH
+        self._moment = shortest * _MOMENT
+        self._lately: dict[int, deque[fmpq]] = {}
         self._network, self._relaxing = network, relaxing
         self._arriving: tuple[tuple[int, fmpq, fmpq], Sequence[Enclosure]] | None = None
         # the first stretch on which it is left open what a contact does
@@ -243,6 +248,10 @@ class Search:
                 doubt = course.doubt
                 low = doubt.low if doubt is not None and doubt.high == start else start - course.late
                 self.changes.append(Change(contact.link, before, contact.branch, low, start))
+                lately = self._lately.setdefault(contact.link, deque(maxlen=CHATTER))
+                lately.append(start)
+                if len(lately) == CHATTER and start - lately[0] <= self._moment:
+                    raise UndecidedError(contact.link, contact.closed, start, chatters=True)
         course.start, course.late = start, fmpq(0)
         self._add_stage(course, Stage(start, moved.closed_links, frozenset(), moved.sliding), moved)
         self._keep(course, moved, end)
