@@ -263,5 +263,5 @@ def test_what_changes_its_branch_for_ever_is_refused_at_once() -> None:
     ]
     output = {"until": 4, "velocity": ["n0", "n1", "n2"]}
     table = {"name": "tie", "system": {"type": "chain", "parts": parts}, "load": loads, "output": output}
-    with pytest.raises(GrazingError, match="^spring at 0: changes its branch 8 times within no time at tau = 1, "):
+    with pytest.raises(GrazingError, match=r"^spring at 0: changes its branch 8 times within no time at tau = 1, "):
         events(lower(Scene(**table)))

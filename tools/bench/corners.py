@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
@@ -44,9 +44,9 @@ def rows(folder: Path) -> Iterator[Sequence[str]]:
     """Events of each example in a folder and the time that they take, that of a run, and its C."""
     for each in _examples(folder):
         found, seconds = _find_events(lower(each))
-        begin = perf_counter()
+        begin = process_time()
         wavesym.run(each)
-        ran = perf_counter() - begin
+        ran = process_time() - begin
         program = make(lower(each))
         made = files(program)
         double = medians([many(each, made, FAST)])[0] / (CALLS * SAMPLES * len(each.outputs))
@@ -93,9 +93,9 @@ def _refine(start: Start, model: Model, sizes: Array) -> Iterator[tuple[int, flo
     true = np.array(Reference(model).values(taus.tolist()))
     error = math.inf
     while error > min(TARGETS) and _points_moved(fine := grid.finer(finer), start.until) <= _MOST:
-        begin = perf_counter()
+        begin = process_time()
         readings, _ = integrate_differences(problem, fine.step, finer * instants)
-        seconds = perf_counter() - begin
+        seconds = process_time() - begin
         off = np.abs(np.array(problem.outputs(readings, taus)) - true)
         error = float(np.max(np.max(off, axis=1) / sizes))
         yield int(start.until / float(fine.step)), seconds, error
@@ -125,5 +125,5 @@ def _examples(folder: Path) -> list[Scene]:
 def _find_events(model: Model) -> tuple[int, float]:
     """How many there are, and the seconds that it takes to find them all."""
     outcome.cache_clear()
-    begin = perf_counter()
-    return len(events(model)), perf_counter() - begin
+    begin = process_time()
+    return len(events(model)), process_time() - begin
