@@ -135,6 +135,18 @@ MISTAKES = [
     (ROD, "{ rod = 1 }, { contact = 0, name = 1 }", "system.parts[2].name: unknown key; write contact"),
     (
         ROD,
+        '{ rod = 1 }, { contact = 0, restitution = "1/2" }',
+        "system.parts[2].restitution: unknown key; leave it out: it is no law of waves, how fast a rod rebounds "
+        "follows from what travels in it",
+    ),
+    (
+        ROD,
+        "{ rod = 1 }, { spring = 1, yield = 1, J = 2 }",
+        "system.parts[2].J: unknown key; write dashpot = c; Smith's damping J v R is a product and no such law, c = J R "
+        "stands for it",
+    ),
+    (
+        ROD,
         '{ rod = 1 }, "contact", "contact"',
         "system.parts[3]: a contact beside a contact; write a rod or a mass between them",
     ),

@@ -164,6 +164,11 @@ class SpringLaw(SceneTable):
         return ((1 if self.only == "pull" else -1, self.gap or -abs(self.preload / self.spring)),)
 
 
+_SMITH = dict.fromkeys(
+    ("J", "damping"), "write dashpot = c; Smith's damping J v R is a product and no such law, c = J R stands for it"
+)
+
+
 class RodPart(ChainPart, SpringLaw):
     """An elastic rod; a spring, a dashpot and friction in parallel to it go from end to end."""
 
@@ -180,6 +185,8 @@ class RodPart(ChainPart, SpringLaw):
 
 class PointPart(ChainPart, SpringLaw):
     """What moves as one: a rigid mass or a massless joint, with a dashpot, a spring and friction to the ground."""
+
+    instead: ClassVar[Mapping[str, str]] = _SMITH
 
     velocity: Exact | None = None
     name: PartName | None = None
@@ -228,6 +235,7 @@ class LinkPart(ChainPart, SpringLaw):
     """A spring, a dashpot and friction between the parts on its two sides."""
 
     key: ClassVar[str] = "spring"
+    instead: ClassVar[Mapping[str, str]] = _SMITH
 
     @model_validator(mode="after")
     def _require_force(self) -> LinkPart:
@@ -240,6 +248,9 @@ class ContactPart(ChainPart):
     """A contact between the parts on its two sides, which at tau = 0 are so far apart."""
 
     key: ClassVar[str] = "contact"
+    instead: ClassVar[Mapping[str, str]] = {
+        "restitution": "leave it out: it is no law of waves, how fast a rod rebounds follows from what travels in it"
+    }
 
     contact: NotNegative = Field(description="a gap")
 
