@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import wavesym
+from tests.exact.test_corner_truth import wrong
 from wavesym.exact.contacts.steady_joint import SteadyJoint
 
 ABSORBING = ["absorbing", {"rod": "1/2"}]
@@ -73,3 +74,24 @@ def test_a_joint_that_a_load_no_longer_pulls_does_not_stop_a_mass() -> None:
 def test_without_that_it_would_stop(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(SteadyJoint, "may_join", lambda *_: True)
     assert [kind for kind, _ in events_of(blow(-0.3))] == ["closes"]
+
+
+M: dict[str, Any] = {"mass": 2, "name": "n2", "velocity": "-1/4"}
+OVER: list[Any] = [{"mass": 1, "name": "n0", "velocity": 1}, {"friction": "2/5"}, *LIGHT[:2]]
+RUBBING: dict[str, tuple[list[Any], dict[str, Any] | None]] = {
+    "comes to rest": ([*ABSORBING, RUBS, {"contact": "1/8"}, M], None),
+    "bounces": ([*ABSORBING, RUBS, {"contact": "1/8"}, M, {"spring": 1}, "fixed"], None),
+    "pulled off": ([*ABSORBING, RUBS, {"contact": "1/8"}, M], {"at": "n2", "times": [1], "steps": ["1/8"]}),
+    "pushed back": ([*ABSORBING, RUBS, {"contact": "1/8"}, M], {"at": "n1", "times": [1], "steps": ["1/8"]}),
+    "struck again": (["fixed", {"rod": "1/2"}, RUBS, {"contact": "1/8"}, M], None),
+    "over friction": ([*OVER, "absorbing"], None),
+    "on a spring": (["fixed", {"spring": "1/2"}, *OVER, "absorbing"], None),
+    "on a rod": ([{"rod": 1}, *OVER, "absorbing"], None),
+}
+
+
+@pytest.mark.parametrize("name", RUBBING)
+def test_masses_beside_a_joint_that_rubs_move_as_they_should(name: str) -> None:
+    """Against a solver of its own, which knows which points without mass say what a mass may be."""
+    parts, load = RUBBING[name]
+    assert wrong(chain(parts, load).model_dump(mode="json", by_alias=True, exclude_unset=True), first="0") == []

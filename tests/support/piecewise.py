@@ -222,6 +222,8 @@ class PiecewiseChain:
 
         for branches in sorted(product(*offered), key=changes):
             found = self._moved(joint, branches, now, step, arriving)
+            if found is None:
+                continue
             watched = [
                 guard
                 for k, corner, branch in zip(joint.corners, corners, branches, strict=True)
@@ -262,15 +264,29 @@ class PiecewiseChain:
         now: fmpq,
         step: fmpq,
         arriving: Mapping[tuple[int, int], arb_poly],
-    ) -> _Moved:
-        """Order by order: velocities of points without mass, accelerations of masses, and pulls of what is held."""
+    ) -> _Moved | None:
+        """Order by order: velocities of points without mass, accelerations of masses, and pulls of what is held.
+
+        None where what is held cannot be, as masses move, or where nothing says what each takes.
+        """
         made = self._made
         given = {p: self._given(p, now) for p in joint.points if p in made.motion}
         light = tuple(p for p in joint.points if made.mass[p] == 0 and p not in given)
         heavy = tuple(p for p in joint.points if made.mass[p] != 0 and p not in given)
         on = dict(zip(joint.corners, branches, strict=True))
-        held = tuple(k for k, branch in on.items() if branch.held)
-        inverse = self._inverse(heavy, light, on)
+        bonds = self._bonds(light, on)
+        held = tuple(bonds)
+        speed_of = {p: self._speed[p] for p in heavy} | {p: series(arb(0)) for p, series in given.items()}
+        if any(
+            abs(sum((speed_of[p] * b for p, b in bond.items()), arb(0))) > SAME
+            for number, bond in bonds.items()
+            if set(made.corners[number].stretch) & set(light) and not set(bond) & set(light)
+        ):
+            return None
+        try:
+            inverse = self._inverse(heavy, light, on, bonds)
+        except ZeroDivisionError:
+            return None
         acting = {p: self._acting(p, now) for p in (*heavy, *light)}
         for (k, side), wave in arriving.items():
             rod = made.rods[k]
@@ -300,7 +316,7 @@ class PiecewiseChain:
                         known[p] -= pull * factor
             rows = list(known.values())
             for number in held:
-                factors = stretch[number]
+                factors = bonds[number]
                 if any(p in light for p in factors):
                     rows.append(-sum((q[p][k] * b for p, b in factors.items() if p not in light), arb(0)))
                 else:
@@ -331,7 +347,31 @@ class PiecewiseChain:
                 total += u[other][k] * stiff
         return total
 
-    def _inverse(self, heavy: tuple[int, ...], light: tuple[int, ...], on: Mapping[int, Branch]) -> list[list[arb]]:
+    def _bonds(self, light: tuple[int, ...], on: Mapping[int, Branch]) -> dict[int, dict[int, fmpq]]:
+        """Of each corner that is held a sum of velocities that is 0; of points without mass they say each only once.
+
+        So a mass that touches a joint which friction holds is at rest itself.
+        """
+        bonds = dict[int, dict[int, fmpq]]()
+        pivots = list[tuple[int, dict[int, fmpq]]]()
+        for number in (k for k, branch in on.items() if branch.held):
+            bond = dict(self._made.corners[number].stretch)
+            for pivot, other in pivots:
+                part = bond.get(pivot, fmpq(0)) / other[pivot]
+                bond = {p: bond.get(p, fmpq(0)) - part * other.get(p, fmpq(0)) for p in (*bond, *other)}
+            bond = {p: factor for p, factor in bond.items() if factor != 0}
+            if among := [p for p in bond if p in light]:
+                pivots.append((among[0], bond))
+            bonds[number] = bond
+        return bonds
+
+    def _inverse(
+        self,
+        heavy: tuple[int, ...],
+        light: tuple[int, ...],
+        on: Mapping[int, Branch],
+        bonds: Mapping[int, Mapping[int, fmpq]],
+    ) -> list[list[arb]]:
         """Of what accelerations of masses, velocities of points without, and pulls of what is held obey."""
         key = (heavy, light, tuple((k, branch.held, branch.dashpot) for k, branch in on.items()))
         if key not in self._inverses:
@@ -349,12 +389,12 @@ class PiecewiseChain:
                             factors = made.corners[k].stretch
                             rows[i][j] += branch.dashpot * factors.get(p, fmpq(0)) * factors.get(other, fmpq(0))
             for j, number in enumerate(held, len(free)):
-                factors = made.corners[number].stretch
-                jumping = any(p in light for p in factors)
+                bond = bonds[number]
+                jumping = any(p in light for p in bond)
                 for i, p in enumerate(free):
-                    rows[i][j] = factors.get(p, fmpq(0))
+                    rows[i][j] = made.corners[number].stretch.get(p, fmpq(0))
                     if not (jumping and p in heavy):
-                        rows[j][i] = factors.get(p, fmpq(0))
+                        rows[j][i] = bond.get(p, fmpq(0))
             solved = fmpq_mat(rows).inv().tolist() if size else []
             self._inverses[key] = [[arb(each) for each in row] for row in solved]
         return self._inverses[key]
