@@ -198,8 +198,8 @@ def corner_figures(examples: Path) -> Iterator[str]:
     """Links with corners: also measured alone, by `python -m tools.bench FOLDER corners`."""
     yield corners.TITLE
     yield ""
-    yield "The examples whose laws change, in seconds of processor: all events to 20 digits, `run` with 1001 samples, and"
-    yield f"the C of pieces at the scene's tolerance with `{' '.join(FAST)}`."
+    yield "The examples whose laws change, in seconds of processor: all events to 20 digits, `run` with 1001 samples,"
+    yield f"and the C of pieces at the scene's tolerance with `{' '.join(FAST)}`."
     yield ""
     yield from _table(corners.HEAD, corners.rows(examples))
     yield ""
