@@ -142,8 +142,8 @@ MISTAKES = [
     (
         ROD,
         "{ rod = 1 }, { spring = 1, yield = 1, J = 2 }",
-        "system.parts[2].J: unknown key; write dashpot = c; Smith's damping J v R is a product and no such law, c = J R "
-        "stands for it",
+        "system.parts[2].J: unknown key; write dashpot = c; Smith's damping J v R is a product and no such law, "
+        "c = J R stands for it",
     ),
     (
         ROD,
