@@ -668,3 +668,34 @@ def test_without_a_band_it_goes_to_the_fifth_mode_without_dashpots() -> None:
     frequency = wavesym.frf(scene, points=9).frequency
     assert frequency[0] > 0
     assert frequency[-1] == float(f"{4 * np.pi:.3g}")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_polynomial_is_below_what_is_above_its_top_and_not_below_what_is_not(seed: int) -> None:
+    """(1 + a s)/(1 + b s + c s^2) near its top, which no bound by absolute values of coefficients tells from more."""
+    draw = np.random.default_rng(seed)
+    a, b, c = draw.normal(size=3) + 1j * draw.normal(size=3)
+    powers = [[acb(1.0), acb(a)], [acb(1.0), acb(b), acb(c)]]
+    half = 0.05
+    s = np.linspace(-half, half, 400_001)
+    largest = float((np.abs((1 + a * s) / (1 + b * s + c * s * s)) ** 2).max())
+    with ctx.workprec(200):
+        fractions = resonance._Fractions([powers[0]], powers[1])
+        assert fractions.stays_below(0, arb(largest * (1 + 1e-9)), arb(half))
+        assert not fractions.stays_below(0, arb(largest * (1 - 1e-9)), arb(half))
+
+
+def test_equal_peaks_of_many_parts_take_few_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Resonances of nearly one height were followed to where their tops are points."""
+    counts = [0]
+
+    def counted(transfer: object, w: arb) -> object:
+        counts[0] += 1
+        return fractions(transfer, w)
+
+    fractions = resonance._fractions
+    monkeypatch.setattr(resonance, "_fractions", counted)
+    (_, bit) = wavesym.frf(drill_string(14), [0.5, 15.0]).peaks()
+    assert bit.low <= 20.0 * (1 + 1e-12)
+    assert bit.high >= 20.0 * (1 - 1e-9)
+    assert counts[0] < 150

@@ -3,7 +3,8 @@
 On an interval about m of half width r a function is its Taylor polynomial about m, and a rest that its second
 derivative on the whole interval bounds: h(m) + h'(m) s + h''(interval)/2 s^2, |s| <= r, all of it in balls. Intervals
 whose amplitudes may exceed the greatest one found so far, L, are halved until none is left. An amplitude |N/D| that
-hardly changes stays near L: then |N|^2 - L^2 |D|^2 is taken as one polynomial, in which what is alike cancels.
+hardly changes stays near L, and so does the top of a peak of nearly that height: then |N|^2 - L^2 |D|^2 is taken as one
+polynomial, in which what is alike cancels, and is itself looked at in parts.
 
 Where no half has a bound, D is 0. That is a pole if it is proved to be one: D is real and has two signs, and N is not
 0. Where both are, N/D is searched once more in lowest terms, which have no common zeros (exact/modes/lowest_terms.py).
@@ -40,6 +41,7 @@ _GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole
 _MOST = 600_000  # intervals times parts
 _NEWTON = 3
 _TERMS = 10  # of Taylor polynomials
+_LOOKS = 96  # at parts of such a polynomial
 _ROUNDED = arb(2) ** -20  # of a radius: what rounding adds to it, in a few products
 _PARTS = 64  # of the band at first
 _FIRST_MODES, _MOST_MODES = 32, 2048
@@ -254,6 +256,8 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
         for each, squares in zip(level, middles, strict=True):
             for k in each.outputs:
                 found[k].amplitude_squared(each.middle, squares[k][0])
+        for k in {k for each in level for k in each.outputs}:
+            _polish(transfer, found[k], k, first, last)
         following: list[_Interval] = []
         for each, squares in zip(level, middles, strict=True):
             ball, half = each.low.union(each.high), (each.high - each.low) / 2
@@ -281,8 +285,6 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
             if open_for:
                 following += each.halves(open_for)
         level = following
-    for k, search in enumerate(found):
-        _polish(transfer, search, k, first, last)
 
 
 def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb) -> None:
@@ -317,10 +319,21 @@ class _Fractions:
         return [acb_series(_on_ball(each, reach), prec=3) / acb_series(divisor, prec=3) for each in self.numerators]
 
     def stays_below(self, k: int, square: arb, half: arb) -> bool:
-        """Whether an amplitude squared is less than so much within `half` of the middle."""
+        """Whether an amplitude squared is less than so much within `half` of the middle, looked at in parts."""
         excess = _square_of(self.numerators[k]) - square * _square_of(self.divisor)
-        first, *others = excess.coeffs() or [arb(0)]
-        return bool(first + sum((abs(c) * half**n for n, c in enumerate(others, 1)), start=arb(0)) < 0)
+        left = [(excess, half)]
+        for _ in range(_LOOKS):
+            if not left:
+                return True
+            part, half = left.pop()
+            first, *others = part.coeffs() or [arb(0)]
+            if first + sum((abs(c) * half**n for n, c in enumerate(others, 1)), start=arb(0)) < 0:
+                continue
+            if not first < 0:
+                return False
+            half = half / 2
+            left += [(part(arb_poly([sign * half, 1])), half) for sign in (-1, 1)]
+        return False
 
 
 def _reaches_zero(w: arb) -> bool:
