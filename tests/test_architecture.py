@@ -36,9 +36,28 @@ EXCEPTIONS = {(room, other) for room, other, *_ in lines("exceptions")}
 WALLS = {library: set(rooms) for library, *rooms in lines("walls")}
 
 
-def imported(source: str) -> Iterator[str]:
-    """The modules that a source imports, wherever in it."""
-    for node in ast.walk(ast.parse(source)):
+@cache
+def modules() -> list[tuple[str, Path, ast.Module]]:
+    """Every file of the package and of tools: its name in the tree, its path, and what stands in it."""
+    return [
+        (path.relative_to(PACKAGE.parent).as_posix(), path, ast.parse(path.read_text(encoding="utf-8")))
+        for folder in (PACKAGE, PACKAGE.parent / "tools")
+        for path in sorted(folder.rglob("*.py"))
+    ]
+
+
+def statements(root: ast.AST) -> Iterator[ast.AST]:
+    """All statements of a file, wherever in it, and none of the expressions in them, which are many more."""
+    for field in ("body", "orelse", "handlers", "finalbody", "cases"):
+        for node in getattr(root, field, ()):
+            yield node
+            if not isinstance(node, ast.Expr):
+                yield from statements(node)
+
+
+def imported(root: ast.Module) -> Iterator[str]:
+    """The modules that a file imports, wherever in it."""
+    for node in statements(root):
         match node:
             case ast.Import(names):
                 yield from (name.name for name in names)
@@ -53,8 +72,9 @@ def uses() -> list[tuple[str, str, str]]:
     """Each import in the package: its file, its room, and the module."""
     return [
         (path.relative_to(PACKAGE).as_posix(), path.relative_to(PACKAGE).parts[0].removesuffix(".py"), module)
-        for path in sorted(PACKAGE.rglob("*.py"))
-        for module in imported(path.read_text(encoding="utf-8"))
+        for _, path, root in modules()
+        if path.is_relative_to(PACKAGE)
+        for module in imported(root)
     ]
 
 
@@ -129,7 +149,7 @@ def test_libraries_stay_behind_their_walls() -> None:
     ("room", "source"), [("mechanics", "from wavesym.cli import main"), ("exact", "import wavesym.targets")]
 )
 def test_an_arrow_that_runs_up_is_seen(room: str, source: str) -> None:
-    (module,) = imported(source)
+    (module,) = imported(ast.parse(source))
     assert against(ORDER, iter([("file.py", room, module)])) == {(room, module.split(".")[1])}
 
 
@@ -145,7 +165,7 @@ def test_an_arrow_that_runs_up_in_exact_is_seen(room: str, module: str) -> None:
 
 
 def test_a_library_beyond_its_wall_is_seen() -> None:
-    (module,) = imported("def late():\n    from sympy.core import add")
+    (module,) = imported(ast.parse("def late():\n    from sympy.core import add"))
     assert beyond(WALLS, iter([("exact/late.py", "exact", module)])) == {("exact/late.py", "sympy")}
 
 
@@ -205,7 +225,7 @@ def is_participle_or_preposition(name: str) -> bool:
 def names(path: Path, root: ast.Module) -> Iterator[str]:
     """A file, its classes and its functions; not properties, which may say in what state something is."""
     yield path.stem
-    for node in ast.walk(root):
+    for node in statements(root):
         if isinstance(node, ast.ClassDef | ast.FunctionDef):
             decorators = map(ast.unparse, node.decorator_list)
             if not any(decorator.endswith("property") for decorator in decorators):
@@ -214,22 +234,12 @@ def names(path: Path, root: ast.Module) -> Iterator[str]:
 
 def fields(root: ast.Module) -> Iterator[str]:
     """The fields of classes but those that are true or false, which say in what state something is."""
-    for node in ast.walk(root):
+    for node in statements(root):
         if isinstance(node, ast.ClassDef):
             for line in node.body:
                 match line:
                     case ast.AnnAssign(target=ast.Name(id=name), annotation=kind) if ast.unparse(kind) != "bool":
                         yield name
-
-
-@cache
-def modules() -> list[tuple[str, Path, ast.Module]]:
-    """Every file of the package and of tools: its name in the tree, its path, and what stands in it."""
-    return [
-        (path.relative_to(PACKAGE.parent).as_posix(), path, ast.parse(path.read_text(encoding="utf-8")))
-        for folder in (PACKAGE, PACKAGE.parent / "tools")
-        for path in sorted(folder.rglob("*.py"))
-    ]
 
 
 def test_what_is_named_says_what_it_is_or_does() -> None:

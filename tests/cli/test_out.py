@@ -18,6 +18,7 @@ COMMANDS = [
 ]
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("words", COMMANDS)
 def test_the_same_text_goes_to_a_file(words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words.split()) == 0

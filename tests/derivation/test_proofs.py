@@ -51,7 +51,7 @@ SLOW_WHERE_BODIES_STRIKE = [
 ]
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("system", SLOW_WHERE_BODIES_STRIKE, ids=lambda system: system.name)
 def test_every_change_of_an_equation_breaks_the_proof(system):
     equations = list(delay_equations(system))

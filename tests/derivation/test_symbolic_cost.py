@@ -41,6 +41,7 @@ def test_as_many_terms_as_foretold(system, interval, m, intervals):
     assert 1 / 2 < ratio < 8
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("system", "m", "intervals"),
     [(DRIVE, 3, 14), (DRIVE, 30, 2), (DRIVE, 3, 10**9), (BUILDING_FORCE, 12, 1), (COLLISION, 40, 10**6)],

@@ -49,6 +49,7 @@ EVERY = [*product(LAWS, ["step", "ramp"], [1, -1], BESIDE), *product(LAWS, ["wav
 SOME = [each for each in EVERY if each[1:] == ("ramp", 1, "a contact")] + [("slips one way", "wave", -1, "a rod")]
 
 
+@pytest.mark.quick(5)
 @pytest.mark.parametrize(
     ("law", "comes", "way", "beside"),
     [each if each in SOME else pytest.param(*each, marks=pytest.mark.slow) for each in EVERY],

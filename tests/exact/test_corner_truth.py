@@ -138,6 +138,7 @@ def test_friction_that_bears_more_at_rest_breaks_away_as_it_should(seed: int) ->
     assert wrong(breaking_chain(seed), first="0") == []
 
 
+@pytest.mark.slow
 def test_a_limit_at_rest_that_is_slightly_off_is_seen() -> None:
     table = breaking_chain(3)
     parts = [

@@ -85,6 +85,7 @@ def of_elements(ratio, panel=modal.ALL):
     return lower(scene), modal.extrapolate(lower(scene))
 
 
+@pytest.mark.slow
 def test_what_is_extrapolated_is_right_within_its_own_curve():
     """Without damping there are tables in balls to tell."""
     model, found = of_elements(Fraction(0))

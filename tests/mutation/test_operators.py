@@ -110,6 +110,7 @@ def test_what_is_changed_and_run_exists():
     assert [name for name in TESTS if not (ROOT / "tests" / name).exists()] == []
 
 
+@pytest.mark.slow
 def test_known_mutants_can_still_be_made():
     assert not known().keys() - {mutant.names for place in places() for mutant in place}
 

@@ -249,6 +249,7 @@ def solved(step, p, u):
         return np.array([float(near(arb(x)) - at_start * (-arb(step) / 2 * (arb(x) + 1)).exp()) for x in u])
 
 
+@pytest.mark.quick(8)
 @pytest.mark.parametrize("degree", [8, 9, 14])
 @pytest.mark.parametrize("mass", ["10000/3", "10/3", "5/6", "1/10"])
 @pytest.mark.parametrize("ratio", [1, "-1/2"])

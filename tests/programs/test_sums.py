@@ -98,7 +98,7 @@ def missed(values: Array, reference: Reference, taus: Array, bounds: list[float]
     return worst
 
 
-@pytest.mark.quick(4)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(("name", "kind"), KINDS)
 def test_every_program_keeps_its_bounds(name: str, kind: str) -> None:
     given = model(name, fmpq(10**9, 7))

@@ -108,6 +108,7 @@ def test_a_dashpot_makes_frequencies_complex() -> None:
         assert mode.damping == pytest.approx(w.imag / abs(w), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_many_layers_are_as_one() -> None:
     """A rod in 80 pieces, held at one end, half its impedance as a dashpot at the other: as in one piece."""
     found = wavesym.modes(

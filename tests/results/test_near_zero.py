@@ -91,6 +91,7 @@ def test_samples_between_which_an_output_comes_to_0():
     assert -1e-5 < values[0, 1] < 0
 
 
+@pytest.mark.slow
 def test_models_at_run_time():
     """What begins with 0 is 0 there; the velocity that begins with 1 is 0 only where a wave comes back."""
     load = {"at": "gun", "times": [0, 1], "steps": [1, 0], "ramps": [0, 1]}

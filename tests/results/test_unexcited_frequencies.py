@@ -77,6 +77,7 @@ def test_frequencies_met_exactly() -> None:
         assert (excited.poles, excited.possible_poles) == ((1.0,), ())
 
 
+@pytest.mark.slow
 def test_a_bar_that_is_loaded_or_read_in_the_middle() -> None:
     """At w = pi/2 and pi its halves swing against each other. From the middle: 1/(2 w cot 2w + i w/5)."""
     w = np.linspace(1.2, 3.3, 100_001)

@@ -141,7 +141,7 @@ def changed(stiffness, rod_mass, mass, damping):
     return FRAME.with_({"system.storey": storeys, "system.damping": damping.tolist(), "output.tolerance": "1e-7"})
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("k", [2, 1, 0])
 def test_peaks_of_frames_are_those_of_their_scenes(frame, k):
     """Of each set a scene of its own, its modes proved; errors are within the estimate, and values within the bound."""

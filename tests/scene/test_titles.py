@@ -37,6 +37,7 @@ def test_the_identifier_stays(building: Scene) -> None:
     assert Scene(**building.model_dump()) == building
 
 
+@pytest.mark.slow
 def test_people_are_shown_the_name(building: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names = [history.name for history in histories(lower(building)).outputs]
     assert names[-3:] == ["Base shear", "drift@1", "Top drift"]

@@ -16,6 +16,7 @@ SCENE = Scene(
 )
 
 
+@pytest.mark.quick(8)
 @pytest.mark.parametrize("number", range(40))
 def test_a_drawn_scene_can_be_drawn_again_and_written_down(number, tmp_path):
     scene, precision = attack.drawn(number)

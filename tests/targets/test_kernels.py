@@ -134,6 +134,7 @@ def test_a_program_is_its_kernel_under_its_own_name(of):
     assert text.endswith(re.sub(r"\bname_", f"{made.name}_", re.sub(r"\bNAME_", f"{made.name.upper()}_", kernel)))
 
 
+@pytest.mark.quick(10)
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_fast_math_is_refused_unless_it_is_asked_for(kernel):
     assert "no longer hold" in complaint(kernel, C, "-ffast-math", step="-E")

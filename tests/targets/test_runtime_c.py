@@ -172,8 +172,8 @@ def test_a_degree_too_low_is_told(tmp_path):
     assert made.build(1, 100, 100) == 0
 
 
-def test_out_of_range_is_nan(tmp_path):
-    made = BuiltModel(COLLISION, ["kappa"], tmp_path, flags=SANITIZED)
+def test_out_of_range_is_nan(tmp_path, thorough):
+    made = BuiltModel(COLLISION, ["kappa"], tmp_path, flags=SANITIZED if thorough else ())
     assert made.build(1, 2) == 0
     for tau in (-1e-300, np.nextafter(6.0, 7.0), np.nan, np.inf, -np.inf):
         status, out = made.at(tau)
@@ -195,7 +195,7 @@ def test_out_of_range_is_nan(tmp_path):
         assert np.isnan(out[:, 1:]).all() == status
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_it_compiles_without_a_warning(language, tmp_path):
     written(DRIVE, ["kappa", "load"], tmp_path)

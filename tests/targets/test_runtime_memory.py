@@ -82,7 +82,7 @@ def vector(flags):
     return 64 if "__AVX512F__" in known else 32 if "__AVX__" in known else 16
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @needs_graphs
 @pytest.mark.parametrize(
     "how",

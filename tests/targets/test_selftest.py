@@ -190,6 +190,7 @@ def test_every_number_of_a_march_that_can_matter_does(tmp_path):
     assert program.passes()
 
 
+@pytest.mark.slow
 def test_a_change_far_below_the_bound_is_none(tmp_path):
     """So it is the size of a change that is seen, not that there is one."""
     program = mutable("pieces", "double", "1e-9", tmp_path)
@@ -208,6 +209,7 @@ def test_a_self_test_of_few_points_would_miss_some(monkeypatch, tmp_path):
     assert len(unseen(program, "coefficient", program.outputs())) > 100
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("evaluator", ["closed", "pieces"])
 def test_the_last_printed_digits_of_a_coefficient_matter(evaluator, tmp_path):
     """In the text itself, as an editor would change it."""
@@ -254,7 +256,7 @@ def test_values_that_are_wrong_by_two_bounds_are_seen(evaluator, right, tmp_path
     assert statuses(made, right, right.replace("return sum", f"return sum + {wrong!r}"), tmp_path) == [0, 1]
 
 
-@pytest.mark.quick(3)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("evaluator", "right", "wrong"),
     [

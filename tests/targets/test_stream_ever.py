@@ -134,6 +134,7 @@ def test_a_billion_windows_later_every_bit_is_the_same(windows):
     assert not differs(Open(), windows)
 
 
+@pytest.mark.slow
 def test_instants_that_rounding_moves_are_one():
     """0.1 as a double is not a tenth: after 50 000 steps instants have moved by 3e-13, and are others twice."""
     model = Open()

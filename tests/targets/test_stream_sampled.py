@@ -191,6 +191,7 @@ def test_a_record_in_seconds_has_room_for_all_of_its_samples(spacing):
     assert worst < stream.lost < (1e-8 if spacing == "0.0002" else 1e-9)
 
 
+@pytest.mark.slow
 def test_room_is_known_from_the_scene_and_from_the_step():
     """All instants of the record but 0; of steps those inside of panels, none where panels end with all of them."""
 

@@ -115,6 +115,7 @@ def a_digit_changed(text, file, which):
     return f"{text[:at]}{(int(text[at]) + 5) % 10}{text[at + 1 :]}"
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("file", ["small.c", "small.py"])
 @pytest.mark.parametrize("evaluator", ["closed", "pieces", pytest.param("march", marks=pytest.mark.slow)])
 def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):

@@ -262,6 +262,7 @@ def test_another_limit_at_rest_is_seen_by_both_integrators(check: Any) -> None:
     assert not all(outcome.passed for outcome in check(known(table, other)))
 
 
+@pytest.mark.slow
 def test_an_event_that_is_told_late_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     seen, right = drawn(1), integrations.events
 

@@ -88,6 +88,7 @@ def failing(text: str) -> set[str]:
     return {line[start:end].strip() for line in block.splitlines() if line.endswith("FAIL")}
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("kernel", [k if k in QUICK else pytest.param(k, marks=pytest.mark.slow) for k in FAULTS])
 def test_a_fault_is_seen_and_its_program_named(
     kernel: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
