@@ -91,6 +91,7 @@ def test_without_its_dashpot_the_integrator_sees_it():
     assert np.allclose(values, truth, rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_it_is_verified(monkeypatch):
     text, passed = api.verify([scene()], "pieces")
     assert passed, text

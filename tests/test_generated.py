@@ -34,6 +34,7 @@ def test_nothing_else_is_kept():
     assert sorted(path.name for path in KEPT.iterdir()) == sorted([*EXAMPLES, "errata.md"]), "make generated"
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_check_holds_what_is_kept(name, capsys):
     assert main(["generate", name, "-o", str(KEPT / name), "--language", "all", "--check"]) == 0

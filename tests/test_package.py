@@ -50,6 +50,7 @@ def test_only_the_command_that_is_called_is_imported() -> None:
     assert commands == {"wavesym.cli.scenes", "wavesym.cli.parameters"}
 
 
+@pytest.mark.slow
 def test_what_runs_a_record_waits_for_nothing_that_it_does_not_need() -> None:
     loaded = run_python("import wavesym.api, wavesym.programs.modes.evaluator\nimport sys; print(*sys.modules)")
     assert not {"sympy", "scipy", "matplotlib", "xarray", "pint"} & set(loaded.split())

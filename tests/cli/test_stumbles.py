@@ -106,6 +106,7 @@ def test_times_beyond_the_horizon_are_named(capsys: pytest.CaptureFixture[str]) 
     assert err == "mine: 2 of 3 tau are outside 0 to 2, where values are nan\n"
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("command", ["run", "generate", "plot"])
 def test_a_scene_without_a_load_is_told(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = [command, "mine.toml", *(["-o", "mine.svg"] if command == "plot" else [])]
@@ -260,6 +261,7 @@ def test_a_path_that_leads_nowhere(path: str, wrong: str) -> None:
     assert wrong in str(found.value)
 
 
+@pytest.mark.slow
 def test_a_package_is_checked_with_all_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     asked = ["generate", "drive_m1", "--package", "-o", str(tmp_path / "out")]
     assert main(asked) == 0

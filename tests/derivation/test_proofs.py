@@ -24,6 +24,7 @@ CASES = [
 ]
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("system", SYSTEMS, ids=lambda system: system.name)
 def test_delay_equations_are_the_node_law(system):
     proved = list(node_law(system, delay_equations(system)))

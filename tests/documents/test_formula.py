@@ -42,6 +42,7 @@ def assert_agrees(made: Scene, name: str, values: list[float]) -> None:
     assert values == pytest.approx(expected, abs=1e-9 * max(1.0, float(np.abs(expected).max())))
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize("symbolic", [False, True])
 @pytest.mark.parametrize("name", NAMED)
 def test_an_expression_for_sympy_is_the_output(name: str, symbolic: bool) -> None:

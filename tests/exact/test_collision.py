@@ -147,6 +147,7 @@ def test_heavy_bodies_part_late(until):
     assert bool(ends(scene)) == (until == 50)
 
 
+@pytest.mark.slow
 def test_ends_move_in_proportion_to_what_little_ratios_differ_by():
     """Down to 1e-15, where families of rates that differ so little cancel almost all of each other."""
     (equal,) = ends(collision(["1/5", "1/5"], [1, "-1/2"], 12)).values()

@@ -119,6 +119,7 @@ def struck(tau, alpha):
     return p(tau) + (p(tau - 2) if tau > 2 else 0)
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("ratio", range(1, 9))
 def test_a_rigid_mass_on_a_fixed_bar(ratio):
     """The contact ends where the closed form says, and for some ratios the bar strikes again."""

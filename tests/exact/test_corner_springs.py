@@ -52,6 +52,7 @@ def test_a_body_meets_a_spring_and_leaves_it() -> None:
     assert v == pytest.approx(np.where(taus < 0.5, 1, np.where(inside, np.cos(2 * w), -1)), rel=1e-15)
 
 
+@pytest.mark.slow
 def test_backlash_has_a_period() -> None:
     """Twice half a period of the spring, and twice the way through the gap."""
     found = happenings(body({"gap": ["-1/2", "1/4"]}, 8))

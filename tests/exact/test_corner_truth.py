@@ -83,7 +83,7 @@ def test_springs_with_laws_change_branches_as_they_should(seed: int) -> None:
     assert wrong(seeded(seed)) == []
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", DAMPED)
 def test_dashpots_beside_springs_that_yield_act_all_the_time(seed: int) -> None:
     assert wrong(damped_chain(seed)) == []

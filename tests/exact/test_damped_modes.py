@@ -123,6 +123,7 @@ def zeros_within(network, radius):
 SLOW = ["ten storeys", "across", "hardly moving"]
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in DAMPED])
 def test_no_complex_frequency_is_missed(name):
     """The argument principle, on a circle through the widest gap of some."""

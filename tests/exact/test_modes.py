@@ -156,6 +156,7 @@ def test_frequencies_in_books():
     assert all(a.overlaps(b) for a, b in zip(short, frequencies(building(["1", "3/5"]).network, 12), strict=True))
 
 
+@pytest.mark.quick(4)
 @pytest.mark.parametrize("name", NASTY)
 def test_no_frequency_is_missed(name):
     """Each ball lies above the one before; none but one of a free chain is 0; those left of w are as many as without

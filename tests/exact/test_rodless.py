@@ -107,7 +107,7 @@ def expm(matrix: Array) -> Array:
     return total
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("seed", range(6))
 def test_motions_are_exponentials_of_a_matrix(seed: int) -> None:
     dense = Dense(Random(seed), damped=seed % 2 == 1)

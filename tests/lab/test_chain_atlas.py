@@ -101,6 +101,7 @@ def test_contacts():
     assert [point.error for point in kept] == sorted(point.error for point in kept)
 
 
+@pytest.mark.slow
 def test_every_refusal_has_its_reason():
     panels = {name: (scene, places[:2]) for name, (scene, places) in chains.REFUSALS.items()}
     family = chains.refusals(quietly, panels)

@@ -235,6 +235,7 @@ def test_where_nothing_jumps_there_is_one_panel():
     assert "nan" not in to_csv(replace(MEASURED, rows=tuple(smooth)))
 
 
+@pytest.mark.slow
 def test_a_curve_that_says_nothing_at_fronts_is_left_out_there():
     pytest.importorskip("matplotlib")
     from wavesym.lab.chart.drawing import draw

@@ -40,6 +40,7 @@ def check_counts(family, within):
         assert max(slopes[2:]) < -3
 
 
+@pytest.mark.slow
 def test_the_number_of_modes():
     check_counts(modal.mode_counts(quietly, spacings=[Fraction(5, 2)], digits=(1, 3, 4, 5)), within=0.1)
 

@@ -43,7 +43,7 @@ def test_a_condition_that_is_falsified_loses_its_verdict(id, changes):
     assert judged(id, **changes).verdict == "untested"
 
 
-@pytest.mark.quick(5)
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("id", "slip"),
     [

@@ -25,6 +25,7 @@ def corrected(id: str, *edits: tuple[str, str], ranges: Sequence[str] | None = N
     return verdict(id, slip=slip.model_copy(update={"correction": text, "ranges": ranges}))
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize(
     ("id", "before", "after"),
     [

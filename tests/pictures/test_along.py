@@ -74,6 +74,7 @@ def test_strains_run_from_end_to_end_of_each_rod() -> None:
     assert np.allclose(strain.bands[0].values[:, ::41], found, rtol=0, atol=ALLOWED * np.max(np.abs(found)))
 
 
+@pytest.mark.slow
 def test_sides_that_are_one_place_are_asked_for_once() -> None:
     """A contact that counts as closed has one strain and one velocity, and stands for both of its sides."""
     collision = Scene.from_toml("collision_m4")
@@ -172,7 +173,7 @@ def test_sizes_go_from_light_to_dark_and_values_with_a_sign_from_white() -> None
     assert signed[0] < signed[SHADES // 2] > signed[-1]
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["envelope", "map"])
 def test_the_same_picture_again(kind: str, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")

@@ -215,6 +215,7 @@ def figure(building: Histories) -> Figure:
     return draw(building, load_histories(building.model))
 
 
+@pytest.mark.slow
 def test_every_output_is_named_beside_its_curve_and_titled_with_its_unit(building: Histories, figure: Figure) -> None:
     names = [text.get_text() for axes in figure.axes for text in axes.texts if text.get_text()]
     assert sorted(name for name in names if " at " not in name) == sorted(

@@ -195,6 +195,7 @@ def shafts(until, time=0, tolerance="1e-10") -> Scene:
     return Scene(name="made", system=system, load=load, output=output)
 
 
+@pytest.mark.quick(3)
 @pytest.mark.parametrize("until", ["3.1", "3.01", "3.001", "3.000001"])
 @pytest.mark.parametrize("evaluator", ["march", "auto"])
 def test_what_has_just_arrived_is_within_its_bound(until, evaluator) -> None:

@@ -210,6 +210,7 @@ def ended_at_1(degree) -> BodyOperator:
     return BodyOperator(1.0, (0.0,) + (1.0,) * degree, none, (0.0, 1.0, *none[2:]), 0.0, 0.0, 2.0**-40)
 
 
+@pytest.mark.slow
 def test_what_is_rounded_on_the_way_down_is_handed_on_to_the_last() -> None:
     """The last coefficient of p comes to y_1, three times rounded at each step; on a way so long that this shows."""
     degree = 20

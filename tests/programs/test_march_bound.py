@@ -240,6 +240,7 @@ def test_rounding_that_is_left_out_is_seen(law: str, monkeypatch: pytest.MonkeyP
     assert proved(plan, degree, SINGLE)[1] < error
 
 
+@pytest.mark.quick(2)
 @KINDS
 def test_truncation_that_is_left_out_is_seen(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A march of a low degree beside one of a high degree, in the norm of energy; scatterers need no degree."""

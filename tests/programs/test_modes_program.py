@@ -231,6 +231,7 @@ def streamed(program, made, samples):
     return out.T
 
 
+@pytest.mark.slow
 def test_c_takes_the_samples_of_the_scene_and_numpy_has_them(tmp_path):
     program = make(lower(scene()), Request(evaluator="modes"), tested=True)
     made = files(program, "all")

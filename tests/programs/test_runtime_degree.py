@@ -79,6 +79,7 @@ def first_that_misses_nothing(plan, share):
     return degree
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(
     ("model", "share", "expected"),
     [(NARROW, 1e-6 / (24 * 47), 33), (STIFF, 1e-13, None), (STIFF, 1e-5, None), (BRANCHED, 1e-12, None)],

@@ -171,6 +171,7 @@ def test_a_program_that_drops_a_load_is_seen(monkeypatch: pytest.MonkeyPatch) ->
     assert missed(program(given, deaf).evaluate(taus), reference, taus, [output.bound for output in made.outputs]) > 1e6
 
 
+@pytest.mark.slow
 def test_contacts_are_refused_by_the_march_alone() -> None:
     given = lower(Scene(**{**ALL, "output": {**CHAIN["output"], "until": 5, "tolerance": "1e-6"}}))
     form = choose(given, "pieces").evaluator

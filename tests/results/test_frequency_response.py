@@ -354,6 +354,7 @@ def test_a_narrow_peak_between_points_is_not_missed() -> None:
     assert peak.frequency == pytest.approx(np.pi / 2, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_what_nothing_damps_has_no_greatest_amplitude() -> None:
     peak = wavesym.frf(rod(), [1.0, 2.0]).peaks()["strain@0"]
     assert (peak.amplitude, peak.high) == (np.inf, np.inf)
@@ -369,6 +370,7 @@ def test_what_nothing_damps_has_no_greatest_amplitude() -> None:
     assert wavesym.frf(free, [0.0, 1.0], load=0).poles == (0.0,)
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("beside", [0, -1, -20, 1])
 def test_a_band_that_ends_just_before_a_pole_has_a_greatest_amplitude(beside: int) -> None:
     """A held rod under a force at its end moves tan(w)/w: pi/2 lies 2e-17 above 1.5707963267948966."""

@@ -112,6 +112,7 @@ def test_a_floor_of_a_scene(damping):
         assert found.values[0, k] == pytest.approx(w * w * largest, abs=found.change * found.values.max())
 
 
+@pytest.mark.slow
 def test_periods_are_the_same_numbers_in_all_scenes():
     short, long = (spectra(lower(floor(until)), 0.05).periods for until in (30, 40))
     assert short == pytest.approx(long[: len(short)], rel=1e-15)

@@ -77,6 +77,7 @@ def test_no_error_is_above_its_estimate(model, names):
     assert estimates[0, 1:].max() < 1e-5
 
 
+@pytest.mark.slow
 def test_a_gradient_of_nothing_is_said_to_be_none(model):
     """A spring that holds 1e-6 of the others' mass: two outputs know nearly nothing of it."""
     errors, estimates = shares_of_estimates(model, [HOSTILE["a light last mass"]])

@@ -309,6 +309,7 @@ def test_sets_beyond_the_tolerance_are_marked(sprung):
     assert checks.why[1] == "an estimate above 1e-06, the tolerance"
 
 
+@pytest.mark.slow
 def test_where_doubles_have_no_shape_nothing_is_claimed():
     """The node between two rods alike is at rest in some modes: there K has no value."""
     scene = wavesym.Scene(

@@ -113,6 +113,7 @@ def test_a_response_with_loss_has_the_loss_in_stresses_too() -> None:
     assert np.abs(stress.imag).min() > 0
 
 
+@pytest.mark.slow
 def test_many_structures_at_once_divide_each_by_its_own_area() -> None:
     """Walls of many areas are sets of numbers of the first one, whose stresses are others."""
     areas = np.arange(20, 30) / 10

@@ -151,6 +151,7 @@ def test_a_ram_on_a_cushion_and_a_pile_without_end(stiffness: int) -> None:
     assert near(made.value("velocity", "head", half), force / 2)
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize("seed", range(6))
 def test_what_sliding_and_yielding_takes_is_what_energy_is_lost(seed: int) -> None:
     table = closed_chain(seed)

@@ -105,6 +105,7 @@ def test_a_contact_without_force_waits_for_what_parts_it() -> None:
     assert events(PiecewiseChain(scene(*parts, load=load), 4)) == [("1", "opens", 2)]
 
 
+@pytest.mark.slow
 def test_drawn_scenes_are_decided_and_many_things_happen() -> None:
     found = []
     for seed in (1, 5, 14, 18):

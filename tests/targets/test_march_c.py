@@ -244,7 +244,7 @@ BREAKS = {
 }
 
 
-@pytest.mark.quick(4)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("what", BREAKS)
 def test_what_is_broken_is_seen(what: str, tmp_path: Path) -> None:
     of, (right, wrong) = chain("double"), BREAKS[what]

@@ -330,7 +330,7 @@ def test_bad_numbers_are_refused_and_too_few_modes_told():
         assert np.isnan(frame.frame_error_estimate(of)) == (status == 1)
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [SPRUNG, FRAME], ids=["sprung", "frame"])
 def test_a_stream_of_the_scenes_loads_gives_its_histories(scene):
     """Samples in the units that the header names."""

@@ -151,6 +151,7 @@ def test_a_broken_stream_is_seen_by_its_selftest(fault, tmp_path):
     assert selftest(tmp_path, "-Wno-unused-parameter", "-Wno-unused-variable") != 0
 
 
+@pytest.mark.slow
 def test_a_number_that_is_off_is_seen_by_the_selftest(tmp_path):
     """Of every table, in a relative 1e-9."""
     written(evaluator(storeys(3, 3, 0.05), uniform([0, *SAMPLES], fmpq(1)), 80.0), tmp_path)

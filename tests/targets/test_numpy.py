@@ -13,6 +13,7 @@ from wavesym.running.compilation import import_text
 from wavesym.scene import lower
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
 def test_what_is_out_of_range_is_nan_without_a_warning(evaluator: str, precision: str) -> None:
     made = files(lower(scene("range", "1e-9" if precision == "double" else "1e-2")), "numpy", evaluator, precision)

@@ -139,6 +139,7 @@ def test_what_a_body_sends_wrong_goes_on_through_a_joint(mistake, tmp_path):
     assert (wrong <= bound) == (mistake is None)
 
 
+@pytest.mark.slow
 def test_a_bound_is_relative_to_what_is_certainly_there(tmp_path):
     """Pulled alike from both sides the middle moves by its own little load alone, and what both pulls round stays: it
     may be as large as the motion, whose largest value is then known to be no less than what is seen less that."""

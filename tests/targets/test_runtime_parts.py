@@ -171,6 +171,7 @@ def test_what_means_nothing_is_refused_in_one_line(options, told, tmp_path, caps
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.slow
 def test_check_compares_with_what_was_asked_for(tmp_path, capsys):
     folder = str(tmp_path / "made")
     asked = ["generate", "building_m2", "-o", folder, "--runtime", "kappa", "--with", "peaks", "--kappa-max", "5/2"]

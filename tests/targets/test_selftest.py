@@ -244,6 +244,7 @@ def test_it_allows_one_bound_of_the_largest_value(evaluator):
     assert 0.9 * float(least) <= float(allowed) / (bound + 2.0**-52) <= float(most)
 
 
+@pytest.mark.quick(1)
 @pytest.mark.parametrize(
     ("evaluator", "right"), [("closed", "return sum;"), ("pieces", "sum = sum * w + *power;\n    }\n    return sum;")]
 )

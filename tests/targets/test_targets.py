@@ -49,6 +49,7 @@ def imports(text):
             yield node.module
 
 
+@pytest.mark.quick(2)
 @pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
 def test_generated_python_imports_nothing_but_numpy(evaluator, precision):
     made = files(lower(scene("made", "1e-2")), "numpy", evaluator, precision)["made.py"]

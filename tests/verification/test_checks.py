@@ -159,7 +159,7 @@ def test_a_wrong_law_of_joints_is_seen_by_all_that_is_not_derived(scene, monkeyp
     assert not all(verdicts(checks.invariants, truth))
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("first", [0, "1/1000"])
 def test_what_only_the_last_number_sees_is_not_left_out(first, monkeypatch):
     """Where contacts are, the last stretch was left out where it has one double, and extremes were proved without."""

@@ -50,6 +50,7 @@ def test_damped_scenes_are_verified(thorough):
     assert "finite elements" in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", [pytest.param("py", marks=pytest.mark.slow), "c"])
 def test_other_damping_is_seen(language, monkeypatch):
     """In C and in NumPy, each alone."""

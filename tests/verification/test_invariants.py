@@ -156,6 +156,7 @@ def test_a_leak_is_seen(scene):
     assert energy.error > energy.error_bound
 
 
+@pytest.mark.slow
 def test_one_wrong_output_is_seen():
     """Displacements matter to springs alone, which a drive has none of."""
     seen, evaluate, errors = exactly(DRIVE, 4)

@@ -34,6 +34,7 @@ def test_panels_on_which_springs_swing_far_tell_nothing(monkeypatch: pytest.Monk
     assert any(float(outcome.cells["allowed"]) > 1e-7 for outcome in invariants(made(10**5)))
 
 
+@pytest.mark.slow
 def test_collocation_follows_a_stiff_spring() -> None:
     assert all(outcome.passed and float(outcome.cells["at 4N"]) < 1e-9 for outcome in collocation(made(10**4)))
 
