@@ -142,7 +142,7 @@ def test_a_preload_of_a_linear_spring_is_a_pair_of_loads() -> None:
         assert np.array_equal(loaded[name], strained[name])
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("preload", ["1/4", "-1/2", "1", "-2"])
 def test_a_preload_of_a_spring_that_yields_moves_its_limits(preload: str) -> None:
     def parts(pull: Fraction, push: Fraction, more: dict[str, Any]) -> list[Any]:

@@ -260,6 +260,7 @@ def test_the_headline_is_what_an_engineer_computes_from_histories() -> None:
     assert faults(text) == []
 
 
+@pytest.mark.slow
 def test_the_spectrum_of_the_load_is_what_an_oscillator_does() -> None:
     """At a few periods of its CSV, against the exponential of the oscillator's matrix, step by step along the load."""
     text = page(Scene(**FRAME))

@@ -76,6 +76,7 @@ def test_numbers_of_99_characters_are_generated_and_run():
     assert len(Reference(lower(scene)).values([0.2 * k for k in range(201)])[0]) == 201
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("samples", "outputs"),
     [(200, 100), *(pytest.param(*large, marks=pytest.mark.slow) for large in ((200, 300), (1000, 2000)))],

@@ -26,7 +26,7 @@ def model():
     return wavesym.model(SCENE, runtime=["kappa", "load"])  # that of test_model.py, compiled once
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 @pytest.mark.parametrize("where", TAUS)
 def test_sums_of_squares_are_those_of_values(model, where):
     tau = TAUS[where]

@@ -119,6 +119,7 @@ def test_waves_that_are_sent_wrong_add_up_at_an_instant(tmp_path):
     assert_refused((SENT, ("w->instant += w->passes[port]", "w->instant += 0 * w->passes[port]")), "building", tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mistake", [None, ("(magnitude(back) + 2", "(0 * magnitude(back) + 2")])
 def test_what_a_body_sends_wrong_goes_on_through_a_joint(mistake, tmp_path):
     """Behind a joint without mass nothing is computed wrong but what arrives there."""

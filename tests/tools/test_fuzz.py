@@ -33,6 +33,7 @@ def replayed(program: FuzzedProgram, folder: Path) -> str:
     return fuzz.replay(run, files)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [name if name == QUICK else pytest.param(name, marks=pytest.mark.slow) for name in BY_NAME]
 )

@@ -274,7 +274,7 @@ def test_an_event_that_is_told_late_is_seen(monkeypatch: pytest.MonkeyPatch) -> 
     assert not any(outcome.passed for outcome in judged(integrations.corner_changes(seen)))
 
 
-@pytest.mark.quick(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(("table", "key"), FALSE)
 def test_energy_that_another_law_takes_is_missed(table: dict[str, Any], key: str) -> None:
     table, other = changed(table, key)

@@ -126,6 +126,7 @@ def test_values_that_are_no_numbers_fail(monkeypatch):
     assert verdicts[:2] == [["FAIL", "PASS"], ["PASS"] * 3]
 
 
+@pytest.mark.slow
 def test_integrations_too_coarse_to_judge_fail(monkeypatch, thorough):
     monkeypatch.setattr(outcome, "FINE", 1e-16)
     monkeypatch.setattr(outcome, "LOOSE", 1e-16)
