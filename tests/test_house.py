@@ -176,9 +176,7 @@ def test_what_corners_do_is_searched_for_once(searches: list[object], way: str, 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "way", ["report", *(pytest.param(each, marks=pytest.mark.slow) for each in ("run", "summary", "generate", "plot"))]
-)
+@pytest.mark.parametrize("way", ["report", "run", "summary", "generate", "plot"])
 def test_a_refusal_of_what_corners_do_is_searched_for_once(searches: list[object], way: str, tmp_path: Path) -> None:
     """Each program that is tried asks what contacts do."""
     call, _ = WAYS[way]

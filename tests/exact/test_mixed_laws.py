@@ -198,7 +198,7 @@ def test_what_a_front_moves_on_a_rod_is_known_at_that_instant() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("velocity", [-6, pytest.param(6, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("velocity", [-6, 6])
 def test_what_leaves_rest_presses_on_a_rod_that_rests_or_parts_from_it(velocity: int) -> None:
     """The contact bears exactly 0 until the mass slips, and then less than the square of any time that is not known."""
     held = {"mass": 5, "velocity": 0, "friction": "5/7", "name": "m"}

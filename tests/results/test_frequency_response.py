@@ -545,7 +545,7 @@ def test_an_acceleration_beside_a_velocity_without_limit_at_0() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("parts", [14, pytest.param(50, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("parts", [14, 50])
 def test_peaks_of_many_parts_against_transfer_matrices(parts: int) -> None:
     """(u, force) from the free top to the bit, in doubles, at 40 000 frequencies."""
     w = np.linspace(0.5, 15, 40_001)

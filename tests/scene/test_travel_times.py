@@ -98,14 +98,12 @@ def by_transfer_function(times: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_layers_as_measured_run_under_a_record_once_speeds_may_change_a_little(thorough: bool) -> None:
+def test_layers_as_measured_run_under_a_record_once_speeds_may_change_a_little() -> None:
     """Refused with what to write; written so it answers as the layers do by their transfer function."""
     with pytest.raises(ToleranceError, match="travel times of the rods have no common measure") as caught:
         wavesym.summary(column(until="20 s"))
     (written,) = re.findall(r'speed_adjustment = "([^"]*)" under \[system\]', str(caught.value))
     assert written == "0.5 %"
-    if not thorough:  # the rest takes seconds
-        return
     scene = column(speed_adjustment=written)
     result = wavesym.run(scene, samples=801)
     expected = by_transfer_function(result.time)

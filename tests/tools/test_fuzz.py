@@ -34,9 +34,7 @@ def replayed(program: FuzzedProgram, folder: Path) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", [name if name == QUICK else pytest.param(name, marks=pytest.mark.slow) for name in BY_NAME]
-)
+@pytest.mark.parametrize("name", BY_NAME)
 def test_what_was_kept_breaks_nothing(name, tmp_path):
     assert replayed(BY_NAME[name], tmp_path) == ""
 

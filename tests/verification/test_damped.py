@@ -51,7 +51,7 @@ def test_damped_scenes_are_verified(thorough):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("language", [pytest.param("py", marks=pytest.mark.slow), "c"])
+@pytest.mark.parametrize("language", ["py", "c"])
 def test_other_damping_is_seen(language, monkeypatch):
     """In C and in NumPy, each alone."""
     right, make = programs.files, programs.make

@@ -127,10 +127,10 @@ def test_values_that_are_no_numbers_fail(monkeypatch):
 
 
 @pytest.mark.slow
-def test_integrations_too_coarse_to_judge_fail(monkeypatch, thorough):
+def test_integrations_too_coarse_to_judge_fail(monkeypatch):
     monkeypatch.setattr(outcome, "FINE", 1e-16)
     monkeypatch.setattr(outcome, "LOOSE", 1e-16)
-    text, passed = verify(drive(until=3 if thorough else 1), requests=CLOSED)
+    text, passed = verify(drive(until=3), requests=CLOSED)
     assert not passed
     assert "too coarse" in text
     assert "small: strain@0 is not verified" in text
