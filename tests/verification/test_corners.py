@@ -161,6 +161,20 @@ def test_a_contact_without_force_as_both_sides_come_to_rest_may_be_open(monkeypa
     assert [each.subject for each in integrations.corner_changes(seen) if not each.passed] == ["1/2 opens"]
 
 
+def test_what_happens_just_at_the_end_and_what_does_at_the_start_are_not_taken_for_each_other() -> None:
+    """A joint slips at once, and once more as a front comes at the end: steps see the second of these alone."""
+    rubs = {"joint": True, "name": "n1", "friction": "1/4"}
+    parts = [{"rod": 1}, {"mass": 1, "name": "n0", "velocity": 1}, {"friction": "2/5"}, rubs, {"rod": 1}, "absorbing"]
+    table = {"name": "ends", "system": {"type": "chain", "parts": parts}}
+    table["output"] = {"until": 4, "tolerance": 1e-9, "velocity": ["n0", "n1"]}
+    seen = known(table)
+    outcomes = judged(integrations.corner_changes(seen))
+    assert [outcome.cells["tau"] for outcome in outcomes[3:]] == ["0", "1.32853791756", "2", "3.6526462432"]
+    assert all(outcome.passed for outcome in outcomes)
+    wrong = known(*changed(table, "friction"))
+    assert not all(outcome.passed for outcome in judged(integrations.corner_changes(wrong)))
+
+
 @pytest.mark.parametrize("light", [1e-2, 1e-5, 1e-8])
 def test_pulls_are_found_in_a_few_rounds(light: float) -> None:
     """A mass rubs on a joint that rubs on the ground: one link after another takes some 1/light rounds."""

@@ -343,11 +343,15 @@ class CornerHistory:
         """At one of them."""
         return CornerHistory([each for each in self.changes if each[0].corner == corner], self.shortest)
 
-    def fit(self, claimed: Sequence[ContactEvent]) -> CornerHistory:
-        """Without what is faint, where that is not claimed."""
-        if self._fits(claimed, self.visible(claimed)):
-            return self
-        return replace(self, changes=[each for each in self.changes if not each[0].faint])
+    def fit(self, claimed: Sequence[ContactEvent], until: float) -> CornerHistory:
+        """Without what is faint, and what may come after the end, where that is not claimed."""
+        sure = [each for each in self.changes if not each[0].faint]
+        for changes in (self.changes, sure):
+            for kept in (changes, [each for each in changes if each[0].tau + each[1] < until]):
+                found = replace(self, changes=kept)
+                if found._fits(claimed, found.visible(claimed)):
+                    return found
+        return replace(self, changes=sure)
 
     def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
         """The numbers of events that it can have seen: without those at the start or that hardly last, if it must."""
@@ -381,7 +385,7 @@ def compare_events(
         if method is None:
             rows = [row | {name: "refused"} for row in rows]
             continue
-        method = method.fit(claimed)
+        method = method.fit(claimed, until)
         visible = method.visible(claimed)
         for k, event in enumerate(claimed):
             if k not in visible:
