@@ -278,3 +278,30 @@ def test_the_seconds_told_are_those_of_segments_and_values(quantity, taus, monke
         monkeypatch.setattr(room, "_EVALUATED", evaluated)
         with pytest.raises(CostError, match=rf"would take about {seconds:.0f} s, the limit"):
             motion.refuse_long(taus)
+
+
+def test_outputs_of_one_place_share_what_is_shifted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A strain asks for the waves of the displacement before it; at another place nothing is shared."""
+    count = 0
+    shift = room.shift
+
+    def counted(known: Enclosure, by: fmpq) -> Enclosure:
+        nonlocal count
+        count += 1
+        return shift(known, by)
+
+    def shifts(*places: str) -> tuple[int, list[arb]]:
+        nonlocal count
+        parts = [{"mass": 1, "velocity": 1}, {"rod": 1}, {"mass": 2, "spring": 1, "velocity": 0}]
+        output = {"until": 12, "displacement": places[:1], "strain": places[1:]}
+        model = lower(wavesym.Scene(name="bar", system={"type": "chain", "parts": parts}, output=output))
+        moving = Motion(model, model.until)
+        count = 0
+        *_, last = (moving.segments(probe, 192) for probe in model.probes)
+        return count, [segment.families[fmpq(0)](arb(fmpq(1, 100))) for segment in last]
+
+    monkeypatch.setattr(room, "shift", counted)
+    alone, values = shifts("1/3", "2/3")
+    shared, same = shifts("2/3", "2/3")
+    assert shared < 0.6 * alone
+    assert all(one.overlaps(other) and other.rad() == one.rad() for one, other in zip(values, same, strict=True))

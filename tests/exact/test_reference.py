@@ -80,9 +80,9 @@ def test_windows_are_asked_only_for_the_segments_that_are_needed(monkeypatch):
     composed = []
     values = motion._values
 
-    def counted(waves, terms, start):
+    def counted(waves, terms, start, shifts):
         composed.append(start)
-        return values(waves, terms, start)
+        return values(waves, terms, start, shifts)
 
     monkeypatch.setattr(motion, "_values", counted)
     Reference(lower(scene(strain=["1/2"]))).values([1.0, 1.001, 3.9])

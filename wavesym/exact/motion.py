@@ -62,6 +62,7 @@ class Motion:
         self._acting = model.loads_until(until)
         self._breakpoints = Breakpoints(model, until)
         self._solved: dict[int, Waves] = {}
+        self._shifts = _Shifts()
         counted = self._breakpoints.schedule is not None  # of joints with contacts, as they were found
         if not counted and (kept := self._breakpoints.crossings) > MOST_STRETCHES:
             raise CostError(
@@ -219,7 +220,8 @@ class Motion:
     def _walk(self, probe: Probe, bits: int, starts: Sequence[fmpq], wanted: Iterable[int]) -> Iterator[Segment]:
         ends = [*starts[1:], self.until]
         begins = self._smooth_starts[self.probes.index(probe)]
-        return _segments(self.waves(bits), self._model, probe, ((starts[k], ends[k]) for k in wanted), begins)
+        stretches = ((starts[k], ends[k]) for k in wanted)
+        return _segments(self.waves(bits), self._model, probe, stretches, begins, self._shifts.for_output())
 
     def _vague(self, starts: Sequence[fmpq]) -> list[bool]:
         """Whether what contacts do may be left open from each of these to the next, and no double lies there.
@@ -266,7 +268,12 @@ class Motion:
 
 
 def _segments(
-    waves: Waves, model: Model, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]], begins: fmpq | None
+    waves: Waves,
+    model: Model,
+    probe: Probe,
+    stretches: Iterable[tuple[fmpq, fmpq]],
+    begins: fmpq | None,
+    shifts: _Shifts,
 ) -> Iterator[Segment]:
     """An output on each of these stretches, which come in order; where it `begins` it is 0."""
     terms = model.sums[probe]
@@ -287,9 +294,9 @@ def _segments(
     displacement = arb(0)
     for start, end in stretches:
         acts = [(weight, Enclosure.from_polynomial(load.polynomial_from(start))) for weight, load in loads]
-        polynomial = _ball_polynomial(_sum([*_values(waves, plain, start), *acts, *constant]))
+        polynomial = _ball_polynomial(_sum([*_values(waves, plain, start, shifts), *acts, *constant]))
         if summed:
-            integral = _ball_polynomial(_sum(_values(waves, summed, start))).integral() + displacement
+            integral = _ball_polynomial(_sum(_values(waves, summed, start, shifts))).integral() + displacement
             displacement = integral(arb(end - start))
             polynomial = polynomial + integral
         if start == end:  # of what begins at the end of the horizon only the first value is seen
@@ -343,11 +350,33 @@ def _channels(waves: Waves, terms: Iterable[ReadingTerm]) -> Iterator[_Channel]:
             yield _Channel(weight * factor, sent[sender].reader(), delay, end)
 
 
-def _values(waves: Waves, channels: Iterable[_Channel], start: fmpq) -> Iterator[tuple[fmpq, Enclosure]]:
+class _Shifts:
+    """What is shifted for an output, kept for the next one: at the same place that asks for the same again."""
+
+    def __init__(self) -> None:
+        self._before: dict[tuple[int, fmpq, int], tuple[Enclosure, Enclosure]] = {}
+        self._now = self._before
+
+    def for_output(self) -> _Shifts:
+        """The same, without what the output before the last one asked for."""
+        self._before, self._now = self._now, {}
+        return self
+
+    def shift(self, known: Enclosure, by: fmpq) -> Enclosure:
+        """As `enclosure.shift`."""
+        key = id(known), by, ctx.prec  # an id stays its own, as what has it is kept
+        found = self._now.get(key) or self._before.get(key) or (known, shift(known, by))
+        self._now[key] = found
+        return found[1]
+
+
+def _values(
+    waves: Waves, channels: Iterable[_Channel], start: fmpq, shifts: _Shifts
+) -> Iterator[tuple[fmpq, Enclosure]]:
     """What channels carry from tau = `start` on, with factors."""
     for weight, wave, delay, end in channels:
         if end is None or not waves.is_bare(end, start):
-            yield weight, shift(*wave.locate(start - delay))
+            yield weight, shifts.shift(*wave.locate(start - delay))
 
 
 def waves_size(model: Model) -> int:
