@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -39,3 +41,27 @@ def test_what_is_no_time_is_one_line(arguments: list[str], what: str, capsys: py
     err = capsys.readouterr().err
     assert what in err
     assert len(err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("step", "typed"), [("0.25 ms", '--step "0.00025 s"'), ("0.00025 s", '--step "0.00025 s"'), ("1/8", "--step 1/8")]
+)
+def test_headers_of_streams_say_the_step_in_the_unit_of_time(
+    step: str, typed: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And the command in them makes the same files again."""
+    scene = tmp_path / "drive.toml"
+    assert main(["init", "drive", "-o", str(scene)]) == 0
+    assert main(["generate", str(scene), "--stream", "--step", step, "-o", str(tmp_path / "made")]) == 0, (
+        capsys.readouterr().err
+    )
+    (header,) = (tmp_path / "made").glob("*.h")
+    text = header.read_text()
+    assert typed in text.splitlines()[0]
+    (panel,) = re.findall(r"#define \w+_PANEL (\S+)", text)
+    (seconds,) = re.findall(r"#define \w+_SECONDS_PER_TAU (\S+)", text)
+    assert f"/* How long a panel is, in tau: {float(panel) * float(seconds) * 1000:.9g} ms. */" in text
+    command = shlex.split(text.splitlines()[0].partition("command: wavesym ")[2])
+    command[1] = str(scene)
+    assert main([*command, "-o", str(tmp_path / "again")]) == 0
+    assert written(tmp_path / "made") == written(tmp_path / "again")

@@ -281,7 +281,7 @@ def test_the_seconds_told_are_those_of_segments_and_values(quantity, taus, monke
 
 
 def test_outputs_of_one_place_share_what_is_shifted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A strain asks for the waves of the displacement before it; at another place nothing is shared."""
+    """A displacement asks for the waves of the strain before it; at another place nothing is shared."""
     count = 0
     shift = room.shift
 
@@ -301,7 +301,7 @@ def test_outputs_of_one_place_share_what_is_shifted(monkeypatch: pytest.MonkeyPa
         return count, [segment.families[fmpq(0)](arb(fmpq(1, 100))) for segment in last]
 
     monkeypatch.setattr(room, "shift", counted)
-    alone, values = shifts("1/3", "2/3")
+    alone, values = shifts("2/3", "1/3")
     shared, same = shifts("2/3", "2/3")
-    assert shared < 0.6 * alone
+    assert shared < 0.75 * alone
     assert all(one.overlaps(other) and other.rad() == one.rad() for one, other in zip(values, same, strict=True))

@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
+from shlex import split
 from typing import TYPE_CHECKING
 
 from wavesym.errors import UnservedError, WavesymError
@@ -174,7 +175,8 @@ def check(scene: Scene, directory: str | PathLike[str] | None, request: Request,
     folder = Path(directory or scene.name)
     found = [path for path in {*folder.glob(f"{scene.name}*"), *made} if path.is_file()]
     left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
-    options = ["--language", request.language, *request.options.split(), *(["--package"] if request.package else [])]
+    typed = split(request.options(lower(scene)))
+    options = ["--language", request.language, *typed, *(["--package"] if request.package else [])]
     return Difference(made, [*found, *left]).report(["wavesym", "generate", source, "-o", str(folder), *options])
 
 

@@ -27,7 +27,7 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked
     """
     _, form, why = choose(model, request.evaluator, request.precision, request.optimize, asked=asked)
     happening = events(model, form.real) if model.network.corners else None
-    provenance = Provenance(model, why, request.options, contact_ends(model, form.real), happening)
+    provenance = Provenance(model, why, request.options(model), contact_ends(model, form.real), happening)
     return _finish(model, form, provenance, tested)
 
 

@@ -64,7 +64,8 @@ class Description:
     `api` is the version of what generated C declares, `sha256` that of the scene in canonical JSON.
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
-    Of a scene with units `seconds` is what one tau is, in Python, and `c_seconds` in C; else these are empty.
+    Of a scene with units `seconds` is what one tau is, in Python, and `c_seconds` in C; `step` how long a step of a
+    stream is, or its panel, in the unit of time; else these are empty.
     `trust` says what bounds of errors are: "proved" or "estimated". Where contacts open and close, `events` says what
     they do, and `event_count` how often; else that is empty.
     """
@@ -94,6 +95,7 @@ class Description:
     event_count: str
     seconds: str
     c_seconds: str
+    step: str
 
 
 def describe(program: Program) -> Description:
@@ -132,7 +134,14 @@ def describe(program: Program) -> Description:
         event_count="" if origin.events is None else str(len(origin.events)),
         seconds=literal(nearest(model.clock.seconds)) if model.clock else "",
         c_seconds=c_literal(real.nearest(model.clock.seconds), real) if model.clock else "",
+        step=_step(program),
     )
+
+
+def _step(program: Program) -> str:
+    """How long a step of a stream is, or a panel of one whose steps are not equal, in the unit of time."""
+    clock, name = program.provenance.model.clock, program.step or "spacing"
+    return clock.format(rational(program.constants[name])) if clock and name in program.constants else ""
 
 
 def _quantities(names: Sequence[str]) -> str:

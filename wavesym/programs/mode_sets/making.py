@@ -125,7 +125,7 @@ class ModeSetsTables:
             tables,
             constants,
             DOUBLE.bytes * sum(map(len, tables.values())),
-            Provenance(model, reason, request.options),
+            Provenance(model, reason, request.options(model)),
             proved=False,
             laws=RuntimeLaws(self.parameters.fields, {}, ()),
             parts=request.parts,

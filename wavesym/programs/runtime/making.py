@@ -92,7 +92,7 @@ def _program(
         tables,
         constants,
         real.bytes * sum(map(len, tables.values())),
-        Provenance(model, reason, request.options),
+        Provenance(model, reason, request.options(model)),
         proved=False,
         laws=laws,
         parts=request.every_part,

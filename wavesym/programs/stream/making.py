@@ -84,7 +84,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         made.tables(),
         made.constants(nearest(tolerance)),
         made.bytes,
-        Provenance(model, _reason(plan, degree, made) + _at_worst(plan, verdict, tolerance), request.options),
+        Provenance(model, _reason(plan, degree, made) + _at_worst(plan, verdict, tolerance), request.options(model)),
         sources=tuple(given.label for given in plan.inputs),
         proved=False,
         direct=plan.direct,
