@@ -175,6 +175,13 @@ def test_a_scene_to_start_from_takes_a_record(capsys: pytest.CaptureFixture[str]
         assert float(wavesym.evaluator(scene).tau_max * wavesym.evaluator(scene).seconds_per_tau) == pytest.approx(1)
     assert refused(capsys, "init", "impact", "--record", "quake.csv").startswith("--record: a scene of impact takes no")
     assert refused(capsys, "init", "frame", "--record", "none.csv").startswith("none.csv: No such file or directory")
+    Path("acc.csv").write_text("time [s],ground [m/s^2]\n0,0\n0.01,1\n0.02,0\n")
+    Path("torque.csv").write_text("time [s],torque [kN*m]\n0,0\n0.01,1\n0.02,0\n")
+    for kind, file, said in (
+        ("drive", "acc.csv", "acc.csv: samples in m/s^2; the load of a drive is a moment"),
+        ("frame", "torque.csv", "torque.csv: samples in kN*m; the load of a frame is an acceleration"),
+    ):
+        assert refused(capsys, "init", kind, "--record", file) == said
 
 
 @pytest.mark.slow

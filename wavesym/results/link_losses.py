@@ -38,8 +38,9 @@ class LinkSummary(NamedTuple):
 
     Points are called by their names, else by their places: links at one place differ in them, or in their laws.
     `set` is how far it slid or yielded until the end of the horizon, lengthening it (or, of friction, along x) where
-    that is positive; `dissipated` the energy that this took. Both are right to rounding. The `note` is a sentence on a
-    spring that yielded without a force as soon as it was loaded, and never with one; empty of all others.
+    that is positive; `dissipated` the energy that this took, without that of a dashpot beside it. Both are right to
+    rounding. The `note` is a sentence on a spring that yielded without a force as soon as it was loaded, and never with
+    one; empty of all others.
     """
 
     place: str

@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError, WavesymError
 from wavesym.fields import quantity
+from wavesym.fields.dimensions import with_article
 from wavesym.fields.numbers import decimal_text
 from wavesym.fields.table import show
 from wavesym.records.read import read_record
@@ -71,8 +72,7 @@ def first_scene(kind: str, record: str | PathLike[str] | None = None, unit: str 
     step = found.even()
     lines = [f"record = {json.dumps(found.file)}"]
     assumptions: list[str] = []
-    if unit is not None:
-        _refuse_unit(kind, found, unit)
+    _refuse_unit(kind, found, unit)
     if not found.unit:
         comment = "of its samples" if unit else "of its samples: assumed, the file does not say"
         lines.append(f"{f'unit = {json.dumps(unit or _USUAL_UNIT[kind])}':31} # {comment}")
@@ -100,14 +100,19 @@ def first_scene(kind: str, record: str | PathLike[str] | None = None, unit: str 
     return FirstScene(replaced, tuple(assumptions))
 
 
-def _refuse_unit(kind: str, record: RecordFile, written: str) -> None:
-    """WavesymError for what is no unit of what the load of a kind is; SceneError for another one than the file's."""
+def _refuse_unit(kind: str, record: RecordFile, written: str | None) -> None:
+    """WavesymError for what is no unit of what the load of a kind is; SceneError for such a file, or another unit."""
+    needed = _SAMPLES[_USUAL_UNIT[kind]]
     try:
-        size = quantity.unit(written, _SAMPLES[_USUAL_UNIT[kind]])
-        other = quantity.unit(record.unit, _SAMPLES[_USUAL_UNIT[kind]]) if record.unit else size
+        size = quantity.unit(written, needed) if written is not None else None
     except PydanticCustomError as error:
         raise WavesymError(f"--unit: {error}") from None
-    if size != other:
+    try:
+        other = quantity.unit(record.unit, needed) if record.unit else size
+    except PydanticCustomError:
+        what = f"samples in {record.unit}; the load of a {kind} is {with_article(needed)}"
+        raise SceneError(what, file=record.file) from None
+    if size is not None and size != other:
         raise SceneError(f"--unit {written} is not that of the file; write {record.unit}, or none", file=record.file)
 
 
