@@ -307,3 +307,29 @@ def test_shapes_that_cannot_be_told_are_refused(monkeypatch):
     monkeypatch.setattr(found, "_TIMES", (1, 8))
     with pytest.raises(UnservedError, match=r"frequencies meet near 0\.86.*take pieces or march"):
         frequencies(CLUSTERS["beyond most bits"].network, 5)
+
+
+@pytest.mark.parametrize("name", ["springs", "a node at rest in the middle", "one storey"])
+def test_wrong_guesses_lead_to_the_same_frequencies(name, monkeypatch):
+    """Doubles lose digits beside resonances of bars; whatever is lost there, balls count."""
+    network = NASTY[name].network
+    right = frequencies(network, 6)
+    draw = np.random.default_rng(5)
+
+    def wrong(stiffness, count):
+        return np.sort(bisect_frequencies(stiffness, count) * (1 + 1e-3 * draw.uniform(-1, 1, count)))
+
+    monkeypatch.setattr(found, "bisect_frequencies", wrong)
+    assert all(one.overlaps(other) for one, other in zip(frequencies(network, 6), right, strict=True))
+
+
+def test_of_a_light_mass_between_stiff_bars_digits_are_lost_in_doubles_alone():
+    """1000 tan w + 1e-6 w = 1e-3 cot 2 w: guesses are off by more than rounding, what is proved is not."""
+    parts = ["free", {"rod": 1, "impedance": 1000}, {"mass": "1/1000000"}, {"rod": 2, "impedance": "1/1000"}, "fixed"]
+    network = chain(parts).network
+    guesses, w = bisect_frequencies(Stiffness(network), 8), frequencies(network, 8)
+    assert max(float(abs(each - guess) / each) for each, guess in zip(w, guesses, strict=True)) > 1e-13
+    z, light = 1000.0, 1e-6
+    for each in map(float, w):
+        rest = z * np.tan(each) + light * each - 1e-3 / np.tan(2 * each)
+        assert abs(rest) < 1e-9 * (z / np.cos(each) ** 2 + 2e-3 / np.sin(2 * each) ** 2) * each

@@ -22,6 +22,7 @@ _TIMES = (1, 4, 8)  # as many bits; the most for those that are together
 _BISECTIONS = 64
 _NEWTON = 6
 _TOGETHER = 2.0**-40
+_NEAR = 2.0**-8  # a guess may be, where K loses digits in doubles beside resonances of bars
 _OFF = 2.0**-36  # a frequency itself tells less of its mode than one near it
 _SHARP = arb(2) ** -60  # shapes
 
@@ -125,7 +126,10 @@ def _prove_resting(
     stiffness: Stiffness, law: tuple[int, HarmonicLaw], n: int, guess: float, resting: Sequence[Mode]
 ) -> list[Mode]:
     """The modes near a guess of which all points rest, if they are the n-th and following ones and no other is."""
-    found = [mode for mode in resting if abs(float(mode.frequency) - guess) < _OFF * guess]
+    nearest = min((mode.frequency for mode in resting), key=lambda w: abs(float(w) - guess), default=arb(0))
+    found = [mode for mode in resting if mode.frequency.overlaps(nearest)]
+    if abs(float(nearest) - guess) > _NEAR * guess:
+        return []
     with ctx.workprec(law[0]):
         sides = [found[0].frequency * (1 + sign * arb(_OFF)) for sign in (-1, 1)] if found else []
         counts = [stiffness.proved_count(law[1], side.mid()) for side in sides]

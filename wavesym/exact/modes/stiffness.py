@@ -287,7 +287,11 @@ class Stiffness:
         return np.full(len(n), 2 * float(np.sqrt(sum(k / mass for k, mass in pairs if mass != 0)) or 1))
 
     def count_below(self, w: Array) -> NDArray[np.int64]:
-        """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
+        """How many frequencies lie below each w > 0, in doubles: right but for rounding.
+
+        Beside a resonance of a bar digits cancel, and light masses between stiff bars may be off by 1e-3: guesses, of
+        which each is proved, or sought by counting in balls (frequencies.py).
+        """
         angles = [w * delay for delay in self.doubles.delays]
         sines = [np.sin(angle) for angle in angles]
         turns = [_turns(angle, sine) for angle, sine in zip(angles, sines, strict=True)]
