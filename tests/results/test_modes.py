@@ -297,3 +297,29 @@ def test_shapes_along_rods_are_sines_where_rods_are_cut_too(
     assert np.array(side) == pytest.approx(node * np.cos(w * (1 - np.linspace(0, 1, 5))) / np.cos(w), rel=1e-9)
     assert main(["modes", "t.toml", "--points", "5"]) == 2
     assert "--format json or csv" in capsys.readouterr().err
+
+
+def test_a_scene_of_a_chain_alone_has_modes_and_nothing_else(tmp_path: Path) -> None:
+    """From a file, a text, or keywords; with and without units; what needs outputs says so, and no traceback."""
+    text = 'name = "bare"\n[system]\ntype = "chain"\nparts = ["fixed", { rod = 1 }, { mass = 1 }]\n'
+    (tmp_path / "bare.toml").write_text(text)
+    chain_alone = {"type": "chain", "parts": ["fixed", {"rod": 1}, {"mass": 1}]}
+    scenes = [
+        wavesym.Scene.from_toml(tmp_path / "bare.toml"),
+        wavesym.Scene.from_toml(text),
+        wavesym.Scene(name="bare", system=chain_alone),
+    ]
+    for scene in scenes:
+        w = scene.modes(2)[1].omega
+        assert np.cos(w) == pytest.approx(w * np.sin(w), rel=1e-12)
+        assert scene.with_({"system.parts[1].rod": 2}).modes(1)[0].omega < w
+        assert "until" not in repr(scene)
+        assert wavesym.Scene(**scene.model_dump()) == scene
+        for use in (wavesym.run, wavesym.summary, wavesym.frf, wavesym.peaks, wavesym.spectrum, wavesym.plot):
+            with pytest.raises(wavesym.SceneError, match="output: missing; write a table"):
+                use(scene)
+    rod = {"rod": "2 m", "speed": "100 m/s", "impedance": "3 kN*s/m"}
+    shear = wavesym.Scene(name="u", units={"kind": "shear"}, system={"type": "chain", "parts": ["fixed", rod, "free"]})
+    assert shear.modes(1)[0].hz == pytest.approx(12.5, rel=1e-14)
+    ranges = wavesym.modes(shear, 1, ranges={"system.parts[1].speed": ("100 m/s", "200 m/s")})
+    assert ranges[0].high == pytest.approx(2 * ranges[0].low, rel=1e-14)

@@ -179,6 +179,8 @@ def peaks(
     every = [scenes] if isinstance(scenes, Scene) else list(scenes)
     if not every:
         raise WavesymError("peaks: no scene; write at least 1")
+    for scene in every:
+        scene.refuse_without_output()
     return peaks_of(every, keep, several=not isinstance(scenes, Scene), at_samples=at_samples)
 
 

@@ -44,7 +44,7 @@ def modes(
     """The modes of vibration of a scene: frequencies, none missed, damping, effective masses and shapes.
 
     Args:
-        scene: a Scene; or a file, or the name of a built-in scene, which needs neither loads nor outputs.
+        scene: a Scene, a file, or the name of a built-in scene; it needs neither loads nor outputs.
         count: how many, where `below` is None; rigid modes come first.
         below: all up to this frequency: in Hz, or in rad per tau for a scene without units.
         ranges: of paths, as of `scene.with_`, the least and the greatest value: for the range of each frequency over
@@ -66,7 +66,7 @@ def modes(
     from wavesym.results.mode_ranges import mode_ranges
     from wavesym.results.modes import modes as modes_of
 
-    chain = scene if isinstance(scene, Scene) else Scene.chain_from_toml(scene)
+    chain = scene if isinstance(scene, Scene) else Scene.from_toml(scene)
     if ranges is not None:
         return mode_ranges(chain, count, ranges)
     return modes_of(lower(chain, in_time=False), count, below, chain.system.lines, points)
@@ -145,6 +145,7 @@ def frf(
     from wavesym.scene.lowering import sources
 
     lowered = lower(scene, in_time=False)
+    scene.refuse_without_output()
     acting = harmonic_load(lowered, sources(scene), load)
     at = equally_spaced(lowered, low, high, points) if frequencies is None else frequencies
     if ranges is not None:

@@ -50,8 +50,10 @@ class SceneParameter(ParameterType):
 
         if isinstance(value, Scene):
             return value
-        scene = Scene.from_toml(value) if self.needs_output else Scene.chain_from_toml(value)
+        scene = Scene.from_toml(value)
         file = "<stdin>" if value == "-" else value
+        if self.needs_output:
+            scene.refuse_without_output(file)
         if ctx is not None and param is not None and param.nargs == 1:
             ctx.meta[_ARGUMENT] = value
             ctx.with_resource(_blame_scene(scene, file))

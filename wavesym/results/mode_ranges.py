@@ -21,7 +21,6 @@ from wavesym.numbers.doubles import upper_double
 from wavesym.results.modes import is_damped
 from wavesym.results.presentation import csv_line
 from wavesym.scene import Scene, lower
-from wavesym.scene.outputs import NoOutput
 from wavesym.scene.paths import leaves
 
 RISING = ("spring", "stiffness", "E", "G", "I", "speed")
@@ -135,8 +134,7 @@ def mode_ranges(scene: Scene, count: int, box: Mapping[str, tuple[str, str]]) ->
     for path, (low, high) in box.items():
         way = direction(scene, path)
         slow[path], fast[path] = (low, high) if way > 0 else (high, low)
-    none = {"output": NoOutput()} if isinstance(scene.output, NoOutput) else {}
-    least, greatest = (_angular(scene.with_({**none, **corner}), count) for corner in (slow, fast))
+    least, greatest = (_angular(scene.with_(corner), count) for corner in (slow, fast))
     rows = []
     for number, (first, last) in enumerate(zip(least, greatest, strict=True), 1):
         if first > last:

@@ -15,8 +15,8 @@ _MOST_LOADS = 1  # that are described; of several there is the number
 
 
 def describe(name: str, system: SystemTable, loads: Sequence[Load], until: str) -> str:
-    """The name, the system and its size, the loads and the horizon of a scene, with commas between."""
-    return ", ".join([repr(name), *_parts(system, loads), f"until {until}"])
+    """The name, the system and its size, the loads and the horizon of a scene, if it has one, with commas between."""
+    return ", ".join([repr(name), *_parts(system, loads), *([f"until {until}"] if until else [])])
 
 
 def _parts(system: SystemTable, loads: Sequence[Load]) -> Iterator[str]:

@@ -47,12 +47,14 @@ def lower(scene: Scene, *, in_time: bool = True) -> Model:
             and frequency responses need neither: loads never change, and speeds are as they are written.
 
     Raises:
-        SceneError: for what is no Scene: a path, say.
+        SceneError: for what is no Scene: a path, say; for motion in time of one without outputs.
         CostError: for loads that would take too many samples.
         UnservedError: where loads act on rods with a loss.
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} is not a Scene; write Scene.from_toml(...)")
+    if in_time:
+        scene.refuse_without_output()
     parts = (scene.name, scene.system, scene.load, scene.output)
     kept = vars(scene).get(_KEPT)  # a copy of a scene with other parts has the model of the first
     if kept is None or any(one is not other for one, other in zip(kept.parts, parts, strict=True)):

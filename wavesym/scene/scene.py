@@ -51,7 +51,8 @@ class Scene(SceneTable):
     The fields are those of a scene file. Without `units` all is dimensionless: x in rod lengths, tau = c t / l; with
     them (`units={}`) quantities are text such as "3.5 m", and `system`, `load`, `output` are the scene without.
     Numbers may be int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3". The
-    path of a record counts from the current folder. Raises SceneError, which says all that is wrong.
+    path of a record counts from the current folder. Without `output` there are frequencies (`wavesym.modes`), and no
+    more. Raises SceneError, which says all that is wrong.
 
     >>> import wavesym
     >>> scene = wavesym.Scene(
@@ -74,7 +75,7 @@ class Scene(SceneTable):
     _physical: PhysicalScene | None = PrivateAttr(default=None)
 
     def __init__(self, /, **fields: Any) -> None:
-        faults = Faults()
+        faults, fields = Faults(), {"output": NoOutput(), **fields}
         if "units" not in fields and (quantity := forgotten_units(fields)):
             what = f"missing, and {show(quantity)} has a unit; write the line [units] before [system]"
             faults.found.append(Fault(what, ("units",)))
@@ -104,12 +105,6 @@ class Scene(SceneTable):
         'drive_m1'
         """
         return cls._read(*read_toml(source))
-
-    @classmethod
-    def chain_from_toml(cls, source: str | PathLike[str]) -> Self:
-        """The same where outputs do not matter: [output] may be missing, and then no output is computed."""
-        file, text, fields = read_toml(source)
-        return cls._read(file, text, {"output": NoOutput(), **fields})
 
     @classmethod
     def _read(cls, file: str, text: str, fields: dict[str, Any]) -> Self:
@@ -143,9 +138,15 @@ class Scene(SceneTable):
             fields = replace_at_path(fields, path, value)
         return type(self)(**fields)
 
+    def refuse_without_output(self, file: str = "scene") -> None:
+        """SceneError for a scene that says nothing of outputs, which frequencies alone do without."""
+        if isinstance(self.output, NoOutput):
+            raise SceneError("missing; write a table", "output", file)
+
     def __repr__(self) -> str:
         until = self.output.until
         horizon = self.scale.clock.format(rational(until)) if self.scale else f"tau = {until}"
+        horizon = "" if isinstance(self.output, NoOutput) else horizon
         return f"Scene({describe(self.name, self.system, self.load, horizon)})"
 
     __str__ = __repr__
@@ -153,10 +154,13 @@ class Scene(SceneTable):
     @model_serializer(mode="wrap")
     def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """What was said. Without units there are none to tell of: so scenes keep the hash that they have had."""
+        without = {"output"} if isinstance(self.output, NoOutput) else set[str]()
         if self._physical is not None:
-            return deepcopy(self._physical.fields_in_units)
-        left_out = {"units"} if self.title_block else {"units", "report"}
-        return {key: value for key, value in handler(self).items() if key not in left_out}
+            fields = deepcopy(dict(self._physical.fields_in_units))
+        else:
+            fields = handler(self)
+            without |= {"units"} if self.title_block else {"units", "report"}
+        return {key: value for key, value in fields.items() if key not in without}
 
     @property
     def scale(self) -> Scale | None:

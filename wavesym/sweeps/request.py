@@ -174,6 +174,11 @@ class SweepRequest(SceneTable):
 
     def base(self) -> Scene:
         """The scene that cases are made of. SceneError names its file."""
+        scene = self._read_base()
+        scene.refuse_without_output()
+        return scene
+
+    def _read_base(self) -> Scene:
         if isinstance(self.scene, Scene):
             return self.scene
         if isinstance(self.scene, Mapping):
