@@ -54,7 +54,7 @@ def test_there_is_what_is_asked_for_and_nothing_else(case):
 
     def files_of(parts):
         request = Request(runtime=tuple(runtime), parts=parts)
-        origin = replace(program.provenance, options=request.options)
+        origin = replace(program.provenance, options=request.options())
         return files(replace(program, parts=request.every_part, provenance=origin))
 
     every = files_of(PARTS)[f"{scene.name}.c"]

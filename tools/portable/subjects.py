@@ -52,7 +52,7 @@ class PortableProgram:
     @property
     def generate_command(self) -> str:
         """The command that makes it, but for name and tolerance."""
-        return f"generate {self.scene}{self.request.options}"
+        return f"generate {self.scene}{self.request.options()}"
 
     @property
     def calls_exp(self) -> bool:

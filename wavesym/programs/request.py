@@ -13,6 +13,7 @@ from wavesym.errors import MeasureError, ToleranceError, WavesymError, did_you_m
 if TYPE_CHECKING:
     from flint import fmpq
 
+    from wavesym.mechanics.clock import Clock
     from wavesym.mechanics.model import Model
 
 KINDS = ("closed", "pieces", "march", "modes")
@@ -94,14 +95,14 @@ class Request:
         request._refuse_contradictions()
         return request
 
-    def options(self, model: Model) -> str:
+    def options(self, model: Model | None = None) -> str:
         """Those that change what is generated and differ from what is usual, as they are typed for a scene."""
         options = "" if self.evaluator == "auto" else f" --evaluator {self.evaluator}"
         options += "" if self.precision == "double" else f" --precision {self.precision}"
         options += "" if self.optimize is None else f" --optimize {self.optimize}"
         options += " --stream" if self.stream and not self.target else ""
         options += f" --target {self.target}" if self.target else ""
-        options += "" if self.step is None else f" --step {_step_text(self.step, model)}"
+        options += "" if self.step is None else f" --step {_step_text(self.step, model.clock if model else None)}"
         options += f" --runtime {','.join(self.runtime)}" if self.runtime else ""
         options += f" --with {','.join(self.parts)}" if self.parts else ""
         return options + ("" if self.kappa_max is None else f" --kappa-max {self.kappa_max}")
@@ -200,12 +201,12 @@ def alternatives(names: Sequence[str]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def _step_text(step: fmpq, model: Model) -> str:
+def _step_text(step: fmpq, clock: Clock | None) -> str:
     """A step as people write it: in tau, or in seconds where the scene has units and that is shorter."""
     from wavesym.fields.numbers import decimal_text
     from wavesym.numbers.doubles import fraction
 
-    seconds = decimal_text(fraction(step * model.clock.seconds)) if model.clock else ""
+    seconds = decimal_text(fraction(step * clock.seconds)) if clock else ""
     return f'"{seconds} s"' if seconds and len(seconds) < len(str(step)) else str(step)
 
 
