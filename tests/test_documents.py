@@ -397,6 +397,15 @@ def test_the_numbers_of_the_readme_are_those_of_the_bench() -> None:
     assert "\n".join([BEGIN, *measurement_rows(), END]) in document("README.md")
 
 
+def test_why_and_how_fast_stand_within_ten_seconds_of_the_readme() -> None:
+    """At four words a second, from the title on."""
+    read, _, after = document("README.md").partition(" times that)")
+    assert after
+    assert "**How fast:**" in read
+    words = re.sub(r"<.*?>", "", read).split()
+    assert sum(any(map(str.isalnum, word)) for word in words) + 2 <= 40
+
+
 def test_no_source_names_a_document_that_is_not_here() -> None:
     there = {Path(name).name for name in DOCUMENTS} | {"errata.md"}
     for path in (path for room in ("wavesym", "tests", "templates") for path in (ROOT / room).rglob("*.*")):
