@@ -26,7 +26,7 @@ from wavesym.mechanics.gauge import Gauge
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
 from wavesym.verification.link_pulls import LinkPulls
-from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, match_changes
+from wavesym.verification.problem import BranchChange, Change, CornerProblem, KnownChanges, match_all
 
 Instants = NDArray[np.int_]
 
@@ -142,11 +142,10 @@ class MidpointGrid:
         while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
             kept = found[1:]
             found = kept + [grid.finer(k).changes(until) for k in (1, 2, 4)[len(kept) :]]
-            first, then = match_changes(found[2], found[1]), match_changes(found[1], found[0])
-            if first is not None and then is not None:
-                known = [after + before for (_, after), (_, before) in zip(first, then, strict=True)]
+            known = match_all(found)
+            if known is not None:
                 late = LATE * float(grid.step) / 4
-                best = grid, [(change, each + late) for (change, _), each in zip(first, known, strict=True)]
+                best = grid, [(change, slack + late) for change, slack in known]
                 if all(slack <= sharp * until for _, slack in best[1]):
                     return best
             grid = grid.finer(2)

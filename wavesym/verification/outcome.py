@@ -19,6 +19,9 @@ FINE = 1e-6
 LOOSE = 1e-2
 """An integration that may be more wrong than this part of an output's largest value does not judge it."""
 
+# what would be wrong has so many times twice as many steps before it is
+_DOUBTED = 3
+
 REFUSED = "refused"
 """The cell of what was not tried."""
 
@@ -210,12 +213,16 @@ class Integration:
 
     def refine(self, truths: Sequence[Truth | None]) -> tuple[int, list[Refinement]]:
         """N, and all outputs with N, 2N and 4N steps, compared with their values and scales where these are known."""
-        finer = 1
+        finer, doubted = 1, 0
         solved = [self.solve(finer * k) for k in (1, 2, 4)]
         while True:
             outputs = zip(truths, zip(*solved, strict=True), strict=True)
             found = [Refinement.compare(each, truth, self.rule) for truth, each in outputs]
-            if all(each.method_error <= FINE for each in found) or not self.is_affordable(8 * finer):
+            fine = all(each.method_error <= FINE for each in found)
+            # what would be wrong is looked at more closely: solutions may agree as none resolves what decays fast
+            doubted += fine
+            settled = fine and (all(each.is_right for each in found) or doubted > _DOUBTED)
+            if settled or not self.is_affordable(8 * finer):
                 return self.coarsest * finer, found
             finer *= 2
             solved = [*solved[1:], self.solve(4 * finer)]

@@ -40,16 +40,27 @@ KnownChanges = list[tuple[Change, float]]
 
 
 def match_changes(finer: Sequence[Change], coarser: Sequence[Change]) -> KnownChanges | None:
-    """What happens in two solutions, and how far apart in time; None where it differs in more than what is faint."""
+    """What happens in two solutions, and how far apart in time; None where it is not the same."""
     found: KnownChanges = []
     for corner in {change.corner for change in (*finer, *coarser)}:
         both = [[change for change in changes if change.corner == corner] for changes in (finer, coarser)]
         if [change.kind for change in both[0]] != [change.kind for change in both[1]]:
-            both = [[change for change in changes if not change.faint] for changes in both]
-        if [change.kind for change in both[0]] != [change.kind for change in both[1]]:
             return None
         found += [(one, abs(one.tau - other.tau)) for one, other in zip(*both, strict=True)]
     return sorted(found, key=lambda each: (each[0].tau, each[0].corner))
+
+
+def match_all(found: Sequence[Sequence[Change]]) -> KnownChanges | None:
+    """What happens on three grids, ever finer ones, and how well it is known when; None where it is not the same.
+
+    What is faint need not happen on all of them.
+    """
+    sure = [[change for change in changes if not change.faint] for changes in found]
+    for coarse, half, quarter in (found, sure):
+        first, then = match_changes(quarter, half), match_changes(half, coarse)
+        if first is not None and then is not None:
+            return [(change, after + before) for (change, after), (_, before) in zip(first, then, strict=True)]
+    return None
 
 
 @dataclass(frozen=True)
