@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial
-from itertools import chain, pairwise, zip_longest
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
 from flint import fmpq
@@ -29,7 +29,7 @@ from wavesym.exact.joints.joint_law import SWING, JointLaw
 from wavesym.exact.joints.relaxation import settling_gap
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import common_measure
+from wavesym.numbers.doubles import common_measure, in_order
 
 if TYPE_CHECKING:
     from wavesym.exact.contacts.schedule import Schedule
@@ -69,7 +69,7 @@ class Breakpoints:
     @property
     def crossings(self) -> int:
         """How often fronts meet joints, or joints go through windows."""
-        return self.stretches // len(self._parts) if self._windowed else self.stretches
+        return self._count * len(self._last) if self._windowed else self.stretches
 
     def size(self, terms: int, bits: int) -> int:
         """About how many bytes the waves take: of each power middle and radius, and the words of the middle."""
@@ -138,17 +138,17 @@ class Breakpoints:
     def of_output(self, terms: Sum) -> Sequence[fmpq]:
         """Where a sum of readings may jump or bend, and 0; in order."""
         found = [self._read(reading) for _, reading in terms]
-        return found[0] if len(found) == 1 else _in_order(fmpq(0), *found)
+        return found[0] if len(found) == 1 else in_order(chain((fmpq(0),), *found))
 
     def _read(self, reading: Gauge) -> Sequence[fmpq]:
         if reading.quantity == "load":
             sources = {unit.source for unit in self._network.points[reading.point or 0].loads}
-            return _in_order(fmpq(0), [load.time for load in self._acting if load.source in sources])
+            return in_order([fmpq(0), *(load.time for load in self._acting if load.source in sources)])
         if reading.quantity == "constant":
             return [fmpq(0)]
         if reading.point is not None:
             times = self.joints[self._network.joint_of[reading.point]]
-            return _in_order(fmpq(0), [time for time in times if time <= self._until])
+            return in_order([fmpq(0), *(time for time in times if time <= self._until)])
         return self._breakpoints(reading.rod - 1, reading.place)
 
     @cache  # noqa: B019 - as long as this object
@@ -160,7 +160,7 @@ class Breakpoints:
         for point, way in ((bar.left, place * bar.delay), (bar.right, (1 - place) * bar.delay)):
             times = (breakpoint + way for breakpoint in self.joints[self._network.joint_of[point]][:-1])
             found.append([time for time in times if 0 <= time <= self._until])
-        return _in_order(fmpq(0), *found)
+        return in_order(chain((fmpq(0),), *found))
 
     # stiff springs
 
@@ -194,8 +194,8 @@ class Breakpoints:
     def _natural_parts(self) -> Sequence[fmpq]:
         """Where in a window stretches start for the sake of loads."""
         (delay,) = self._delays
-        times = {time for time, _ in self._sources}
-        return sorted({fmpq(0), *(time - (time / delay).floor() * delay for time in times)})
+        times = in_order(time for time, _ in self._sources)
+        return in_order([fmpq(0), *(time - (time / delay).floor() * delay for time in times)])
 
     @cached_property
     def _parts(self) -> Sequence[fmpq]:
@@ -332,9 +332,3 @@ class Breakpoints:
     def _reach(self, number: int) -> fmpq:
         """How long a stretch may be until it is cut."""
         return (self._bearable[number] / self._cut_distance).floor() * self._cut_distance
-
-
-def _in_order(first: fmpq, *times: Sequence[fmpq]) -> Sequence[fmpq]:
-    """All of these, each once. (Not as a set: exact numbers are hashed slowly.)"""
-    every = sorted([first, *chain.from_iterable(times)])
-    return [one for one, after in zip_longest(every, every[1:]) if one != after]

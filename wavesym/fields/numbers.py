@@ -48,7 +48,7 @@ def exact(value: object) -> Fraction:
 
     Raises (as does every validator here) the error of `table.refusal`.
     """
-    if type(value) is Fraction and max(n.bit_length() for n in value.as_integer_ratio()) <= _MODERATE_BITS:
+    if type(value) is Fraction and _is_moderate(value):
         return value  # as the many samples of a record are
     text = number_text(value)
     if text is not None:
@@ -57,7 +57,7 @@ def exact(value: object) -> Fraction:
         number = _fraction(value)
     else:
         raise refusal(f'{show(value)} is not a number; write an integer, a decimal or "p/q"')
-    if number and not _SMALLEST <= abs(number) <= _LARGEST:
+    if number and not _is_moderate(number) and not _SMALLEST <= abs(number) <= _LARGEST:
         raise refusal(
             f"{show(value)} is too large or too small; write 0 or a size from 1e-{LARGEST_EXPONENT} to "
             f"1e{LARGEST_EXPONENT}"
@@ -70,6 +70,11 @@ def percentage(value: object) -> Fraction | None:
     if not isinstance(value, str) or isinstance(value, WrittenDecimal) or not value.endswith(("%", " percent")):
         return None
     return _parse(value.removesuffix("%").removesuffix("percent").removesuffix(" "), value) / 100
+
+
+def _is_moderate(number: Fraction) -> bool:
+    """Whether a number is 0 or of a size from _SMALLEST to _LARGEST, as its few bits tell at once."""
+    return max(number.numerator.bit_length(), number.denominator.bit_length()) <= _MODERATE_BITS
 
 
 def _fraction(value: Rational) -> Fraction:
@@ -97,7 +102,8 @@ def _parse(text: str, value: object) -> Fraction:
                 f"{show(value)} is too large or too small; write an exponent from -{LARGEST_EXPONENT} to "
                 f"{LARGEST_EXPONENT}"
             )
-        return int(whole + digits) * Fraction(10) ** (exponent - len(digits))
+        shift = exponent - len(digits)
+        return Fraction(int(whole + digits) * 10 ** max(shift, 0), 10 ** max(-shift, 0))
     raise refusal(f'{show(value)} is not a number; write an integer, a decimal or "p/q"')
 
 

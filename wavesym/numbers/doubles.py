@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import reduce
+from itertools import zip_longest
 
 from flint import arb, fmpq
 
@@ -29,6 +30,12 @@ def fraction(value: fmpq | Fraction) -> Fraction:
 def common_measure(values: Iterable[fmpq]) -> fmpq:
     """The largest number that all are multiples of; 0 of none."""
     return reduce(fmpq.gcd, values, fmpq(0))
+
+
+def in_order(values: Iterable[fmpq]) -> list[fmpq]:
+    """All of these, each once. (Not as a set: exact numbers are hashed slowly.)"""
+    every = sorted(values)
+    return [one for one, after in zip_longest(every, every[1:]) if one != after]
 
 
 def nearest(value: fmpq) -> float:

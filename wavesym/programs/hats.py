@@ -20,7 +20,7 @@ from wavesym.errors import SpacingError
 from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.numbers.arrays import Array
-from wavesym.numbers.doubles import common_measure, nearest, rational, relative
+from wavesym.numbers.doubles import common_measure, in_order, nearest, rational, relative
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.form import Form
 from wavesym.programs.march.bound import Verdict
@@ -70,7 +70,7 @@ def split(model: Model) -> SplitLoads:
     rest, records = list(model.loads_until(until)), []
     for step, ramp in _pairs(model):
         own = [load for load in rest if load.source in (step, ramp)]
-        if len({load.time for load in own}) < _FEW:
+        if len(in_order(load.time for load in own)) < _FEW:
             continue
         record, jumps = _record(step, ramp, own, until)
         rest = [load for load in rest if load.source not in (step, ramp)] + jumps
@@ -100,7 +100,7 @@ def still(model: Model, load: RecordLoad) -> Model:
 
 def _record(step: str, ramp: str, loads: Sequence[AppliedLoad], until: fmpq) -> tuple[RecordLoad, list[AppliedLoad]]:
     """A record that does not jump, and what it differs by: at each jump that, which goes back to 0 within a spacing."""
-    times = sorted({load.time for load in loads})
+    times = in_order(load.time for load in loads)
     begin = times[0]
     spacing = common_measure(after - before for before, after in pairwise(times))
     if (count := int(((until - begin) / spacing).floor()) + 2) > _MOST:

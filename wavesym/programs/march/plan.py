@@ -27,7 +27,7 @@ from wavesym.mechanics.network import End, Joint, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.time_derivative import with_derivatives
 from wavesym.mechanics.travel_times import step_of
-from wavesym.numbers.doubles import common_measure, fraction, nearest, rational
+from wavesym.numbers.doubles import common_measure, fraction, in_order, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.space import SHOWN, JointSpace, Port, joint_space
 
@@ -276,7 +276,7 @@ def march_plan(
 
 
 def _panels(times: list[fmpq], step: fmpq, helps: str) -> tuple[Panel, ...]:
-    cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
+    cuts = in_order([_ZERO, step, *(time - (time / step).floor() * step for time in times)])
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
             f"load: times at a spacing of {readable(common_measure(times))} leave {len(cuts) - 1} different "
