@@ -103,9 +103,10 @@ docs: .venv/.docs
 wheel: install
 	$(BIN)/python -m pip wheel --disable-pip-version-check --quiet --no-deps -w dist .
 
-# what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not
+# what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not;
+# the prover looks at the programs that the variable PROGRAMS names, or at all
 prove: install
-	@$(TOLD) $(BIN)/python -m tools.portable $@ docs/portability.md
+	@$(TOLD) $(BIN)/python -m tools.portable $@ docs/portability.md $(PROGRAMS)
 
 misra: install
 	@$(TOLD) $(BIN)/python -m tools.portable $@ docs/portability.md

@@ -1,6 +1,7 @@
 """python -m tools.portable prove|misra|targets|fuzz PAGE: run the tool and put its table into the page.
 
-`fuzz PAGE SECONDS` takes so many seconds for each program.
+`fuzz PAGE SECONDS` takes so many seconds for each program. `prove PAGE NAME ...` looks at the programs of these names
+alone; other rows stay as they are.
 
 Exit status 1 where something is not as it has to be; 0 with a word where the tool is not on this machine.
 """
@@ -21,7 +22,7 @@ from tools.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.writing import write_whole
 
 
-def main(what: str, page: Path, seconds: str = "0") -> int:
+def main(what: str, page: Path, *more: str) -> int:
     """Run one of them; what failed is told line by line."""
     clang = fuzz.fuzzer() if what == "fuzz" else None
     missing = {
@@ -40,7 +41,11 @@ def main(what: str, page: Path, seconds: str = "0") -> int:
         folder = Path(name)
         match what:
             case "prove":
-                made = table(prove.HEAD, _report_rows(prove.rows(PROVED, folder, KEPT, failed)))
+                asked = [subject for subject in PROVED if not more or subject.name in more]
+                proved = {row[:3]: row for row in _report_rows(prove.rows(asked, folder, KEPT, failed))}
+                known = {tuple(row[:3]): row for row in _rows_on(page, what)} | proved
+                keys = [prove.key(subject) for subject in PROVED]
+                made = table(prove.HEAD, [known.get(key, (*key, "", "", "not run")) for key in keys])
                 description = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
             case "misra":
                 seen = misra.all_findings(CHECKED, folder, KEPT)
@@ -51,7 +56,7 @@ def main(what: str, page: Path, seconds: str = "0") -> int:
                 assert clang
                 learning = Path("build", "fuzz").resolve()  # the next run goes on with what this one has learnt
                 made = table(
-                    fuzz.HEAD, _report_rows(fuzz.rows(fuzz.FUZZED, clang, learning, fuzz.CORPUS, int(seconds), failed))
+                    fuzz.HEAD, _report_rows(fuzz.rows(fuzz.FUZZED, clang, learning, fuzz.CORPUS, int(*more), failed))
                 )
                 description = f"{fuzz.tool(clang)}."
             case _:
@@ -66,9 +71,14 @@ def main(what: str, page: Path, seconds: str = "0") -> int:
 
 def proved_programs(page: Path) -> set[str]:
     """The programs in the table of `make prove`, none of whose rows has an alarm."""
-    lines = marked_text(page.read_text(encoding="utf-8"), "prove").splitlines()[4:]
-    rows = [(line.strip("| ").split(" | ")[0], line.endswith("| 0 |")) for line in lines]
-    return {name for name, _ in rows} - {name for name, fine in rows if not fine}
+    rows = _rows_on(page, "prove")
+    return {row[0] for row in rows} - {row[0] for row in rows if row[-1] != "0"}
+
+
+def _rows_on(page: Path, what: str) -> list[list[str]]:
+    """The rows of a table on the page."""
+    lines = marked_text(page.read_text(encoding="utf-8"), what).splitlines()[4:]
+    return [line[2:-2].split(" | ") for line in lines]
 
 
 def _report_rows(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:

@@ -37,8 +37,12 @@ _TO_THE_END = (
 # what is refused has no laws, nor has a batch of none
 _REFUSED_IS_REFUSED = ("-eva-split-return-function", "check_laws:0,check_batch:0")
 _WITH_ITS_DEGREE = "integrate,empty,clear_part,add_series,add_series_batch,acting_again,gather"
-_AT_ONCE = ("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals")
-_ONE_BY_ONE = "main:100,name_build_with:100,sample_series:100,run:100,output_block:100"
+# all degrees at once: what is short or counted in tables is unrolled, windows and events by their functions
+_AT_ONCE = ("-eva-precision", "0", "-eva-auto-loop-unroll", "128", "-eva-ilevel", "128", "-eva-plevel", "400")
+_ONE_BY_ONE = (
+    "main:100,name_build_with:50,start_model:50,check_laws:50,march_all:200,next_window:100,apply_loads:100,march:100,"
+    "accumulate_term:100,end_value:100,name_model_sample:100,sample_series:100,run:100,output_block:100,total_of:20"
+)
 _EFFORTS = {
     "usual": ("-eva-precision", "2", *_FOR_EVER),
     "more": ("-eva-precision", "3", *_FOR_EVER),
@@ -47,13 +51,17 @@ _EFFORTS = {
     "unrolled": (*_TO_THE_END, "-inline-calls", "integrate", *_REFUSED_IS_REFUSED),
     # of chains: what is asked of a copy of the degree is known of the degree
     "equal": (*_TO_THE_END, "-inline-calls", _WITH_ITS_DEGREE, *_REFUSED_IS_REFUSED, "-eva-domains", "equality"),
-    # windows and samples one by one, all else at once: which locals were set is not followed then
-    "bounds": (*_AT_ONCE, "-eva-slevel-function", _ONE_BY_ONE),
-    # and joints of a chain one by one
-    "joints": (*_AT_ONCE, "-eva-slevel-function", f"{_ONE_BY_ONE},march:100"),
+    # of models of any degree
+    "bounds": (
+        *_AT_ONCE,
+        *("-eva-split-return", "auto", "-eva-split-return-function", "check_laws:0,start_model:0"),
+        *("-eva-slevel-function", _ONE_BY_ONE),
+    ),
     # tables that are made at run time: short loops by themselves, up to the terms of a power series
     "made": ("-eva-precision", "0", "-eva-auto-loop-unroll", "20", *_FOR_EVER),
 }
+_SPLITS = {"bounds": {"run": "section", "accumulate_term": "degree"}}
+"""Of an effort the functions that are followed for each value of one of their numbers by itself."""
 
 
 class ProofVerdict(NamedTuple):
@@ -70,6 +78,14 @@ def command(subject: PortableProgram) -> list[str]:
     return [TOOL, *_OPTIONS, *(subject.instantiate(option) for option in _EFFORTS[subject.effort])]
 
 
+def annotate(subject: PortableProgram, text: str) -> str:
+    """C with what tells the prover where to follow each value by itself; others read comments there."""
+    for function, number in _SPLITS.get(subject.effort, {}).items():
+        head = rf"(?m)^(static void (?:OF\()?{function}\)?\([^{{;]*\{{\n)"
+        text = re.sub(head, rf"\g<1>    //@ split {number};\n    ;\n", text)
+    return text
+
+
 def verdict(subject: PortableProgram, count: int, machine: str, folder: Path) -> ProofVerdict:
     """Prove a program, whose files are in `folder`, under its driver."""
     driver = f"{subject.name}_{subject.driver}_{count}_{machine}_driver.c"
@@ -84,12 +100,20 @@ def verdict(subject: PortableProgram, count: int, machine: str, folder: Path) ->
     return ProofVerdict(int(found[1]), int(covered[1]), int(covered[2]), alarms)
 
 
+def key(subject: PortableProgram) -> tuple[str, ...]:
+    """The first cells of its row, which tell it from others."""
+    called = ", ".join(f"`{name}`" for name in subject.called_functions)
+    return (subject.name, f"`{subject.generate_command}`", called)
+
+
 def rows(
     subjects: Sequence[PortableProgram], folder: Path, kept_in: Path, failed: list[str]
 ) -> Iterator[tuple[str, ...]]:
     """A row for each program, its counts together; what was not proved is added to `failed`."""
     tool = version(TOOL)
-    texts = {subject.name: subject.files() for subject in subjects}
+    texts = {
+        subject.name: {file: annotate(subject, text) for file, text in subject.files().items()} for subject in subjects
+    }
     for files in texts.values():
         for file, text in files.items():
             (folder / file).write_text(text, encoding="utf-8")
@@ -112,9 +136,7 @@ def rows(
             alarms = [one.alarms for one in found]
             failed += [f"{subject.name}, {subject.driver}: {line}" for one in found for line in one.alarm_texts]
             yield (
-                subject.name,
-                f"`{subject.generate_command}`",
-                ", ".join(f"`{name}`" for name in subject.called_functions),
+                *key(subject),
                 ", ".join(map(str, subject.counts)) or "",
                 f"{max(one.statements_reached for one in found)} of {max(one.statements for one in found)}",
                 "not finished" if None in alarms else str(max(one for one in alarms if one is not None)),

@@ -119,7 +119,7 @@ _JOINTS = PortableProgram(
     Request(runtime=("mass", "impedance", "load"), parts=PARTS),
     "runtime",
     (7,),
-    effort="joints",
+    effort="bounds",
 )
 
 # short, of low degree: each way through the same C can be followed to its end

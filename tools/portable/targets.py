@@ -64,7 +64,8 @@ _LONG = "gcc_x86_64"
 
 
 def _linux(name: str, zig: str, qemu: str, layout: str = "gcc_x86_32", floats: str = "") -> TargetMachine:
-    runner = (f"qemu-{qemu}-static", "./selftest") if qemu else ("./selftest",)
+    emulators = [name for name in (f"qemu-{qemu}-static", f"qemu-{qemu}") if shutil.which(name)]
+    runner = ((emulators or [f"qemu-{qemu}"])[0], "./selftest") if qemu else ("./selftest",)
     return TargetMachine(
         name, f"{zig}-freestanding-{floats}".rstrip("-"), f"{zig}-linux-musl{floats}", runner, _PIE, layout
     )
