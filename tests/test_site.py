@@ -27,6 +27,9 @@ def test_the_gallery_has_every_picture_of_the_examples() -> None:
     shown = set(re.findall(r"\]\((\S+\.png)\)", page))
     assert shown == {path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").glob("*/*.png")}
     assert all((ROOT / link).is_file() for link in re.findall(r"\]\(([^)]*)\)", page))
+    pages = [path.parent for path in (ROOT / "examples").glob("*/README.md")]
+    assert all(f"(examples/{folder.name}/README.md)" in page for folder in pages)
+    assert [folder.name for folder in pages if [*folder.glob("*.toml")] and not [*folder.glob("*.png")]] == []
 
 
 def test_every_public_name_has_its_docstring_on_the_site() -> None:

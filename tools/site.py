@@ -33,7 +33,7 @@ def gallery(examples: Path) -> str:
     Returns:
         Markdown, with links from the folder above.
     """
-    lines = ["# Gallery", "", "Each picture leads to the page with its scene and its commands."]
+    lines, others = ["# Gallery", "", "Each picture leads to the page with its scene and its commands."], []
     for page in sorted(examples.glob("*/README.md")):
         pictures = sorted(page.parent.glob("*.png"))
         title = TITLE.search(page.read_text(encoding="utf-8"))
@@ -41,11 +41,13 @@ def gallery(examples: Path) -> str:
         link = f"{examples.name}/{page.parent.name}"
         if pictures:
             lines += ["", f"## [{title[1]}]({link}/README.md)", ""]
+        else:
+            others.append(f"[{title[1]}]({link}/README.md)")
         for picture in pictures:
             name = picture.stem.replace("_", " ").capitalize()
             shown = f"![]({link}/{picture.name}){{ loading=lazy }}"
             lines += [f"[{shown}{name}]({link}/README.md){{ .thumbnail }}", ""]
-    return "\n".join([*lines, ""])
+    return "\n".join([*lines, "", f"Without pictures: {', '.join(others)}.", ""])
 
 
 def public_names() -> str:
