@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 import sympy
@@ -197,3 +199,23 @@ def test_of_masses_on_springs_no_mode_is_left_out():
     right = sum(shapes[0, k] ** 2 / (w[k] ** 2 - taus**2 + 2j * (0, 0.05)[k] * w[k] * taus) for k in range(2))
     found = wavesym.frf(first_undamped(SPRINGS), taus)
     assert found.values[0] == pytest.approx(right, rel=1e-13)
+
+
+@pytest.mark.parametrize("closeness", ["1e-12", pytest.param("1e-25", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("dashpot", [0, "1/5"])
+def test_branches_that_are_nearly_equal_have_their_peak(closeness: str, dashpot: object) -> None:
+    """Between their two resonances they pull nothing together with the rest: what is left is the dashpot, 1/(1/5)."""
+    arms = [str(1 + k * Fraction(closeness)) for k in range(3)]
+    branch = [{"from": "a", "name": f"b{k}", "parts": [{"rod": length}, {"mass": 1}]} for k, length in enumerate(arms)]
+    parts = ["fixed", {"rod": 1}, {"mass": 1, "name": "a", "dashpot": dashpot}, {"rod": 1}, "free"]
+    if not dashpot:
+        del parts[2]["dashpot"]
+    scene = wavesym.Scene(
+        name="near",
+        system={"type": "chain", "parts": parts, "branch": branch},
+        load=[{"at": "a", "times": [0], "steps": [1]}],
+        output={"until": 1, "velocity": ["a"]},
+    )
+    (peak,) = wavesym.frf(scene, [0.8, 0.9]).peaks()
+    assert peak.amplitude == pytest.approx(5.0 if dashpot else np.inf, rel=1e-9)
+    assert np.tan(peak.frequency) == pytest.approx(1 / peak.frequency, rel=1e-6)

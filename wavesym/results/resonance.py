@@ -32,11 +32,11 @@ from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.presentation import csv_line, output_number
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
 
-_BITS = 256
 _SHARE = arb(2) ** -33  # of the greatest amplitude: what peaks are enclosed to
 _NOISE = arb(2) ** -128  # of an amplitude: one that is no higher than by so much is the same
 _LEAST = arb(2) ** -40  # of the band: in an interval in which amplitudes are still not bounded a pole is sought
-_SHORTEST = arb(2) ** -80  # of the band: it is given up where there may be one, or none
+_LOOKS_AT = ((256, arb(2) ** -80), (1024, arb(2) ** -320))
+"""Bits, and of the band an interval that is given up, where there may be a pole or none; the second where that is so."""
 _GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole at 0, where it is 4 or 16
 _MOST = 600_000  # intervals times parts
 _NEWTON = 3
@@ -109,7 +109,7 @@ class AmplitudePeaks:
         """What is not decided: lines for people."""
         return tuple(
             f"{p.name}: not decided whether it has a greatest amplitude: the load may not excite what is natural at "
-            f"{p.frequency:g}"
+            f"{p.frequency:g} (travel times of rods with a common measure, or a band without it, help)"
             for p in self.peaks
             if isnan(p.amplitude)
         )
@@ -153,27 +153,36 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Amplitud
     """
     if not 0 <= low < high:
         raise WavesymError(f"--peaks: {low:g} to {high:g} is no band of frequencies; write two that differ")
-    with ctx.workprec(_BITS):
-        first, last = angular(model, low), angular(model, high)
-        for transfer, rests in _transfers(model, load, last):
-            found = [_Search(rest) for rest in rests]
-            if not all(rest.is_finite() for rest in rests):
-                continue
-            _search(transfer, found, first, last, len(model.network.points))
-            if all(each.rest**2 <= each.square * arb(model.tolerance) ** 2 for each in found):
-                break
-        for k, each in enumerate(found):
-            terms = transfer.lowest_terms(k) if each.is_open else None
-            if terms is not None:
-                found[k] = _Search(each.rest)
-                _search(terms, found[k : k + 1], first, last, len(model.network.points))
-        per = angular(model, 1.0)
-        made = [
-            _peak(probe, each, low if each.at is None else min(max(midpoint(each.at / per), low), high))
-            for probe, each in zip(model.probes, found, strict=True)
-        ]
+    for bits, shortest in _LOOKS_AT:
+        with ctx.workprec(bits):
+            found = _searches(model, load, angular(model, low), angular(model, high), shortest)
+            per = angular(model, 1.0)
+            made = [
+                _peak(probe, each, low if each.at is None else min(max(midpoint(each.at / per), low), high))
+                for probe, each in zip(model.probes, found, strict=True)
+            ]
+        if not any(each.is_open for each in found):
+            break
     label = "omega" if model.clock is None else "frequency [Hz]"
     return AmplitudePeaks(model.name, load.label, load.unit, label, (low, high), tuple(made))
+
+
+def _searches(model: Model, load: HarmonicLoad, first: arb, last: arb, shortest: arb) -> list[_Search]:
+    """What is known of the greatest amplitude of each output from one frequency to another."""
+    parts = len(model.network.points)
+    for transfer, rests in _transfers(model, load, last):
+        found = [_Search(rest) for rest in rests]
+        if not all(rest.is_finite() for rest in rests):
+            continue
+        _search(transfer, found, first, last, parts, shortest)
+        if all(each.rest**2 <= each.square * arb(model.tolerance) ** 2 for each in found):
+            break
+    for k, each in enumerate(found):
+        terms = transfer.lowest_terms(k) if each.is_open else None
+        if terms is not None:
+            found[k] = _Search(each.rest)
+            _search(terms, found[k : k + 1], first, last, parts, shortest)
+    return found
 
 
 def _peak(probe: Probe, search: _Search, frequency: float) -> AmplitudePeak:
@@ -228,8 +237,8 @@ class _Interval:
         yield _Interval(self.middle, self.high, outputs)
 
 
-def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb, parts: int) -> None:
-    """Find the greatest amplitudes from one frequency to another. CostError.
+def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb, parts: int, shortest: arb) -> None:
+    """Find the greatest amplitudes from one frequency to another, in intervals down to `shortest` of it. CostError.
 
     What is not finite at 0 is searched from a 2^-40 of the band on: there it has a pole, or goes on as it comes.
     """
@@ -274,11 +283,11 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
                     continue
                 width, wide = each.high - each.low, (last - first).min(each.high)
                 below, above = each.low - width, each.high + width
-                if width > wide * _SHORTEST:  # what is nearer to an end of the band than that is at it
+                if width > wide * shortest:  # what is nearer to an end of the band than that is at it
                     below, above = below.max(edges[0]), above.min(edges[-1])
                 if width < wide * _LEAST and transfer.has_pole(k, below, above):
                     found[k].pole, found[k].at = True, each.middle
-                elif width < wide * (_SHORTEST if transfer.lowest_terms(k) is None else _LEAST):
+                elif width < wide * (shortest if transfer.lowest_terms(k) is None else _LEAST):
                     found[k].is_open, found[k].at = True, each.middle
                 else:
                     open_for.append(k)
