@@ -36,7 +36,7 @@ _SHARE = arb(2) ** -33  # of the greatest amplitude: what peaks are enclosed to
 _NOISE = arb(2) ** -128  # of an amplitude: one that is no higher than by so much is the same
 _LEAST = arb(2) ** -40  # of the band: in an interval in which amplitudes are still not bounded a pole is sought
 _LOOKS_AT = ((256, arb(2) ** -80), (1024, arb(2) ** -320))
-"""Bits, and of the band an interval that is given up, where there may be a pole or none; the second where that is so."""
+"""Bits, and of the band an interval that is given up, where there may be a pole or none; then the second."""
 _GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole at 0, where it is 4 or 16
 _MOST = 600_000  # intervals times parts
 _NEWTON = 3
