@@ -323,3 +323,34 @@ def test_a_scene_of_a_chain_alone_has_modes_and_nothing_else(tmp_path: Path) -> 
     assert shear.modes(1)[0].hz == pytest.approx(12.5, rel=1e-14)
     ranges = wavesym.modes(shear, 1, ranges={"system.parts[1].speed": ("100 m/s", "200 m/s")})
     assert ranges[0].high == pytest.approx(2 * ranges[0].low, rel=1e-14)
+
+
+def test_participation_in_a_free_chain_with_a_gear_is_that_of_a_dense_eigenproblem() -> None:
+    """The rigid motion first, in which the branch turns twice as fast; forces on a mass and on the branch."""
+    parts = [{"mass": 2, "name": "a"}, {"spring": 3}, {"mass": 1, "name": "b"}, {"spring": 5}, {"mass": 4, "name": "c"}]
+    branch = [{"from": "b", "name": "d", "ratio": 2, "parts": [{"spring": 7}, {"mass": "1/2", "name": "e"}]}]
+    load = [{"at": at, "times": [0], "steps": [1]} for at in ("a", "e")]
+    system = {"type": "chain", "parts": parts, "branch": branch}
+    found = wavesym.modes(Scene(name="f", system=system, load=load, output={"until": 1, "velocity": ["a"]}))
+    pulls = np.array([[1, -1, 0, 0], [0, 1, -1, 0], [0, 2, 0, -1]], float)
+    stiffness, mass = pulls.T @ np.diag([3.0, 5.0, 7.0]) @ pulls, np.diag([2.0, 1.0, 4.0, 0.5])
+    w2, shapes = np.linalg.eig(np.linalg.solve(mass, stiffness))
+    assert (len(found), found[0].omega) == (4, 0.0)
+    for mode, k in zip(found, np.argsort(w2), strict=True):
+        q = shapes[:, k] / shapes[np.argmax(np.abs(shapes[:, k])), k]
+        assert mode.omega == pytest.approx(np.sqrt(max(w2[k], 0.0)), rel=1e-12, abs=1e-7)
+        assert [mode.loads[at].factor for at in ("a", "e")] == pytest.approx([q[0], q[3]], rel=1e-9)
+        assert mode.effective_mass is None
+    assert found[0].loads["e"].factor == pytest.approx(2 * found[0].loads["a"].factor, rel=1e-14)
+
+
+def test_participation_at_the_end_of_a_free_rod_is_that_of_cosines() -> None:
+    """1 in each, and for a force in its middle 1, 0, -1, 0, ..., where ends move by 1."""
+    load = [{"at": at, "times": [0], "steps": [1]} for at in ("l", "m")]
+    parts = [{"joint": True, "name": "l"}, {"rod": 1}, {"joint": True, "name": "m"}, {"rod": 1}, "free"]
+    scene = Scene(name="r", system={"type": "chain", "parts": parts}, load=load, output={"until": 1, "velocity": [0]})
+    found = wavesym.modes(scene, 6)
+    assert [mode.omega for mode in found] == pytest.approx([n * pi / 2 for n in range(6)], rel=1e-14)
+    assert [abs(mode.loads["l"].factor) for mode in found] == pytest.approx([1] * 6, rel=1e-12)
+    middles = [mode.loads["m"].factor * np.sign(mode.loads["l"].factor) for mode in found]
+    assert middles == pytest.approx([1, 0, -1, 0, 1, 0], abs=1e-12)
