@@ -15,7 +15,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.march.losses import _LOADED, Losses
 from wavesym.programs.march.plan import march_plan
-from wavesym.programs.march.responses import BodyOperator, _norm, block_response, body_operator, body_roundings
+from wavesym.programs.march.responses import BodyOperator, block_response, body_operator, body_roundings
 from wavesym.programs.march.space import BODY
 from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.schemes.march import Marching, RunningLoads
@@ -138,14 +138,18 @@ def in_numpy(of, count):
     return sent[0, 0, 1], x[0]
 
 
-def norms(q, end):
-    """Of what is counted, as in `BodyRoundings`: per |p|, |start|, smallest number; c_0 counts twice."""
-    twice = np.ones(len(q))
+def counted(q, end):
+    """What is counted, as in `body_roundings`."""
+    return np.array([[*number.error, number.underflow] for number in (*q, end)])
+
+
+def norms(wrong):
+    """Of the coefficients, and of the end: per |p|, |start|, smallest number; c_0 counts twice."""
+    twice = np.ones(len(wrong) - 1)
     twice[0] = np.sqrt(2)
-    errors = twice[:, np.newaxis] * np.array([number.error for number in q])
-    lost = twice * [number.underflow for number in q]
-    coefficients = np.linalg.norm(errors[:, :-1] / twice, 2), np.linalg.norm(errors[:, -1]), np.linalg.norm(lost)
-    return np.array([coefficients, (np.linalg.norm(end.error[:-1] / twice), end.error[-1], end.underflow)])
+    q, end = twice[:, np.newaxis] * wrong[:-1], wrong[-1]
+    of_q = np.linalg.norm(q[:, :-2] / twice, 2), np.linalg.norm(q[:, -2]), np.linalg.norm(q[:, -1])
+    return np.array([of_q, (np.linalg.norm(end[:-2] / twice), end[-2], end[-1])])
 
 
 @pytest.mark.quick(1)
@@ -153,13 +157,12 @@ def norms(q, end):
 @STEPS
 def test_roundings_are_no_less_than_a_count_and_little_more(step, degree, count) -> None:
     of = body_operator(fmpq(step), degree)
-    claimed = np.array(body_roundings(of, count))
-    c, numpy = norms(*in_c(of, count)), norms(*in_numpy(of, count))
+    claimed = body_roundings(of, count)
+    c, numpy = counted(*in_c(of, count)), counted(*in_numpy(of, count))
     assert (claimed >= c).all()
     assert (claimed >= numpy).all()
     if fmpq(step) <= 1:  # of light bodies errors cancel, and the constants do not count with it
-        assert (claimed[:, :2] <= 2.1 * np.maximum(c, numpy)[:, :2]).all()
-        assert (claimed[:, 2] <= 12 * np.maximum(c, numpy)[:, 2]).all()
+        assert (norms(claimed) <= np.array([[2.1, 2.1, 12]]) * norms(np.maximum(c, numpy))).all()
 
 
 @pytest.mark.quick(1)
@@ -167,17 +170,17 @@ def test_roundings_are_no_less_than_a_count_and_little_more(step, degree, count)
 def test_roundings_of_what_acts_that_are_not_counted_are_seen(step) -> None:
     """Where p has as many as a joint of 60 rods."""
     of = body_operator(fmpq(step), 21)
-    assert (np.array(body_roundings(of, 64)) >= norms(*in_c(of, 64))).all()
-    assert not (np.array(body_roundings(of, 0)) >= norms(*in_c(of, 64))).all()
+    assert (body_roundings(of, 64) >= counted(*in_c(of, 64))).all()
+    assert not (body_roundings(of, 0) >= counted(*in_c(of, 64))).all()
 
 
 @pytest.mark.parametrize(("step", "degree"), [("100", 2), ("1000", 2), ("1000", 3), ("1000000", 3), ("1000000", 4)])
 def test_roundings_are_no_less_than_a_count_where_degrees_are_far_too_low(step, degree) -> None:
     """Of odd degree `slack` is nearly 1, of even degree `loss` is below -1."""
     of = body_operator(fmpq(step), degree)
-    claimed = np.array(body_roundings(of, 6))
-    assert (claimed >= norms(*in_c(of, 6))).all()
-    assert (claimed >= norms(*in_numpy(of, 6))).all()
+    claimed = body_roundings(of, 6)
+    assert (claimed >= counted(*in_c(of, 6))).all()
+    assert (claimed >= counted(*in_numpy(of, 6))).all()
 
 
 @pytest.mark.parametrize(
@@ -188,9 +191,8 @@ def test_what_sums_and_the_mean_lose_is_counted_by_itself(slack, loss, degree) -
     """With tables of nearly 0, where what the coefficients may lose does not reach the value at the end."""
     tiny = (0.0,) + (2.0**-40,) * degree
     of = BodyOperator(2.0**-40, tiny, tiny, tiny, slack, loss, 2.0**-40)
-    *_, claimed = body_roundings(of, 5).end
-    *_, counted = norms(*in_c(of, 5))[1]
-    assert counted <= claimed <= 30 * counted
+    lost, told = counted(*in_c(of, 5))[-1, -1], body_roundings(of, 5)[-1, -1]
+    assert lost <= told <= 30 * lost
 
 
 @pytest.mark.slow
@@ -199,9 +201,9 @@ def test_what_one_coefficient_loses_is_handed_on_to_all_below_it() -> None:
     degree = 64
     one = (0.0,) + (1.0,) * degree
     of = BodyOperator(1.0, one, one, one, 0.0, 0.0, 2.0**-40)
-    *_, claimed = body_roundings(of, 5).coefficients
-    *_, counted = norms(*in_c(of, 5))[0]
-    assert counted <= claimed <= 100 * counted
+    lost, told = counted(*in_c(of, 5))[:-1, -1], body_roundings(of, 5)[:-1, -1]
+    assert (lost <= told).all()
+    assert np.linalg.norm(told) <= 100 * np.linalg.norm(lost)
 
 
 def ended_at_1(degree) -> BodyOperator:
@@ -220,15 +222,7 @@ def test_what_is_rounded_on_the_way_down_is_handed_on_to_the_last() -> None:
         of, p, Rounded(np.zeros(1)), *(list(Rounded.table(table)) for table in (of.ratio, of.first, of.last))
     )
     assert end.error[0] >= 3 * degree
-    assert body_roundings(ended_at_1(1000), 5).end[0] >= 3 * 1000
-
-
-def test_an_upper_bound_of_a_norm_is_one_and_near() -> None:
-    random = np.random.default_rng(1)
-    for matrix in (*random.uniform(0, 1, (20, 7, 5)), np.eye(4), np.diag([1.0, 1e-9, 3, 1e3]), np.ones((3, 1))):
-        norm = np.linalg.norm(matrix, 2)
-        assert norm <= _norm(matrix) * (1 + 1e-12)
-        assert _norm(matrix) <= 1.01 * norm
+    assert max(body_roundings(ended_at_1(1000), 5)[-1, :-2]) >= 3 * 1000
 
 
 def chebyshev(k):

@@ -106,15 +106,14 @@ class Losses:
         self, group: Bodies, of: BodyLosses, a: Array, sent: Array, size: Array, x: Array
     ) -> tuple[Array, Array, Array, Array]:
         """Of waves squares and sums of what may be wrong, of states errors, and squares of what is missed."""
-        unit, start = self._unit, np.abs(x[..., 0])
-        known = [np.sqrt(np.sum(part**2, axis=-1) + part[..., 0] ** 2) for part in (a, sent, size)]
-        acting = np.sum(np.abs(group.push) * known[0], axis=-1) + _LOADED * group.drive[:, 0] * known[2][..., 0]
-        q, ends = (
-            unit * (each[:, 0] * acting + each[:, 1] * start) + self._smallest * each[:, 2]
-            for each in np.moveaxis(of.roundings, 1, 0)
-        )
+        unit, acting = self._unit, np.einsum("jp,wjpk->wjk", np.abs(group.push), np.abs(a))
+        acting[..., :3] += _LOADED * group.drive * size[:, :, 0]
+        lowest = np.full((*acting.shape[:2], 1), self._smallest)
+        given = np.concatenate([unit * acting, unit * np.abs(x), lowest], axis=-1)
+        made = np.moveaxis(of.roundings @ np.moveaxis(given, 0, -1), -1, 0)
+        q, ends = _norm(made[..., :-1]), made[..., -1]
         turned = np.abs(group.ratio)
-        near = unit * (known[1] + np.where(turned == 1, 0.0, 2.0) * (known[0] + known[1]))
+        near = unit * (_norm(sent) + np.where(turned == 1, 0.0, 2.0) * (_norm(a) + _norm(sent)))
         wrong = turned * q[..., None] + near + 4 * sqrt(group.size + 1) * self._smallest
         # the last coefficients of q and p, from what is sent, about
         last = (sent[..., 0, -1] + a[..., 0, -1]) / group.ratio[:, 0]
@@ -122,7 +121,7 @@ class Losses:
         about = 4 * unit * (np.abs(sent[..., 0, -1]) + np.abs(a[..., 0, -1])) / turned[:, 0]
         missed = of.leak * (excess + about)
         # what rounding makes of the same counts as if the body were wrong by it at the end
-        ends += of.end_error * of.leak * (q + (2 * self._pushes + 4) * unit * acting)
+        ends += of.end_error * of.leak * (q + (2 * self._pushes + 4) * unit * _norm(acting))
         single = sqrt(group.size) * wrong
         return wrong**2, single, ends[..., None], np.asarray(np.sum(of.squared_loss * missed**2, axis=-1))
 
@@ -178,7 +177,7 @@ class Losses:
 
 @dataclass(frozen=True)
 class BodyLosses:
-    """Of bodies on a panel: their `roundings`, (joints, q or end, 3), leaks, and what a leak of 1 costs.
+    """Of bodies on a panel: their `roundings`, (joints, d + 2, d + 3), leaks, and what a leak of 1 costs.
 
     That is a `squared_loss` of energy, or an `end_error` of the velocity.
     """
@@ -192,6 +191,11 @@ class BodyLosses:
 def _square(wrong: Array) -> Array:
     """The squares of norms that count c_0 twice."""
     return np.asarray(np.sum(wrong**2, axis=-1) + wrong[..., 0] ** 2)
+
+
+def _norm(series: Array) -> Array:
+    """Norms that count c_0 twice."""
+    return np.sqrt(_square(series))
 
 
 def _block_matrix(acting: Array, x: Array) -> Array:

@@ -39,8 +39,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from math import ceil, log2, sqrt
-from typing import NamedTuple
+from math import ceil, log2
 
 import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
@@ -108,25 +107,20 @@ def body_operator(step: fmpq, degree: int) -> BodyOperator:
         )
 
 
-class BodyRoundings(NamedTuple):
-    """How wrong the coefficients of q, and its value at the `end`, may be: per u |p|, per u |start|, and per smallest
-    number that may be lost by underflow.
-    """
-
-    coefficients: tuple[float, float, float]
-    end: tuple[float, float, float]
-
-
-def body_roundings(operator: BodyOperator, count: int) -> BodyRoundings:
-    """Norms of T and t for the coefficients of q, and the same for its value at the end; p is rounded `count` times.
+def body_roundings(operator: BodyOperator, count: int) -> Array:
+    """How wrong a program may make what a body sends, from absolute values; p is rounded `count` times.
 
     Counts the roundings of the programs in C (one after the other) and in NumPy (scans and sums in pairs).
+
+    Returns:
+        (degree + 2, degree + 3): of each coefficient of q, and of its value at the end, per u |p_k| for each k, per u
+        of the value at the start, and per smallest number that may be lost by underflow.
     """
     degree = len(operator.ratio) - 1
     levels = ceil(log2(degree + 1))
     ratio, first, last = (np.abs(np.array(table)) for table in (operator.ratio, operator.first, operator.last))
     slack, loss = operator.slack, operator.loss
-    # columns: |p_0| ... |p_d|, |start|, and a last one that no value has: products that underflow
+    # the last column is one that no value has: products that underflow
     given = np.eye(degree + 3)
     start, spare = given[-2], (SPARE + count + levels) * given[-1]
     y, y_error = np.zeros((degree + 2, degree + 3)), np.zeros((degree + 2, degree + 3))
@@ -142,38 +136,14 @@ def body_roundings(operator: BodyOperator, count: int) -> BodyRoundings:
     mean_error = (1 - slack) * (first @ y_error + (first * counts) @ y + summed) + 3 * begun + spare
     end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + abs(loss)) * mean + ended)
     end_error += summed + spare
-    q_error = np.empty_like(y_error)
-    q_error[0] = mean_error
+    wrong = np.empty((degree + 2, degree + 3))
+    wrong[0], wrong[-1] = mean_error, end_error
     q, error = 2 * mean, 2 * mean_error
     for k in range(1, degree + 1):
         q = y[k] + ratio[k] * q
         error = y_error[k] + ratio[k] * error + 3 * q + spare
-        q_error[k] = error + levels * q
-    # in the norm that counts c_0 twice
-    q_error[0] *= sqrt(2)
-    q_error[:, 0] /= sqrt(2)
-    end_error[0] /= sqrt(2)
-    return BodyRoundings(
-        (
-            _norm(q_error[:, :-2]),
-            float(np.linalg.norm(q_error[:, -2])),
-            float(np.linalg.norm(q_error[:, -1])),
-        ),
-        (float(np.linalg.norm(end_error[:-2])), float(end_error[-2]), float(end_error[-1])),
-    )
-
-
-def _norm(matrix: Array) -> float:
-    """An upper bound of the 2-norm of a matrix A without negative entries.
-
-    For any positive x no eigenvalue of A^T A is larger than the largest (A^T A x)_i / x_i (Collatz).
-    """
-    x = np.ones(matrix.shape[1])
-    for _ in range(20):
-        y = matrix.T @ (matrix @ x)
-        bound = float(np.max(y / x))
-        x = y / np.max(y) + 1e-3
-    return sqrt(bound)
+        wrong[k] = error + levels * q
+    return wrong
 
 
 _FIRST_BITS, _MOST_BITS = 192, 1 << 13
