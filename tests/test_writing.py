@@ -375,6 +375,14 @@ def test_a_link_to_itself_is_refused(tmp_path: Path) -> None:
     assert names(tmp_path) == ["link"]
 
 
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="no folder that takes no files")
+def test_a_folder_that_takes_no_files_is_refused_at_once() -> None:
+    """A lock in it could never be had, and was waited for for ever."""
+    with pytest.raises(FileNotFoundError) as raised:
+        write_whole({Path("/proc/x.csv"): "new"})
+    assert raised.value.filename == "/proc/x.csv"
+
+
 def test_a_folder_that_vanishes_is_named_and_the_others_stay(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("old")
 

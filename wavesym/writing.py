@@ -73,6 +73,9 @@ def _lock(place: Path) -> Iterator[None]:
     path = place.with_name(f".{place.name}.writing")
     lock = FileLock(path, fallback_to_soft=False)
     try:
+        os.close(
+            os.open(path, os.O_CREAT | os.O_WRONLY, 0o644)
+        )  # for a lock in a folder that takes no files one waits for ever
         lock.acquire()
     except OSError as error:  # not all disks have locks; what keeps drafts away too is met with these
         if not isinstance(error, PermissionError):  # a lock of another user may be held

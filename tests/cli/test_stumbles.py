@@ -157,7 +157,7 @@ def test_the_soil_of_the_pile_to_start_from_yields(capsys: pytest.CaptureFixture
     assert main(["init", "pile"]) == 0
     Path("first.toml").write_text(capsys.readouterr().out, encoding="utf-8")
     events = wavesym.run(wavesym.Scene.from_toml("first.toml")).events
-    assert {event.kind for event in events} == {"yields", "holds", "lets go"}  # the ram, of its cushion
+    assert {event.kind for event in events} == {"yields", "holds", "releases"}  # the ram, of its cushion
 
 
 def test_a_scene_to_start_from_takes_a_record(capsys: pytest.CaptureFixture[str]) -> None:

@@ -120,7 +120,7 @@ def test_a_train_of_rods_whose_events_multiply_is_refused_early() -> None:
 def summed_fronts(until: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """When the strain at 0.7 m of the specimen changes, in tau, and what it is then; its second contact stays closed.
 
-    Fronts go from joint to joint in doubles; those that arrive together are one. The striker lets go at tau = 10.
+    Fronts go from joint to joint in doubles; those that arrive together are one. The striker releases at tau = 10.
     """
     steel, light, soft = ((a * 1e-6, (e * rho) ** 0.5, (e / rho) ** 0.5) for a, e, rho in MATERIALS)
     rods = [(0.2, steel), (1.0, steel), (0.002, light), (0.003, soft), (1.0, steel), (0.2, steel)]

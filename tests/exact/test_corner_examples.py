@@ -58,7 +58,7 @@ def test_the_teeth_of_a_pinion_on_a_rigid_shaft_part_and_strike_as_it_swings_and
     # the other flank, about -play - rest, and back
     swing, phase = hypot(rest, speed / rate), atan2(speed / rate, rest)
     times = [parted, parted + flown, parted + flown + 2 * (pi + phase) / rate]
-    assert_happens(wavesym.Scene(**table), 1.0, list(zip(["lets go", "engages", "lets go"], times, strict=True)))
+    assert_happens(wavesym.Scene(**table), 1.0, list(zip(["releases", "engages", "releases"], times, strict=True)))
 
 
 def test_a_ram_that_stays_on_the_pile_drives_it_into_plastic_soil_in_closed_form() -> None:

@@ -39,7 +39,7 @@ def body(spring: dict[str, Any], until: object = 5, velocity: object = 1) -> Mod
 def test_a_body_meets_a_spring_and_leaves_it() -> None:
     """Half a period of 2 rad, which reverses it."""
     model = body({"only": "push", "gap": "1/2"})
-    assert happenings(model) == [("engages", 0.5), ("lets go", pytest.approx(0.5 + math.pi / 2, rel=1e-16))]
+    assert happenings(model) == [("engages", 0.5), ("releases", pytest.approx(0.5 + math.pi / 2, rel=1e-16))]
     (event, _) = events(model)
     assert event.digits == "0.50000000000000000000"
     assert event.subject == "spring at x = 0"
@@ -58,7 +58,7 @@ def test_backlash_has_a_period() -> None:
     found = happenings(body({"gap": ["-1/2", "1/4"]}, 8))
     swing, way = math.pi / 2, 0.75
     begin = [0.5 + k * (swing + way) for k in range(4)]
-    expected = [each for start in begin for each in (("engages", start), ("lets go", start + swing)) if each[1] < 8]
+    expected = [each for start in begin for each in (("engages", start), ("releases", start + swing)) if each[1] < 8]
     assert [kind for kind, _ in found] == [kind for kind, _ in expected]
     assert [tau for _, tau in found] == pytest.approx([tau for _, tau in expected], rel=1e-15)
 
@@ -125,7 +125,7 @@ def test_where_no_corner_is_met_values_are_those_of_the_linear_scene(law: dict[s
 def test_the_rest_of_a_spring_on_the_wrong_side_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(CornerSpring, "rest", property(lambda spring: -spring.side * spring.gap))
     model = body({"only": "push", "gap": "1/3"})
-    assert happenings(model) != [("engages", 1 / 3), ("lets go", pytest.approx(1 / 3 + math.pi / 2, rel=1e-16))]
+    assert happenings(model) != [("engages", 1 / 3), ("releases", pytest.approx(1 / 3 + math.pi / 2, rel=1e-16))]
 
 
 @pytest.mark.parametrize(

@@ -82,7 +82,7 @@ def test_an_idle_spring_at_its_gap_leaves_a_contact_its_first_power() -> None:
     output = {"until": "3/2", "velocity": ["m"]}
     system = {"type": "chain", "parts": [*parts, "contact", {"rod": 1}, "absorbing"]}
     lets_go, opens = events(lower(Scene(name="idle", system=system, load=loads, output=output)))
-    assert (lets_go.kind, lets_go.double, opens.kind) == ("lets go", 0, "opens")
+    assert (lets_go.kind, lets_go.double, opens.kind) == ("releases", 0, "opens")
     with ctx.workprec(200):
         assert abs(opens.tau - (1 + (1 + arb(-1).exp()).log())) < arb("1e-40")
 

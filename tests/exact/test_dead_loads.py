@@ -111,14 +111,14 @@ def test_what_falls_on_a_floor_or_a_spring_meets_it_when_it_has_fallen_so_far(ga
 
 
 def test_a_play_is_as_wide_when_it_carries_a_weight() -> None:
-    """Its spring pushes with 2/5 in the balance: it lets go where it gets 1/5 longer, and engages 1 beyond that."""
+    """Its spring pushes with 2/5 in the balance: it releases where it gets 1/5 longer, and engages 1 beyond that."""
     parts = ["fixed", {"rod": 1}, {"mass": 1, "name": "a"}, {"spring": 2, "gap": [1, 2]}, {"mass": 1, "name": "b"}]
     load = [{"at": "b", "times": [0], "steps": [14]}]
     output = {"until": 3, "tolerance": 1e-9, "displacement": ["a", "b"]}
     system = {"type": "chain", "gravity": 1, "initial": "static", "parts": [*parts, {"rod": 1}, "fixed"]}
     scene = wavesym.Scene(name="play", system=system, load=load, output=output)
     known = wavesym.run(scene).events
-    assert [event.kind for event in known[:2]] == ["lets go", "engages"]
+    assert [event.kind for event in known[:2]] == ["releases", "engages"]
     a, b = wavesym.evaluator(scene)([event.double for event in known[:2]])
     assert (b - a).tolist() == pytest.approx([1 / 5, 6 / 5], abs=1e-9)
 

@@ -366,7 +366,7 @@ def test_what_takes_just_as_much_as_its_limit_at_rest_is_refused(scene: Callable
 def test_what_takes_nearly_its_limit_at_rest_is_held_below_and_slips_above_it(
     scene: Callable[[Fraction], list[object]], digits: int
 ) -> None:
-    """However near: a limit that bears less by 10^-46 lets go."""
+    """However near: a limit that bears less by 10^-46 releases."""
     for more, kinds in ((1, {at_its_limit: ["sticks"], up_to_its_limit: []}), (-1, {})):
         parts = scene(Fraction(more, 10**digits))
         result = breaking(parts, 10)

@@ -210,7 +210,7 @@ def test_what_leaves_rest_presses_on_a_rod_that_rests_or_parts_from_it(velocity:
 
 @pytest.mark.slow
 def test_a_spring_that_lets_go_makes_no_other_one_hold_for_no_time() -> None:
-    """What lets go is known less closely than contacts are: "holds" and "yields" were told within 1e-62 of it."""
+    """What releases is known less closely than contacts are: "holds" and "yields" were told within 1e-62 of it."""
     parts = [
         *[{"mass": "1/2", "name": "n0", "velocity": 1}, {"friction": "2/5"}, {"joint": True, "name": "n1"}],
         *[{"rod": "1/2"}, {"joint": True, "name": "n2"}, {"spring": 3, "yield": "3/10"}],

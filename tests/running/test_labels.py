@@ -86,10 +86,11 @@ def test_times_are_those_of_results(tmp_path_factory: pytest.TempPathFactory) ->
     assert not np.isnan(found.values).any()  # the last time is the horizon
 
 
-def test_either_times_or_tau(model: RuntimeModel) -> None:
-    for given in ({}, {"tau": [1.0], "times": [1.0]}):
-        with pytest.raises(WavesymError, match="times: write either times or tau"):
-            model.run(**given)
+def test_either_times_or_tau_or_neither(model: RuntimeModel) -> None:
+    with pytest.raises(WavesymError, match="times: write either times or tau"):
+        model.run(tau=[1.0], times=[1.0])
+    tau = np.linspace(0, model.tau_max, 1001)
+    np.testing.assert_array_equal(model.run().values, model.run(tau=tau).values)
 
 
 def test_without_xarray_it_is_an_array(model: RuntimeModel, monkeypatch: pytest.MonkeyPatch) -> None:

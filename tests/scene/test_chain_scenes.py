@@ -145,6 +145,17 @@ MISTAKES = [
         "system.parts[2].J: unknown key; write dashpot = c; Smith's damping J v R is a product and no such law, "
         "c = J R stands for it",
     ),
+    ("mass = 4, name", "mass = 4, ground = 3, name", "system.parts[0].ground: 3 is not a table; write { spring = K }"),
+    (
+        "mass = 4, name",
+        "mass = 4, ground = { mass = 1 }, name",
+        "system.parts[0].ground.mass: unknown key; write breakaway, dashpot, friction, gap, only, preload, spring",
+    ),
+    (
+        "mass = 4, name",
+        "mass = 4, spring = 1, ground = { spring = 1 }, name",
+        "system.parts[0].ground.spring: stands beside ground, too; leave one of them out",
+    ),
     (
         ROD,
         '{ rod = 1 }, "contact", "contact"',
@@ -398,3 +409,22 @@ def test_whatever_is_drawn_is_right_or_one_line(table: dict[str, Any]) -> None:
     except WavesymError as error:
         line = str(error)
     assert all(each.isprintable() and len(each) < 400 for each in line.split("\n"))
+
+
+@pytest.mark.parametrize("units", [{}, {"units": {}}])
+def test_a_table_of_the_ground_means_what_its_keys_do(units: dict[str, Any]) -> None:
+    """Of a mass and of a joint."""
+    law = {"spring": "3 N/m", "yield": "0.25 N"} if units else {"spring": 3, "yield": "1/4"}
+    mass, moves = ("2 kg", "1 m/s") if units else (2, 1)
+    link = {"spring": "1 N/m", "dashpot": "1 N*s/m"} if units else {"spring": 1, "dashpot": 1}
+
+    def scene(at_mass: dict[str, Any], at_joint: dict[str, Any]) -> Scene:
+        parts = [{"mass": mass, "velocity": moves, "name": "a", **at_mass}, link, {"joint": True, **at_joint}, link]
+        system = {"type": "chain", "parts": [*parts, "fixed"]}
+        return Scene(name="held", system=system, output={"until": "5 s" if units else 5, "velocity": ["a"]}, **units)
+
+    spring = {"spring": law["spring"]}
+    one, other = scene({"ground": law}, {"ground": spring}), scene(law, spring)
+    np.testing.assert_array_equal(wavesym.run(one, samples=5).values, wavesym.run(other, samples=5).values)
+    assert np.ptp(wavesym.run(one, samples=5).values) > 0
+    assert lower(one).network == lower(other).network

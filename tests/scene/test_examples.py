@@ -157,7 +157,7 @@ def test_teeth_part_and_strike_at_one_flank_or_the_other() -> None:
     scene = Scene.from_toml(CORNERS / "gears_with_backlash.toml")
     events = wavesym.run(scene).events
     motor, gear = wavesym.evaluator(scene)([event.double for event in events])[:2]
-    assert [event.kind for event in events] == ["lets go", "engages"] * 6
+    assert [event.kind for event in events] == ["releases", "engages"] * 6
     assert {round(abs(play), 9) for play in (motor - gear).tolist()} == {0, 10}
 
 

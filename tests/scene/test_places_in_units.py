@@ -136,8 +136,8 @@ def test_every_law_with_a_corner_is_where_the_scene_says(tmp_path: Path, capsys:
     path.write_text(CORNERED, encoding="utf-8")
     assert main(["run", str(path), "-o", str(tmp_path / "bar.csv")]) == 0
     told = capsys.readouterr().err
-    found = re.findall(r"(\w+) at x = (.*?) (opens|slips|sticks|yields|holds|engages|lets go) at", told)
-    assert {kind for *_, kind in found} == {"opens", "slips", "sticks", "yields", "holds", "engages", "lets go"}
+    found = re.findall(r"(\w+) at x = (.*?) (opens|slips|sticks|yields|holds|engages|releases) at", told)
+    assert {kind for *_, kind in found} == {"opens", "slips", "sticks", "yields", "holds", "engages", "releases"}
     assert all(place in CORNERS[law] for law, place, _ in found)
     assert {place for _, place, _ in found} == {"1300 mm", "3000 mm", "3900 mm", "5000 mm"}
     assert main(["summary", str(path)]) == 0

@@ -130,7 +130,7 @@ class Sided(Law):
         return [over if branch.name == "acts" else -over]
 
     def event(self, branch: Branch) -> str:
-        return "engages" if branch.name == "acts" else "lets go"
+        return "engages" if branch.name == "acts" else "releases"
 
     @property
     def stiffness(self) -> fmpq:

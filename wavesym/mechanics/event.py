@@ -9,9 +9,9 @@ from flint import arb
 
 from wavesym.numbers.doubles import midpoint
 
-Happening = Literal["opens", "closes", "slips", "sticks", "engages", "lets go", "yields", "holds"]
+Happening = Literal["opens", "closes", "slips", "sticks", "engages", "releases", "yields", "holds"]
 LAW_OF: dict[str, str] = {"opens": "contact", "closes": "contact", "slips": "friction", "sticks": "friction"}
-LAW_OF |= dict.fromkeys(("engages", "lets go", "yields", "holds"), "spring")
+LAW_OF |= dict.fromkeys(("engages", "releases", "yields", "holds"), "spring")
 """The law whose corner it is that something happens at."""
 
 
@@ -35,7 +35,7 @@ class KnownInstant:
 class ContactEvent(KnownInstant):
     """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball; what rubs there slips or sticks.
 
-    A spring that acts on one side engages and lets go; one that yields does so until it holds again. A contact that is
+    A spring that acts on one side engages and releases; one that yields does so until it holds again. A contact that is
     closed from the start is no event. `link` is its number in the network.
     """
 

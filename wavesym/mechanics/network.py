@@ -148,7 +148,7 @@ class Link:
     def changes(self) -> str:
         """What it does at a corner of its law, in words."""
         if self.side != 0:
-            return f"the spring at {self.place} engages and lets go"
+            return f"the spring at {self.place} engages and releases"
         if self.limits is not None:
             return f"the spring at {self.place} yields"
         if self.friction != 0:

@@ -13,7 +13,7 @@ from wavesym.systems.station import Station
 Loose = Mapping[Link, Sequence[tuple[float, float]]]
 """When links with corners are open, idle, slide or yield."""
 
-_LOOSENS = ("opens", "lets go", "slips", "yields")
+_LOOSENS = ("opens", "releases", "slips", "yields")
 
 
 def loose_times(model: Model, events: Iterable[ContactEvent]) -> Loose:

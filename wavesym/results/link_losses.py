@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from flint import fmpq
+from flint import ctx, fmpq
 
 from wavesym.errors import CostError
 from wavesym.mechanics.model import Model
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from wavesym.exact.losses import LinkLoss
 
 _PLAIN = (fmpq(1), "")
+_BITS = 128
 _GROUND = "ground"  # the place of what does not move
 
 
@@ -85,17 +86,18 @@ def link_summaries(model: Model, solved: Model | None = None) -> tuple[LinkSumma
         found = losses(model, solved)
     except CostError:
         return None
-    return tuple(
-        LinkSummary(
-            each.link.place,
-            each.link.law,
-            _names(model, each.link),
-            MeasuredQuantity(midpoint(each.set * stretch[0]), stretch[1]),
-            MeasuredQuantity(midpoint(each.dissipated * energy[0]), energy[1]),
-            _note(each) if each.gives_way else "",
+    with ctx.workprec(_BITS):  # rounded once, to doubles
+        return tuple(
+            LinkSummary(
+                each.link.place,
+                each.link.law,
+                _names(model, each.link),
+                MeasuredQuantity(midpoint(each.set * stretch[0]), stretch[1]),
+                MeasuredQuantity(midpoint(each.dissipated * energy[0]), energy[1]),
+                _note(each) if each.gives_way else "",
+            )
+            for each in found
         )
-        for each in found
-    )
 
 
 def _note(loss: LinkLoss) -> str:

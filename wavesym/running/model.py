@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from wavesym.running.sets import FoundSets
 
 
+_SAMPLES = 1001
 _WHY = (
     "",
     "a number that is not finite, or not positive where it has to be, or too large or small",
@@ -162,7 +163,8 @@ class RuntimeModel:
         """Values of all sets, labelled.
 
         Args:
-            tau: instants, dimensionless, of any shape.
+            tau: instants, dimensionless, of any shape; where there are neither these nor `times`, 1001 equally spaced
+                ones on the horizon.
             times: instants in the time unit of the scene's results (s), or tau where it has no units; in place of
                 `tau`.
             strict: whether an instant outside the horizon is an error.
@@ -176,10 +178,12 @@ class RuntimeModel:
 
         Raises:
             WavesymError: where `strict`, for tau outside [0, tau_max]; for unknown fields, arrays of other shapes, and
-                unless there is one of `tau` and `times`.
+                for both `tau` and `times`.
         """
-        if (tau is None) is (times is None):
+        if tau is not None and times is not None:
             raise WavesymError("times: write either times or tau, the instants")
+        if times is None and tau is None:
+            tau = np.linspace(0.0, self.tau_max, _SAMPLES)
         instants, shown = self._instants(tau, times)
         labels = self._labels(parameters)
         check_horizon(instants, self.tau_max, strict=strict)

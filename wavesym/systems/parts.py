@@ -190,6 +190,7 @@ class PointPart(ChainPart, SpringLaw):
 
     velocity: Exact | None = None
     name: PartName | None = None
+    ground: Any = Field(None, exclude=True, description="its spring, dashpot, friction and their laws, in a table")
 
     @property
     def inertia(self) -> Fraction:
@@ -260,6 +261,24 @@ BETWEEN = RodPart | LinkPart | ContactPart
 """What stands between two nodes."""
 
 
+_LAWS = frozenset(field.alias or name for name, field in SpringLaw.model_fields.items())
+
+
+def unfold_ground(part: Mapping[str, object]) -> Mapping[str, object]:
+    """A mass or joint as it is written, with the keys of its table `ground` as its own, which mean the same."""
+    if "ground" not in part or not part.keys() & {MassPart.key, JointPart.key}:
+        return part
+    ground = part["ground"]
+    if not isinstance(ground, Mapping):
+        raise refusal(f"{show(ground)} is not a table; write {{ spring = K }}, with its law", "ground")
+    for key in ground:
+        if key not in _LAWS:
+            raise refusal(f"unknown key; write {', '.join(sorted(_LAWS))}", "ground", str(key))
+        if key in part:
+            raise refusal("stands beside ground, too; leave one of them out", "ground", str(key))
+    return {**{key: value for key, value in part.items() if key != "ground"}, **ground}
+
+
 def _part(value: object) -> ChainPart | str:
     if isinstance(value, ChainPart):
         return value
@@ -272,7 +291,7 @@ def _part(value: object) -> ChainPart | str:
     kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
     if kind is LinkPart and not value.keys() & {"spring", "dashpot", "friction"}:
         raise refusal("not a part; write one of rod, mass, joint, motion, contact, spring, dashpot and friction")
-    return kind.model_validate(value)
+    return kind.model_validate(unfold_ground(value))
 
 
 def read_parts(value: object) -> tuple[ChainPart | str, ...]:

@@ -126,7 +126,7 @@ class LinkLaw:
     def happens(self, branch: int) -> str:
         """What it does when it comes to a branch."""
         if self.side:
-            return "engages" if branch else "lets go"
+            return "engages" if branch else "releases"
         if self.friction:
             return "slips" if branch else "sticks"
         return "yields" if branch else "holds"

@@ -56,7 +56,7 @@ def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
 
 def _kind(link: Link, change: Change) -> Happening:
     if link.side != 0:
-        return "engages" if change.closes else "lets go"
+        return "engages" if change.closes else "releases"
     if link.limits is not None:
         return "holds" if change.closes else "yields"
     if link.friction != 0:

@@ -20,7 +20,7 @@ from wavesym.scene.physical.chain_parts import OTHERS, RODS, RodKeys
 from wavesym.scene.physical.places import PlaceInMetres, place
 from wavesym.systems.dimensionless import DimensionlessSystem, Kind, LoadUnit
 from wavesym.systems.elastic import ElasticRod, Rods
-from wavesym.systems.parts import PartName
+from wavesym.systems.parts import PartName, unfold_ground
 from wavesym.systems.place import PlaceInUnits
 
 _Keys = tuple[str | int, ...]
@@ -133,7 +133,7 @@ def _part(value: object, kind: Kind) -> object:
         return value  # a mark, or what is refused with the chain
     known = {"rod": RODS[kind], **OTHERS, "dashpot": OTHERS["spring"], "friction": OTHERS["spring"]}
     keys = next((known[key] for key in known if key in value), None)
-    return value if keys is None else keys.model_validate(value)
+    return value if keys is None else keys.model_validate(unfold_ground(value))
 
 
 _MEASURES = {
