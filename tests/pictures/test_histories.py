@@ -293,6 +293,25 @@ def test_history_of_a_load_needs_no_scene() -> None:
     assert History(Probe("a", "load", 1, fmpq(0)), (RAMP,)).formal == inf
 
 
+def test_slips_and_yields_are_shaded_and_named() -> None:
+    """Friction R stops v after m v / R; a spring yields once its push K v t is its limit, R/(K v)."""
+    rubs = {"mass": 1, "velocity": 1, "friction": "1/2", "name": "a"}
+    driven = [{"motion": "velocity", "name": "driver"}, {"spring": 2, "yield": 1}, {"mass": 1, "friction": 9}]
+    moved = [{"at": "driver", "times": [0, 2], "steps": [1, -1]}]
+    for parts, load, title, shaded in (
+        ([rubs], [], "purple: while friction at 0 slides", [(0.0, 2.0)]),
+        (driven, moved, "purple: while the spring at 0 yields", [(0.5, 2.0)]),
+        ([rubs | {"friction": 0, "dashpot": 1}], [], None, []),
+    ):
+        output = {"until": 3, "displacement": ["a" if len(parts) == 1 else "driver"]}
+        model = lower(Scene(name="slides", system={"type": "chain", "parts": parts}, load=load, output=output))
+        figure = draw(histories(model))
+        assert [text.get_text() for text in figure.texts][1:2] == ([title] if title else [])
+        for axes in figure.axes:
+            spans = [patch.get_extents().transformed(axes.transData.inverted()) for patch in axes.patches]
+            assert [(span.x0, span.x1) for span in spans] == [pytest.approx(each) for each in shaded]
+
+
 def test_a_name_over_another_is_seen(figure: Figure) -> None:
     first = next(text for text in figure.axes[0].texts if text.get_text())
     figure.axes[0].text(*first.get_position(), "over it", ha="center", va="center")

@@ -23,7 +23,8 @@ from wavesym.pictures.histories import Histories, History
 from wavesym.pictures.labels import Curve, label
 from wavesym.pictures.naming import heading
 from wavesym.pictures.reduction import reduce_vertices
-from wavesym.pictures.style import FONT, HALO, WIDTH, draw_grid, new_figure, with_style
+from wavesym.pictures.stations import slip_times, slip_words
+from wavesym.pictures.style import FONT, HALO, SLIPS, WIDTH, draw_grid, new_figure, with_style
 from wavesym.pictures.timescale import Timescale, timescale
 
 CHARACTERS = 66  # in a line of text across the figure
@@ -50,6 +51,7 @@ _INK = 150  # vertices of a curve that labels keep free
 _NEAR = 0.03  # curves this near to each other, in heights of a panel, are not told apart by a label
 _COLUMNS = 2000  # of a panel
 _LOAD = 1.2  # inches
+_SHADE = 0.12
 
 
 @dataclass(frozen=True)
@@ -72,8 +74,12 @@ def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     ]
     if opened:
         title.append("thin and light: the formal continuation, as if the opened contact stayed closed")
+    slips = slip_times(model)
+    if slips:
+        title.append(f"purple: while {slip_words(slips)}")
     acting = [load_panel(loads[: len(_STYLES)], _LOAD)] if loads else []
-    return stack_panels([*acting, *panels(histories)], until, title, instants=opened, scale=scale)
+    shaded = [times for of_link in slips.values() for times in of_link]
+    return stack_panels([*acting, *panels(histories)], until, title, instants=opened, shaded=shaded, scale=scale)
 
 
 @with_style
@@ -82,9 +88,13 @@ def stack_panels(
     until: float,
     title: Sequence[str],
     instants: Sequence[Instant] = (),
+    shaded: Sequence[tuple[float, float]] = (),
     scale: Timescale = Timescale(),  # noqa: B008  (frozen)
 ) -> Figure:
-    """Panels one under the other, lines of text above them; all in tau, drawn in the time of `scale`."""
+    """Panels one under the other, lines of text above them; all in tau, drawn in the time of `scale`.
+
+    What is `shaded` is from when to when, in all panels.
+    """
     title = [part for line in title for part in wrap(line, CHARACTERS)]
     panels, until = [_in_scene_time(panel, scale) for panel in panels], until * scale.per_tau
     instants = [replace(instant, tau=instant.tau * scale.per_tau) for instant in instants]
@@ -105,6 +115,8 @@ def stack_panels(
         axes.yaxis.set_label_coords(-_TITLE / WIDTH / width, 0.5)
         axes.tick_params(labelbottom=k == len(panels) - 1)
         _fill(axes, panel, instants)
+        for low, high in shaded:
+            axes.axvspan(low * scale.per_tau, high * scale.per_tau, color=SLIPS, alpha=_SHADE, linewidth=0, zorder=0)
     axes.set_xlabel(scale.title)
     _shorten_times(axes)
     return figure

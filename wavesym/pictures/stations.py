@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from wavesym.exact.contacts.events import events
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link, Network, Point
@@ -13,15 +14,16 @@ from wavesym.systems.station import Station
 Loose = Mapping[Link, Sequence[tuple[float, float]]]
 """When links with corners are open, idle, slide or yield."""
 
+_NAMED = 3  # places
 _LOOSENS = ("opens", "releases", "slips", "yields")
 
 
-def loose_times(model: Model, events: Iterable[ContactEvent]) -> Loose:
+def loose_times(model: Model, happened: Iterable[ContactEvent]) -> Loose:
     """From when to when links with corners are loose: contacts open, springs idle or yield, friction slides."""
     network = model.network
     found: dict[Link, list[tuple[float, float]]] = {network.links[number]: [] for number in network.corners}
     since = {link: 0.0 for link in found if _is_loose(network, link)}
-    for event in events:
+    for event in happened:
         link = network.links[event.link]
         if event.kind in _LOOSENS:
             since.setdefault(link, event.double)
@@ -30,6 +32,23 @@ def loose_times(model: Model, events: Iterable[ContactEvent]) -> Loose:
     for link, start in since.items():
         found[link].append((start, nearest(model.until)))
     return found
+
+
+def slip_times(model: Model) -> Loose:
+    """From when to when friction slides and springs yield. Errors are those of `events`."""
+    loose = loose_times(model, events(model)) if model.network.corners else {}
+    return {link: times for link, times in loose.items() if times and (link.friction != 0 or link.limits is not None)}
+
+
+def slip_words(links: Iterable[Link]) -> str:
+    """What slides or yields, and where: "friction at 0 m slides, the spring at 6 m or 12 m yields"."""
+    found: dict[str, list[str]] = {"friction at {} slides": [], "the spring at {} yields": []}
+    for link in links:
+        found["friction at {} slides" if link.friction != 0 else "the spring at {} yields"].append(link.place)
+    places = {words: list(dict.fromkeys(at)) for words, at in found.items() if at}
+    return ", ".join(
+        words.format(" or ".join([*at[:_NAMED], *["elsewhere"] * (len(at) > _NAMED)])) for words, at in places.items()
+    )
 
 
 def _is_loose(network: Network, link: Link) -> bool:

@@ -19,7 +19,7 @@ from matplotlib.patheffects import withStroke
 
 WIDTH, FONT, DPI = 6.9, 12.0, 120  # inches, points, dots an inch
 MAIN, GREATEST, LEAST, OTHER = "#1f4e9c", "#b2431f", "#1f4e9c", "#d0692b"
-BETWEEN, FORMAL = "#e9ecf0", "0.75"
+BETWEEN, FORMAL, SLIPS = "#e9ecf0", "0.75", "darkviolet"
 _GRID, _ZERO, _SHADES = "0.92", "0.6", 101  # an odd number, so that 0 is white; few, so that files are small
 _LOOK: Any = {"font.size": FONT, "font.family": "DejaVu Sans", "axes.titlesize": FONT, "legend.fontsize": FONT}
 HALO = [withStroke(linewidth=2.5, foreground="white")]

@@ -14,11 +14,11 @@ from matplotlib.transforms import ScaledTranslation
 
 from wavesym.mechanics.network import Link, Network, Point
 from wavesym.pictures.stations import Loose, ground_links, standing
-from wavesym.pictures.style import FONT
+from wavesym.pictures.style import FONT, SLIPS
 from wavesym.systems.station import Lines, Station
 
 _MASS, _LINK, _CONTACT, _THIN = 4.0, 2.5, 5.0, 0.6  # points
-_MOVED, _HELD, _SLIPS = "0.55", "gold", "darkviolet"
+_MOVED, _HELD = "0.55", "gold"
 _LETTER, _ROW = 0.62, 15  # of the font's size; points
 
 
@@ -115,7 +115,7 @@ def _draw_item(pen: _Pen, item: _Item, loose: Loose, until: float) -> None:
         pen.line(0, until, *((_THIN,) if link.contact else (item.width, _HELD)))
     for low, high in loose.get(link, ()):
         if link.friction or link.limits:
-            pen.line(low, high, item.width, _SLIPS)
+            pen.line(low, high, item.width, SLIPS)
             continue
         pen.line(low, high, item.width, "white")
         for side in (-1, 1):
