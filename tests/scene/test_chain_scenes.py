@@ -145,6 +145,11 @@ MISTAKES = [
         "system.parts[2].J: unknown key; write dashpot = c; Smith's damping J v R is a product and no such law, "
         "c = J R stands for it",
     ),
+    (
+        'type = "chain"',
+        'type = "chain"\ninitial = "at rest"',
+        'system.initial: "at rest" is not a start; write "static"',
+    ),
     ("mass = 4, name", "mass = 4, ground = 3, name", "system.parts[0].ground: 3 is not a table; write { spring = K }"),
     (
         "mass = 4, name",

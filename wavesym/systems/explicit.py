@@ -6,16 +6,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, ClassVar, Literal, cast
+from typing import Annotated, Any, ClassVar, Literal, cast
 
 from flint import fmpq
-from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, model_serializer, model_validator
+from pydantic import (
+    Field,
+    PlainValidator,
+    SerializerFunctionWrapHandler,
+    ValidationInfo,
+    model_serializer,
+    model_validator,
+)
 
 from wavesym.errors import MeasureError
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.numbers import Exact
-from wavesym.fields.table import SceneTable, refusal, show
+from wavesym.fields.table import SceneTable, read_choice, refusal, show
 from wavesym.mechanics.dead_loads import BalanceError, with_dead_loads
 from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network
@@ -46,7 +53,9 @@ class ExplicitChain(SceneTable):
     damping: ModalDamping = None
     speed_adjustment: SpeedAdjustment = Fraction(0)
     gravity: Exact = Field(Fraction(0), description="an acceleration along x")
-    initial: Literal["static"] | None = Field(None, description='"static": what is at rest is in balance at first')
+    initial: Annotated[Literal["static"] | None, PlainValidator(read_choice("is not a start", "static"))] = Field(
+        None, description='"static": what is at rest is in balance at first'
+    )
 
     @model_validator(mode="after")
     def _check_network(self, info: ValidationInfo) -> ExplicitChain:
