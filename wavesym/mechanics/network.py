@@ -226,7 +226,7 @@ class Network:
                 "system: gravity and preloads are supported by pieces and `run` only (take one of them)"
             )
 
-    def refuse_loss(self, instead: str = "leave it out, or write damping, or where dashpots are a dashpot in the rod") -> None:
+    def refuse_loss(self, instead: str = "leave it out, or write damping, or a dashpot in the rod") -> None:
         """UnservedError where a rod has a loss, for all but frequency responses; and what to do `instead`."""
         if any(bar.loss != 0 for bar in self.bars):
             raise UnservedError(

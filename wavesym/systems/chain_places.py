@@ -47,7 +47,7 @@ def _locate(drawing: Drawing, position: Position, text: str) -> tuple[str, Stati
     """The line of a position, its station if it is at one, and the number of the last station up to it."""
     line, x = position.name, position.x
     if line not in drawing.lines or x is None:
-        raise MisplacedError(f"{text} is not a place; write one, or the name of a node or branch (that of a rod is none)")
+        raise MisplacedError(f"{text} is not a place; write one, or the name of a node or branch (rods have no place)")
     stations = drawing.lines[line]
     if not 0 <= x <= stations[-1].x:
         raise MisplacedError(f"{text} is not on the chain; write a place from 0 to {show(stations[-1].x)}")
