@@ -218,9 +218,9 @@ def test_one_value_that_needs_many_bits_does_not_cost_the_others(monkeypatch):
     lengths = {}
     values = motion._values
 
-    def counted(waves, channels, start):
+    def counted(waves, channels, start, *shared):
         channels = list(channels)
-        found = list(values(waves, channels, start))
+        found = list(values(waves, channels, start, *shared))
         place = min(channel.delay for channel in channels)  # of rods of length 1 the wave that begins nearer
         lengths.setdefault((place, ctx.prec), []).extend(known.polynomial.length() for _, known in found)
         return found

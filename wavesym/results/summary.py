@@ -160,12 +160,10 @@ def summary_and_program(
     outputs = _outputs(solved, found)
     every = [*_drifts(solved, outputs, found), *_drifts_alone(model, solved, others, samples)] if drifts else []
     missing = wanted - {rod for rod, _, _ in every}
-    # one bound is told where the tolerance is met by all
-    met = all(rational(min(bound, 2.0)) <= model.tolerance for bound in found.bounds)
     summary = Summary(
         model.name,
         outputs[: len(model.probes)],
-        max(found.bounds) if met else found.bound,
+        found.bound,
         found.proved,
         found.how,
         model.clock.unit if model.clock else None,
