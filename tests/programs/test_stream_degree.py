@@ -4,6 +4,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from flint import fmpq
 
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
@@ -42,3 +43,17 @@ def test_it_is_the_least_that_will_do_and_few_are_tried(name, monkeypatch) -> No
     assert not loses(degree)
     assert degree == first or loses(degree - 1)
     assert len(tried) == len(set(tried)) <= 5
+
+
+@pytest.mark.parametrize(("step", "told"), [("1/8", ""), ("4", ""), ("5000/1261", "--step 4 is whole panels and")])
+def test_steps_that_end_inside_of_panels_at_ever_new_places_are_told_of(step: str, told: str) -> None:
+    """With whole panels no two multiples lie in one; 1261 = 13 * 97, so that of the others none comes back for long."""
+    scene = Scene.from_toml("drive_m1")
+    output = scene.output.model_copy(update={"until": Fraction(2000), "tolerance": Fraction(1, 10**6)})
+    model = replace(lower(scene.model_copy(update={"output": output})), endless=True)
+    request = Request(stream=True, step=fmpq(*Fraction(step).as_integer_ratio()))
+    plan = stream_plan(model, inputs_of(model, ()), DOUBLE, request.step)
+    inside = {k * Fraction(step) % Fraction(int(plan.panel.p), int(plan.panel.q)) for k in range(500)} - {0}
+    assert (len(inside) > 256) == bool(told)
+    assert told in (said := making._beside_panels(plan, model, request))
+    assert bool(said) == bool(told)

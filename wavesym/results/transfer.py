@@ -22,7 +22,7 @@ from wavesym.errors import WavesymError, did_you_mean
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.harmonic import Amplitudes, BallFrequency, HarmonicNetwork, Quantity
 from wavesym.exact.modes.lowest_terms import Laurent, LowestTerms, PolynomialFrequency
-from wavesym.exact.modes.shape import rigid
+from wavesym.exact.modes.shape import rigid, rigid_mass
 from wavesym.mechanics.gauge import Gauge, ReadingTerm, readings
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Network
@@ -248,12 +248,7 @@ class Transfer:
     def _rigid(self) -> tuple[Callable[[int], fmpq], fmpq] | None:
         network = self.model.network
         found = rigid(network)
-        if found is None:
-            return None
-        mass = sum((point.mass * q * q for point, q in zip(network.points, found, strict=True)), fmpq(0))
-        for bar in network.bars:
-            mass += bar.impedance * bar.delay * (found[bar.left] * bar.ratios[0]) ** 2
-        return found.__getitem__, mass
+        return None if found is None else (found.__getitem__, rigid_mass(network, found))
 
     def _of_shape(self, probe: Probe, shape: Callable[[int], fmpq]) -> fmpq:
         """What an output is of a motion without strain."""

@@ -73,12 +73,16 @@ def rigid(network: Network) -> tuple[fmpq, ...] | None:
     return tuple(found[number] for number in range(len(network.points)))
 
 
+def rigid_mass(network: Network, free: tuple[fmpq, ...]) -> fmpq:
+    """Twice the energy of the motion without strain, by how fast each point moves in it."""
+    masses = (point.mass * q * q for point, q in zip(network.points, free, strict=True))
+    bars = (bar.impedance * bar.delay * (bar.ratios[0] * free[bar.left]) ** 2 for bar in network.bars)
+    return sum((*masses, *bars), fmpq(0))
+
+
 def rigid_mode(stiffness: Stiffness, free: tuple[fmpq, ...]) -> Mode:
     """The motion without strain, by how far each point moves in it; of mass 1."""
-    network = stiffness.network
-    mass = sum((point.mass * q * q for point, q in zip(network.points, free, strict=True)), fmpq(0))
-    mass += sum((bar.impedance * bar.delay * (bar.ratios[0] * free[bar.left]) ** 2 for bar in network.bars), fmpq(0))
-    scale = arb(mass).rsqrt()
+    scale = arb(rigid_mass(stiffness.network, free)).rsqrt()
     return Mode(stiffness, arb(0), [scale * q for q in free])
 
 

@@ -31,7 +31,7 @@ from wavesym.programs.program import (
 )
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.stream.parameters import free_stream, quick_enough, refuse_stiff, with_parameters
-from wavesym.programs.stream.plan import StreamPlan, stream_plan
+from wavesym.programs.stream.plan import ROOM, StreamPlan, stream_plan
 from wavesym.programs.stream.tables import StreamTables
 
 _ONE = fmpq(1)
@@ -84,7 +84,11 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         made.tables(),
         made.constants(nearest(tolerance)),
         made.bytes,
-        Provenance(model, _reason(plan, degree, made) + _at_worst(plan, verdict, tolerance), request.options(model)),
+        Provenance(
+            model,
+            _reason(plan, degree, made) + _beside_panels(plan, model, request) + _at_worst(plan, verdict, tolerance),
+            request.options(model),
+        ),
         sources=tuple(given.label for given in plan.inputs),
         proved=False,
         direct=plan.direct,
@@ -102,6 +106,18 @@ def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
         f"march as a stream, {count} panels a window{step}, degree {degree}, a state of about "
         f"{-(-made.state_bytes // 1024)} KiB with room for {plan.breakpoints} instants inside of panels, "
         f"{made.panel_operations} multiplications a panel"
+    )
+
+
+def _beside_panels(plan: StreamPlan, model: Model, request: Request) -> str:
+    """What steps cost that end inside of panels at ever new places, and the nearest that do not."""
+    if request.step is None or plan.breakpoints <= ROOM:
+        return ""
+    near = max(int((request.step / plan.panel + fmpq(1, 2)).floor()), 1) * plan.panel
+    told = f" ({model.clock.format(near)})" if model.clock else ""
+    return (
+        "; such steps end at ever new instants inside of panels: each is slower than the one before, and there is room "
+        f"to the horizon only; --step {near}{told} is whole panels and takes none"
     )
 
 
