@@ -41,6 +41,8 @@ class Slow(Paper):
 class Terminal:
     """A terminal that a test opens, and what has been written to it so far."""
 
+    _END = "\0"  # written last: what is still under way when a terminal is closed may be lost
+
     def __init__(self) -> None:
         self._reading, writing = pty.openpty()
         self.stream = os.fdopen(writing, "w", buffering=1)
@@ -49,18 +51,17 @@ class Terminal:
         self._reader.start()
 
     def _read(self) -> None:
-        try:
-            while data := os.read(self._reading, 1 << 16):
-                self.written += data.decode()
-        except OSError:  # the other end is closed
-            pass
+        while not self.written.endswith(self._END):
+            self.written += os.read(self._reading, 1 << 16).decode()
 
     def close(self) -> str:
         """Everything that was written."""
-        self.stream.close()
+        self.stream.write(self._END)
+        self.stream.flush()
         self._reader.join()
+        self.stream.close()
         os.close(self._reading)
-        return self.written
+        return self.written.removesuffix(self._END)
 
 
 def screen(written: str) -> list[str]:
