@@ -136,3 +136,16 @@ def test_only_one_verdict_is_shown_after_counts_of_all(capsys: pytest.CaptureFix
     assert [record["id"] for record in listed] == wrong
     assert answer(capsys, "--published", "--only", "wrong", status=2).startswith("--only: wrong is unknown")
     assert "--only: of the paper only; write --published too" in answer(capsys, "--only", "holds", status=2)
+
+
+def test_several_verdicts_are_shown_together(capsys: pytest.CaptureFixture[str]) -> None:
+    """The last one alone was, in silence."""
+    every = json.loads(answer(capsys, "--published", "--format", "json"))
+    wanted = [record["id"] for record in every if record["verdict"] in ("misprint", "unreadable")]
+    assert {record["verdict"] for record in every} > {"misprint", "unreadable"}
+    only = ("--only", "misprint", "--only", "unreadable")
+    listed = json.loads(answer(capsys, "--published", *only, "--format", "json"))
+    assert [record["id"] for record in listed] == wanted
+    assert {record["verdict"] for record in listed} == {"misprint", "unreadable"}
+    refusal = answer(capsys, "--published", "--only", "misprint", "--only", "wrong", status=2)
+    assert refusal.startswith("--only: wrong is unknown")

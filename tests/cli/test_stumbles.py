@@ -6,13 +6,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 
 import wavesym
 from tests.cli.test_cli import SCENE, folder, refused
 from wavesym import api
-from wavesym.cli import main
+from wavesym.cli import COMMANDS, cli, main
 from wavesym.results import rows
 from wavesym.scene import Scene, builtin_names, lower
 from wavesym.scene.first_scene import IN_UNITS, KINDS, first_scene
@@ -302,3 +303,30 @@ def test_a_column_of_soil_under_a_record_that_begins_with_a_jump_has_acceleratio
     text = first_scene("soil", record).text.replace("strain = ", 'acceleration = ["40 m"]\nstrain = ')
     scene = Scene.from_toml(text).with_({"output.until": "1 s"})
     assert wavesym.summary(scene)["acceleration@40 m"].max.value > 0
+
+
+def _single_options() -> list[tuple[str, click.Option]]:
+    context = click.Context(cli)
+    commands = {name: cli.get_command(context, name) for name in COMMANDS}
+    return [
+        (name, option)
+        for name, command in commands.items()
+        for option in (command.params if command else ())
+        if isinstance(option, click.Option) and not option.is_flag and not option.multiple
+    ]
+
+
+def test_no_option_of_one_value_is_taken_twice(capsys: pytest.CaptureFixture[str]) -> None:
+    """The last one counted, in silence; short and long ones are the same option."""
+    options = _single_options()
+    assert len(options) > 40
+    for command, option in options:
+        written = [f"{option.opts[0]}=1" if option.opts[0].startswith("--") else f"{option.opts[0]}1"] * 2
+        assert main([command, *written]) == 2
+        out, error = capsys.readouterr()
+        assert (out, error.count("\n")) == ("", 1)
+        refusal = f"wavesym {command}: {'/'.join(option.opts)}: written twice, and takes one value; write "
+        assert error.startswith(refusal)
+    assert main(["generate", "drive_m1", "--runtime", "kappa", "--runtime", "load"]) == 2
+    assert "write one list with commas" in capsys.readouterr().err
+    assert not list(Path().glob("drive_m1*"))

@@ -70,7 +70,7 @@ def verify_published(
     names: Sequence[str] = (),
     reproduce: bool = False,
     watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter,
-    only: str = "",
+    only: Sequence[str] = (),
 ) -> tuple[str, bool]:
     """A verdict on every formula of the paper, or on some.
 
@@ -79,7 +79,7 @@ def verify_published(
         names: ids of formulas, tables or sections; empty for all.
         reproduce: whether each counterexample comes with a scene that shows it.
         watch: goes through the records as they are judged.
-        only: a verdict ("misprint"): no other records are shown.
+        only: verdicts ("misprint"): no other records are shown; empty for all.
 
     Returns:
         The text, and whether all could be tested.

@@ -71,10 +71,26 @@ class _Commands(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         try:
-            return super().resolve_command(ctx, args)
+            name, command, left = super().resolve_command(ctx, args)
         except click.UsageError as error:
             meant = did_you_mean(args[0], COMMANDS)
             raise click.UsageError(f"{error.message} {meant}".rstrip(), ctx) from None
+        if command is not None and not ctx.resilient_parsing:
+            _refuse_repeated(click.Context(command, ctx, name), left)
+        return name, command, left
+
+
+def _refuse_repeated(ctx: click.Context, args: Sequence[str]) -> None:
+    """UsageError for an option of one value that is written twice: click takes the last one in silence."""
+    *_, written = ctx.command.make_parser(ctx).parse_args(list(args))
+    seen: set[str | None] = set()
+    for option in written:
+        if not isinstance(option, click.Option) or option.is_flag or option.multiple:
+            continue
+        if option.name in seen:
+            how = "one list with commas" if option.type.name == "list" else "one of them"
+            raise click.UsageError(f"{'/'.join(option.opts)}: written twice, and takes one value; write {how}", ctx)
+        seen.add(option.name)
 
 
 @click.command(cls=_Commands, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})

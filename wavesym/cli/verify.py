@@ -46,7 +46,12 @@ class _SceneOrId(SceneParameter):
 @click.option("--format", type=click.Choice(FORMATS), help="With --published.  [default: text]")
 @fragment_option
 @click.option("--reproduce", is_flag=True, help="With --published: a scene that shows each counterexample.")
-@click.option("--only", metavar="VERDICT", help="With --published: records of this verdict, after counts of all.")
+@click.option(
+    "--only",
+    multiple=True,
+    metavar="VERDICT",
+    help="With --published: records of this verdict, after counts of all; any number.",
+)
 @click.option("--evaluator", type=click.Choice(EVALUATORS), help="This program alone.  [default: all programs]")
 @click.option("--precision", type=click.Choice(PRECISIONS), help="Programs of this precision alone.")
 @click.option(
@@ -61,7 +66,7 @@ def verify(
     format: str | None,
     fragment: bool,
     reproduce: bool,
-    only: str | None,
+    only: tuple[str, ...],
     evaluator: str | None,
     precision: str | None,
     runtime: tuple[str, ...] | None,
@@ -100,7 +105,7 @@ def verify(
         if published:
             names = [name for name in asked if isinstance(name, str)]
             text, passed = api.verify_published(
-                written, names, reproduce, lambda entries: line.each(entries, attrgetter("id")), only or ""
+                written, names, reproduce, lambda entries: line.each(entries, attrgetter("id")), only
             )
         elif derived:
             text, passed = api.verify_derivation(lambda systems: line.each(systems, attrgetter("name")))

@@ -64,7 +64,7 @@ def verdict_page(
     format: str,
     reproduce: bool = False,
     watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter,
-    only: str = "",
+    only: Sequence[str] = (),
 ) -> tuple[str, bool]:
     """The verdicts as a page, and whether everything could be tested.
 
@@ -73,14 +73,14 @@ def verdict_page(
         format: one of FORMATS.
         reproduce: whether counterexamples come with a scene.
         watch: goes through the records as they are judged.
-        only: a verdict: no other records are shown; as text after the counts of all.
+        only: verdicts: no other records are shown; as text after the counts of all. Empty for all of them.
 
     Raises:
         WavesymError: for a name, or a verdict, that there is not.
     """
-    if only:
-        refuse_unknown("--only", only, VERDICTS)
+    for verdict in only:
+        refuse_unknown("--only", verdict, VERDICTS)
     data = paper.paper()
     wanted = requested_entries(tuple(data.entries.values()), names) if names else None
-    findings = Findings(data, paper.records(wanted, watch), not (names or only), reproduce, only)
+    findings = Findings(data, paper.records(wanted, watch), not (names or only), reproduce, frozenset(only))
     return FORMATS[format](findings), findings.are_complete

@@ -38,19 +38,19 @@ ORIGINS = {
 class Findings:
     """The verdicts on a paper, or on the records of it that were requested; `reproduce`: with their examples.
 
-    `whole`: all of it was requested; `only` is the verdict of those that are shown, empty for all of them.
+    `whole`: all of it was requested; `only` are the verdicts of those that are shown, empty for all of them.
     """
 
     paper: Paper
     records: tuple[Record, ...]
     whole: bool = False
     reproduce: bool = False
-    only: str = ""
+    only: frozenset[str] = frozenset()
 
     @property
     def visible(self) -> tuple[Record, ...]:
         """The records that are shown, of which the others are counted alone."""
-        return tuple(record for record in self.records if self.only in ("", record.verdict))
+        return tuple(record for record in self.records if not self.only or record.verdict in self.only)
 
     @property
     def are_complete(self) -> bool:
