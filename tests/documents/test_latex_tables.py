@@ -8,6 +8,7 @@ import re
 import pytest
 import sympy
 
+from tests.support.tex import read_tex
 from wavesym.cli import main
 
 
@@ -49,6 +50,7 @@ def test_a_fragment_has_no_preamble(capsys: pytest.CaptureFixture[str]) -> None:
     assert r"\begin{document}" in whole
     assert r"\begin{document}" not in part
     assert r"\label{tab:drive_m1}" in part
+    read_tex(part)
     body = part.partition("\n")[2].strip()
     assert body in whole
     assert main(["tables", "drive_m1", "--fragment"]) == 2

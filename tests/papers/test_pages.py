@@ -18,10 +18,23 @@ import pytest
 from tests.papers.small import ENTRIES, PAPER, SCENE, entry, findings, records
 from tests.pictures.browser import axe, reported
 from tests.pictures.test_page import LOOK
+from tests.support.tex import TexError, read_tex
 from wavesym.cli import main
-from wavesym.papers.pages.document import SIGNS, Findings, counts, fields, statistics
-from wavesym.papers.pages.formats import CHARACTERS, FORMATS, TEXT, as_json, as_latex, html, markdown, tex, text
-from wavesym.papers.pages.lines import Different, correction, readable, statement
+from wavesym.papers.pages.document import SIGNS, Cell, Findings, Table, counts, fields, statistics, word_cells
+from wavesym.papers.pages.formats import (
+    CHARACTERS,
+    FORMATS,
+    LATEX,
+    TEXT,
+    as_json,
+    as_latex,
+    column_shares,
+    html,
+    markdown,
+    tex,
+    text,
+)
+from wavesym.papers.pages.lines import Different, correction, formula, readable, statement
 from wavesym.papers.record import VERDICTS
 
 PAGES = FORMATS
@@ -275,6 +288,36 @@ def test_latex_is_ascii_and_closes_what_it_opens() -> None:
     assert page.count("$") % 2 == 0
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "why"),
+    [
+        ("\\text{\\textemdash{}}", "\\textemdash{}", "textemdash in a formula"),
+        ("\\text{\\textemdash{}}", "—", "no ASCII"),
+        ("\\_", "_", "_ in text"),
+        ("\\%", "%", "% in text"),
+        ("^{2}", "^{2}^{2}", "a second"),
+        ("2n^{2} = 0$", "2n^{2} = 0", ""),
+        ("\\begin{longtable}", "", "& outside"),
+    ],
+)
+def test_no_sign_of_a_fragment_means_something_else_where_it_stands(before: str, after: str, why: str) -> None:
+    """A dash for an empty cell stood in a formula, where TeX sets it as another letter."""
+    lines = [(formula("—"), formula("2n^{2} = 0")), ("a % of a_1 & #2 < 3~ma ^ |",)]
+    page = FORMATS["fragment"](findings(reproduce=True)) + "\n".join(map(LATEX.line, lines))
+    read_tex(page)
+    assert before in page
+    with pytest.raises(TexError, match=re.escape(why)):
+        read_tex(page.replace(before, after, 1))
+
+
+def test_columns_with_branches_are_wider() -> None:
+    heads = word_cells("", "a", "b")
+    branches = (formula(r"\begin{cases} 1 & i = 1 \\ 0 & i = 2 \end{cases}"),)
+    table = Table(heads, ((Cell(("x",)), Cell((formula("1"),)), Cell(branches)),), is_grid=True)
+    assert column_shares(table) == ["0.222", "0.222", "0.555"]
+    assert LATEX.line(branches).startswith(r"\fitted{\begin{cases}")
+
+
 def macros(page: str) -> Iterator[str]:
     yield from re.findall(r"\\([A-Za-z]+)", re.sub(r"\\\\", " ", page))
 
@@ -287,7 +330,8 @@ emph texttt textbf textsf ttfamily small footnotesize displaystyle ensuremath ma
 textbackslash textasciitilde textasciicircum textquotedbl textless textgreater textbar textquotesingle textasciigrave
 textendash textemdash ldots quotedblbase l L k surd times langle rangle leq geq approx neq pm cdot
 bar dots frac sum kappa alpha
-providecommand toprule midrule bottomrule label phantomsection
+providecommand toprule midrule bottomrule label phantomsection newcommand wavesymsection wavesymsubsection
+subsubsection input foot fitted sbox ifdim wd resizebox usebox else fi text
 """
 
 
@@ -326,11 +370,18 @@ def test_text_is_escaped_in_latex(plain: str, written: str) -> None:
 
 
 @pytest.mark.skipif(not shutil.which("pdflatex"), reason="no LaTeX")
-def test_latex_compiles(tmp_path: Path) -> None:
-    (tmp_path / "errata.tex").write_text(as_latex(findings(reproduce=True)))
+@pytest.mark.parametrize("format", ["latex", "fragment"])
+def test_latex_compiles(tmp_path: Path, format: str) -> None:
+    page = FORMATS[format](findings(reproduce=True))
+    if format == "fragment":
+        packages = page.split("needs ", 1)[1].split("\n", 1)[0].replace(", ", "\n")
+        lower = r"\newcommand{\wavesymsection}{\subsection}"
+        page = f"\\documentclass{{article}}\n{packages}\n{lower}\n\\begin{{document}}\n{page}\n\\end{{document}}\n"
+    (tmp_path / "errata.tex").write_text(page)
     command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "errata.tex"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
     assert done.returncode == 0, done.stdout[-2000:]
+    assert "invalid in math mode" not in done.stdout
 
 
 def test_markdown_keeps_its_tables_whole() -> None:

@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 
 from tests.papers.falsified import changed_passage
+from tests.support.tex import read_tex
 from wavesym.papers.entries import WHOLE, Paper, problems
 from wavesym.papers.pages.document import Findings
-from wavesym.papers.pages.formats import markdown
+from wavesym.papers.pages.formats import FORMATS, markdown
 from wavesym.papers.pielorz1979.paper import ADAPTERS, records
 from wavesym.papers.pielorz1979.transcript import paper
 from wavesym.papers.record import Reading, judge
@@ -56,7 +57,7 @@ def judged(thorough):
     """All; without --run-slow one of each verdict, one of thirty others, and those of which the difference is known."""
     if thorough:
         return records()
-    named = {"(4.5).2", "(4.7).2", "(4.8).2", "(4.8).5", *(id for id, _ in KNOWN[:EACH_VERDICT])}
+    named = {"T2.g_1.j_2", "(4.5).2", "(4.7).2", "(4.8).2", "(4.8).5", *(id for id, _ in KNOWN[:EACH_VERDICT])}
     return records([e for k, e in enumerate(paper().entries.values()) if e.id in named or k % 30 == 0])
 
 
@@ -75,6 +76,10 @@ def test_everything_could_be_tested(judged):
 def test_the_errata_are_what_is_found_now(judged):
     findings = Findings(paper(), judged, True)
     assert (KEPT / "errata.md").read_bytes().decode() == markdown(findings), "make generated"
+
+
+def test_a_fragment_of_the_errata_is_read_by_tex_as_it_is_meant(judged):
+    read_tex(FORMATS["fragment"](Findings(paper(), judged, True, reproduce=True)))
 
 
 def test_ids_are_unique():

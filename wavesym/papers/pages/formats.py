@@ -69,7 +69,7 @@ HTML = Style(
 LATEX = Style(
     words=lambda text: tex(text),
     code=lambda text: rf"\texttt{{{tex(TEXT.code(text))}}}",
-    formula=lambda formula: f"$\\displaystyle {mark([latex(formula.tree)], formula.differing)[0]}$",
+    formula=lambda formula: _tex_formula(formula),
     mark=lambda part: rf"\markedtext{{{part}}}",
 )
 
@@ -212,7 +212,22 @@ def html(findings: Findings) -> str:
 
 
 def _of_latex(findings: Findings) -> dict[str, object]:
-    return {"document": document(findings, "latex"), "line": LATEX.line, "tex": tex}
+    return {"document": document(findings, "latex"), "line": LATEX.line, "tex": tex, "shares": column_shares}
+
+
+def _tex_formula(formula: Formula) -> str:
+    """A formula in a line; one with branches, which no line breaks, is made as narrow as its column."""
+    written = mark([latex(formula.tree)], formula.differing)[0].replace(EM_DASH, rf"\text{{{CHARACTERS[EM_DASH]}}}")
+    return rf"\fitted{{{written}}}" if BRANCHES in written else rf"$\displaystyle {written}$"
+
+
+def column_shares(table: Table) -> list[str]:
+    """The shares of the columns in a line: where none are given the same, more for those that have branches."""
+    columns = list(zip(table.heads, *table.rows, strict=True))
+    weights = table.widths or [
+        _BRANCHED if any(BRANCHES in TEXT.line(cell.line) for cell in column) else 1 for column in columns
+    ]
+    return [f"{int(1000 * weight / sum(weights)) / 1000:g}" for weight in weights]
 
 
 def as_latex(findings: Findings) -> str:
@@ -224,6 +239,11 @@ def as_fragment(findings: Findings) -> str:
     """The same without a preamble, to be \\input; records have labels."""
     return render("papers/errata_fragment.tex.j2", **_of_latex(findings))
 
+
+EM_DASH = "—"
+BRANCHES = r"\begin{cases}"
+_BRANCHED = 2.5
+"""How much wider a column with branches is than others."""
 
 CHARACTERS: Mapping[str, str] = {
     "\\": r"\textbackslash{}",
@@ -239,7 +259,7 @@ CHARACTERS: Mapping[str, str] = {
     "ł": r"\l{}",
     "Ł": r"\L{}",
     "\N{EN DASH}": r"\textendash{}",
-    "—": r"\textemdash{}",
+    EM_DASH: r"\textemdash{}",
     "…": r"\ldots{}",
     "“": "``",
     "”": "''",
