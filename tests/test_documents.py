@@ -258,6 +258,8 @@ def reader(name: str, folder: Path, patience: bool) -> Reader:
     made = Reader(folder, patience, (ROOT / name).parent if name in EXAMPLES else None)
     if name in GUIDE:
         made.share([page for page in GUIDE if page != name])
+    if name in TUTORIALS:  # as from the root of the repository
+        shutil.copytree(ROOT / "examples" / "records", folder / "examples" / "records")
     return made
 
 

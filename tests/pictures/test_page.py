@@ -35,7 +35,7 @@ from wavesym.pictures.page.structure import structure
 from wavesym.programs.making import make
 from wavesym.scene import Scene, builtin_text, lower
 
-PAYLOAD = '# </pre><script>alert("in")</script> & "quoted"\n'
+PAYLOAD = """\n[report]\nauthor = '</pre><script>alert("in")</script> & "quoted"'\n# a remark of its author\n"""
 VOID = {"meta", "input", "br", "link", "img"}
 SCRIPTS = 1
 
@@ -93,7 +93,7 @@ def faults(text: str) -> list[str]:
 
 def payloaded(folder: Path, name: str) -> Scene:
     """A built-in scene in a file, with a payload in front."""
-    (folder / "mine.toml").write_text(PAYLOAD + builtin_text(name), encoding="utf-8")
+    (folder / "mine.toml").write_text(builtin_text(name) + PAYLOAD, encoding="utf-8")
     return Scene.from_toml(folder / "mine.toml")
 
 
@@ -193,6 +193,7 @@ def test_what_is_missing_is_seen(building: str) -> None:
 def test_text_stays_text(building: str) -> None:
     assert "&lt;/pre&gt;&lt;script&gt;alert(&#34;in&#34;)&lt;/script&gt; &amp;" in building
     assert 'alert("in")' not in building
+    assert "a remark" not in building
 
 
 def test_same_scene_same_page(building: str, tmp_path: Path) -> None:
@@ -301,7 +302,7 @@ def test_the_page_has_the_spectrum_of_the_highest_acceleration() -> None:
 
 @pytest.mark.parametrize(
     ("value", "unit", "shown"),
-    [(-3.298e6, "N", "3.298 MN"), (1500, "N", "1.5 kN"), (2, "N", "2 N"), (2e6, "mm", "2000000 mm")],
+    [(-3.298e6, "N", "3298 kN"), (1500, "N", "1500 N"), (2e7, "N", "20\u202f000 kN"), (12345, "mm", "12\u202f340 mm")],
 )
 def test_large_forces_are_shown_in_larger_units(value: float, unit: str, shown: str) -> None:
     assert _value(value, unit) == shown
@@ -519,7 +520,7 @@ def test_report_is_a_command(
 
 
 def test_a_scene_from_standard_input_is_on_its_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    given = (PAYLOAD + builtin_text("drive_m1")).encode()
+    given = (builtin_text("drive_m1") + PAYLOAD).encode()
     monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(given)))
     assert main(["report", "-", "-o", str(tmp_path / "drive.html")]) == 0
     assert "&lt;script&gt;" in (tmp_path / "drive.html").read_text(encoding="utf-8")

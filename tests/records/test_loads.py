@@ -100,12 +100,27 @@ def test_a_damped_record_rises_to_its_first_sample(damping, given):
     for at in [*(time for time, _ in points), Fraction(1, 7), Fraction(11, 7), Fraction(3)]:
         assert value(made, at) == drawn_through(points, at)
     assert lower(made).labels.notes == (
-        "load[0].record: the first sample is not 0, and modes take no jump: the load rises to it from 0 over one "
-        "spacing, so that the record begins 2/5 later",
+        "load[0].record: the first sample is not 0, and modes take no jump: the load rises to it from 0 in a straight "
+        'line over one spacing, so that the record begins 2/5 later; write start = "2/5", which says the same, or a '
+        "later one (without damping it jumps)",
     )
+    told = scene(load | {"start": "2/5"}, BUILDING | {"damping": damping})
+    assert (lower(told).loads, lower(told).labels.notes) == (lower(made).loads, ())
     again = Scene(**json.loads(json.dumps(made.model_dump(mode="json"))))
     assert lower(again) == lower(made)
     assert np.isfinite(wavesym.evaluator(made)([1.0, 4.0])).all()
+
+
+def test_a_record_that_says_when_it_starts_is_moved_by_samples(tmp_path):
+    """A `start` in the scene would be refused there; and frequencies, which no load changes, are told without it."""
+    (tmp_path / "quake.csv").write_text("time,a\n0,1\n0.4,-1\n")
+    text = 'name = "a"\n[system]\ntype = "building"\nm = 2\nkappa = [1, 1, 1]\nbase = "ground"\ndamping = 0.3\n'
+    (tmp_path / "a.toml").write_text(f'{text}[[load]]\nrecord = "quake.csv"\n[output]\nuntil = 3\nvelocity = [1]\n')
+    made = Scene.from_toml(tmp_path / "a.toml")
+    damped, jump = sorted(lower(made).labels.notes, key=lambda note: "jump" in note)
+    assert "put samples of 0 before it in the file for another start" in jump
+    assert wavesym.modes(made).notes == (damped,)
+    assert wavesym.frf(made, [0.5]).notes[:-1] == (damped,)
 
 
 @pytest.mark.parametrize(

@@ -42,11 +42,27 @@ def scene(system: object, **outputs: object) -> Scene:
         (BUILDING, {"acceleration": [1, "1+"]}, "acceleration[1]: 1+ is the same place as 1"),
         (BUILDING, {"force": [1]}, 'force[0]: 1 has two sides, of the body there; write "1-" or "1+"'),
         (CHAIN, {"force": ["gear"]}, 'force[0]: gear has two sides; write "gear-" or "gear+"'),
-        (BUILDING, {"drift": [0]}, "drift[0]: 0 is not the number of a rod; write 1 to 3"),
-        (BUILDING, {"drift": [4]}, "drift[0]: 4 is not the number of a rod; write 1 to 3"),
-        (BUILDING, {"drift": ["1+"]}, "drift[0]: 1+ is not the number of a rod; write 1 to 3"),
-        (DRIVE, {"drift": ["1/2"]}, "drift[0]: 1/2 is not the number of a rod; write 1 to 2"),
-        (CHAIN, {"drift": ["a:2"]}, "drift[0]: a:2 is not the number of a rod; write 1 to 1"),
+        (
+            BUILDING,
+            {"drift": [0]},
+            'drift[0]: 0 is not the number of a storey; write 1 to 3, or drift = "all" for every storey there is',
+        ),
+        (
+            BUILDING,
+            {"drift": [4]},
+            'drift[0]: 4 is not the number of a storey; write 1 to 3, or drift = "all" for every storey there is',
+        ),
+        (
+            BUILDING,
+            {"drift": ["1+"]},
+            'drift[0]: 1+ is not the number of a storey; write 1 to 3, or drift = "all" for every storey there is',
+        ),
+        (
+            DRIVE,
+            {"drift": ["1/2"]},
+            'drift[0]: 1/2 is not the number of a rod; write 1 to 2, or drift = "all" for every rod there is',
+        ),
+        (CHAIN, {"drift": ["a:2"]}, "drift[0]: a:2 is not the number of a rod; write 1"),
         (
             CHAIN,
             {"drift": ["gear"]},

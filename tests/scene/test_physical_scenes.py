@@ -532,7 +532,13 @@ REFUSED = [
     ("building", "output.until", "1e12 s", "output.until", "2.49735e+14 of tau, too long a horizon"),
     ("building", "output.until", "0 s", "output.until", '"0 s" is not positive; write a time above 0'),
     ("building", "output.velocity", ["2 m"], "output.velocity[0]", "is not a number"),
-    ("building", "output.velocity", [3], "output.velocity[0]", "3 is not on the chain; write a position from 0 to 2"),
+    (
+        "building",
+        "output.velocity",
+        [3],
+        "output.velocity[0]",
+        "3 is not on the chain; write a position from 0, the foundation, to 2, the roof",
+    ),
     ("drive", "system.disc", [{"inertia": "1 kg*m^2"}], "system.disc", "1 discs; write 3 (one more than shafts)"),
     (
         "drive",

@@ -26,21 +26,27 @@ class Labels:
     """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load,
     `load_names` what each is, `sources` what a unit load is one of, and `titles` its name for people, if it has one.
 
-    `sha256` is that of the scene, whatever way it was written. `notes` say how the scene was read where that may
-    surprise. `kind` is that of the rods of a physical scene. `size` is how many rods there are, `dimensions` what
-    lengths and times count.
+    `sha256` is that of the scene, whatever way it was written. `structure_notes` say how the structure was read where
+    that may surprise, `time_notes` how its loads and the horizon were. `kind` is that of the rods of a physical scene.
+    `size` is how many rods there are, `dimensions` what lengths and times count.
     """
 
     system: Mapping[str, str]
     loads: tuple[str, ...]
     sha256: str
-    notes: tuple[str, ...] = ()
+    structure_notes: tuple[str, ...] = ()
+    time_notes: tuple[str, ...] = ()
     kind: str = ""
     size: str = ""
     dimensions: str = ""
     load_names: tuple[str, ...] = ()
     sources: Mapping[str, str] = field(default_factory=dict)
     titles: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """How all of the scene was read where that may surprise."""
+        return (*self.time_notes, *self.structure_notes)
 
     @property
     def type(self) -> str:

@@ -14,7 +14,7 @@ from wavesym.numbers.arrays import Array
 from wavesym.pictures.histories import Histories, History
 from wavesym.pictures.timescale import Timescale, timescale
 from wavesym.pictures.units import unit_text
-from wavesym.results.presentation import number_text
+from wavesym.results.presentation import group_thousands, number_text
 
 CURVES = 8  # that an eye can tell apart in a panel
 MOST_PANELS = 6  # of a quantity
@@ -149,5 +149,5 @@ def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
         for k in sorted(ends, key=lambda k: float(points[k, 0])):
             tau, value = points[k]
             if abs(value) > _NOISE * np.max(np.abs(points[:, 1])):
-                text = number_text(value, unit_text(shown[0].output.unit), 4)
+                text = group_thousands(number_text(value, unit_text(shown[0].output.unit), 4))
                 yield Mark(f"{text} at {scale.time_text(tau)}", points[k : k + 1], "normal")

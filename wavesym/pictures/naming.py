@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.mechanics.quantities import QUANTITIES
+from wavesym.pictures.histories import History
 from wavesym.pictures.units import unit_text
+from wavesym.results.presentation import readable_unit
 
 _PLACE = re.compile(r"([\d./]+(?: .*?)?)([+-]?)")  # a number, perhaps with a unit, and a side
 _SIDES = {"": "at", "-": "just before", "+": "just after"}
@@ -24,6 +29,29 @@ def with_titles(model: Model) -> Model:
         replace(probe, title=probe.title or output_title(model, probe), unit=unit_text(probe.unit))
         for probe in model.probes
     )
+
+
+def in_readable_units(histories: Sequence[History]) -> tuple[History, ...]:
+    """Histories in the units that people write for values so large, one for all of a quantity: kN in place of N.
+
+    Args:
+        histories: of outputs or loads, in the units of results.
+    """
+    largest: dict[tuple[str, str], float] = {}
+    for each in histories:
+        kind = each.output.quantity, each.output.unit
+        largest[kind] = max(largest.get(kind, 0.0), float(np.max(np.abs(each.points[:, 1]))))
+    return tuple(
+        _in_unit(each, *readable_unit(largest[each.output.quantity, each.output.unit], each.output.unit))
+        for each in histories
+    )
+
+
+def _in_unit(history: History, size: int, unit: str) -> History:
+    if size == 1:
+        return history
+    output = replace(history.output, factor=history.output.factor / size, unit=unit)
+    return replace(history, output=output, stretches=tuple(each / (1.0, size) for each in history.stretches))
 
 
 def output_title(model: Model, probe: Probe) -> str:

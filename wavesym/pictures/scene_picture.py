@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from matplotlib.figure import Figure
 
 from wavesym.mechanics.model import Model
@@ -10,7 +12,7 @@ from wavesym.pictures.groups import notes
 from wavesym.pictures.histories import histories
 from wavesym.pictures.line_histories import line_histories
 from wavesym.pictures.loads import load_histories
-from wavesym.pictures.naming import with_titles
+from wavesym.pictures.naming import in_readable_units, with_titles
 from wavesym.pictures.place_pictures import draw_envelope, draw_map
 from wavesym.scene import Scene
 
@@ -40,4 +42,5 @@ def draw(scene: Scene, model: Model, kind: str) -> tuple[Figure, list[str]]:
     if kind == "map":
         return draw_map(model, line_histories(scene, model), load_histories(model)), []
     made = histories(with_titles(model))
-    return panels.draw(made, load_histories(model)), notes(made)
+    made = replace(made, outputs=in_readable_units(made.outputs))
+    return panels.draw(made, in_readable_units(load_histories(model))), notes(made)

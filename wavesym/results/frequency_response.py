@@ -103,7 +103,7 @@ class FrequencyResponse(OutputRows):
         unit = "Hz" if self.frequency_label.endswith("[Hz]") else "rad per tau"
         poles, undecided = (", ".join(f"{each:g}" for each in found) for found in (self.poles, self.possible_poles))
         return (
-            *self._model.labels.notes,
+            *self._model.labels.structure_notes,
             f"per unit of {self.load}{self.load_unit and ' '}{self.load_unit}; right to {self.bound:.1e} of each "
             "output's largest amplitude here, proved",
             *([f"no value at {poles} {unit}: there is none, or nothing limits it"] if poles else []),

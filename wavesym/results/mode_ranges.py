@@ -142,7 +142,7 @@ def mode_ranges(scene: Scene, count: int, box: Mapping[str, tuple[str, str]]) ->
                 f"--range: the first end is above the second ({', '.join(box)}); write the lesser one first"
             )
         rows.append(FrequencyRange(number, _lower_double(first), upper_double(last)))
-    notes = lower(scene, in_time=False).labels.notes
+    notes = lower(scene, in_time=False).labels.structure_notes
     return ModeRanges(scene.name, tuple(rows), dict(box), "s" if scene.scale else None, notes)
 
 

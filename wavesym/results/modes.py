@@ -253,7 +253,7 @@ def modes(
     why = _COMPLETE if not damped else _COUNTED if complete else _incomplete(reach / per_tau, model)
     unit = "s" if model.clock else None
     along = line_shapes(found, spectrum.cut, model, lines, points) if lines and points else ()
-    return Modes(model.name, rows, complete, why, unit, tuple(found), spectrum.cut, along, model.labels.notes)
+    return Modes(model.name, rows, complete, why, unit, tuple(found), spectrum.cut, along, model.labels.structure_notes)
 
 
 def _first(spectrum: Spectrum | DampedSpectrum, count: int) -> tuple[list[Mode], float]:

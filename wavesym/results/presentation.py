@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Container, Iterable, Iterator, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _WRITTEN_OUT = 1e7
+_LARGE = {
+    "N": (1e4, 1000, "kN"),
+    "N*m": (1e4, 1000, "kN*m"),
+    "N\u00b7m": (1e4, 1000, "kN\u00b7m"),
+    "Pa": (1e6, 1_000_000, "MPa"),
+}
+"""Units that are small for structures: from which value on people write which other one, of so many of them."""
 
 
 def output_number(name: str, outputs: Sequence[str], scene: str) -> int:
@@ -74,3 +82,20 @@ def number_text(value: float, unit: str = "", digits: int = 7) -> str:
     text = f"{value:.{digits}g}"
     text = f"{float(text):.0f}" if "e+" in text and abs(value) < _WRITTEN_OUT else text
     return f"{text} {unit}".rstrip()
+
+
+def readable_unit(largest: float, unit: str) -> tuple[int, str]:
+    """The unit that people write for values of a size, and how many of the other are one of it.
+
+    >>> readable_unit(5.9e6, "N")
+    (1000, 'kN')
+    >>> readable_unit(5.9e6, "mm")
+    (1, 'mm')
+    """
+    least, size, readable = _LARGE.get(unit, (float("inf"), 1, unit))
+    return (size, readable) if abs(largest) >= least else (1, unit)
+
+
+def group_thousands(text: str) -> str:
+    """A number whose whole part is in groups of three, a narrow space between them, from five figures on."""
+    return re.sub(r"(?<![\d.])\d{5,}", lambda whole: f"{int(whole[0]):,}".replace(",", "\u202f"), text)

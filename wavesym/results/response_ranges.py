@@ -138,7 +138,7 @@ def response_ranges(
         np.array([low for low, _ in ends]).T.reshape(len(model.probes), -1),
         np.array([high for _, high in ends]).T.reshape(len(model.probes), -1),
         texts,
-        model.labels.notes,
+        model.labels.structure_notes,
     )
 
 

@@ -6,12 +6,12 @@ A statistic is one entry here, and where `wavesym.results.summary` finds it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 from typing import NamedTuple
 
 from wavesym.fields.table import show
-from wavesym.results.presentation import number_text
+from wavesym.results.presentation import number_text, readable_unit
 
 
 class OutputTime(NamedTuple):
@@ -57,6 +57,22 @@ class OutputSummary:
     def label(self) -> str:
         """What people are shown: its title, or its name."""
         return self.title or self.name
+
+    @property
+    def readable(self) -> OutputSummary:
+        """The same in the unit that people write for values so large: forces in kN, not in N."""
+        size, unit = readable_unit(self.largest.value, self.unit)
+        if size == 1:
+            return self
+        return replace(
+            self,
+            unit=unit,
+            min=replace(self.min, value=self.min.value / size),
+            max=replace(self.max, value=self.max.value / size),
+            mean=self.mean / size,
+            rms=self.rms / size,
+            residual=self.residual / size,
+        )
 
     @property
     def largest(self) -> Peak:

@@ -70,7 +70,8 @@ class Summary:
     def _lines(self) -> Iterator[str]:
         """A table of the outputs, and a line for what else there is to know, as `wavesym summary` prints them."""
         clock = "tau" if self.time_unit is None else f"time [{self.time_unit}]"
-        rows = ((with_unit(output.label, output.unit), *cells(output, "-")) for output in self.outputs)
+        shown = [output.readable for output in self.outputs]
+        rows = ((with_unit(output.label, output.unit), *cells(output, "-")) for output in shown)
         yield from align_columns([("output", *headings(clock)), *rows])
         yield ""
         if not all(peak.reached for output in self.outputs for peak in (output.min, output.max)):

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from wavesym.fields.table import key_path
 
-_TOKEN = re.compile(
+TOKEN = re.compile(
     r'(?P<text>"""(?:\\.|[^\\])*?"{3,5}|' + r"'''.*?'{3,5}|" + r'"(?:\\.|[^"\\\n])*"' + r"|'[^'\n]*')"
     r"|(?P<skipped>#[^\n]*|[ \t\r]+)|(?P<mark>[\[\]{},=.\n])|(?P<word>[^\s\[\]{},=.#\"']+)",
     re.DOTALL,
@@ -45,7 +45,7 @@ class _Reader:
         self._tables: dict[Keys, int] = {}  # how many tables each [[list]] has so far
         self._tokens: list[tuple[str, int]] = []
         line = 1
-        for found in _TOKEN.finditer(text):
+        for found in TOKEN.finditer(text):
             if found.lastgroup != "skipped":
                 self._tokens.append((found[0], line))
             line += found[0].count("\n")

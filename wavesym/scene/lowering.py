@@ -26,7 +26,14 @@ from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.records.load import RecordedLoad
-from wavesym.scene.notes import changed_speeds, damping_in_time, reading_notes, spacing_text, written_speeds
+from wavesym.scene.notes import (
+    changed_speeds,
+    damping_in_time,
+    spacing_text,
+    structure_notes,
+    time_notes,
+    written_speeds,
+)
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
@@ -158,7 +165,8 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         system=system,
         loads=scene.physical.loads if scene.physical else tuple(load.description for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
-        notes=reading_notes(scene, _damping(scene)),
+        structure_notes=structure_notes(scene, _damping(scene)),
+        time_notes=time_notes(scene),
         kind=scene.scale.kind if scene.scale else "",
         size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
         dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",

@@ -23,20 +23,19 @@ _MOST_NAMED = 5  # rods
 _USUAL_DAMPING = fmpq(1, 5)  # of critical; above it a ratio is more often a slip than meant
 
 
-def reading_notes(scene: Scene, damping: Damping | None) -> tuple[str, ...]:
-    """How a scene was read, where that may surprise: what was adjusted, sampled, or taken as something else.
+def structure_notes(scene: Scene, damping: Damping | None) -> tuple[str, ...]:
+    """How a structure was read, where that may surprise, whatever acts on it and for how long.
 
     Args:
         scene: what the user wrote.
         damping: that of its modes, where it is any.
     """
-    return (
-        *_horizon_notes(scene),
-        *_damping_notes(damping),
-        *_speed_notes(scene),
-        *_record_notes(scene),
-        *_shape_notes(scene),
-    )
+    return (*_damping_notes(damping), *_speed_notes(scene))
+
+
+def time_notes(scene: Scene) -> tuple[str, ...]:
+    """How loads and the horizon of a scene were read, where that may surprise: of no interest for its frequencies."""
+    return (*_horizon_notes(scene), *_record_notes(scene), *_shape_notes(scene))
 
 
 def _horizon_notes(scene: Scene) -> Iterator[str]:
@@ -81,9 +80,16 @@ def _record_notes(scene: Scene) -> Iterator[str]:
     """A line for each record that begins later, so that it does not jump."""
     for k, load in enumerate(scene.load):
         if isinstance(load, RecordedLoad) and load.is_delayed:
+            later = spacing_text(scene, load)
+            instead = (
+                f'write start = "{later}", which says the same, or a later one'
+                if load.record.start is None
+                else "put samples of 0 before it in the file for another start"
+            )
             yield (
-                f"load[{k}].record: the first sample is not 0, and modes take no jump: the load rises to it from 0 "
-                f"over one spacing, so that the record begins {spacing_text(scene, load)} later"
+                f"load[{k}].record: the first sample is not 0, and modes take no jump: the load rises to it from 0 in "
+                f"a straight line over one spacing, so that the record begins {later} later; {instead} (without "
+                "damping it jumps)"
             )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
     BeforeValidator,
@@ -25,7 +25,7 @@ from wavesym.fields.table import Faults, SceneTable, WrittenDecimal, as_list, re
 from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.scene.physical.scale import Scale
 from wavesym.systems import SystemTable
-from wavesym.systems.output_places import OutputPlaces
+from wavesym.systems.output_places import EVERY, OutputPlaces
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
 
 # Beyond it even the integer part of an argument costs a double most of its digits.
@@ -58,8 +58,6 @@ Positioned = Annotated[
     Position, PlainValidator(position_of), PlainSerializer(_serialize_position, return_type=str | dict[str, str])
 ]
 Positions = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(as_list)]
-EVERY = "all"
-"""In place of a list of drifts: those of all rods of the main line."""
 
 
 def _drifts(value: object) -> tuple[object, ...]:
@@ -68,7 +66,9 @@ def _drifts(value: object) -> tuple[object, ...]:
     return (EVERY,) if value == EVERY else as_list(value)
 
 
-Drifts = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(_drifts)]
+Drifts = Annotated[
+    tuple[Positioned, ...], FailFast(), BeforeValidator(_drifts, json_schema_input_type=Literal["all"] | list[Any])
+]
 
 
 class Output(SceneTable):

@@ -155,6 +155,11 @@ class Building(Preset):
         return BUILDING_FORCE if self.base == "force" else BUILDING_GROUND
 
     @property
+    def places_text(self) -> str:
+        """Its floors, for people."""
+        return f"a position from 0, the foundation, to {self.m}, the roof"
+
+    @property
     def choices(self) -> Mapping[str, str]:
         """Which base, and how its modes are damped."""
         return {"base": self.base, **({"damping": self.damping.description} if self.damping else {})}

@@ -15,6 +15,9 @@ from wavesym.mechanics.quantities import QUANTITIES
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines
 
+EVERY = "all"
+"""In place of a list of drifts: those of all rods of the main line."""
+
 
 class PlacedSystem(Protocol):
     """A system that knows its places."""
@@ -66,7 +69,10 @@ class OutputPlaces:
                 f"{text} is not a rod; write the number of one, on a branch after its name and a colon"
             )
         if position.side or k.denominator != 1 or not 1 <= k <= len(rods):
-            raise MisplacedError(f"{text} is not the number of a rod; write 1 to {len(rods)}")
+            what = "storey" if self.system.type == "building" else "rod"
+            there = f"1 to {len(rods)}" if len(rods) > 1 else "1"
+            every = "" if position.name else f', or drift = "{EVERY}" for every {what} there is'
+            raise MisplacedError(f"{text} is not the number of a {what}; write {there}{every}")
         return Place(k, 0, position.name, rods[int(k) - 1] + 1, Fraction(1))
 
     def _refuse_groundless(self, text: str) -> None:

@@ -100,7 +100,7 @@ class Preset(SceneTable):
         """The place of an output. MisplacedError."""
         x, text = position.x, show(WrittenDecimal(position.text))
         if x is None or not 0 <= x <= self.m:
-            raise MisplacedError(f"{text} is not on the chain; write a position from 0 to {self.m}")
+            raise MisplacedError(f"{text} is not on the chain; write {self.places_text}")
         divided = quantity in ("strain", "force") and self._has_sides_at(x, quantity)
         if divided and not position.side:
             raise MisplacedError(f'{text} has two sides, of the body there; write "{text}-" or "{text}+"')
@@ -117,6 +117,11 @@ class Preset(SceneTable):
         node = self.chain.nodes[int(x)]
         held = bool(node.inertia or node.damping or node.loads)
         return held or (quantity == "strain" and node.alpha != node.beta)
+
+    @property
+    def places_text(self) -> str:
+        """Which places there are, for people."""
+        return f"a position from 0 to {self.m}"
 
     def load_fault(self, load: Load) -> tuple[str, str] | None:
         """What is wrong with a load, and under which key; None where nothing is."""

@@ -24,7 +24,8 @@ from wavesym.pictures.page.png import colour_image
 from wavesym.pictures.page.svg import Svg, box, concatenate, element, line
 from wavesym.pictures.stations import Loose, ground_links, loose_times, standing
 from wavesym.pictures.timescale import timescale
-from wavesym.results.presentation import number_text
+from wavesym.pictures.units import unit_text
+from wavesym.results.presentation import number_text, readable_unit
 from wavesym.scene.physical.scale import Scale
 from wavesym.systems.station import Lines, Station
 
@@ -57,12 +58,14 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     factor = nearest(rational(units.factor(name, 1))) if units else 1.0
     values = factor * _cells(field, stations, until, _QUANTITIES[name])
     largest = limit([values])
+    readable, unit = readable_unit(largest, units.unit(name) if units else "")
+    values, largest = values / readable, largest / readable
     x, y = PlotAxis(0.0, long, LEFT, WIDTH - RIGHT), PlotAxis(0.0, until * scale.per_tau, TOP + _TALL, TOP)
     image = colour_image(values, x, y, (-largest, largest), signed=True)
     formal = concatenate(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
     nodes = concatenate(*_nodes(model, stations, loose_times(model, field.events), x, scale.per_tau, y))
     ends = f"\u2264 {number_text(-largest, digits=3)}", f"\u2265 {number_text(largest, digits=3)}"
-    words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
+    words = f"{name} in {unit_text(unit)}" if units else f"{name} (dimensionless)"
     bar = colour_bar(words, ends, TOP + _TALL + BELOW, signed=True)
     description = (
         f"Colours show the {name} of every rod of {_line_text(line_name)}, place to the right and time upward to "

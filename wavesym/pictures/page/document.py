@@ -17,9 +17,9 @@ from wavesym.pictures.groups import load_panel, notes, panels
 from wavesym.pictures.histories import Histories, History, drawable, histories
 from wavesym.pictures.line_histories import LineHistories, chain_outputs, line_histories
 from wavesym.pictures.loads import load_histories
-from wavesym.pictures.naming import heading, with_titles
+from wavesym.pictures.naming import heading, in_readable_units, with_titles
 from wavesym.pictures.page.crossings import crossings
-from wavesym.pictures.page.headline import Figure, headline, longest_periods, neglected_effects, storeys
+from wavesym.pictures.page.headline import Figure, first_modes, headline, neglected_effects, storeys
 from wavesym.pictures.page.load_spectrum import floor_spectrum, load_spectrum
 from wavesym.pictures.page.motion import Motion, motion
 from wavesym.pictures.page.page_tables import PageTable, advice_table, extremes_table
@@ -33,6 +33,7 @@ from wavesym.rendering import render
 from wavesym.results.summary import Summary, summary_and_program
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import drifts
+from wavesym.scene.shown_text import shown_text
 
 _OUTPUTS = 48  # that are drawn
 _VERTICES = 60_000  # of all curves together: what keeps the page small
@@ -105,10 +106,12 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     summary, searched = _summary(model, with_titles(model.watching(drifts(scene))).probes)
     drawn_by, refusal = (searched, None) if searched else _program_of_all(drawn, chain_outputs(scene, model))
     made = histories(drawn, most, drawn_by)
-    loads = load_histories(model)[:_LOADS]
+    made = replace(made, outputs=in_readable_units(made.outputs))
+    loads = in_readable_units(load_histories(model)[:_LOADS])
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
-    lines, periods = scene.system.lines, longest_periods(scene)
+    lines, vibrations = scene.system.lines, first_modes(scene)
+    periods = [row.period for row in vibrations if row.period]
     found, refused = _line_pictures(scene, model, None if searched else drawn_by, refusal)
     structured = structure(model, lines)
     block = scene.title_block
@@ -117,7 +120,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         name=model.name,
         project=(block and block.project) or heading(model.name),
         credit=block.credit if block else "",
-        headline=tuple(headline(scene, model, summary, found, loads, periods)),
+        headline=tuple(headline(scene, model, summary, found, loads, vibrations)),
         storeys=storeys(scene, found, scale),
         neglected_effects=tuple(filter(None, neglected_effects(model))),
         facts=tuple(_facts(model, made, found, loads, scale)),
@@ -138,7 +141,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         line_pictures=tuple(along_pictures(model, found, scale)),
         refusal=refused,
-        scene=first_text(scene.text),
+        scene=first_text(shown_text(scene.text)),
         command=f"wavesym report {model.name}.toml -o {model.name}.html",
         version=__version__,
         sha256=model.labels.sha256,

@@ -8,6 +8,7 @@ from math import ceil, floor, log10
 
 from wavesym.pictures.page.svg import Svg, concatenate, line, text
 from wavesym.pictures.units import RAISED
+from wavesym.results.presentation import group_thousands
 
 _NICE = (1, 2, 2.5, 5, 10)
 
@@ -30,7 +31,7 @@ class PlotAxis:
         """That of ten which is left out of long numbers, 0 for short ones."""
         largest = max(abs(self.low), abs(self.high))
         power = 3 * floor(log10(largest) / 3)
-        return power if not 1e-3 <= largest < 1e4 else 0
+        return power if not 1e-3 <= largest < 1e5 else 0
 
     def ticks(self, most: int, power: int = 0) -> list[tuple[float, str]]:
         """At most so many round numbers on the axis, as they are written without 10**power."""
@@ -85,7 +86,7 @@ class Frame:
         for value, number in upward:
             at = self.y.pixel(value)
             parts.append(line(left, at, right, at, "grid"))
-            parts.append(text(left - 6, at + 4, number, "end"))
+            parts.append(text(left - 6, at + 4, group_thousands(number), "end"))
         if self.places is None and self.y.low < 0 < self.y.high:
             parts.append(line(left, self.y.pixel(0), right, self.y.pixel(0), "zero"))
         if numbers:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
@@ -17,15 +18,16 @@ from wavesym.pictures.line_histories import LineHistories
 from wavesym.pictures.page.page_tables import PageTable
 from wavesym.pictures.timescale import Timescale, timescale
 from wavesym.pictures.units import unit_text
-from wavesym.results.modes import is_damped, modes
-from wavesym.results.presentation import number_text
+from wavesym.results.modes import ModeRow, is_damped, modes
+from wavesym.results.presentation import group_thousands, number_text, readable_unit
 from wavesym.results.statistics import OutputSummary
 from wavesym.results.summary import Summary, summarise
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import probes
 from wavesym.scene.outputs import Output, observables
 
-_PERIODS = 3
+_PERIODS, _MOST_PERIODS = 3, 8
+_MOVED = 0.9  # of the mass: what codes ask of the modes that are counted
 _GRAVITY = 9.80665  # m/s^2
 _STOREYS = 60  # rows of the table
 _OUTPUTS, _LINKS = 3, 2  # of a scene that is no building, those that are listed first
@@ -55,7 +57,7 @@ def headline(
     summary: Summary | WavesymError,
     found: Sequence[LineHistories],
     loads: Sequence[History],
-    periods: Sequence[float],
+    vibrations: Sequence[ModeRow],
 ) -> Iterator[Figure]:
     """The figures of a scene, those that it has.
 
@@ -65,7 +67,7 @@ def headline(
         summary: the extremes of its outputs, or why there are none.
         found: what happens along the chain.
         loads: what acts on it.
-        periods: its longest, in the time of results.
+        vibrations: those of `first_modes`.
     """
     outputs = _outputs(scene, model, summary)
     shear = outputs.get("force@0")
@@ -80,21 +82,34 @@ def headline(
     if scene.system.type == "building" and loads:
         peak = float(np.max(np.abs(loads[0].points[:, 1])))
         yield Figure("Peak ground acceleration", _value(peak, loads[0].output.unit), _in_g(scene, peak))
+    periods = [row.period for row in vibrations if row.period]
     if periods and model.clock and scene.system.type != "building":
         hertz = ", ".join(f"{1 / period:.3g}" for period in periods)
         yield Figure("Natural frequencies", f"{hertz} Hz", f"periods {', '.join(f'{each:.3g}' for each in periods)} s")
     elif periods:
         unit = "\u00a0s" if model.clock else ""
         values = ", ".join(f"{period:.3g}" for period in periods)
-        yield Figure("Period" + "s" * (len(periods) > 1), f"{values}{unit}", "" if unit else "in tau")
+        shares = [f"{100 * row.effective_mass:.2g}" for row in vibrations if row.effective_mass is not None]
+        moved = f"{', '.join(shares)} % of the mass" if shares else ""
+        detail = ", ".join(filter(None, (moved, "" if unit else "in tau")))
+        yield Figure("Period" + "s" * (len(periods) > 1), f"{values}{unit}", detail)
 
 
-def longest_periods(scene: Scene) -> list[float]:
-    """Up to three in the time of results; none where waves leave a chain, or contacts open and close."""
+def first_modes(scene: Scene) -> list[ModeRow]:
+    """The modes with the longest periods, three and as many more as nine tenths of the mass need; no rigid ones.
+
+    None where waves leave a chain, or contacts open and close.
+    """
     with suppress(WavesymError):
         model = lower(scene, in_time=False)
         if not is_damped(model.network):
-            return [row.period for row in modes(model, _PERIODS) if row.period]
+            found = [row for row in modes(model, _MOST_PERIODS + 1) if row.period]
+            moved = accumulate(row.effective_mass or 0.0 for row in found)
+            held = any(row.effective_mass is not None for row in found)
+            needed = (
+                next((count for count, part in enumerate(moved, 1) if part >= _MOVED), _MOST_PERIODS) if held else 0
+            )
+            return found[: max(_PERIODS, needed)]
     return []
 
 
@@ -143,9 +158,10 @@ def _largest_values(model: Model, summary: Summary) -> Iterator[Figure]:
     """The largest value of each output, with its sign and when it is there, and what links lost."""
     scale = timescale(model)
     for each in summary.outputs[:_OUTPUTS]:
-        peak = each.largest
+        shown = each.readable
+        peak = shown.largest
         when = f"at {scale.symbol} = {number_text(peak.at.in_scene_time, scale.unit, 4)}"
-        yield Figure(each.label, number_text(peak.value, unit_text(each.unit), 4), when)
+        yield Figure(each.label, group_thousands(number_text(peak.value, unit_text(shown.unit), 4)), when)
     for link in (summary.links or ())[:_LINKS]:
         yield Figure(f"Set at {link.where}", link.set.describe(4), f"{link.dissipated.describe(4)} dissipated")
 
@@ -195,8 +211,6 @@ def _in_g(scene: Scene, value: float) -> str:
 
 
 def _value(value: float, unit: str) -> str:
-    """A size in its unit, forces in N as kN or MN where they are large."""
-    if unit == "N":
-        power, prefix = next((each for each in ((6, "M"), (3, "k")) if abs(value) >= 10.0 ** each[0]), (0, ""))
-        value, unit = value / 10.0**power, prefix + unit
-    return number_text(abs(value), unit_text(unit), 4)
+    """A size in the unit that people write for it."""
+    size, unit = readable_unit(value, unit)
+    return group_thousands(number_text(abs(value) / size, unit_text(unit), 4))

@@ -12,7 +12,7 @@ from wavesym.mechanics.model import Model
 from wavesym.methods.advice import advise
 from wavesym.pictures.timescale import Timescale
 from wavesym.programs.program import Program
-from wavesym.results.presentation import number_text
+from wavesym.results.presentation import group_thousands, number_text
 from wavesym.results.statistics import cells, headings
 from wavesym.results.summary import Summary
 
@@ -43,9 +43,9 @@ def extremes_table(model: Model, found: Summary | WavesymError, scale: Timescale
     rows = (
         (
             f"{each.label}, {each.unit}" if each.unit else each.label,
-            *cells(each, "\u2212", _DIGITS),
+            *map(group_thousands, cells(each, "\u2212", _DIGITS)),
         )
-        for each in found.outputs
+        for each in (output.readable for output in found.outputs)
     )
     short = any(not peak.reached for each in found.outputs for peak in (each.min, each.max))
     notes = [
