@@ -7,6 +7,7 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
+import mpmath
 import numpy as np
 import pytest
 from flint import acb, acb_series, arb, ctx
@@ -368,6 +369,18 @@ def test_what_nothing_damps_has_no_greatest_amplitude() -> None:
     assert wavesym.frf(spring, [1.0]).poles == ()
     free = Scene.from_toml("drive_m1")
     assert wavesym.frf(free, [0.0, 1.0], load=0).poles == (0.0,)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.1, 1.0), (2.0, 6.0)])
+def test_a_pole_is_where_it_is_to_the_last_digit(low: float, high: float) -> None:
+    """w tan w = 1 of a mass before a held rod: places of poles were those of an interval, 13 digits of 17 printed."""
+    system = {"type": "chain", "parts": [{"mass": 1, "name": "a"}, {"rod": 1}, "fixed"]}
+    load = [{"at": "a", "times": [0], "steps": [1]}]
+    made = Scene(name="s", system=system, load=load, output={"until": 1, "displacement": ["a"]})
+    (peak,) = wavesym.frf(made, low=low, high=high, points=2).peaks()
+    with mpmath.workdps(40):
+        expected = float(mpmath.findroot(lambda w: w * mpmath.tan(w) - 1, 0.86 if high < 2 else 3.43))
+    assert (peak.frequency, peak.amplitude) == (expected, np.inf)
 
 
 @pytest.mark.quick(2)

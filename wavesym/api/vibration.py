@@ -116,8 +116,9 @@ def frf(
         frequencies: (n,), in Hz, or w in rad per tau for a scene without units, each the shortest decimal that reads
             back to it; None for `points` of them, equally spaced from `low` to `high`.
         load: its number in the scene from 0 on, or the node it acts on; None where there is one load.
-        low: the first frequency; None for one step above 0, where chains that nothing holds have no answer.
-        high: the last one; None for that of the fifth mode without dashpots.
+        low: the first frequency, read like these; None for one step above 0, where chains that nothing holds have no
+            answer.
+        high: the last one, read like these; None for that of the fifth mode without dashpots.
         points: how many.
         ranges: of paths to masses, springs and dashpots, as of `scene.with_`, the least and the greatest value: for
             the range of each amplitude over the box, `low` and `high` (outputs, n), enclosed, in place of responses.

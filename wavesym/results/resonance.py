@@ -39,6 +39,8 @@ _LOOKS_AT = ((256, arb(2) ** -80), (1024, arb(2) ** -320))
 """Bits, and of the band an interval that is given up, where there may be a pole or none; then the second."""
 _GROWTH = arb(1.5)  # of a square towards 0, in the last octave: there is a pole at 0, where it is 4 or 16
 _MOST = 600_000  # intervals times parts
+_SHARP = arb(2) ** -80  # of a frequency: the place of a pole
+_ASIDE = arb(509) / 1024
 _NEWTON = 3
 _TERMS = 10  # of Taylor polynomials
 _LOOKS = 96  # at parts of such a polynomial
@@ -286,7 +288,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
                 if width > wide * shortest:  # what is nearer to an end of the band than that is at it
                     below, above = below.max(edges[0]), above.min(edges[-1])
                 if width < wide * _LEAST and transfer.has_pole(k, below, above):
-                    found[k].pole, found[k].at = True, each.middle
+                    found[k].pole, found[k].at = True, _locate_pole(transfer, k, below, above)
                 elif width < wide * (shortest if transfer.lowest_terms(k) is None else _LEAST):
                     found[k].is_open, found[k].at = True, each.middle
                 else:
@@ -294,6 +296,19 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
             if open_for:
                 following += each.halves(open_for)
         level = following
+
+
+def _locate_pole(transfer: Transfers, k: int, low: arb, high: arb) -> arb:
+    """Where output k has the pole that it is proved to have between two frequencies, to far less than a double tells."""
+    while high - low > high * _SHARP:
+        part = (low + (high - low) * _ASIDE).mid()  # the middle of all is a pole sooner than that
+        if transfer.has_pole(k, low, part):
+            high = part
+        elif transfer.has_pole(k, part, high):
+            low = part
+        else:
+            break
+    return ((low + high) / 2).mid()
 
 
 def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb) -> None:
