@@ -15,7 +15,7 @@ from wavesym.derivation.symbolic import symbolic
 from wavesym.derivation.table import full_table
 from wavesym.documents.derivation.chain_laws import meanings, own_laws
 from wavesym.documents.derivation.document import derivation
-from wavesym.documents.derivation.families import integral, own_rate, solve_at_rates
+from wavesym.documents.derivation.families import integral, solve_at_rates
 from wavesym.documents.derivation.patterns import GENERIC, pattern_laws, patterns, rates
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
@@ -39,7 +39,7 @@ class Run:
         self.lines = {}
         self.own = {}
         for law in laws:
-            q, lines = own_rate(law), solve_at_rates(law, found)
+            q, lines = law.own_rate, solve_at_rates(law, found)
             for rod in range(self.place(law.first, 0, m), self.place(law.last, 0, m) + 1, law.step):
                 self.lines[law.function, rod] = lines
                 self.own[law.function, rod] = None if q is None else value(q, {"i": rod, "m": m})

@@ -152,18 +152,23 @@ def _output_name(scene: Scene, output: str) -> str:
 class Derivation(str):
     """A derivation: text, and for the paper's systems SymPy objects, in the paper's letters.
 
-    `equations` has for each system (a building has two bases) `delay_equations` and `recurrences`: tuples of a SymPy
-    `equation` and the rods i = `first`, `first` + `step`, ... `last` that it holds for.
+    `equations` has for each system (a building has two bases) `delay_equations`, `recurrences` and the `closures` of
+    these: tuples of a SymPy `equation` and the rods i = `first`, `first` + `step`, ... `last` that it holds for, a
+    closure with the `rate` gamma at which it is needed. `symbols` has what stands in them by name.
     """
 
     _systems: tuple[System, ...] = ()
+    _m: int | None = None
 
     @cached_property
     def equations(self) -> tuple[Equations, ...]:
-        """Those of each system, for any m; none for a chain that is written out."""
+        """Those of each system, for any m, or written out for the m that was asked for or that a scene has.
+
+        None for a general chain.
+        """
         from wavesym.derivation.equations import equations
 
-        return equations(self._systems)
+        return equations(self._systems, self._m)
 
 
 def derive(source: str | Scene, m: int | None = None, format: str = "text") -> Derivation:
@@ -172,7 +177,7 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
     Args:
         source: "collision", "drive", "building" (both bases), or a scene, its path or the name of a built-in one; of a
             general chain it is the law of each kind of node.
-        m: how many elastic elements; then every line is written out. A scene has its own.
+        m: how many elastic elements; then every line is written out, and so are `equations`. A scene has its own.
         format: "text", "latex", "json", or "fragment": LaTeX to be \\input.
 
     Returns:
@@ -186,6 +191,8 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
     drive, m = 1
     >>> wavesym.derive("drive").equations[0].delay_equations[0].equation.lhs
     Derivative(f(1, z), z)*kappa[1] + Derivative(f(1, z), (z, 2))
+    >>> wavesym.derive("drive", 2).equations[0].closures[1].equation
+    Eq(S_f[2, n], -S_g[2, n])
     """
     from wavesym.derivation.symbolic import symbolic
     from wavesym.documents.derivation.document import derivation, network_derivation, scene_derivation
@@ -196,7 +203,7 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
         source = Scene.from_toml(source)
     if isinstance(source, str):
         made = Derivation(derivation(source, m, format))
-        made._systems = tuple(systems(source, m))
+        made._systems, made._m = tuple(systems(source, m)), m
         return made
     lowered = lower(source)
     lowered.refuse_damping()
@@ -204,7 +211,7 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
     if chain is None:
         return Derivation(network_derivation(lowered, format))
     made = Derivation(scene_derivation(source.name, symbolic(chain), format))
-    made._systems = (chain.system,)
+    made._systems, made._m = (chain.system,), chain.m
     return made
 
 

@@ -18,7 +18,7 @@ from flint import fmpq
 from sympy import Expr, Integer, Symbol, exp
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
-from wavesym.derivation.delay_terms import Operator
+from wavesym.derivation.delay_terms import Operator, exact
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, NodeLaw, node_law
 from wavesym.derivation.numbers import number
 from wavesym.derivation.rules import JointRule, Linear, LoadTerm, Rule, Term, Weights
@@ -94,6 +94,13 @@ class CoefficientLaw:
     first: Expr
     last: Expr
     step: int
+
+    @property
+    def own_rate(self) -> Expr | None:
+        """The rate at which own.same vanishes; None for a function that follows without D."""
+        if self.own.jump == 0:
+            return None
+        return exact(-self.own.same.subs(RATE, 0) / self.own.same.expand().coeff(RATE))
 
 
 @dataclass(frozen=True)
@@ -207,7 +214,7 @@ def _rule(law: CoefficientLaw, parameters: Parameters, places: Mapping[str, int]
     def value(expression: Expr) -> fmpq:
         return number(expression, places, parameters)
 
-    def exact(w: SymbolicWeights) -> Weights:
+    def in_numbers(w: SymbolicWeights) -> Weights:
         return Weights(_linear(w.same, RATE, value), _linear(w.next_power, POWER, value), value(w.jump))
 
     def source(kind: str, index: Expr | None) -> str:
@@ -216,7 +223,7 @@ def _rule(law: CoefficientLaw, parameters: Parameters, places: Mapping[str, int]
     return Rule(
         law.function,
         places[INDEX.name],
-        exact(law.own),
-        tuple(Term(t.function, _place(t.rod, places), t.back, exact(t.weights)) for t in law.terms),
+        in_numbers(law.own),
+        tuple(Term(t.function, _place(t.rod, places), t.back, in_numbers(t.weights)) for t in law.terms),
         tuple(LoadTerm(source(x.kind, x.number), x.back, x.power, value(x.value)) for x in law.loads),
     )

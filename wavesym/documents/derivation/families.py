@@ -54,13 +54,6 @@ class Recursion:
     least: int = 0
 
 
-def own_rate(law: CoefficientLaw) -> Expr | None:
-    """The rate at which own.same vanishes; None for a function that follows without D."""
-    if law.own.jump == 0:
-        return None
-    return exact(-law.own.same.subs(RATE, 0) / law.own.same.expand().coeff(RATE))
-
-
 def substitute(law: CoefficientLaw, at: Callable[[Expr], Expr]) -> CoefficientLaw:
     """A law with `at` of every expression in it; of a law that stands for several, the one that `at` is for."""
 
@@ -84,7 +77,7 @@ def substitute(law: CoefficientLaw, at: Callable[[Expr], Expr]) -> CoefficientLa
 
 def solve_at_rates(law: CoefficientLaw, rates: Sequence[Expr] | None) -> tuple[Recursion, ...]:
     """A law at every one of `rates`, which are all there are; None: at q, and at any other rate g, as a symbol."""
-    q = own_rate(law)
+    q = law.own_rate
     if q is None:
         return (_foreign(law, RATE),)
     others = (RATE,) if rates is None else tuple(rate for rate in rates if cancel(rate - q) != 0)

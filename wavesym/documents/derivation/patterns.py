@@ -10,7 +10,6 @@ from sympy import Expr, IndexedBase, Integer, cancel
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.recurrence import CoefficientLaw, recurrence
-from wavesym.documents.derivation.families import own_rate
 from wavesym.mechanics.node import Parameters, System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
@@ -105,7 +104,7 @@ def rates(laws: Iterable[CoefficientLaw]) -> tuple[Expr, ...]:
     """The different rates of laws that are written out, or have the same rate for every i; 0 first."""
     found: dict[Expr, Expr] = {}
     for law in laws:
-        q = own_rate(law)
+        q = law.own_rate
         if q is not None:
             found.setdefault(cancel(q), q)
     return (Integer(0), *found.values())

@@ -14,7 +14,7 @@ from wavesym.derivation.recurrence import CoefficientLaw, recurrence
 from wavesym.derivation.rods import rod_kinds
 from wavesym.documents.derivation.chain_laws import Meaning, meanings, merged_parameters, own_laws
 from wavesym.documents.derivation.dimensions import LENGTH, SPEED, Dimensions, dimensions
-from wavesym.documents.derivation.families import integral, own_rate, substitute
+from wavesym.documents.derivation.families import integral, substitute
 from wavesym.documents.derivation.highest_powers import POWERS, PowerFamily
 from wavesym.documents.derivation.notation import Text
 from wavesym.documents.derivation.patterns import Pattern, pattern_laws, patterns, rates
@@ -277,7 +277,7 @@ class _Author:
         self, laws: Sequence[CoefficientLaw], found: Iterable[Expr], names: Mapping[Expr, Expr]
     ) -> Iterator[str]:
         for rate in found:
-            of = next((law for law in laws if rate.has(INDEX) and own_rate(law) == rate), None)
+            of = next((law for law in laws if rate.has(INDEX) and law.own_rate == rate), None)
             where = self.w.range(of.first, of.last, of.step) if of else ""
             name = f"{self.n.expression(names[rate])} = " if rate in names else ""
             yield f"{name}{self.n.expression(rate)}{where}"

@@ -12,7 +12,7 @@ from wavesym.derivation.delay_terms import Line, Source, exact
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.recurrence import POWER, RATE, CoefficientLaw, SymbolicLoad, SymbolicWeights, stretch_law
 from wavesym.derivation.rods import RodKind
-from wavesym.documents.derivation.families import Coefficient, Recursion, own_rate, solve_at_rates
+from wavesym.documents.derivation.families import Coefficient, Recursion, solve_at_rates
 from wavesym.documents.derivation.highest_powers import PowerFamily, PowerRow, plain
 from wavesym.documents.derivation.notation import Text
 from wavesym.documents.derivation.patterns import Equal
@@ -148,7 +148,7 @@ class Writer:
         right = [part for t in law.terms for part in self._weight_terms(t.weights, t.function, at(t.rod), t.back, at)]
         yield self.n.balance(own, right)
         yield from self._gains(law.loads, at)
-        q = own_rate(law)
+        q = law.own_rate
         if q is not None:
             zero = Integer(0)
             start = self.n.total(self.n.coefficient(law.function, at(law.rod), 0, RATE, zero))
@@ -171,7 +171,7 @@ class Writer:
 
         Where a coefficient says its rate `names` has a shorter word for some of them.
         """
-        own = own_rate(law)
+        own = law.own_rate
         if rates is None and own is not None and own != 0:
             yield f"{self.n.expression(OWN)} = {self.n.expression(own)}"
             names = {own: OWN}
