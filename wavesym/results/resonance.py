@@ -299,7 +299,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
 
 
 def _locate_pole(transfer: Transfers, k: int, low: arb, high: arb) -> arb:
-    """Where output k has the pole that it is proved to have between two frequencies, to far less than a double tells."""
+    """Where output k has the pole that it is proved to have between two frequencies, far closer than a double tells."""
     while high - low > high * _SHARP:
         part = (low + (high - low) * _ASIDE).mid()  # the middle of all is a pole sooner than that
         if transfer.has_pole(k, low, part):
