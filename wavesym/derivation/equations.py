@@ -82,9 +82,9 @@ def equations(systems: Iterable[System], m: int | None = None) -> tuple[Equation
         made.append(
             Equations(
                 system.name,
-                tuple(_written_out((_delay(each) for each in delay_equations(system)), m)),
-                tuple(_written_out(map(_recurrence, laws.laws), m)),
-                tuple(_written_out((_closure(law, q) for law in laws.laws if (q := law.own_rate) is not None), m)),
+                tuple(_write_out((_delay(each) for each in delay_equations(system)), m)),
+                tuple(_write_out(map(_recurrence, laws.laws), m)),
+                tuple(_write_out((_closure(law, q) for law in laws.laws if (q := law.own_rate) is not None), m)),
                 laws.interval,
                 dict(NAMES),
             )
@@ -92,7 +92,7 @@ def equations(systems: Iterable[System], m: int | None = None) -> tuple[Equation
     return tuple(made)
 
 
-def _written_out(relations: Iterable[R], m: int | None) -> Iterator[R]:
+def _write_out(relations: Iterable[R], m: int | None) -> Iterator[R]:
     """Each for every rod of m, unless there is none."""
     if m is None:
         yield from relations
