@@ -45,7 +45,7 @@ def test_it_is_the_least_that_will_do_and_few_are_tried(name, monkeypatch) -> No
     assert len(tried) == len(set(tried)) <= 5
 
 
-@pytest.mark.parametrize(("step", "told"), [("1/8", ""), ("4", ""), ("5000/1261", "--step 4 is whole panels and")])
+@pytest.mark.parametrize(("step", "told"), [("1/8", ""), ("4", ""), ("5000/1261", "panels, or --step 4 is whole")])
 def test_steps_that_end_inside_of_panels_at_ever_new_places_are_told_of(step: str, told: str) -> None:
     """With whole panels no two multiples lie in one; 1261 = 13 * 97, so that of the others none comes back for long."""
     scene = Scene.from_toml("drive_m1")

@@ -75,7 +75,12 @@ MISTAKES = [
         'name = "good"\ncolour = 1',
         "colour: unknown key; write name, units, system, load, output or report",
     ),
-    (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key; write type, m, kappa, inertia or damping"),
+    (
+        DRIVE,
+        "kappa =",
+        "kapa =",
+        "system.kapa: unknown key; write type, m, kappa, inertia, damping or speed_adjustment",
+    ),
     (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key; write name, times, body, steps or ramps'),
     (DRIVE, "until", "untl", "output.untl: unknown key"),
     (DRIVE, 'name = "good"', "", "name: missing"),

@@ -9,6 +9,7 @@ from wavesym.errors import WavesymError
 from wavesym.scene import Scene, lower
 
 if TYPE_CHECKING:
+    from flint import fmpq
     from numpy.typing import ArrayLike
 
     from wavesym.results.peaks import Peaks
@@ -218,15 +219,20 @@ def spectrum_notes(scene: Scene, found: Spectra) -> list[str]:
     return [*scene_notes(scene), f"{damping}, values {step}; {change}"]
 
 
-def scene_notes(scene: Scene, *, values: bool = True) -> list[str]:
+def scene_notes(scene: Scene, *, values: bool = True, step: fmpq | None = None) -> list[str]:
     """What a user might not expect of a scene, a line for each: what was rounded, adjusted or understood.
 
     Args:
         scene: what was read.
         values: whether its outputs are of interest: a line, too, where there is no load, and for each contact that
             opens early enough to matter.
+        step: of a stream, in tau, for which speeds may be changed.
     """
     from wavesym.results.notes import value_notes
 
     model = lower(scene)
+    if step is not None:
+        from wavesym.programs.stream.adjustment import fit_speeds
+
+        model = fit_speeds(model, step)
     return value_notes(model) if values else list(model.labels.notes)

@@ -41,6 +41,7 @@ Density = Annotated[Fraction, PlainValidator(_positive("density"))]
 Stiffness = Annotated[Fraction, PlainValidator(_positive("stiffness"))]
 SecondMoment = Annotated[Fraction, PlainValidator(_positive("second moment of area"))]
 Inertia = Annotated[Fraction, PlainValidator(_positive("moment of inertia"))]
+Speed = Annotated[Fraction, PlainValidator(_positive("velocity"))]
 Velocity = Annotated[Fraction, PlainValidator(lambda value: read_quantity(value, "velocity"))]
 
 

@@ -65,7 +65,8 @@ class Model:
     by name, what 1 is in a unit, and that unit. An `endless` one goes on after that tau. `preset` are the parameters of
     a network that a preset made, None where they are those of its parts. Contacts and other corners are followed
     as far as `followed_probes` need, too, so that one solution serves several models. `written_speeds` are those of the
-    bars before they were adjusted, none where they were not.
+    bars before they were adjusted, none where they were not; a speed may change by `speed_adjustment`, None where its
+    scene cannot say so.
     """
 
     name: str
@@ -84,6 +85,7 @@ class Model:
     preset: Parametrization | None = None
     followed_probes: tuple[Probe, ...] = ()
     written_speeds: tuple[fmpq, ...] = ()
+    speed_adjustment: fmpq | None = None
 
     @property
     def network_as_written(self) -> Network:

@@ -74,9 +74,10 @@ class Parametrization(Protocol):
 
 @dataclass(frozen=True)
 class SystemParameters:
-    """The parameters of a system of the paper, by the paper's letters."""
+    """The parameters of a system of the paper, by the paper's letters; the speeds of its rods where they are not 1."""
 
     chain: Chain
+    speeds: tuple[fmpq, ...] = ()
 
     @cached_property
     def numbers(self) -> Mapping[str, tuple[ModelParameter, ...]]:
@@ -96,7 +97,11 @@ class SystemParameters:
         return "kappa"
 
     def network(self, values: Mapping[str, Any]) -> Network:
-        return network_of(replace(self.chain, parameters=self._parameters(values)))
+        network = network_of(replace(self.chain, parameters=self._parameters(values)))
+        if not self.speeds:
+            return network
+        pairs = zip(network.bars, self.speeds, strict=True)
+        return replace(network, bars=tuple(replace(bar, speed=speed) for bar, speed in pairs))
 
     def factors(self, values: Mapping[str, Any]) -> Factors:
         """A moment of 1 is that of the first shaft: it changes where discs or that shaft do."""

@@ -25,6 +25,7 @@ FINEST = 64
 
 _LITTLE = fmpq(1, 200)  # of a speed: as much is less than anyone knows of it
 _CHEAP = 16  # windows to the shortest travel time
+_MOST_NAMED = 6  # changes of speeds, one by one
 _KEPT = fmpq(9, 10)  # of what speeds may change
 _DIGITS = Context(prec=2, rounding=ROUND_CEILING)
 
@@ -65,6 +66,23 @@ def adjust_speeds(bars: Sequence[Bar], most: fmpq) -> tuple[Bar, ...]:
         helps = f'"{percent(change)}"'
         raise MeasureError(f"too little for travel times with a common measure; write {helps} or more", helps)
     return tuple(replace(bar, speed=bar.length / delay) for bar, delay in zip(bars, near, strict=True))
+
+
+def describe_changes(before: Sequence[Bar], after: Sequence[Bar]) -> str:
+    """By how much each speed is changed, for people: of many different ones the least and the greatest."""
+    rods: dict[str, list[int]] = {}
+    for number, (old, new) in enumerate(zip(before, after, strict=True), 1):
+        change = new.speed / old.speed - 1
+        rods.setdefault(f"{'-' if change < 0 else '+'}{percent(abs(change))}" if change else "0 %", []).append(number)
+    if len(rods) == 1:
+        return f"all by {next(iter(rods))}"
+    if len(rods) > _MOST_NAMED or len(before) > _MOST_NAMED**2:
+        changes = [new.speed / old.speed - 1 for old, new in zip(before, after, strict=True)]
+        low, high = (f"{'-' if change < 0 else '+'}{percent(abs(change))}" for change in (min(changes), max(changes)))
+        return f"each by {low} to {high}"
+    return ", ".join(
+        f"rod{'s' * (len(of) > 1)} {' and '.join(map(str, of))} by {change}" for change, of in rods.items()
+    )
 
 
 def speed_change(before: Sequence[Bar], after: Sequence[Bar]) -> fmpq:

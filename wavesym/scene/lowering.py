@@ -112,6 +112,7 @@ def _build_model(scene: Scene) -> Model:
         spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
         preset=SystemParameters(chain) if chain else None,
         written_speeds=written_speeds(scene),
+        speed_adjustment=_speed_adjustment(scene),
     )
 
 
@@ -127,6 +128,12 @@ def _damping(scene: Scene) -> Damping | None:
     """That of the modes, where it is any."""
     damping: Damping | None = getattr(scene.system, "damping", None)  # a collision has none
     return damping if damping and any(damping.ratios) else None
+
+
+def _speed_adjustment(scene: Scene) -> fmpq | None:
+    """How much of its speed that of a rod may change."""
+    most: Fraction | None = getattr(scene.system, "speed_adjustment", None)  # a collision has none
+    return None if most is None else rational(most)
 
 
 def probes(scene: Scene, outputs: Iterable[Observable]) -> tuple[Probe, ...]:

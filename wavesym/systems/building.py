@@ -47,6 +47,7 @@ from wavesym.systems.dimensionless import DimensionlessSystem, LoadUnit
 from wavesym.systems.elastic import ElasticRod, Rods
 from wavesym.systems.parts import Table
 from wavesym.systems.preset import Preset
+from wavesym.systems.speed_adjustment import SpeedAdjustment, adjustment_choice, without_adjustment
 
 MOST_STOREYS = 10_000
 
@@ -139,10 +140,11 @@ class Building(Preset):
     kappa: Positives = Field(description="a list of m + 1 positive numbers")
     base: Literal["force", "ground"] = Field(description='"force" or "ground"')
     damping: ModalDamping = None
+    speed_adjustment: SpeedAdjustment = Fraction(0)
 
     @model_serializer(mode="wrap")
     def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        return without_damping(handler(self))
+        return without_adjustment(without_damping(handler(self)))
 
     @field_validator("base", mode="before")
     @classmethod
@@ -161,8 +163,9 @@ class Building(Preset):
 
     @property
     def choices(self) -> Mapping[str, str]:
-        """Which base, and how its modes are damped."""
-        return {"base": self.base, **({"damping": self.damping.description} if self.damping else {})}
+        """Which base, how its modes are damped, and how much speeds may change."""
+        damping = {"damping": self.damping.description} if self.damping else {}
+        return {"base": self.base, **damping, **adjustment_choice(self.speed_adjustment)}
 
     @property
     def tables(self) -> list[object]:
@@ -288,7 +291,7 @@ class PhysicalBuilding(SceneTable):
             acting = LoadUnit("acceleration", "jerk", size, {"a": "steps", "b": "ramps"}, {"at": 0})
         if self.damping is not None:
             table["damping"] = self.damping
-        if self.speed_adjustment is not None and "parts" in table:  # else travel times are all the same
+        if self.speed_adjustment is not None:
             table["speed_adjustment"] = self.speed_adjustment
         return DimensionlessSystem(
             kind="shear",

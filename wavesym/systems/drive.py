@@ -18,7 +18,7 @@ from pydantic import BeforeValidator, FailFast, Field, SerializerFunctionWrapHan
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Integer, Numbers, Positives
-from wavesym.fields.quantity_fields import Bore, Density, Inertia, Length, Modulus, SecondMoment, one_of
+from wavesym.fields.quantity_fields import Bore, Density, Inertia, Length, Modulus, SecondMoment, Speed, one_of
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.fields.table import SceneTable, as_list, key_context, refusal, show, without_usual
 from wavesym.mechanics.chain import Chain
@@ -28,6 +28,7 @@ from wavesym.systems.dimensionless import DimensionlessSystem, LoadUnit
 from wavesym.systems.elastic import ElasticRod, Rods, round_section
 from wavesym.systems.parts import Table
 from wavesym.systems.preset import Preset
+from wavesym.systems.speed_adjustment import SpeedAdjustment, adjustment_choice, without_adjustment
 
 
 def _families(ramps: bool, m: Quantity, p: Parameters) -> tuple[Family, ...]:
@@ -130,15 +131,17 @@ class Drive(Preset):
     kappa: Positives = Field(description="a list of m positive numbers")
     inertia: Positives = Field(description="a list of m + 1 positive numbers")
     damping: ModalDamping = None
+    speed_adjustment: SpeedAdjustment = Fraction(0)
 
     @model_serializer(mode="wrap")
     def _serialize(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        return without_damping(handler(self))
+        return without_adjustment(without_damping(handler(self)))
 
     @property
     def choices(self) -> Mapping[str, str]:
-        """How its modes are damped."""
-        return {"damping": self.damping.description} if self.damping else {}
+        """How its modes are damped, and how much speeds may change."""
+        damping = {"damping": self.damping.description} if self.damping else {}
+        return {**damping, **adjustment_choice(self.speed_adjustment)}
 
     def named_chain(self, loads: Sequence[Load]) -> Chain:
         """The chain as the paper has it, with ramps where a load needs them."""
@@ -154,13 +157,14 @@ class Drive(Preset):
 
 
 class Round(SceneTable):
-    """What twists: a polar moment of area, or the diameter (and bore) of a round shaft."""
+    """What twists: a polar moment of area, or the diameter (and bore) of a round shaft; its modulus, or wave speed."""
 
     length: Length = Field(description='a length such as "1.2 m"')
     J: SecondMoment | None = None
     diameter: Length | None = None
     bore: Bore | None = None
-    G: Modulus = Field(description='a modulus such as "80 GPa"')
+    G: Modulus | None = None
+    speed: Speed | None = None
     rho: Density = Field(description='a density such as "7850 kg/m^3"')
 
     def rod(self) -> ElasticRod:
@@ -169,7 +173,15 @@ class Round(SceneTable):
             raise refusal("stands beside J; write one of them", "bore")
         moment = self.J if self.diameter is None else round_section(self.diameter, self.bore)
         assert moment is not None  # one of the two is given
-        return ElasticRod.from_polar_moment(self.length, self.G, moment, self.rho, self.diameter)
+        return ElasticRod.from_polar_moment(self.length, self._modulus(), moment, self.rho, self.diameter)
+
+    def _modulus(self) -> Fraction:
+        """G, with a wave speed c rho c^2. Raises the error of `table.refusal`."""
+        if self.G is None and self.speed is None:
+            raise refusal('missing; write a modulus such as "80 GPa", or speed in its place', "G")
+        if self.G is not None and self.speed is not None:
+            raise refusal("stands beside G; write one of them", "speed")
+        return self.G or self.rho * (self.speed or 1) ** 2
 
 
 class Disc(SceneTable):
@@ -200,7 +212,7 @@ class PhysicalDrive(SceneTable):
             table, force = {"type": "drive", "parts": parts}, first.stiffness
         if self.damping is not None:
             table["damping"] = self.damping
-        if self.speed_adjustment is not None and "parts" in table:  # else travel times are all the same
+        if self.speed_adjustment is not None:
             table["speed_adjustment"] = self.speed_adjustment
 
         def acting(load: Mapping[str, Any]) -> LoadUnit:

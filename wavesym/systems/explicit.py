@@ -34,7 +34,7 @@ from wavesym.systems.drawing import Drawing, draw_parts
 from wavesym.systems.node_loads import NODE_LOADS, OnNode
 from wavesym.systems.parts import Branch, Parts, describe_parts
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
-from wavesym.systems.speed_adjustment import SpeedAdjustment, percent_text
+from wavesym.systems.speed_adjustment import SpeedAdjustment, adjustment_choice, percent_text
 from wavesym.systems.station import Lines
 
 _OPTIONAL = ("speed_adjustment", "gravity", "initial")
@@ -117,7 +117,7 @@ class ExplicitChain(SceneTable):
             for each in self.branch
         }
         damping = {"damping": self.damping.description} if self.damping else {}
-        adjusted = {"speed_adjustment": percent_text(self.speed_adjustment)} if self.speed_adjustment else {}
+        adjusted = adjustment_choice(self.speed_adjustment)
         dead = {"gravity": str(self.gravity)} if self.gravity else {}
         static = {"initial": self.initial} if self.initial else {}
         return {"parts": describe_parts(self.parts), **branches, **damping, **adjusted, **dead, **static}

@@ -9,18 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import inf, isfinite, log
+from math import gcd, inf, isfinite, log
 
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError, ToleranceError
 from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
+from wavesym.mechanics.travel_times import percent
 from wavesym.numbers.doubles import bound, nearest
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.form import leap, reference_values
 from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import first_degree, judge_degree, refuse_long
+from wavesym.programs.march.plan import readable
 from wavesym.programs.program import (
     Input,
     Program,
@@ -30,8 +32,9 @@ from wavesym.programs.program import (
     SteppedValues,
 )
 from wavesym.programs.request import Request, refuse_beside
+from wavesym.programs.stream.adjustment import enough_adjustment, fit_speeds
 from wavesym.programs.stream.parameters import free_stream, quick_enough, refuse_stiff, with_parameters
-from wavesym.programs.stream.plan import ROOM, StreamPlan, stream_plan
+from wavesym.programs.stream.plan import StreamPlan, stream_plan
 from wavesym.programs.stream.tables import StreamTables
 
 _ONE = fmpq(1)
@@ -53,6 +56,7 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
 
 
 def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bool) -> Program:
+    model = fit_speeds(model, request.step)
     refuse_beside("--stream", (("--evaluator", request.evaluator, "auto"), ("--optimize", request.optimize, None)))
     real = REALS[request.precision]
     names = request.runtime or (model.parameters.usual if request.target else ())
@@ -101,7 +105,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
 
 def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
     count = len(plan.march.panels)
-    step = "" if plan.march.step == 1 else f" of {plan.march.step} tau"
+    step = "" if plan.march.step == 1 else f" of {readable(plan.march.step)} tau"
     return (
         f"march as a stream, {count} panels a window{step}, degree {degree}, a state of about "
         f"{-(-made.state_bytes // 1024)} KiB with room for {plan.breakpoints} instants inside of panels, "
@@ -110,15 +114,28 @@ def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
 
 
 def _beside_panels(plan: StreamPlan, model: Model, request: Request) -> str:
-    """What steps cost that end inside of panels at ever new places, and the nearest that do not."""
-    if request.step is None or plan.breakpoints <= ROOM:
+    """What steps cost that end inside of panels at ever new places, or are many short ones; what mends that."""
+    if request.step is None:
+        return ""
+    enough = enough_adjustment(model, request.step)
+    remedy = f'speed_adjustment = "{percent(enough)}" under [system]' if enough is not None else ""
+    if (request.step / plan.panel).q == 1:
+        many = f"; a step is {request.step / plan.panel} of these short panels; with {remedy} it is fewer"
+        return many if remedy else ""
+    if plan.breakpoints >= _places(plan, request.step):
         return ""
     near = max(int((request.step / plan.panel + fmpq(1, 2)).floor()), 1) * plan.panel
     told = f" ({model.clock.format(near)})" if model.clock else ""
     return (
         "; such steps end at ever new instants inside of panels: each is slower than the one before, and there is room "
-        f"to the horizon only; --step {near}{told} is whole panels and takes none"
+        f"to the horizon only; {remedy and f'{remedy} makes them whole panels, or '}--step {near}{told} is whole panels"
     )
+
+
+def _places(plan: StreamPlan, spacing: fmpq) -> int:
+    """At how many instants inside of the panels of a window multiples of a spacing lie, sooner or later."""
+    every = int((plan.march.step / spacing).p)
+    return every - gcd(every, len(plan.march.panels))
 
 
 def _at_worst(plan: StreamPlan, verdict: Verdict, tolerance: fmpq) -> str:

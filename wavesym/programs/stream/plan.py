@@ -200,13 +200,18 @@ def _loaded_joints(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
     return tuple(n for n, joint in enumerate(joints) if any(force >= 0 for force in joint.forces))
 
 
+def panels_in_common(window: fmpq, spacing: fmpq) -> int | None:
+    """How many panels a window is of which the time between two calls is a whole number, the fewest; None for those
+    that would be too short.
+    """
+    count = int((window / spacing).p)
+    return count if count <= max(int((window / FINEST).floor()), 8) else None
+
+
 def _panels(march: MarchPlan, spacing: fmpq | None, quicker: fmpq) -> int:
     """How many are a step of the march."""
     step, fastest = march.step, nearest(quicker) * march.norm
-    few = 1 if spacing is None else int((step / spacing).p)
-    most = max(int((step / FINEST).floor()), 8)
-    if few > most:
-        few = 1  # breakpoints are for these
+    few = (spacing and panels_in_common(step, spacing)) or 1  # breakpoints are for the others
     count = few * int((step / (few * LONGEST)).ceil())
     # by halves, so that edges stay edges
     while nearest(step / count) * fastest > _CALM and step / count > SHORTEST:
