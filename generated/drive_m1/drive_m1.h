@@ -9,6 +9,8 @@
  *
  * Evaluator: closed, 50 pulses, bound 6e-09, takes longer; pieces, degree 0..5, 11 KiB, bound 8.9e-07
  * Everything is dimensionless: x in rod lengths, tau = c t / l, strain positive in tension.
+ * Moments on discs count along positive rotation, but that on the last disc against it; those in shafts are
+ * positive where they turn what is left of them forward, as strains are.
  *
  * output           proved largest error / largest value
  *   strain@0               8.9e-07

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 import shlex
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 
+import wavesym
 from wavesym.cli import main
 from wavesym.scene import Scene
 
@@ -65,3 +67,22 @@ def test_headers_of_streams_say_the_step_in_the_unit_of_time(
     command[1] = str(scene)
     assert main([*command, "-o", str(tmp_path / "again")]) == 0
     assert written(tmp_path / "made") == written(tmp_path / "again")
+
+
+@pytest.mark.parametrize(
+    "others", [[], ["--stream", "--evaluator", "modes"], ["--target", "fmu2", "--evaluator", "modes"]]
+)
+def test_a_step_that_is_refused_is_a_decimal(
+    others: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """0.25 ms are no short number of tau."""
+    scene = tmp_path / "drive.toml"
+    assert main(["init", "drive", "-o", str(scene)]) == 0
+    assert main(["generate", str(scene), "--step", "0.25 ms", *others, "-o", str(tmp_path / "made")]) == 2
+    err = capsys.readouterr().err
+    found = re.search(r"--step: (\S+) tau ", err)
+    assert found, err
+    tau = Fraction(1, 4000) / wavesym.Scene.from_toml(scene).scale.seconds  # type: ignore[union-attr]
+    assert "." in found[1]
+    assert float(found[1]) == pytest.approx(float(tau), rel=1e-5)
+    assert len(found[1]) <= 12

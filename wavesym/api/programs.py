@@ -11,7 +11,7 @@ from shlex import split
 from typing import TYPE_CHECKING
 
 from wavesym.errors import UnservedError, WavesymError
-from wavesym.programs.request import Request
+from wavesym.programs.request import Request, readable_step
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, sources
 
@@ -68,7 +68,8 @@ def _stepped_modes(scene: Scene, lowered: Model, request: Request, tested: bool)
     if not request.target:
         return make(lowered, request, tested=tested)
     if request.step is not None:
-        raise WavesymError(f"--step: {request.step} does not go with modes, whose loads say the step; leave --step out")
+        step = f"{readable_step(request.step)} tau"
+        raise WavesymError(f"--step: {step} does not go with modes, whose loads say the step; leave --step out")
     if not scene.load:
         raise UnservedError("load: none, and it is the input of an FMU with modes; write at least one [[load]]")
     return make(lowered, replace(request, evaluator="modes"), tested=tested)
@@ -182,8 +183,9 @@ def check(scene: Scene, directory: str | PathLike[str] | None, request: Request,
 
 def _files(scene: Scene, directory: str | PathLike[str] | None, request: Request) -> dict[Path, str | bytes]:
     """The content of every file of a scene, by path."""
-    from wavesym.targets.files import files, has_selftest
+    from wavesym.targets.files import files, has_selftest, refuse_shadows
 
+    refuse_shadows(scene.name, "" if request.target else request.language)
     made = program(scene, request, tested=not request.target and has_selftest(request.language))
     folder = Path(directory or scene.name)
     if request.target:

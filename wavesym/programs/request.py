@@ -37,6 +37,7 @@ POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedanc
 """The parameters at run time that have to be positive, and that a largest rate is about."""
 
 _HELPS = re.compile(r" \([^()]* help(s)?\)$")
+_FIGURES = 12  # of a number that people read
 _OTHERS = re.compile(r" \(take [^()]*\)$")
 
 
@@ -144,10 +145,11 @@ class Request:
         """WavesymError for options that exclude each other."""
         modes = self.evaluator == "modes"
         if self.step is not None and not self.stream:
-            raise WavesymError(f"--step: {self.step} is that of a stream; write --stream too")
+            raise WavesymError(f"--step: {readable_step(self.step)} tau is that of a stream; write --stream too")
         if self.step is not None and modes:
             raise WavesymError(
-                f"--step: {self.step} does not go with --evaluator modes, whose loads say the step; leave --step out"
+                f"--step: {readable_step(self.step)} tau does not go with --evaluator modes, whose loads say the step; "
+                "leave --step out"
             )
         if self.kappa_max is not None and self.kappa_max <= 0:
             raise WavesymError(f"--kappa-max: {self.kappa_max} is not positive; write a number above 0")
@@ -199,6 +201,15 @@ def alternatives(names: Sequence[str]) -> str:
     """Names of which one is to be taken, as a sentence has them."""
     *others, last = names
     return f"{', '.join(others)} or {last}" if others else last
+
+
+def readable_step(step: fmpq) -> str:
+    """A step in tau as a decimal, to six figures where it is none or a long one."""
+    from wavesym.fields.numbers import decimal_text
+    from wavesym.numbers.doubles import fraction, nearest
+
+    exact = decimal_text(fraction(step))
+    return exact if len(exact) <= _FIGURES and "/" not in exact else f"{nearest(step):.6g}"
 
 
 def _step_text(step: fmpq, clock: Clock | None) -> str:

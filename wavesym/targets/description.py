@@ -22,6 +22,15 @@ API_VERSION = 1
 """Of what headers declare: one more whenever a program that was written for one of them would not work any more."""
 
 
+_SIGNS = {
+    "drive": "Moments on discs count along positive rotation, but that on the last disc against it; those in shafts "
+    "are positive where they turn what is left of them forward, as strains are.",
+    "chain": "Loads on nodes count in the direction of x, on branches outwards; forces in rods are positive where they "
+    "pull, moments where they turn what is left of them forward.",
+}
+"""By the type of a system: which way loads act, and forces in rods."""
+
+
 @dataclass(frozen=True)
 class NamedOutput:
     """An output's name, as text and as a constant, its proved bound, relative to its largest value, and its unit.
@@ -80,6 +89,7 @@ class Description:
     numpy_real: str
     reason: str
     units: str
+    signs: tuple[str, ...]
     quantities: str
     tolerance: str
     trust: str
@@ -117,6 +127,7 @@ def describe(program: Program) -> Description:
         reason=origin.reason,
         quantities=_quantities(names),
         units=_units(model),
+        signs=tuple(wrap(_SIGNS.get(model.labels.system["type"], ""), _WIDTH)),
         tolerance=_tolerance(model),
         trust="proved" if program.proved else "estimated",
         outputs=tuple(

@@ -5,16 +5,21 @@ Only this file talks to the folders of languages: a new one is a folder beside i
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from wavesym.errors import WavesymError
 from wavesym.programs.program import Program
 from wavesym.targets import TARGETS
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
 
+_C_HEADERS = """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg
+stdatomic stdbit stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar
+wctype"""
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
 
 
@@ -39,6 +44,17 @@ def files(program: Program, language: str = "c", *, packaged: bool = False) -> d
 
         made |= package(description, program)
     return dict(sorted(made.items()))
+
+
+def refuse_shadows(name: str, language: str) -> None:
+    """WavesymError for a name whose files would take the place of a module of Python, or of a header of C."""
+    if language in ("numpy", "all") and name in sys.stdlib_module_names:
+        what = f"{name}.py, which would take the place of a module of Python's own"
+    elif language in ("c", "all") and name.lower() in _C_HEADERS.split():  # some file systems do not tell capitals
+        what = f"{name}.h, which would take the place of <{name.lower()}.h>"
+    else:
+        return
+    raise WavesymError(f'name: "{name}" makes {what}; write another name, such as "{name}_scene"')
 
 
 def sources(program: Program, language: str) -> dict[str, str]:

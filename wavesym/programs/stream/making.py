@@ -31,7 +31,7 @@ from wavesym.programs.program import (
     SteppedRow,
     SteppedValues,
 )
-from wavesym.programs.request import Request, refuse_beside
+from wavesym.programs.request import Request, readable_step, refuse_beside
 from wavesym.programs.stream.adjustment import enough_adjustment, fit_speeds
 from wavesym.programs.stream.parameters import free_stream, quick_enough, refuse_stiff, with_parameters
 from wavesym.programs.stream.plan import StreamPlan, stream_plan
@@ -125,10 +125,12 @@ def _beside_panels(plan: StreamPlan, model: Model, request: Request) -> str:
     if plan.breakpoints >= _places(plan, request.step):
         return ""
     near = max(int((request.step / plan.panel + fmpq(1, 2)).floor()), 1) * plan.panel
-    told = f" ({model.clock.format(near)})" if model.clock else ""
+    about = f"{readable_step(near)} tau" if near.q != 1 else ""
+    values = ", ".join(filter(None, (about, model.clock.format(near) if model.clock else "")))
+    whole = f"--step {near}{values and f' ({values})'} is whole panels"
     return (
         "; such steps end at ever new instants inside of panels: each is slower than the one before, and there is room "
-        f"to the horizon only; {remedy and f'{remedy} makes them whole panels, or '}--step {near}{told} is whole panels"
+        f"to the horizon only; {remedy and f'{remedy} makes them whole panels, or '}{whole}"
     )
 
 
