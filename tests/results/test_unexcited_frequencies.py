@@ -201,7 +201,8 @@ def test_of_masses_on_springs_no_mode_is_left_out():
     assert found.values[0] == pytest.approx(right, rel=1e-13)
 
 
-@pytest.mark.parametrize("closeness", ["1e-12", pytest.param("1e-25", marks=pytest.mark.slow)])
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("closeness", ["1e-12", "1e-25"])
 @pytest.mark.parametrize("dashpot", [0, "1/5"])
 def test_branches_that_are_nearly_equal_have_their_peak(closeness: str, dashpot: object) -> None:
     """Between their two resonances they pull nothing together with the rest: what is left is the dashpot, 1/(1/5)."""

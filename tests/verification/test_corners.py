@@ -146,6 +146,7 @@ COMES_TO_REST = {
 }
 
 
+@pytest.mark.slow
 def test_a_contact_without_force_as_both_sides_come_to_rest_may_be_open(monkeypatch: pytest.MonkeyPatch) -> None:
     """The midpoint rule turns a mass back by what friction does to it in a step; one that is pulled off is seen."""
     seen = known(COMES_TO_REST)
@@ -161,6 +162,7 @@ def test_a_contact_without_force_as_both_sides_come_to_rest_may_be_open(monkeypa
     assert [each.subject for each in integrations.corner_changes(seen) if not each.passed] == ["1/2 opens"]
 
 
+@pytest.mark.slow
 def test_what_happens_just_at_the_end_and_what_does_at_the_start_are_not_taken_for_each_other() -> None:
     """A joint slips at once, and once more as a front comes at the end: steps see the second of these alone."""
     rubs = {"joint": True, "name": "n1", "friction": "1/4"}
@@ -182,6 +184,7 @@ def test_what_is_faint_need_not_happen_on_all_grids() -> None:
     assert match_all([[closes], [closes], [closes, Change(0, "opens", 2.0)]]) is None
 
 
+@pytest.mark.slow
 def test_what_decays_within_a_step_is_looked_at_more_closely() -> None:
     """A rod strikes a light mass: grids of 64 to 256 steps agree to 2e-11, and are all wrong by 1e-10."""
     parts: list[Any] = [{"rod": 1, "velocity": 1, "impedance": 2}, {"contact": "1/3"}, {"mass": "1/100", "name": "a"}]
