@@ -511,3 +511,22 @@ def test_what_the_model_is_comes_before_programs_are_tried(
     assert "Programs tried" not in seen[0]
     assert "Programs tried" in rest
     assert seen[0] + rest == wavesym.api.inspect(scene("drive_m1"))
+
+
+def test_periods_beside_dashpots_are_those_of_modes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With damping ratios, in seconds whatever the unit of time; many rods have the command named that finds them."""
+    scene = tmp_path / "pile.toml"
+    assert main(["init", "pile", "-o", str(scene)]) == 0
+    bare = re.sub(r", yield = \"\d+ kN\"|, only = \"push\"", "", scene.read_text()).replace("20 ms", "1 ms")
+    scene.write_text(bare)
+    found = [row for row in wavesym.modes(scene) if row.period and row.damping < 1][:3]
+    capsys.readouterr()
+    assert main(["inspect", str(scene), "--format", "json"]) == 0
+    assert json.loads(capsys.readouterr().out)["units"]["periods"] == [row.period for row in found]
+    assert main(["inspect", str(scene)]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert f"T1 = {1000 * found[0].period:.6g} ms ({100 * found[0].damping:.3g} %)" in text  # type: ignore[operator]
+    rods = ", ".join(['{ rod = "0.1 m", E = "35 GPa", A = "0.1225 m^2", rho = "2450 kg/m^3" }'] * 60)
+    scene.write_text(re.sub(r'\{ rod = "6 m".*name = "lower_half" \}', rods, bare))
+    assert main(["inspect", str(scene)]) == 0
+    assert "beside dashpots; `wavesym modes pile.toml` has them" in " ".join(capsys.readouterr().out.split())

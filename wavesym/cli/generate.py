@@ -77,8 +77,8 @@ KAPPA = PositiveParameter("a positive number; write one such as 5 or 1/2")
     default=(),
     metavar="LIST",
     help="Parameters that come at run time, with commas between: of kappa, inertia, velocity and load; of a chain that "
-    "is written out mass, dashpot, spring, impedance, velocity and load. A stream takes them when it starts, all but "
-    "load.",
+    "is written out mass, dashpot, spring, impedance, velocity and load; of modes stiffness, rod_mass, mass, damping "
+    "and load. A stream takes them when it starts, all but load.",
 )
 @click.option(
     "--with",

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from flint import arb
 
 from wavesym.documents.inspection.section import Display, Facts, Listing, Plain, Section
-from wavesym.errors import CostError, UnservedError
+from wavesym.errors import CostError, UnservedError, WavesymError
 from wavesym.exact.modes.frequencies import frequencies
 from wavesym.fields.numbers import decimal_text
 from wavesym.fields.rounding import DIGITS
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
+from wavesym.results.modes import is_damped, modes
 from wavesym.scene.physical.scene import PhysicalScene
 from wavesym.systems.elastic import Rods
 
 _PERIODS = 5
+_DAMPED = 3  # of those beside dashpots, which take longer
+_MOST_RODS = 40  # beside dashpots: a second or two
 _RIGID = 1  # modes of a chain that nothing holds
 _KAPPA = (1e-4, 10.0)
 _SLENDER = 5  # times as long as wide: where a rod begins to be one
@@ -70,13 +74,32 @@ def _exact_delay(rods: Rods) -> str:
 
 
 def _periods(model: Model, seconds: float) -> tuple[list[float], str]:
-    """The longest periods in s, or why they are not known."""
+    """The longest periods in s; in words what else is to be said of them, or why they are not known."""
+    network = model.network_as_written
+    if is_damped(network):
+        return _damped_periods(replace(model, network=network))
     try:
-        found = frequencies(model.network_as_written, _PERIODS + _RIGID)
+        found = frequencies(network, _PERIODS + _RIGID)
     except (CostError, UnservedError) as error:
         return [], f"not known: {error}"
     turning = [2 * arb.pi() / w * seconds for w in found if not w.contains(0)]
     return [midpoint(period) for period in turning[:_PERIODS]], ""
+
+
+def _damped_periods(model: Model) -> tuple[list[float], str]:
+    """Those beside dashpots, with damping ratios; where many rods would take long, the command that has them."""
+    if len(model.network.bars) > _MOST_RODS:
+        return [], f"beside dashpots; `wavesym modes {model.name}.toml` has them, with damping ratios"
+    try:
+        rows = [row for row in modes(model, _DAMPED + _RIGID) if row.period and row.damping < 1][:_DAMPED]
+    except WavesymError as error:
+        return [], f"not known: {error}"
+    periods = [row.period for row in rows if row.period]
+    texts = (
+        f"T{k} = {_si(period, 's')} ({100 * row.damping:.3g} %)"
+        for k, (row, period) in enumerate(zip(rows, periods, strict=True), 1)
+    )
+    return periods, f"{', '.join(texts)}, damping of critical in brackets; `wavesym modes` has more"
 
 
 def _rods(physical: PhysicalScene) -> Listing:
