@@ -247,12 +247,17 @@ def test_what_is_refused_changes_nothing_and_a_copy_goes_on():
 def test_what_rounding_may_do_is_said_where_it_is_more_than_was_asked_for(precision, tmp_path, capsys):
     given = ["generate", "building_m2", "--stream", "--precision", precision, "-o", str(tmp_path)]
     assert main(given) == 0
-    said = re.search(r"; rounding at worst (\S+) of the largest (\S+), (\S+) wanted$", capsys.readouterr().err, re.M)
+    line = r"the tolerance (\S+) may be missed: rounding takes (\S+) up to (\S+) of "
+    told = re.search(rf"^building_m2: {line}", capsys.readouterr().err, re.M)
     header = (tmp_path / "building_m2.h").read_text()
     errors = re.findall(r"^ \* +(\S+@\S+) +(\d\S*)$", header, re.M)
     name, worst = max(errors, key=lambda row: float(row[1]))
-    assert (said is not None) == (precision == "single")
-    assert said is None or (said[2], said[1]) == (name, worst)
+    manifest = json.loads((tmp_path / "building_m2.json").read_text())
+    assert (told is not None) == (precision == "single") == ("shortfall" in manifest)
+    if told:
+        assert (told[2], told[3]) == (name, worst)
+        assert f" * Beware: {manifest['shortfall']}.\n" in header
+        assert told[0] in f"building_m2: {manifest['shortfall']}"
     assert (float(worst) > 1e-5) == (precision == "single")
 
 

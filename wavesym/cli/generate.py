@@ -154,4 +154,5 @@ def _notes(scene: Scene, request: Request, written: tuple[Path, ...]) -> Iterato
         yield f"tolerance {float(scene.output.tolerance):g} taken as {float(finest):.0e} at run time"
     yield from api.scene_notes(scene, values=not request.stream, step=request.step)
     for manifest in (path for path in written if path.suffix == ".json"):
-        yield str(json.loads(manifest.read_text(encoding="utf-8"))["reason"])
+        content = json.loads(manifest.read_text(encoding="utf-8"))
+        yield from (str(content[key]) for key in ("reason", "shortfall") if key in content)

@@ -75,7 +75,8 @@ class Provenance:
     """What a program was made from, and how: `options` are those of `generate` that it depends on.
 
     `reason` says why it was taken and what was refused; `contacts` of a formal continuation open within the horizon.
-    `events` is what contacts that open and close do, None where there are no such contacts.
+    `events` is what contacts that open and close do, None where there are no such contacts. `shortfall` says by how
+    much the tolerance may be missed, where that is not proved to be met.
     """
 
     model: Model
@@ -83,6 +84,7 @@ class Provenance:
     options: str = ""
     contacts: tuple[ContactEnd, ...] = ()
     events: tuple[ContactEvent, ...] | None = None
+    shortfall: str = ""
 
 
 @dataclass(frozen=True)

@@ -64,12 +64,17 @@ def fmu(program: Program, version: str) -> bytes:
 
 
 def describe_fmu(path: Path) -> list[str]:
-    """What to know of an FMU: for which machines it has binaries, what would make more, and why this stream."""
+    """What to know of an FMU: for which machines it has binaries, what would make more, why this stream, and by how
+    much it may miss the tolerance.
+    """
     with ZipFile(path) as archive:
         machines = [place.split("/")[1] for place in archive.namelist() if place.startswith("binaries/")]
-        reason = json.loads(archive.read(f"resources/{path.stem}.json"))["reason"]
+        manifest = json.loads(archive.read(f"resources/{path.stem}.json"))
     more = "" if len(machines) == len(MACHINES) else "; pip install ziglang helps to have linux64, aarch64 and win64"
-    return [f"binaries for {', '.join(machines)}{more}", reason]
+    return [
+        f"binaries for {', '.join(machines)}{more}",
+        *(manifest[key] for key in ("reason", "shortfall") if key in manifest),
+    ]
 
 
 def _builds() -> Iterator[tuple[Machine, Compiler, tuple[str, ...]]]:

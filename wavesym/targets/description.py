@@ -88,6 +88,7 @@ class Description:
     real: str
     numpy_real: str
     reason: str
+    shortfall: str
     units: str
     signs: tuple[str, ...]
     quantities: str
@@ -125,6 +126,7 @@ def describe(program: Program) -> Description:
         real=called.c_type,
         numpy_real=called.numpy_type,
         reason=origin.reason,
+        shortfall=origin.shortfall,
         quantities=_quantities(names),
         units=_units(model),
         signs=tuple(wrap(_SIGNS.get(model.labels.system["type"], ""), _WIDTH)),

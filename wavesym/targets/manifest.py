@@ -38,6 +38,7 @@ def manifest(description: Description, program: Program) -> str:
         "tolerance": str(model.tolerance),
         "evaluator": program.evaluator,
         "reason": description.reason,
+        **({"shortfall": description.shortfall} if description.shortfall else {}),
         "precision": program.real.name,
         "size": _size(program),
         "tau_max": program.tau_max,

@@ -90,8 +90,9 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         made.bytes,
         Provenance(
             model,
-            _reason(plan, degree, made) + _beside_panels(plan, model, request) + _at_worst(plan, verdict, tolerance),
+            _reason(plan, degree, made) + _beside_panels(plan, model, request),
             request.options(model),
+            shortfall="" if free else _shortfall(plan, verdict, tolerance, real),
         ),
         sources=tuple(given.label for given in plan.inputs),
         proved=False,
@@ -140,12 +141,16 @@ def _places(plan: StreamPlan, spacing: fmpq) -> int:
     return every - gcd(every, len(plan.march.panels))
 
 
-def _at_worst(plan: StreamPlan, verdict: Verdict, tolerance: fmpq) -> str:
+def _shortfall(plan: StreamPlan, verdict: Verdict, tolerance: fmpq, real: Real) -> str:
     """How far rounding may take an output, all of it with one sign, where that is beyond the tolerance."""
     error, output = max(zip(verdict.bounds, plan.march.outputs, strict=True), key=lambda pair: pair[0])
     if error <= nearest(tolerance):
         return ""
-    return f"; rounding at worst {bound(arb(error)):g} of the largest {output.name}, {nearest(tolerance):g} wanted"
+    better = "" if real is REALS["double"] else "double precision, "
+    return (
+        f"the tolerance {nearest(tolerance):g} may be missed: rounding takes {output.name} up to "
+        f"{bound(arb(error)):g} of its largest value away ({better}a shorter horizon, or such a tolerance, helps)"
+    )
 
 
 def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
