@@ -20,6 +20,7 @@ from tests.pictures.browser import axe, reported
 from wavesym import api
 from wavesym.cli import main
 from wavesym.pictures.page import sweep as module
+from wavesym.pictures.page import sweep_pictures
 from wavesym.pictures.page.png import SHADES
 from wavesym.pictures.page.sweep import sweep_page
 from wavesym.pictures.page.sweep_pictures import SweepOutput, output_picture
@@ -217,3 +218,25 @@ def test_a_large_sweep_with_long_names_has_a_small_page_that_fits(
     wide = "const all = document.documentElement; report([all.scrollWidth, all.clientWidth]);"
     needed, given = reported(large, wide, tmp_path)
     assert needed == given
+
+
+@pytest.mark.parametrize(
+    ("others", "dots"), [((3.0, 2.0, 2.0, 1.0), 0), ((1.0, 3.0, 2.0, 1.0), 8)], ids=["along", "scattered"]
+)
+def test_what_is_zipped_is_drawn_over_the_first_that_changes(others: tuple[float, ...], dots: int) -> None:
+    """As a line where all else rises or falls with it, else as a dot for each case; large forces in kN."""
+    written, same = ("4", "1", "2", "3"), (1.0,) * 4
+    columns = (
+        StoredColumn("system.m", ("1",) * 4, same, ""),
+        StoredColumn("system.k", written, (4.0, 1.0, 2.0, 3.0), "N/m"),
+        StoredColumn("system.c", written, (others[3], *others[:3]), ""),
+    )
+    axis = StoredAxis("case", columns)
+    least, greatest = np.array([-4.0, -1.0, -2.0, -3.0]), np.array([1.0, 4.0, 3.0, 2.0])
+    drawn = sweep_pictures._curve("output-0", SweepOutput("force@0", "N", least, greatest), axis)
+    assert drawn.title == "force@0 over system.k"
+    assert "system.k in N/m, with system.m, system.c" in str(drawn.markup)
+    assert str(drawn.markup).count('class="dot') == dots
+    assert ('class="greatest"' in str(drawn.markup)) == (not dots)
+    large = sweep_pictures._readable(SweepOutput("force@0", "N", 1e6 * least, 1e6 * greatest))
+    assert (large.unit, large.least.min(), large.greatest.max()) == ("kN", -4000.0, 4000.0)

@@ -11,15 +11,17 @@ from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.places import colour_bar
 from wavesym.pictures.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, PagePicture, labelled_spot, picture
 from wavesym.pictures.page.png import colour_image
-from wavesym.pictures.page.svg import Svg, polyline, upright
+from wavesym.pictures.page.svg import Svg, element, polyline, upright
 from wavesym.pictures.reduction import reduce_vertices
-from wavesym.results.presentation import number_text
-from wavesym.sweeps.results import StoredAxis, SweepResults
+from wavesym.pictures.units import unit_text
+from wavesym.results.presentation import number_text, readable_unit
+from wavesym.sweeps.results import StoredAxis, StoredColumn, SweepResults
 
 _TALL, _MAP = 230.0, 360.0  # pixels high
 _CELLS = 120  # of a map, in each direction; of more the greatest of some is shown
 _COLUMNS = 300  # of a curve
 _NUMBERED = 10
+_DOTS = 2000  # cases, of which each is a dot
 _LONGEST = 60  # characters of a text in a picture
 
 
@@ -48,7 +50,15 @@ def outputs_of(found: SweepResults, most: int) -> list[SweepOutput]:
     if low not in found.statistics:
         return []
     names = list(found.outputs.items())[:most]
-    return [SweepOutput(*each, found.values(low, k), found.values(high, k)) for k, each in enumerate(names)]
+    every = [SweepOutput(*each, found.values(low, k), found.values(high, k)) for k, each in enumerate(names)]
+    return [_readable(each) for each in every]
+
+
+def _readable(output: SweepOutput) -> SweepOutput:
+    """The same in the unit that people write for values so large."""
+    largest = output.size[np.isfinite(output.size)]
+    size, unit = readable_unit(float(largest.max(initial=0.0)), output.unit)
+    return SweepOutput(output.name, unit_text(unit), output.least / size, output.greatest / size)
 
 
 def axes_of(found: SweepResults) -> list[int]:
@@ -71,13 +81,21 @@ def output_picture(number: str, output: SweepOutput, found: SweepResults) -> Pag
 
 
 def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
-    """Least and greatest over numbers; over anything else from the case of the largest size to that of the smallest."""
+    """Least and greatest over numbers; over anything else from the case of the largest size to that of the smallest.
+
+    Where columns are zipped it is over the first whose numbers differ: a line where the others change as it does, else
+    a dot for each case.
+    """
     least, greatest = output.least.ravel(), output.greatest.ravel()
     done = np.flatnonzero(np.isfinite(output.size.ravel()))
-    column = axis.columns[0]
-    if ordered := column.numbers and len(axis.columns) == 1:
+    column = _leading(axis)
+    dotted = column is not None and not _goes_along(axis, column) and len(done) <= _DOTS
+    ordered = column is not None and (dotted or _goes_along(axis, column))
+    if column is not None and ordered:
         along = np.array(column.coordinate, dtype=float)
-        done, x_title = done[np.argsort(along[done])], f"{axis.name} {f'in {column.unit}' * bool(column.unit)}".rstrip()
+        done = done[np.argsort(along[done], kind="stable")]
+        x_title = f"{column.path if len(axis.columns) > 1 else axis.name} {f'in {column.unit}' * bool(column.unit)}"
+        x_title = x_title.rstrip() + f", with {_others(axis, column)}" * (len(axis.columns) > 1)
     else:
         done, x_title = done[np.argsort(-output.size.ravel()[done])], f"{axis.name}, the largest first"
         along = np.empty(len(axis))
@@ -88,11 +106,17 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
     numbers = None if ordered else [(float(k), str(k)) for k in range(1, len(done) + 1, -(-len(done) // _NUMBERED))]
     worst = int(np.nanargmax(output.size.ravel()))
     value = float(greatest[worst] if greatest[worst] >= -least[worst] else least[worst])
-    title = f"{output.name} over {axis.name}"
+    title = f"{output.name} over {column.path if column and ordered else axis.name}"
     description = f"Largest: {number_text(value, output.unit, 5)} where {_case_label(axis, worst)}."
     parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).draw()]
     for values, class_, sign in ((least, "least", -1.0), (greatest, "greatest", 1.0)):
         points = np.column_stack([along[done] - x.low, values[done]])
+        if dotted:
+            parts += [
+                element("circle", class_=f"dot {class_}", cx=x.pixel(at + x.low), cy=y.pixel(value), r=2)
+                for at, value in points.tolist()
+            ]
+            continue
         if ordered:
             points = reduce_vertices(points, x.high - x.low, _COLUMNS)
         elif len(done) > _COLUMNS:  # of some the longest
@@ -104,6 +128,27 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
         labelled_spot(x.pixel(float(along[worst])), y.pixel(value), _short(_case_label(axis, worst)), above=value > 0)
     )
     return PagePicture(title, picture(number, title, description, TOP + _TALL + BELOW, *parts, class_="plot"))
+
+
+def _leading(axis: StoredAxis) -> StoredColumn | None:
+    """The column that an axis of a picture has: the first of numbers that differ."""
+    return next((each for each in axis.columns if each.numbers and len(set(each.coordinate)) > 1), None)
+
+
+def _goes_along(axis: StoredAxis, leading: StoredColumn) -> bool:
+    """Whether all columns rise, fall or stay as one does, so that a line through the cases means something."""
+    if len(axis.columns) == 1:
+        return True
+    order = np.argsort(np.array(leading.coordinate, dtype=float), kind="stable")
+    if not all(each.numbers for each in axis.columns) or len(set(leading.coordinate)) < len(axis):
+        return False
+    steps = [np.diff(np.array(each.coordinate, dtype=float)[order]) for each in axis.columns]
+    return all(bool(np.all(step >= 0) or np.all(step <= 0)) for step in steps)
+
+
+def _others(axis: StoredAxis, leading: StoredColumn) -> str:
+    """What else changes along an axis, short."""
+    return _short(", ".join(each.path for each in axis.columns if each is not leading))
 
 
 def _map(number: str, output: SweepOutput, size: Array, axes: list[StoredAxis], beyond: list[str]) -> PagePicture:
