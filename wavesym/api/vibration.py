@@ -45,7 +45,7 @@ def modes(
 
     Args:
         scene: a Scene, a file, or the name of a built-in scene; it needs neither loads nor outputs.
-        count: how many, where `below` is None; rigid modes come first.
+        count: how many, where `below` is None; rigid modes come first, then shifts that only dashpots resist (both 0).
         below: all up to this frequency: in Hz, or in rad per tau for a scene without units.
         ranges: of paths, as of `scene.with_`, the least and the greatest value: for the range of each frequency over
             the box, in place of modes; `below` does not matter then.

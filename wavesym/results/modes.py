@@ -18,8 +18,8 @@ from flint import acb, arb, ctx, fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
+from wavesym.exact.modes.complete_modes import CompleteModes, CompleteSpectrum
 from wavesym.exact.modes.cuts import Cut
-from wavesym.exact.modes.damped_modes import DampedSpectrum
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.mechanics.model import Model
@@ -38,6 +38,7 @@ _BITS = 128
 _FIRST_GUESS = 16  # modes, where it is not known how many lie below a frequency
 _COMPLETE = "none is missed: the frequencies below the last one are counted in balls (Wittrick and Williams)"
 _COUNTED = "none is missed: so many zeros of a determinant are counted in balls, in a circle beyond the last one"
+_ROOTS = "none is missed: the determinant is a polynomial, whose roots are all known in balls"
 
 
 @dataclass(frozen=True)
@@ -45,11 +46,11 @@ class ModeRow:
     """One mode.
 
     Attributes:
-        number: from 1 on, rigid modes first.
+        number: from 1 on, rigid modes first, then shifts that stay: what rods and springs do not hold and dashpots do.
         omega: the angular frequency, in rad per s, or per tau without [units]; of a complex one the modulus.
         hz: omega / 2 pi.
         period: 1 / hz; None of a rigid mode.
-        damping: the ratio to critical damping.
+        damping: the ratio to critical damping; 1 of what creeps, also of a shift that stays.
         radius: omega, as the double it is, is right to so much: proved.
         effective_mass: what of the mass moves with all supports, in parts of the whole; None where nothing holds the
             chain, or gears make it mean nothing.
@@ -233,8 +234,9 @@ def modes(
         raise CostError(f"--count: {count} modes, the limit is {_MOST} (fewer modes help)")
     model.network.refuse_loss()
     damped = is_damped(model.network)
-    spectrum = DampedSpectrum(model.network) if damped else Spectrum(model.network)
-    found, reach = _first(spectrum, count if below is None else _FIRST_GUESS)
+    spectrum = CompleteSpectrum(model.network) if damped else Spectrum(model.network)
+    first = _first(spectrum, count if below is None else _FIRST_GUESS)
+    found = first.modes
     seconds = fmpq(1) if model.clock is None else model.clock.seconds
     per_tau = nearest(seconds)
     if below is not None:
@@ -244,26 +246,60 @@ def modes(
             if len(found) >= _MOST:
                 raise CostError(f"--below: {below:g} has more modes below it, the limit is {_MOST} (a lower one helps)")
             wanted *= 2
-            found, reach = _first(spectrum, wanted)
+            first = _first(spectrum, wanted)
+            found = first.modes
         found = [mode for mode in found if abs(complex(mode.frequency)) <= limit]
     rows = tuple(_row(model, k, mode, seconds) for k, mode in enumerate(found, 1))
-    if not damped:
+    if isinstance(spectrum, Spectrum):
         rows = _with_ratios(model, rows, spectrum, per_tau)
-    complete = not found or reach >= abs(complex(found[-1].frequency))
-    why = _COMPLETE if not damped else _COUNTED if complete else _incomplete(reach / per_tau, model)
+    complete = not found or first.reach >= abs(complex(found[-1].frequency))
+    why = _why(first, complete, model, per_tau) if damped else _COMPLETE
     unit = "s" if model.clock else None
     along = line_shapes(found, spectrum.cut, model, lines, points) if lines and points else ()
-    return Modes(model.name, rows, complete, why, unit, tuple(found), spectrum.cut, along, model.labels.structure_notes)
+    notes = (*model.labels.structure_notes, *_notes(found))
+    return Modes(model.name, rows, complete, why, unit, tuple(found), spectrum.cut, along, notes)
 
 
-def _first(spectrum: Spectrum | DampedSpectrum, count: int) -> tuple[list[Mode], float]:
-    """The first modes, and up to which absolute value of a frequency none is missed."""
-    return spectrum.complete_modes(count) if isinstance(spectrum, DampedSpectrum) else (spectrum.first(count), inf)
+def _first(spectrum: Spectrum | CompleteSpectrum, count: int) -> CompleteModes:
+    if isinstance(spectrum, CompleteSpectrum):
+        return spectrum.first(count)
+    return CompleteModes(spectrum.first(count), inf)
 
 
-def _incomplete(reach: float, model: Model) -> str:
+def _why(found: CompleteModes, complete: bool, model: Model, per_tau: float) -> str:
+    """Whether modes of a chain with dashpots are all there, and why."""
     per = "rad/s" if model.clock else "rad/tau"
-    return f"none is missed up to {reach:.6g} {per}; beyond, each is proved, and that none is missed is not"
+    reach = f"none is missed up to {found.reach / per_tau:.6g} {per}"
+    if found.meeting is not None:
+        place = found.meeting / per_tau
+        return f"{reach}; near {place:.6g} {per} two or more meet which cannot be told apart, and modes end there"
+    if not complete:
+        return f"{reach}; beyond, each is proved, and that none is missed is not"
+    return _ROOTS if found.are_roots else _COUNTED
+
+
+def _notes(found: Sequence[Mode]) -> list[str]:
+    """What frequencies alone do not say: shifts, and shapes that are modes more than once."""
+    notes = []
+    if shifts := [number for number, mode in enumerate(found, 1) if mode.stays]:
+        notes.append(
+            f"frequency 0 of {_mode_numbers(shifts)}: a shift that stays, as nothing but dashpots resists it, and only "
+            "while it moves"
+        )
+    places: dict[int, list[int]] = {}
+    for number, mode in enumerate(found, 1):
+        places.setdefault(id(mode), []).append(number)
+    notes += [
+        f"{_mode_numbers(same)} are one shape whose frequency is a zero of the determinant {len(same)} times: "
+        "motion dies away as t exp(s t), too, where that is twice (critical damping)"
+        for same in places.values()
+        if len(same) > 1
+    ]
+    return notes
+
+
+def _mode_numbers(modes: Sequence[int]) -> str:
+    return f"mode{'s' * (len(modes) > 1)} {', '.join(map(str, modes))}"
 
 
 def is_damped(network: Network) -> bool:
@@ -280,7 +316,7 @@ def _row(model: Model, number: int, mode: Mode, seconds: fmpq) -> ModeRow:
         angular = size / arb(seconds)
         omega = midpoint(angular)
         radius = upper_double(abs(angular - omega))
-    ratio = midpoint(w.imag / size) if isinstance(w, acb) and not size.contains(0) else 0.0
+    ratio = midpoint(w.imag / size) if isinstance(w, acb) and not size.contains(0) else float(mode.stays)
     return ModeRow(
         number=number,
         omega=omega,
@@ -294,9 +330,7 @@ def _row(model: Model, number: int, mode: Mode, seconds: fmpq) -> ModeRow:
     )
 
 
-def _with_ratios(
-    model: Model, rows: Sequence[ModeRow], spectrum: Spectrum | DampedSpectrum, per_tau: float
-) -> tuple[ModeRow, ...]:
+def _with_ratios(model: Model, rows: Sequence[ModeRow], spectrum: Spectrum, per_tau: float) -> tuple[ModeRow, ...]:
     """Modes with the damping that the scene gives them; rigid ones have none."""
     if model.damping is None:
         return tuple(rows)

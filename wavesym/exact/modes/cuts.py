@@ -82,9 +82,14 @@ class CutNetwork:
         """The network as it is cut."""
         return self._cuts[0]
 
+    @property
+    def is_cut_most(self) -> bool:
+        """Whether it cannot be cut once more."""
+        return not self._cuts[1:]
+
     def cut_again(self) -> bool:
         """Go on with the network that is cut once more, if it has not been."""
-        if not self._cuts[1:]:
+        if self.is_cut_most:
             return False
         del self._cuts[0]
         return True

@@ -6,15 +6,15 @@ others, as zeros of a polynomial are (Aberth, 1973). So none is found twice, als
 one swings no more, and has become two that creep.
 
 Each is polished in complex balls, and proved: a ball that Newton's method (with all slopes that occur in it) maps into
-its inside has one zero. That none is missed is proved where all are counted (turns.py). Programs do not count: what all
-modes together have is known otherwise, and bounds count what is left of it (programs/modes/dissipation.py): a mode that
-was missed makes a bound worse, not wrong.
+its inside has one zero. That none is missed is proved where all are counted (complete_modes.py). Programs do not
+count: what all modes together have is known otherwise, and bounds count what is left of it
+(programs/modes/dissipation.py): a mode that was missed makes a bound worse, not wrong.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from flint import acb, arb, ctx
@@ -23,9 +23,9 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.resting import resting_modes
-from wavesym.exact.modes.shape import Mode, rigid, rigid_mode, trial
+from wavesym.exact.modes.shape import Mode, complex_mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
-from wavesym.exact.modes.turns import Circles, absorb
+from wavesym.exact.modes.turns import absorb
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Complex
 
@@ -35,7 +35,8 @@ _BITS_A_ROW, _MANY_ROWS = ((2, 1), (6, 4), (12, 4)), 32  # of all, and of a freq
 _NEWTON = 12
 _MEETING = 1e-5  # frequencies that no step tells apart
 _BESIDE, _FEW = 1e-9, 64  # modes that are so near each other, and at most how many
-_SHARP = arb(2) ** -60  # shapes
+SHARP = arb(2) ** -60
+"""The radius that points of a shape may have."""
 _OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it
 _RESTING = 1e-10  # spacings of frequencies from 0: what only dashpots hold may rest anywhere, and that is no mode
 _STRAIGHT = 1e-9  # of what creeps, which has no real part
@@ -46,7 +47,6 @@ _FOUND = 1e-11
 _AWAY = 4.0  # times the last one wanted: what is still on its way there is no matter
 _CREEPING = 1e-4, 1e2  # where they are sought, spacings of frequencies from 0
 _CREEPERS = 24
-_SEARCHES, _BEYOND = 4, 3  # with some modes more, between which a circle has room
 _I = acb(0, 1)
 
 
@@ -58,41 +58,20 @@ def remove_dashpots(network: Network) -> Network:
     )
 
 
+@dataclass(frozen=True)
+class FoundModes:
+    """Modes by the absolute values of their frequencies.
+
+    `is_open` says whether some that were sought are not proved; of these several near `meeting`, the least such place.
+    """
+
+    modes: list[Mode]
+    is_open: bool
+    meeting: float | None
+
+
 class DampedSpectrum(CutNetwork):
     """The modes of a network with dashpots that is cut at places (bar, part of it)."""
-
-    def complete_modes(self, count: int) -> tuple[list[Mode], float]:
-        """The first `count` modes, and up to which absolute value none is missed: proved by counting (turns.py).
-
-        Rigid motion comes first, where no dashpot resists it. Where counts differ from what was found it is sought
-        again, from more places. UnservedError as `first`.
-        """
-        found: list[Mode] = []
-        circles, reach = Circles(self.cut.network), 0.0
-        for again in range(_SEARCHES):
-            before = self.cut
-            more = self.first(count + _BEYOND, again)
-            found = _distinct([*(found if self.cut is before else []), *more])
-            frequencies = [complex(mode.frequency) for mode in found]
-            reach = circles.largest_complete(frequencies, count)
-            enough = circles.is_finite or len(found) >= count
-            if circles.is_exhausted or (enough and reach >= max(map(abs, frequencies[:count]), default=0.0)):
-                break
-        return [*self._rigid_modes, *found][:count], reach
-
-    @property
-    def _rigid_modes(self) -> list[Mode]:
-        """Motion that neither springs nor dashpots resist; its numbers are complex, as of others."""
-        network = self.cut.network
-        if any(point.damping != 0 for point in network.points):
-            return []
-        links = tuple(replace(link, stiffness=link.stiffness + link.damping) for link in network.links)
-        free = rigid(replace(network, links=links))
-        if free is None:
-            return []
-        with ctx.workprec(_BITS):
-            mode = rigid_mode(Stiffness(network), free)
-            return [replace(mode, frequency=acb(0), points=[acb(q) for q in mode.points])]
 
     def first(self, count: int, again: int = 0) -> list[Mode]:
         """About the first `count` modes, by the absolute values of their frequencies, with real parts of at least 0.
@@ -100,20 +79,31 @@ class DampedSpectrum(CutNetwork):
         Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it. UnservedError where
         frequencies coincide, as of equal branches. `again` says how often they were sought before.
         """
-        stiffness = Stiffness(self.cut.network)
-        guesses = estimate_frequencies(stiffness, count, again) if stiffness.points else np.zeros(1, complex)
-        resting = _undamped_at_rest(stiffness, float(np.abs(guesses).max(initial=0.0)) * (1 + _MEETING))
-        guesses = _leave_out(guesses, resting)
-        found = _all_proved(stiffness, guesses) if stiffness.points else [None]
-        for k in (k for k, mode in enumerate(found) if mode is None):
-            if self.cut_again():  # all points may be at rest
-                return self.first(count, again)
-            if np.count_nonzero(np.abs(guesses - guesses[k]) < _MEETING * abs(guesses[k])) > 1:
-                raise UnservedError(
-                    f"system: two frequencies meet near {abs(guesses[k]):.6g}, which modes with dashpots cannot "
-                    "tell apart (take pieces or march)"
-                )
-        return _distinct([*resting, *(mode for mode in found if mode)])
+        found = search_modes(Stiffness(self.cut.network), count, again)
+        if found.is_open and self.cut_again():  # all points may be at rest
+            return self.first(count, again)
+        if found.meeting is not None:
+            raise UnservedError(
+                f"system: two frequencies meet near {found.meeting:.6g}, which modes with dashpots cannot "
+                "tell apart (take pieces or march)"
+            )
+        return found.modes
+
+
+def search_modes(stiffness: Stiffness, count: int, again: int = 0) -> FoundModes:
+    """About the first `count` modes of a network as it is cut, as `DampedSpectrum.first` has them."""
+    guesses = estimate_frequencies(stiffness, count, again) if stiffness.points else np.zeros(1, complex)
+    resting = _undamped_at_rest(stiffness, float(np.abs(guesses).max(initial=0.0)) * (1 + _MEETING))
+    guesses = _leave_out(guesses, resting)
+    found = _all_proved(stiffness, guesses) if stiffness.points else [None]
+    unproved = [k for k, mode in enumerate(found) if mode is None]
+    several = [
+        float(abs(guesses[k]))
+        for k in unproved
+        if np.count_nonzero(np.abs(guesses - guesses[k]) < _MEETING * abs(guesses[k])) > 1
+    ]
+    made = distinct_modes([*resting, *(mode for mode in found if mode)])
+    return FoundModes(made, bool(unproved), min(several, default=None))
 
 
 def _undamped_at_rest(stiffness: Stiffness, limit: float) -> list[Mode]:
@@ -248,16 +238,10 @@ def _prove_mode(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: in
         return None
     if creeps:  # and so does the mirror image of the zero, which is the only one in the ball
         inside = acb(0, inside.imag)
-    made = trial(stiffness, law, inside, root, _I * inside)
-    # a square root away from where it jumps
-    scale = (-made.mass).rsqrt() * _I if made.mass.real.mid() < 0 else made.mass.rsqrt()
-    points = stiffness.point_motions([row * scale for row in made.rows])
-    if not all(q.real.rad() < _SHARP and q.imag.rad() < _SHARP for q in points):
-        return None
-    return Mode(stiffness, inside, points)
+    return complex_mode(stiffness, law, inside, root, SHARP)
 
 
-def _distinct(modes: Sequence[Mode]) -> list[Mode]:
+def distinct_modes(modes: Sequence[Mode]) -> list[Mode]:
     """Each mode once, in their order; of those whose points rest several may have one frequency."""
     sizes = np.array([abs(complex(mode.frequency)) for mode in modes])
     kept: list[int] = []

@@ -28,7 +28,11 @@ _SHARP = arb(2) ** -60  # shapes
 
 
 class CoincidenceError(ArithmeticError):
-    """Frequencies whose modes no bits tell apart, or one at which all points are at rest."""
+    """Frequencies whose modes no bits tell apart, or one at which all points are at rest: near `place`."""
+
+    def __init__(self, message: str, place: float) -> None:
+        super().__init__(message)
+        self.place = place
 
 
 def refuse_damped(network: Network) -> None:
@@ -80,7 +84,7 @@ class Spectrum(CutNetwork):
         if stiffness.modes is not None:
             count = min(count, stiffness.modes)
         try:
-            self._found += _modes(stiffness, count, len(self._found))
+            self._found += undamped_modes(stiffness, count, len(self._found))
         except CoincidenceError as error:
             if not self.cut_again():
                 beside = " (a mass, however small, at an end of the rod with a spring beside it helps)"
@@ -91,10 +95,10 @@ class Spectrum(CutNetwork):
         return self._found[:count]
 
 
-def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
-    """Those after the first `known` ones."""
+def undamped_modes(stiffness: Stiffness, count: int, known: int = 0) -> Iterator[Mode]:
+    """The first modes of a network as it is cut, those after the first `known` ones. CoincidenceError."""
     if not stiffness.points:
-        raise CoincidenceError("no point moves")
+        raise CoincidenceError("no point moves", 0.0)
     free = rigid(stiffness.network)
     laws: list[tuple[int, HarmonicLaw]] = []
     for times in _TIMES:
@@ -117,7 +121,7 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
             found = (_prove_modes(stiffness, law, n, float(guesses[n - 1]), roots[n - 1], bits) for bits, law in tried)
             made = next((modes for modes in found if modes), [])
         if not made:
-            raise CoincidenceError(f"two frequencies meet near {guesses[n - 1]:.6g}")
+            raise CoincidenceError(f"two frequencies meet near {guesses[n - 1]:.6g}", float(guesses[n - 1]))
         yield from made
         n += len(made)
 

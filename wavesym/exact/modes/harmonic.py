@@ -139,20 +139,23 @@ class HarmonicNetwork:
     def twins(self, root: int) -> dict[int, int]:
         """Of each branch that is reached from a point, by its far point, the first one beside it that is its equal."""
         if root not in self._twins:
-            children: dict[int, list[Branch]] = {}
+            kinds, first = self.kinds(root), dict[tuple[int, int], int]()
             for branch in self.branches(root):
-                children.setdefault(branch.near_point, []).append(branch)
-            kinds: dict[tuple[object, ...], int] = {}
-            kind_of: dict[int, int] = {}
-            first: dict[tuple[int, int], int] = {}
-            for branch in reversed(self.branches(root)):
-                beyond = sorted(kind_of[each.far_point] for each in children.get(branch.far_point, ()))
-                key = (*self._kind(branch), *beyond)
-                kind_of[branch.far_point] = kinds.setdefault(key, len(kinds))
-            for branch in self.branches(root):
-                first.setdefault((branch.near_point, kind_of[branch.far_point]), branch.far_point)
-            self._twins[root] = {b.far_point: first[b.near_point, kind_of[b.far_point]] for b in self.branches(root)}
+                first.setdefault((branch.near_point, kinds[branch.far_point]), branch.far_point)
+            self._twins[root] = {b.far_point: first[b.near_point, kinds[b.far_point]] for b in self.branches(root)}
         return self._twins[root]
+
+    def kinds(self, root: int) -> dict[int, int]:
+        """Of each branch that is reached from a point, by its far point, a number that it shares with its equals."""
+        children: dict[int, list[Branch]] = {}
+        for branch in self.branches(root):
+            children.setdefault(branch.near_point, []).append(branch)
+        numbers: dict[tuple[object, ...], int] = {}
+        found: dict[int, int] = {}
+        for branch in reversed(self.branches(root)):
+            beyond = sorted(found[each.far_point] for each in children.get(branch.far_point, ()))
+            found[branch.far_point] = numbers.setdefault((*self._kind(branch), *beyond), len(numbers))
+        return found
 
     def _kind(self, branch: Branch) -> tuple[object, ...]:
         """All numbers of a branch and of its far point; balls are equal to nothing but themselves."""

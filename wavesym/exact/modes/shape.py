@@ -7,10 +7,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
-from flint import arb, fmpq
+from flint import acb, arb, fmpq
 
 from wavesym.exact.modes.stiffness import HarmonicLaw, Quantity, Stiffness, cot_csc
 from wavesym.mechanics.network import End, Network
+
+_I = acb(0, 1)
 
 
 @dataclass(frozen=True)
@@ -19,13 +21,15 @@ class Mode:
 
     `points` are by their numbers in the network, and 0 where one does not move. Energies count those of the bars, too.
     Where there are dashpots all is complex, and the mass is that of `Trial`. Bars that swing between ends at rest have
-    `amplitudes`: u = a sin w s, s the delay from the left end.
+    `amplitudes`: u = a sin w s, s the delay from the left end. Of frequency 0 are rigid motion, whose velocity lasts,
+    and a shift that `stays` where it is, as dashpots resist the motion to it.
     """
 
     stiffness: Stiffness
     frequency: Quantity
     points: Sequence[Quantity]
     amplitudes: Mapping[int, Quantity] = field(default_factory=dict)
+    stays: bool = False
 
     def displacement(self, end: End) -> Quantity:
         """How far the end of a bar moves."""
@@ -57,20 +61,40 @@ class Mode:
 
 def rigid(network: Network) -> tuple[fmpq, ...] | None:
     """How far each point moves when all does without strain, exact; None where something holds the chain."""
-    if any(point.motion or point.stiffness != 0 for point in network.points):
+    groups = unstrained_groups(network)
+    if len(groups) != 1 or len(groups[0]) != len(network.points):
         return None
+    return tuple(groups[0][number] for number in range(len(network.points)))
+
+
+def unstrained_groups(network: Network) -> list[dict[int, fmpq]]:
+    """Groups of points that rods and springs tie to each other and nothing holds: how far each moves without strain.
+
+    Dashpots hold nothing that is at rest. The first point of each group moves by 1.
+    """
+    beside: dict[int, list[tuple[int, fmpq]]] = {number: [] for number in range(len(network.points))}
     pairs = [(bar.left, bar.right, bar.ratios[0], bar.ratios[1]) for bar in network.bars]
     pairs += [(link.left, link.right, link.ratio, fmpq(1)) for link in network.links if link.stiffness != 0]
-    found: dict[int, fmpq] = {0: fmpq(1)}
-    for _ in network.points:
-        for left, right, there, here in pairs:
-            if left in found:
-                found.setdefault(right, found[left] * there / here)
-            elif right in found:
-                found[left] = found[right] * here / there
-    if any(found[left] * there != found[right] * here for left, right, there, here in pairs):
-        return None
-    return tuple(found[number] for number in range(len(network.points)))
+    for left, right, there, here in pairs:
+        beside[left].append((right, there / here))
+        beside[right].append((left, here / there))
+    found: list[dict[int, fmpq]] = []
+    met: set[int] = set()
+    for first in beside:
+        if first in met:
+            continue
+        group, coming, held = {first: fmpq(1)}, [first], False
+        for number in coming:
+            point = network.points[number]
+            held = held or point.motion is not None or point.stiffness != 0
+            for other, ratio in beside[number]:
+                if other not in group:
+                    coming.append(other)
+                held |= group.setdefault(other, group[number] * ratio) != group[number] * ratio
+        met.update(group)
+        if not held:
+            found.append(group)
+    return found
 
 
 def rigid_mass(network: Network, free: tuple[fmpq, ...]) -> fmpq:
@@ -132,6 +156,16 @@ def trial(stiffness: Stiffness, law: HarmonicLaw, w: Quantity, root: int, rate: 
     if rate is not None:
         mass += _resistance(law, rows, stiffness.parents) / (2 * rate)
     return Trial(rows, root, whole[root], mass)
+
+
+def complex_mode(stiffness: Stiffness, law: HarmonicLaw, w: Quantity, root: int, sharp: arb) -> Mode | None:
+    """The mode of mass 1 at a complex frequency, a ball, in which row `root` moves; None where it is not `sharp`."""
+    made = trial(stiffness, law, w, root, _I * w)
+    # a square root away from where it jumps
+    scale = (-made.mass).rsqrt() * _I if made.mass.real.mid() < 0 else made.mass.rsqrt()
+    points = stiffness.point_motions([row * scale for row in made.rows])
+    is_sharp = all(q.real.rad() < sharp and q.imag.rad() < sharp for q in points)
+    return Mode(stiffness, w, points) if is_sharp else None
 
 
 def _resistance(law: HarmonicLaw, found: Sequence[Quantity], parents: Sequence[int | None]) -> Quantity:

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, pi
 
-from flint import acb, acb_series, arb, arb_series, ctx, fmpq
+from flint import acb, acb_series, arb, arb_series, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.modes.harmonic import BallFrequency, Quantity, Turn
 from wavesym.exact.modes.stiffness import Stiffness
@@ -178,6 +178,15 @@ class Circles:
         while not (found := [k for k, c in enumerate(self._coefficients(terms, _BITS)) if c != 0]):
             terms *= 2
         return found[0]
+
+    @property
+    def determinant(self) -> fmpq_poly | None:
+        """A as a polynomial of s; None where there are rods."""
+        if not self.is_finite:
+            return None
+        s = fmpq_poly([0, 1])
+        found: fmpq_poly = self._resistance(-s * s, s, lambda delay: Turn(delay, delay), lambda each: fmpq_poly([each]))
+        return found
 
     def count(self, radius: float) -> int | None:
         """How many frequencies have absolute values below a radius, 0 among them; None where that takes too long."""

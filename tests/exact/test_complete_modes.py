@@ -1,0 +1,193 @@
+"""All modes of chains with dashpots: those at 0, of polynomials, of equal branches, and below where some meet."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+import wavesym
+from wavesym.cli import main
+from wavesym.exact.modes import complete_modes
+from wavesym.exact.modes.equal_branches import Part, take_apart
+from wavesym.exact.modes.turns import Circles
+from wavesym.mechanics.network import Network
+from wavesym.scene import Scene, lower
+
+G = {"mass": 2, "dashpot": "1/20", "name": "g"}
+TWIG = [{"rod": 1, "impedance": "1/2"}, {"mass": 1, "dashpot": "1/100"}]
+
+
+def scene(parts: list[Any], branches: list[list[Any]] | None = None, ratio: int = 1) -> Scene:
+    branch = [{"from": "g", "name": f"b{k}", "ratio": ratio, "parts": each} for k, each in enumerate(branches or [])]
+    system = {"type": "chain", "parts": parts, "branch": branch}
+    return Scene(name="s", system=system, output={"until": 1, "velocity": ["0-"]})
+
+
+def zeros(found: wavesym.Modes) -> int:
+    """Of the determinant, that its modes are."""
+    return sum(1 if mode.damping >= 1 else 2 for mode in found)
+
+
+SHIFTED: list[tuple[list[Any], list[float]]] = [
+    ([{"mass": 1}, {"rod": 1}, {"mass": 2, "dashpot": "1/3"}], [1.0]),
+    ([{"mass": 1, "dashpot": 2}], [1.0]),
+    (["free", {"rod": 1}, "absorbing"], [1.0]),
+    ([{"mass": 1}, {"rod": 1}, "absorbing"], [1.0]),
+    (["free", {"rod": 1}, {"mass": 1}, {"dashpot": 1}, {"mass": 1}], [0.0, 1.0]),
+    ([{"mass": 1}, {"dashpot": 1}, {"mass": 1}, {"dashpot": 1}, {"rod": 1}, "free"], [0.0, 1.0, 1.0]),
+    ([{"mass": 1}, {"spring": 2, "dashpot": 1}, {"mass": 1}], [0.0]),
+    (["fixed", {"dashpot": 1}, {"mass": 1}, {"spring": 2}, {"mass": 1}, {"dashpot": 3}, {"mass": 5}], [1.0, 1.0]),
+    (["fixed", {"rod": 1}, {"mass": 1, "dashpot": 1}], []),
+]
+
+
+@pytest.mark.parametrize(("parts", "ratios"), SHIFTED)
+def test_shifts_that_stay_are_the_zeros_at_0(parts: list[Any], ratios: list[float]) -> None:
+    """As often as the power series of the determinant begins with zeros, of which rigid motion is two."""
+    made = scene(parts)
+    found = wavesym.modes(made, 6)
+    assert [mode.damping for mode in found if mode.omega == 0] == ratios
+    assert sum(1 if ratio else 2 for ratio in ratios) == Circles(lower(made).network)._at_rest
+    assert found.complete
+    assert any("a shift that stays" in note for note in found.notes) == (1.0 in ratios)
+
+
+WIDE: list[tuple[list[list[float]], list[list[float]], list[float], list[Any]]] = [
+    (
+        [[2, -1], [-1, 1]],
+        [[1e6, 0], [0, 0]],
+        [1, 1],
+        ["fixed", {"spring": 1}, {"mass": 1, "dashpot": 1000000}, {"spring": 1}, {"mass": 1}],
+    ),
+    (
+        [[1e6 + 1, -1, 0], [-1, 1 + 1e-6, -1e-6], [0, -1e-6, 1e-6]],
+        [[1 + 1e-6, -1e-6, 0], [-1e-6, 2e-6, -1e-6], [0, -1e-6, 1e-6]],
+        [1e-6, 1e6, 1],
+        [
+            "fixed",
+            {"spring": 1000000, "dashpot": 1},
+            {"mass": "1/1000000"},
+            {"spring": 1, "dashpot": "1/1000000"},
+            {"mass": 1000000},
+            {"spring": "1/1000000", "dashpot": "1/1000000"},
+            {"mass": 1},
+        ],
+    ),
+]
+
+
+@pytest.mark.parametrize(("stiffness", "damping", "masses", "parts"), WIDE)
+def test_without_rods_none_is_missed_however_slow(
+    stiffness: list[list[float]], damping: list[list[float]], masses: list[float], parts: list[Any]
+) -> None:
+    """Eigenvalues with 60 digits; doubles of a search had lost the slowest beside one 10^12 times as fast."""
+    found = wavesym.modes(scene(parts), 6)
+    with mpmath.workdps(60):
+        n, matrix = len(masses), mpmath.zeros(2 * len(masses))
+        for i in range(n):
+            matrix[i, n + i] = 1
+            for j in range(n):
+                exact = [mpmath.mpf(repr(each)) for each in (stiffness[i][j], damping[i][j], masses[i])]
+                matrix[n + i, j], matrix[n + i, n + j] = -exact[0] / exact[2], -exact[1] / exact[2]
+        roots = [s for s in mpmath.eig(matrix, left=False, right=False) if s.imag > -1e-30]
+        expected = sorted((float(abs(s)), float(-s.real / abs(s))) for s in roots)
+    assert [mode.omega for mode in found] == pytest.approx([size for size, _ in expected], rel=1e-9)
+    assert [mode.damping for mode in found] == pytest.approx([ratio for _, ratio in expected], rel=1e-6)
+    assert found.complete
+
+
+def test_critical_damping_is_one_mode_twice() -> None:
+    """(s + 1)^2, and of two such bodies tied by a dashpot (s + 1)^2 (s^2 + 4 s + 1): they were refused."""
+    one = {"mass": 1, "spring": 1, "dashpot": 2}
+    alone = wavesym.modes(scene([one]), 6)
+    assert [(mode.omega, mode.damping) for mode in alone] == [(1.0, 1.0)] * 2
+    (note,) = alone.notes
+    assert note.startswith("modes 1, 2 are one shape")
+    both = wavesym.modes(scene([one, {"dashpot": 1}, one]), 6)
+    assert [mode.omega for mode in both] == pytest.approx([2 - 3**0.5, 1, 1, 2 + 3**0.5], rel=1e-15)
+    assert [list(mode.shape.values()) for mode in both] == [[1, -1] if k in (0, 3) else [1, 1] for k in range(4)]
+
+
+def test_equal_bodies_without_rods_have_shapes_of_their_own() -> None:
+    """Three equal oscillators on one body: two modes (s^2 + s/10 + 1), in which it rests."""
+    arm = [{"spring": 1, "dashpot": "1/10"}, {"mass": 1}]
+    found = wavesym.modes(scene(["fixed", {"spring": 3}, G], [arm] * 3), 9)
+    assert zeros(found) == 8
+    same = [mode for mode in found if abs(mode.omega - 1) < 1e-12]
+    assert [mode.damping for mode in same] == pytest.approx([0.05] * 2, rel=1e-14)
+    shapes = np.array([list(mode.shape.values()) for mode in same])
+    assert np.linalg.matrix_rank(shapes) == 2
+    assert not np.abs(shapes.sum(axis=1)).max() > 1e-12
+
+
+def test_equal_branches_with_rods_are_told_apart() -> None:
+    """Two of three modes have w^2 - i w/100 = (w/2) cot w, and the body at rest; a count of the whole has no more."""
+    made = scene(["fixed", {"rod": 1}, G], [TWIG] * 3, ratio=-2)
+    found = wavesym.modes(made, 9)
+    assert (len(found), found.complete) == (9, True)
+    resting = [k for k, mode in enumerate(found) if mode.shape["g"] == 0]
+    assert resting == [1, 2, 5, 6]
+    w = np.array([complex(found.exact[k].frequency) for k in resting])
+    assert np.abs(w**2 - 0.01j * w - w / 2 / np.tan(w)).max() < 1e-12
+    for k in resting:  # at right angles, and in balance
+        tips = np.array([value for name, value in found[k].shape.items() if name not in ("g", "0-", "0")])
+        assert abs(tips.sum()) < 1e-12
+    gap = (found[7].omega * found[8].omega) ** 0.5
+    assert Circles(lower(made).network).count(gap) == zeros(found) - 2
+
+
+def test_equal_branches_of_equal_branches_are_told_apart() -> None:
+    """Two branches with three twigs each: twigs of one against each other, twice; all are counted in the whole."""
+    twigs = [{"from": f"h{k}", "name": f"t{k}{n}", "parts": TWIG} for k in range(2) for n in range(3)]
+    arms = [{"from": "g", "name": f"a{k}", "parts": [{"rod": "1/2"}, {"mass": 1, "name": f"h{k}"}]} for k in range(2)]
+    system = {"type": "chain", "parts": ["fixed", {"rod": 1}, G], "branch": [*arms, *twigs]}
+    made = Scene(name="s", system=system, output={"until": 1, "velocity": ["g"]})
+    parts = take_apart(lower(made).network)
+    assert sorted(len(part.ways) for part in parts) == [1, 1, 2, 2]
+    found = wavesym.modes(made, 14)
+    assert found.complete
+    sizes = [mode.omega for mode in found]
+    assert sum(abs(each - sizes[3]) < 1e-12 for each in sizes) == 4
+    k = max(k for k in range(4, 14) if sizes[k] > sizes[k - 1] * 1.01)
+    inside = sum(2 for each in sizes if each < sizes[k])
+    assert Circles(lower(made).network).count((sizes[k - 1] * sizes[k]) ** 0.5) == inside
+
+
+def test_below_where_frequencies_meet_modes_are_printed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Not taken apart, equal branches meet: those before are told, and that they are all, where all were refused."""
+
+    def whole(network: Network) -> list[Part]:
+        ways = take_apart(Network(network.points[:1], (), ()))[0].ways[0]
+        every = [[[(n, ways[0][0][0][1])] for n in range(len(each))] for each in (network.points, network.bars)]
+        return [Part(network, ((every[0], every[1]),))]
+
+    made = scene(["fixed", {"rod": 1}, G], [TWIG] * 3, ratio=-2)
+    every = wavesym.modes(made, 3)
+    monkeypatch.setattr(complete_modes, "take_apart", whole)
+    file = tmp_path / "s.toml"
+    twig = '{ rod = 1, impedance = "1/2" }, { mass = 1, dashpot = "1/100" }'
+    branches = [f'[[system.branch]]\nfrom = "g"\nname = "b{k}"\nratio = -2\nparts = [{twig}]\n' for k in range(3)]
+    parts = '["fixed", { rod = 1 }, { mass = 2, dashpot = "1/20", name = "g" }]'
+    file.write_text("\n".join(['name = "s"', "[system]", 'type = "chain"', f"parts = {parts}", *branches]))
+    assert main(["modes", str(file)]) == 0
+    said = capsys.readouterr().out
+    assert "near 0.653271 rad/tau two or more meet" in said
+    found = wavesym.modes(made, 10)
+    assert [mode.omega for mode in found] == pytest.approx([every[0].omega], rel=1e-15)
+    assert 0.212 < float(found.why.split()[5]) < 0.6532
+
+
+def test_rods_of_which_two_swing_as_they_like_end_the_list() -> None:
+    """Four rods that resonate at pi between nodes at rest, one with a free end: two modes, and no more is told."""
+    parts = ["free", {"rod": "1/2"}, {"joint": True, "dashpot": 5, "name": "g"}, {"rod": 1}]
+    parts += [{"mass": 2, "dashpot": "1/2"}, {"rod": 1, "impedance": 7}, "fixed"]
+    found = wavesym.modes(scene(parts, [[{"rod": "3/2", "impedance": 3}]]), 6)
+    assert all(mode.omega < pi for mode in found)
+    assert len(found) == 3
+    assert "none is missed up to" in found.why
