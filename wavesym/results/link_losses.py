@@ -54,8 +54,7 @@ class LinkSummary(NamedTuple):
     @property
     def where(self) -> str:
         """Its place, with the names of its points."""
-        names = ", ".join(name for name in self.between if name != _GROUND and not name.startswith(self.place))
-        return f"{self.place} ({names})" if names else self.place
+        return _where(self.place, self.between)
 
     def __str__(self) -> str:
         return self.describe()
@@ -64,6 +63,26 @@ class LinkSummary(NamedTuple):
         """A line that says what it lost, to so many digits."""
         lost = f"set {self.set.describe(digits)}, dissipated {self.dissipated.describe(digits)}"
         return f"{self.law} at {self.where}: {lost}"
+
+
+def _where(place: str, between: tuple[str, str]) -> str:
+    names = ", ".join(name for name in between if name != _GROUND and not name.startswith(place))
+    return f"{place} ({names})" if names else place
+
+
+def losing_links(model: Model) -> tuple[tuple[str, str], ...]:
+    """The `where` and `law` of all links of a model that rub or yield, as their summaries have them."""
+    links = (model.network.links[n] for n in model.network.corners)
+    return tuple(
+        (_where(link.place, _names(model, link)), link.law)
+        for link in links
+        if link.friction != 0 or link.limits is not None
+    )
+
+
+def set_unit(model: Model) -> str:
+    """The unit of permanent sets."""
+    return model.inputs.get("displacement", _PLAIN)[1]
 
 
 def _names(model: Model, link: Link) -> tuple[str, str]:

@@ -5,7 +5,7 @@ A statistic is one entry here, and where `wavesym.results.summary` finds it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from math import nan
 from typing import NamedTuple
@@ -137,11 +137,15 @@ ARRAYS = {name: _EVERY[name] for name in (*RUNTIME_ARRAYS, *_EVERY)}
 """The arrays of all statistics, and what they are."""
 
 
-def wrong_statistic(names: Sequence[object]) -> tuple[str, int] | None:
+LINK_ARRAYS = {"set": "permanent set of a link that yields or rubs, positive where it is longer"}
+"""The arrays that sweeps may have of links, not of outputs, and what they are."""
+
+
+def wrong_statistic(names: Sequence[object], known: Collection[str] = tuple(ARRAYS)) -> tuple[str, int] | None:
     """What is wrong with the first of some names that is no array, or stands twice, and its place; None for none."""
     for k, name in enumerate(names):
-        if name not in ARRAYS:
-            *others, last = ARRAYS
+        if name not in known:
+            *others, last = known
             return f"{show(name)} is not a statistic; write {', '.join(others)} or {last}", k
         if name in names[:k]:
             return f"{show(name)} stands twice; write it once", k

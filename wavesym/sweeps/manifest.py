@@ -10,9 +10,10 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from wavesym.errors import WavesymError
+from wavesym.results.statistics import LINK_ARRAYS
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.marks import FOLDER
-from wavesym.sweeps.plan import MOST, OUTPUT, SAMPLE, SCHEMA, SweepPlan
+from wavesym.sweeps.plan import LINK, MOST, OUTPUT, SAMPLE, SCHEMA, SweepPlan
 from wavesym.sweeps.request import MOST_SAMPLES
 from wavesym.sweeps.sealed_files import DamagedError, NoFileError, SealedFile, Sha256, StrictTable, file_bytes
 from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, folder_content, lay_out
@@ -40,8 +41,9 @@ class KeptTable(StrictTable):
 class Manifest(SealedFile):
     """What the folder of a sweep holds.
 
-    `dimensions` have their lengths, `outputs` their units, `arrays` the dimensions that they have beside those of the
-    sweep; `files` are hashes of what else there is in the store: coordinates, and what is said of arrays.
+    `dimensions` have their lengths, `outputs` and `links` whose sets are kept their units, `arrays` the dimensions that
+    they have beside those of the sweep; `files` are hashes of what else there is in the store: coordinates, and what is
+    said of arrays.
     """
 
     schema_version: int = Field(ge=SCHEMA, le=SCHEMA)
@@ -52,6 +54,7 @@ class Manifest(SealedFile):
     dimensions: dict[str, Count]
     computed: ComputedTable
     outputs: dict[str, str]
+    links: dict[str, str] = Field(default_factory=dict)
     keep: KeptTable
     arrays: dict[Annotated[str, Field(pattern="^[a-z_]+$")], list[str]]
     files: dict[str, Sha256]
@@ -62,8 +65,8 @@ class Manifest(SealedFile):
         """What else is wrong with one that somebody else has made."""
         shape, chunk = list(self.dimensions.values()), self.computed.together
         fits = len(chunk) == len(shape) and all(part <= n for part, n in zip(chunk, shape, strict=True))
-        known = {name: [OUTPUT] for name in self.keep.summary} | {"bound": []}
-        others = {OUTPUT, *([SAMPLE] if self.keep.histories else [])}
+        known = {name: [LINK if name in LINK_ARRAYS else OUTPUT] for name in self.keep.summary} | {"bound": []}
+        others = {OUTPUT, *([LINK] if self.links else []), *([SAMPLE] if self.keep.histories else [])}
         if not fits or prod(shape) != self.cases or len(self.batches) != self.computed.batches:
             raise ValueError("batches that are not those of the cases")
         if any(self.arrays.get(name) != each for name, each in known.items()):
@@ -79,7 +82,7 @@ class Manifest(SealedFile):
 
     def store(self, folder: Path) -> Store:
         """The arrays in its folder."""
-        lengths = {OUTPUT: len(self.outputs), SAMPLE: self.keep.histories or 0}
+        lengths = {OUTPUT: len(self.outputs), SAMPLE: self.keep.histories or 0, LINK: len(self.links)}
         return Store(
             folder, self.batches, {name: tuple(map(lengths.__getitem__, each)) for name, each in self.arrays.items()}
         )
@@ -143,6 +146,7 @@ def _manifest(plan: SweepPlan, batches: Batches, files: dict[str, str]) -> Manif
         dimensions={dimension.name: len(dimension) for dimension in plan.dimensions},
         computed=ComputedTable(kind=batches.kind, together=list(batches.chunk), batches=len(batches)),
         outputs=dict(zip(plan.outputs, plan.units, strict=True)),
+        links=dict.fromkeys(plan.links, plan.link_unit),
         keep=KeptTable(summary=list(plan.summary), histories=plan.histories),
         arrays={each.name: list(each.dimensions) for each in kept_arrays(plan)},
         files=files,

@@ -17,6 +17,9 @@ from pydantic_core import PydanticCustomError
 from wavesym import __version__
 from wavesym.errors import SceneError
 from wavesym.fields.table import faults_of, show
+from wavesym.results.link_losses import losing_links, set_unit
+from wavesym.results.statistics import LINK_ARRAYS
+from wavesym.scene.lowering import lower
 from wavesym.scene.paths import replace_at_path, steps
 from wavesym.scene.physical.scene import acts
 from wavesym.scene.scene import Scene
@@ -28,7 +31,7 @@ SCHEMA = 2
 MOST = 10_000_000
 """Cases of a sweep."""
 _DIMENSIONS = 30  # with outputs and samples as many as an array of NumPy can have
-RECORD, CASE, OUTPUT, SAMPLE = "record", "case", "output", "sample"
+RECORD, CASE, OUTPUT, SAMPLE, LINK = "record", "case", "output", "sample", "link"
 """Names of dimensions."""
 _UNCHANGED = ("until", "tolerance")  # fields of the output that make no other outputs
 
@@ -39,6 +42,7 @@ class SweepPlan:
 
     `fields` are those of the scene of the first case, plain; `summary` and `histories` say what is kept. `outputs` are
     the names of all outputs that some case has, with their `units`; `time_unit` is None for scenes without units.
+    `links` are those whose permanent sets are kept, in `link_unit`.
     """
 
     name: str
@@ -49,6 +53,8 @@ class SweepPlan:
     outputs: tuple[str, ...]
     units: tuple[str, ...]
     time_unit: str | None
+    links: tuple[str, ...] = ()
+    link_unit: str = ""
 
     @property
     def records(self) -> Column | None:
@@ -165,7 +171,23 @@ def _make_plan(request: SweepRequest) -> SweepPlan:
         tuple(watched),
         tuple(watched.values()),
         base.scale.clock.unit if base.scale else None,
+        *_links(base, request.keep.summary),
     )
+
+
+def link_name(where: str, law: str) -> str:
+    """What a link is called in a sweep."""
+    return f"{law} at {where}"
+
+
+def _links(base: Scene, summary: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
+    """The links whose sets are kept, and the unit of these. SceneError where there is none."""
+    if LINK_ARRAYS.keys().isdisjoint(summary):
+        return (), ""
+    model = lower(base)
+    if not (names := tuple(dict.fromkeys(link_name(*each) for each in losing_links(model)))):
+        raise SceneError("set, but no link of the scene yields or rubs; write what its outputs have", "keep.summary")
+    return names, set_unit(model)
 
 
 def _refuse_many(request: SweepRequest, records: int) -> None:

@@ -21,7 +21,7 @@ from wavesym.errors import SceneError
 from wavesym.fields.numbers import Integer
 from wavesym.fields.table import SceneTable, as_list, key_context, refusal, scene_error, show
 from wavesym.reading import read_text
-from wavesym.results.statistics import RUNTIME_ARRAYS, wrong_statistic
+from wavesym.results.statistics import ARRAYS, LINK_ARRAYS, RUNTIME_ARRAYS, wrong_statistic
 from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.scene import Scene
 from wavesym.scene.scene_file import builtin_names, parse_text
@@ -74,7 +74,7 @@ class KeepTable(SceneTable):
     @classmethod
     def _check_names(cls, value: object) -> tuple[object, ...]:
         names = as_list(value)
-        if wrong := wrong_statistic(names):
+        if wrong := wrong_statistic(names, (*ARRAYS, *LINK_ARRAYS)):
             raise refusal(*wrong)
         return names
 

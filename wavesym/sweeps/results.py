@@ -19,6 +19,7 @@ from pydantic import Field, ValidationError
 
 from wavesym.errors import WavesymError, printable
 from wavesym.numbers.arrays import Array
+from wavesym.results.statistics import LINK_ARRAYS
 from wavesym.scene.paths import replace_at_path
 from wavesym.sweeps.manifest import Manifest
 from wavesym.sweeps.marks import BatchMark
@@ -91,7 +92,12 @@ class SweepResults:
     @property
     def statistics(self) -> tuple[str, ...]:
         """The statistics of outputs that there are."""
-        return tuple(self.manifest.keep.summary)
+        return tuple(name for name in self.manifest.keep.summary if name not in LINK_ARRAYS)
+
+    @property
+    def link_statistics(self) -> tuple[str, ...]:
+        """Those of links."""
+        return tuple(name for name in self.manifest.keep.summary if name in LINK_ARRAYS)
 
     @property
     def time_unit(self) -> str:

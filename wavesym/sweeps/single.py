@@ -12,11 +12,11 @@ from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.results.response import Response
 from wavesym.results.rows import own_samples
-from wavesym.results.statistics import array_values
-from wavesym.results.summary import summarise
+from wavesym.results.statistics import LINK_ARRAYS, array_values
+from wavesym.results.summary import Summary, summarise
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import sample_comb
-from wavesym.sweeps.plan import SweepPlan
+from wavesym.sweeps.plan import SweepPlan, link_name
 from wavesym.sweeps.values import CaseValues
 
 
@@ -30,7 +30,10 @@ def single(plan: SweepPlan, scene: Scene, *, at_samples: bool = False) -> CaseVa
         found = summarise(model, own_samples(model, sample_comb(scene)) if at_samples else None)
         every = [array_values(output) for output in found.outputs]
         for name in plan.summary:
-            made[name] = spread_out(plan, rows, np.array([values[name] for values in every]))
+            if name in LINK_ARRAYS:
+                made[name] = _sets(plan, found)
+            else:
+                made[name] = spread_out(plan, rows, np.array([values[name] for values in every]))
         bounds.append(found.bound)
         hows.append(found.how.partition(" at ")[0])
     if plan.histories:
@@ -39,6 +42,14 @@ def single(plan: SweepPlan, scene: Scene, *, at_samples: bool = False) -> CaseVa
         bounds.append(response.error_bound)
         hows.append(f"histories of {response.program.evaluator}" if response.program else "exact histories")
     return CaseValues({**made, **of_model(plan, model), "bound": max(bounds)}, ", ".join(hows))
+
+
+def _sets(plan: SweepPlan, found: Summary) -> Array:
+    """The permanent sets of links; NaN where they would cost too much, and of what no output feels."""
+    sets = {link_name(link.where, link.law): link.set for link in found.links or ()}
+    if any(each.unit != plan.link_unit for each in sets.values()):
+        raise SceneError("sets in another unit than in the other cases; write the same units", "units")
+    return np.array([sets[name].value if name in sets else np.nan for name in plan.links])
 
 
 def extremes_and_history(

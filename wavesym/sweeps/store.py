@@ -26,7 +26,7 @@ from wavesym.errors import WavesymError, install_command
 from wavesym.numbers.arrays import Array
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.dimension import SweepAxis
-from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, SweepPlan
+from wavesym.sweeps.plan import CASE, LINK, OUTPUT, SAMPLE, SweepPlan
 from wavesym.sweeps.sealed_files import DamagedError, refuse_other
 from wavesym.sweeps.values import kept_arrays, sizes
 
@@ -163,6 +163,8 @@ def _make(path: Path, plan: SweepPlan, batches: Batches) -> None:
         _coordinates(group, dimension)
     _plain(group, OUTPUT, OUTPUT, np.array(plan.outputs))
     _plain(group, "unit", OUTPUT, np.array([unit or "1" for unit in plan.units]))
+    if plan.links:
+        _plain(group, LINK, LINK, np.array(plan.links))
     if plan.histories:
         share = np.arange(plan.histories) / (plan.histories - 1)
         _plain(group, SAMPLE, SAMPLE, share, long_name="part of the horizon that has passed", units="1")
@@ -176,7 +178,11 @@ def _make(path: Path, plan: SweepPlan, batches: Batches) -> None:
             dtype="float64",
             fill_value=np.nan,
             compressors=None,
-            attributes={DIMENSIONS: [*names, *each.dimensions], "long_name": each.what},
+            attributes={
+                DIMENSIONS: [*names, *each.dimensions],
+                "long_name": each.what,
+                **({"units": each.unit} if each.unit else {}),
+            },
         )
 
 

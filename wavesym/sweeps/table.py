@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -31,17 +31,19 @@ def write_table(folder: Path, path: Path) -> None:
 
     Columns are the values that were varied, by path, and of each output NAME.min, NAME.max, NAME.tau_min, NAME.tau_max,
     as far as they were kept; of scenes with units the same as times, NAME.time_min [s], NAME.time_max [s], in the unit
-    of time of results. What there is no value of is empty.
+    of time of results; of links LINK.set, with their unit. What there is no value of is empty.
+    Parquet has the units of all columns in the metadata of fields ("unit"); CSV has none for it.
     """
     if path.suffix not in (".csv", ".parquet"):
         raise WavesymError(f"--table: {path} is not a table; write a file .csv or .parquet")
     if path.suffix == ".parquet":
         require_packages("pyarrow")
-    blocks = _columns(results(folder))
+    found = results(folder)
+    blocks = _columns(found)
     if path.suffix == ".csv":
         write_whole({path: _csv(blocks)})
     else:
-        _parquet(blocks, path)
+        _parquet(blocks, path, _units(found))
 
 
 def _columns(found: SweepResults) -> Iterator[Columns]:
@@ -62,7 +64,22 @@ def _columns(found: SweepResults) -> Iterator[Columns]:
             values |= times
         for k, output in enumerate(found.outputs):
             made |= {f"{output}.{name}": values[name][:, k] for name in values}
+        for name in found.link_statistics:
+            each = found.array(name, part).reshape(len(place[0]), -1)
+            units = found.manifest.links.items()
+            made |= {f"{link}.{name}{unit and f' [{unit}]'}": each[:, k] for k, (link, unit) in enumerate(units)}
         yield made
+
+
+def _units(found: SweepResults) -> dict[str, str]:
+    """The units of columns whose names do not say them."""
+    varied = {
+        column.path if dimension.name == CASE else dimension.name: column.unit
+        for dimension in found.dimensions
+        for column in dimension.columns
+    }
+    values = [name for name in found.statistics if name not in _TIMES]
+    return varied | {f"{output}.{name}": unit for output, unit in found.outputs.items() for name in values}
 
 
 def _slabs(shape: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
@@ -106,7 +123,8 @@ def _text(text: str) -> str:
     return f"'{shown}" if text.startswith(_FORMULAS) and not _NUMBER.fullmatch(text) else shown
 
 
-def _parquet(blocks: Iterator[Columns], path: Path) -> None:
+def _parquet(blocks: Iterator[Columns], path: Path, units: Mapping[str, str]) -> None:
+    """With the units of columns in the metadata of their fields."""
     import pyarrow
     from pyarrow import parquet
 
@@ -114,7 +132,10 @@ def _parquet(blocks: Iterator[Columns], path: Path) -> None:
     writer = None
     try:
         for block in blocks:
-            table = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in block.items()})
+            columns = {name: pyarrow.array(column.tolist()) for name, column in block.items()}
+            noted = {name: {"unit": unit} for name, unit in units.items() if unit}
+            fields = [pyarrow.field(name, each.type, metadata=noted.get(name)) for name, each in columns.items()]
+            table = pyarrow.table(list(columns.values()), schema=pyarrow.schema(fields))
             writer = writer or parquet.ParquetWriter(draft, table.schema)
             writer.write_table(table)
         if writer:

@@ -9,22 +9,26 @@ from typing import NamedTuple
 import numpy as np
 
 from wavesym.numbers.arrays import Array
-from wavesym.results.statistics import ARRAYS
+from wavesym.results.statistics import ARRAYS, LINK_ARRAYS
 from wavesym.sweeps.batches import Place
-from wavesym.sweeps.plan import OUTPUT, SAMPLE, SweepPlan
+from wavesym.sweeps.plan import LINK, OUTPUT, SAMPLE, SweepPlan
 
 
 class KeptArray(NamedTuple):
-    """An array of the store: its name, the dimensions that it has beside those of the sweep, and what it is."""
+    """An array of the store: its name, its dimensions beside those of the sweep, what it is, and its unit."""
 
     name: str
     dimensions: tuple[str, ...]
     what: str
+    unit: str = ""
 
 
 def kept_arrays(plan: SweepPlan) -> list[KeptArray]:
     """The arrays of a sweep."""
-    made = [KeptArray(name, (OUTPUT,), ARRAYS[name]) for name in plan.summary]
+    made = [KeptArray(name, (OUTPUT,), ARRAYS[name]) for name in plan.summary if name in ARRAYS]
+    made += [
+        KeptArray(name, (LINK,), LINK_ARRAYS[name], plan.link_unit) for name in plan.summary if name in LINK_ARRAYS
+    ]
     made.append(KeptArray("bound", (), "error of values, relative to each output's largest"))
     if plan.histories:
         made.append(KeptArray("history", (OUTPUT, SAMPLE), "values at equally spaced times, both ends included"))
@@ -36,7 +40,7 @@ def kept_arrays(plan: SweepPlan) -> list[KeptArray]:
 
 def sizes(plan: SweepPlan) -> dict[str, int]:
     """How long the dimensions are that are not varied."""
-    return {OUTPUT: len(plan.outputs), SAMPLE: plan.histories or 0}
+    return {OUTPUT: len(plan.outputs), SAMPLE: plan.histories or 0, LINK: len(plan.links)}
 
 
 @dataclass
