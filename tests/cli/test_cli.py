@@ -49,7 +49,7 @@ class Door(SimpleNamespace):
         self.asked.append(options)
         return self.difference
 
-    def scene_notes(self, scene: object, *, values: bool = True) -> list[str]:
+    def scene_notes(self, scene: object, *, values: bool = True, step: object = None) -> list[str]:
         return ["a contact opens"]
 
     def run_csv(self, scene: object, samples: int, at: list[float] | None, tell: Callable[[str], object]) -> list[str]:

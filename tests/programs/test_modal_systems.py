@@ -20,9 +20,9 @@ from wavesym.programs.modes.evaluator import modal_system
 from wavesym.programs.modes.loads import Roughness, roughness
 from wavesym.programs.modes.modal_system import scheme_tables
 from wavesym.programs.modes.rounding import rounding_errors
+from wavesym.programs.modes.stepped import SteppedModes
 from wavesym.programs.modes.truncation import ModalModes
 from wavesym.programs.modes.undamped_modes import UndampedModes
-from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.scene import Scene, lower
 
 PULSE = {"times": [0, "7/3", "5/2"], "a": [0, 0, 0], "b": [1, -3, 2]}
@@ -73,7 +73,7 @@ UNDAMPED = {
 
 def scheme(model, made):
     tables = scheme_tables(made.system, made.loads, DOUBLE)
-    return ModesScheme(tables, {"loads": len(made.sources)}, model.horizon(), np.float64)
+    return SteppedModes(tables, {"loads": len(made.sources)}, model.horizon(), np.float64)
 
 
 def values(model, made, taus):

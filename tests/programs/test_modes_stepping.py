@@ -17,8 +17,9 @@ from wavesym.numbers.doubles import midpoint, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.modes import rounding
 from wavesym.programs.modes.loads import LinearLoads, linear_loads
-from wavesym.programs.modes.modal_system import ModalSystem, Stepper, mode_step
+from wavesym.programs.modes.modal_system import ModalSystem, Stepper, mode_step, scheme_tables
 from wavesym.programs.modes.records import RecordResponse
+from wavesym.programs.modes.stepped import SteppedModes
 from wavesym.programs.schemes.modes import ModesScheme
 
 KINDS = [(0, 0), (1e-9, 0.3), (0.2, 0), (0.7, 1), (0.7, 1 + 1e-9), (1.3, 0.05), (2, 4), (3, 300), (11, 0.9)]
@@ -83,6 +84,25 @@ def test_values_are_the_same_in_any_order_and_company():
     assert np.isnan(scheme.evaluate([-1e-9, 500.1])).all()
 
 
+def test_whoever_goes_through_a_record_steps_each_block_once(monkeypatch):
+    """Twice before, once for the mark at its end; values are those of a scheme that keeps marks alone."""
+    system = oscillators.oscillators(FREQUENCY, DAMPING, loads=1, outputs=2)
+    loads, stepped = uniform([0, *(((k * k) % 7 - 3) for k in range(1300))], fmpq(1, 3)), []
+    made = evaluator(system, loads, 500.0)
+    step = SteppedModes._step_states
+    monkeypatch.setattr(SteppedModes, "_step_states", lambda *args: stepped.append(args[2]) or step(*args))
+    found = np.concatenate([outputs for _, outputs in made.scheme.starts()])
+    assert stepped == [0, 512, 1024]
+    stepped.clear()
+    backwards = [made.scheme.states(block, 512 * block + 100)[-1] for block in (2, 1, 0)]
+    assert stepped == [512, 0]
+    plain = ModesScheme(scheme_tables(system, loads, DOUBLE), made.constants, 500.0, np.float64)
+    times = [float(time) for time in loads.times]
+    np.testing.assert_allclose(found.T, plain.evaluate(times), rtol=0, atol=1e-11)
+    for block, state in zip((2, 1, 0), backwards, strict=True):
+        np.testing.assert_array_equal(state, plain.states(block, 512 * block + 100)[-1])
+
+
 @pytest.mark.parametrize("real", [DOUBLE, SINGLE])
 def test_rounding_is_bounded(real):
     """The values of NumPy are within it of those in balls, which step the same numbers."""
@@ -99,7 +119,7 @@ def test_rounding_is_bounded(real):
     assert np.all(wrong > 0)
 
 
-class OneMode(ModesScheme):
+class OneMode(SteppedModes):
     """One mode on equal panels, all of which are stepped at once."""
 
     BLOCK = 1 << 20

@@ -7,7 +7,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from fractions import Fraction
 from glob import escape, glob
 from importlib.util import find_spec
@@ -18,6 +18,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from wavesym.errors import SceneError, WavesymError, install_command
+from wavesym.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -50,8 +51,9 @@ class SceneParameter(ParameterType):
 
         if isinstance(value, Scene):
             return value
-        scene = Scene.from_toml(value)
         file = "<stdin>" if value == "-" else value
+        with progress(f"read {file}") if value != "-" else nullcontext():  # which may wait for whoever types
+            scene = Scene.from_toml(value)
         if self.needs_output:
             scene.refuse_without_output(file)
         if ctx is not None and param is not None and param.nargs == 1:

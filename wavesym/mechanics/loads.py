@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 from flint import fmpq
@@ -43,7 +43,7 @@ def merge_loads(loads: Iterable[AppliedLoad]) -> tuple[AppliedLoad, ...]:
     # M2 comes before M10: a shorter name is a smaller number; sorted, as an fmpq is slow to hash
     ordered = sorted(loads, key=lambda load: (load.time, len(load.source), load.source))
     summed = (
-        AppliedLoad(source, time, sum((load.weight for load in same), fmpq(0)))
-        for (time, source), same in groupby(ordered, key=lambda load: (load.time, load.source))
+        replace(first, weight=sum((load.weight for load in others), first.weight)) if others else first
+        for _, (first, *others) in groupby(ordered, key=lambda load: (load.time, load.source))
     )
     return tuple(load for load in summed if load.weight)

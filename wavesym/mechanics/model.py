@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
@@ -149,7 +150,7 @@ class Model:
 
     def loads_until(self, until: fmpq) -> tuple[AppliedLoad, ...]:
         """The loads that begin by then."""
-        return tuple(load for load in self.loads if load.time <= until)
+        return self.loads[: bisect_right(self.loads, until, key=lambda load: load.time)]
 
     def joints_in_reach(self, until: fmpq) -> dict[int, fmpq]:
         """The joints of the network that can influence an output by then, and until when each can.

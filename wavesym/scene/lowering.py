@@ -184,10 +184,10 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
 
 
 def _loads(scene: Scene) -> tuple[AppliedLoad, ...]:
-    """The loads, summed; sorted by time, and each source at a time once."""
+    """The loads, one after the other."""
     if not scene.system.load_kinds:
         return (AppliedLoad("impact", fmpq(0), fmpq(1)),)
-    return merge_loads(unit for load in scene.load for unit in load.units())
+    return tuple(unit for load in scene.load for unit in load.units())
 
 
 def amplitudes(scene: Scene) -> tuple[tuple[str, AppliedLoad], ...]:

@@ -23,6 +23,7 @@ _BISECTIONS = 64
 _NEWTON = 6
 _TOGETHER = 2.0**-40
 _NEAR = 2.0**-8  # a guess may be, where K loses digits in doubles beside resonances of bars
+_NEARER = 2.0**-8  # than the root of what is to be told: what a step leaves is its square, times a number
 _OFF = 2.0**-36  # a frequency itself tells less of its mode than one near it
 _SHARP = arb(2) ** -60  # shapes
 
@@ -160,9 +161,10 @@ def _prove_modes(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, r
                 if (made := prove_cluster(stiffness, law, n, near)) and all(map(_sharp, made)):
                     return made
         w = _refine_by_newton(stiffness, law, n, guess, root, bits)
-        w = w or _refine_by_counts(stiffness, law, n, guess, bits // 3)
-        if w is None or not _is(stiffness, law, n, w):
-            return []
+        if w is None:
+            w = _refine_by_counts(stiffness, law, n, guess, bits // 3)
+            if w is None or not _is(stiffness, law, n, w):
+                return []
         mode = Mode(stiffness, w, _normal(stiffness, trial(stiffness, law, w, root)))
     return [mode] if _sharp(mode) else []
 
@@ -182,7 +184,7 @@ def _sharp(mode: Mode) -> bool:
 def _refine_by_newton(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> arb | None:
     """The n-th frequency by Newton's method, from one near it."""
     small = arb(2) ** (-bits // 3)
-    near = small.sqrt()
+    near = small.sqrt() * _NEARER
     w = arb(guess)
     for _ in range(_NEWTON):
         better = trial(stiffness, law, w, root).better(w)

@@ -304,16 +304,17 @@ class _Loads:
     def __init__(self, model: Model, until: fmpq, reached: dict[int, fmpq]) -> None:
         points = [point for number in reached for point in model.network.joints[number].points]
         self.changes: list[tuple[fmpq, int, fmpq_poly]] = []
+        acting = model.loads_until(until)
         for number in points:
             point = model.network.points[number]
             units = {unit.source: fmpq_poly(list(unit_action(point, unit))) for unit in point.loads}
-            for load in model.loads_until(until):
+            for load in acting if units else ():
                 if load.source in units:
                     self.changes.append((load.time, number, load.weight * units[load.source]))
             if point.motion is not None and point.velocity != 0:
                 self.changes.append((_ZERO, number, fmpq_poly([point.velocity])))
-        acting = {number for _, number, _ in self.changes}
-        self.numbers = {point: force for force, point in enumerate(sorted(acting))}
+        moved = {number for _, number, _ in self.changes}
+        self.numbers = {point: force for force, point in enumerate(sorted(moved))}
 
     def events(self, panels: tuple[Panel, ...], step: fmpq) -> Iterator[LoadEvent]:
         """From each change on, the whole polynomial, in order."""

@@ -26,10 +26,10 @@ from wavesym.programs.modes.modal_system import (
     stream_tables,
 )
 from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
+from wavesym.programs.modes.stepped import SteppedModes
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, SteppedRow, SteppedValues, Tables
-from wavesym.programs.schemes.modes import ModesScheme
 
 _CHECKED = 40  # samples of a self-test
 _ULPS = 8  # by which a step may differ from the spacing
@@ -54,10 +54,10 @@ class ModesEvaluator(Form):
     proved: bool = True
 
     @cached_property
-    def scheme(self) -> ModesScheme:
+    def scheme(self) -> SteppedModes:
         """Its values in NumPy."""
         tables = scheme_tables(self.system, self.loads, self.real)
-        return ModesScheme(tables, self.constants, self.tau_max, np.dtype(f"f{self.real.bytes}").type)
+        return SteppedModes(tables, self.constants, self.tau_max, np.dtype(f"f{self.real.bytes}").type)
 
     @cached_property
     def rounding(self) -> RoundingErrors:

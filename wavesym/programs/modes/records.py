@@ -23,13 +23,13 @@ from wavesym.numbers.arrays import Array
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
+from wavesym.programs.modes.stepped import SteppedModes
 from wavesym.programs.program import Program
-from wavesym.programs.schemes.modes import ModesScheme
 
 _KEPT = 128  # matrices: as many as panels of a few lengths have places
 
 
-class Panels(ModesScheme):
+class Panels(SteppedModes):
     """The panels of a program of modes."""
 
     @classmethod
@@ -46,8 +46,7 @@ class Panels(ModesScheme):
         counts = [2 * ceil(length / (2 * step)) for length in lengths.tolist()]
         edges = np.cumsum([0, *counts])
         taus = np.empty(edges[-1] + 1)
-        out = np.empty((self._direct.shape[2], edges[-1] + 1))
-        taus[-1], out[:, -1] = self._tau_max, self.evaluate(self._tau_max)
+        out = np.empty((self.output_count, edges[-1] + 1))
         kinds, kind = np.unique(lengths, return_inverse=True)
         reads = lru_cache(_KEPT)(lambda s: self.reads(np.array([s]))[0])
         for first in range(0, last + 1, self.BLOCK):
@@ -70,6 +69,7 @@ class Panels(ModesScheme):
                     at = edges[chosen] + part
                     taus[at] = starts[chosen] + s
                     out[:, at] = (known @ reads(s)).T
+        taus[-1], out[:, -1] = self._tau_max, self.evaluate(self._tau_max)
         return taus, out
 
     def turns(self, s: Array) -> tuple[Array, ...]:

@@ -19,7 +19,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem
-from wavesym.programs.schemes.modes import ModesScheme
+from wavesym.programs.modes.stepped import SteppedModes
 
 _STEP = 16
 _MORE = 1.01  # for the roundings of this file
@@ -33,7 +33,7 @@ class RoundingErrors(NamedTuple):
 
 
 def rounding_errors(
-    system: ModalSystem, loads: LinearLoads, scheme: ModesScheme, tau_max: float, real: Real
+    system: ModalSystem, loads: LinearLoads, scheme: SteppedModes, tau_max: float, real: Real
 ) -> RoundingErrors:
     """The errors of a scheme in `real` numbers that steps a system under loads, all of which begin by tau_max."""
     unit, w = nearest(real.roundoff), system.frequency
@@ -43,14 +43,14 @@ def rounding_errors(
     slopes = np.array([abs(nearest(slope)) for slope in loads.slopes])
     force = np.abs(system.pushes) @ (a.max(axis=0) + slopes * lengths[-1])
     reach = 1 / np.maximum(w, 1 / tau_max) if tau_max > 0 else np.zeros(len(w))
-    size = _size(scheme, reach) + 4 * np.minimum(reach, lengths.max()) * force
+    size, at_times = _sizes(scheme, reach, tau_max)
+    size += 4 * np.minimum(reach, lengths.max()) * force
     swift = (1 + 2 * system.damping) * w
     wrong = _sum_over_panels(system, lengths, swift, tau_max)
     made = unit * (_STEP * wrong * size + 4 * tau_max * (swift * size + force))
     weight = np.abs(system.displacement_weights) * reach + np.abs(system.velocity_weights)
     errors = weight @ (2 * made + unit * (len(w) + 20) * size)
     errors += np.einsum("ojk,jk->o", np.abs(system.direct), _integrals(scheme, slopes, lengths, unit))
-    at_times = np.abs(scheme.evaluate([tau for tau in times if tau <= tau_max])).max(axis=1, initial=0.0)
     return RoundingErrors(_MORE * errors, np.maximum(at_times - _MORE * errors, 0.0))
 
 
@@ -65,18 +65,17 @@ def _sum_over_panels(system: ModalSystem, lengths: Array, swift: Array, tau_max:
     return np.where(fading, np.minimum(lasting * (1 + swift * lengths.max()), whole), whole)
 
 
-def _size(scheme: ModesScheme, reach: Array) -> Array:
-    """The largest |y|/T + |v| of each mode at the instants."""
-    size = np.zeros(len(reach))
-    last = scheme.load.shape[1] - 1
-    for block in range(last // scheme.BLOCK + 1):
-        states = scheme.states(block, min((block + 1) * scheme.BLOCK - 1, last))
+def _sizes(scheme: SteppedModes, reach: Array, tau_max: float) -> tuple[Array, Array]:
+    """The largest |y|/T + |v| of each mode at the instants, and the largest size there of each output."""
+    size, largest = np.zeros(len(reach)), np.zeros(scheme.output_count)
+    for states, outputs in scheme.starts():
         y, v = np.abs(states).astype(np.float64).max(axis=0)
         size = np.maximum(size, y / np.where(reach > 0, reach, 1.0) + v)
-    return size
+        largest = np.maximum(largest, np.abs(outputs).max(axis=0, initial=0.0))
+    return size, np.maximum(largest, np.abs(scheme.evaluate([tau_max])).max(axis=1))
 
 
-def _integrals(scheme: ModesScheme, slopes: Array, lengths: Array, unit: float) -> Array:
+def _integrals(scheme: SteppedModes, slopes: Array, lengths: Array, unit: float) -> Array:
     """How wrong loads and their integrals are: (loads, 3). They are sums of as many terms as there are panels."""
     h, tau, count = lengths.max(), lengths.sum(), len(lengths) + 8
     load, once, twice = np.abs(scheme.load[1:]).astype(np.float64).max(axis=1)

@@ -26,9 +26,9 @@ from wavesym.programs.modes.loads import LinearLoads, Roughness, linear_loads, r
 from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
 from wavesym.programs.modes.projection import Driver, ModalOutput, drivers_of, modal_output, places
 from wavesym.programs.modes.rounding import rounding_errors
+from wavesym.programs.modes.stepped import SteppedModes
 from wavesym.programs.modes.zero_outputs import zero_outputs
 from wavesym.programs.request import unmet_tolerance
-from wavesym.programs.schemes.modes import ModesScheme
 
 
 class ModeProjection(Protocol):
@@ -161,7 +161,9 @@ class ModalModel(ABC, Generic[K]):
     def output_bounds(self, known: K, count: int) -> Array:
         """What each output reaches, but for what is left out."""
         system, until = self.system(known, count), self.model.horizon()
-        scheme = ModesScheme(scheme_tables(system, self.loads, DOUBLE), {"loads": len(self.drivers)}, until, np.float64)
+        scheme = SteppedModes(
+            scheme_tables(system, self.loads, DOUBLE), {"loads": len(self.drivers)}, until, np.float64
+        )
         return rounding_errors(system, self.loads, scheme, until, DOUBLE).largest
 
 
