@@ -11,8 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wavesym
+from wavesym import api
 from wavesym.errors import CostError, SceneError
 from wavesym.fields.shapes import ShapedLoad
+from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 
 PACE = {"sine": "frequency", "half-sine": "duration", "exponential": "duration", "ricker": "frequency"}
@@ -129,10 +131,38 @@ def test_too_many_samples_are_refused_where_they_would_act_alone() -> None:
     fine = scene("1e-10", shape="sine", amplitude=1, frequency=1)
     with pytest.raises(
         CostError,
-        match=r"load: 1332901 samples of a sine .* \(output.tolerance = 1.8e-08 or more, or fewer periods",
+        match=r"load: 1332901 samples of a sine .* \(output.tolerance = 7.1e-08 or more, or fewer periods",
     ):
         wavesym.run(fine)
     assert wavesym.frf(fine, [2.0])["force@1/2"] == pytest.approx(-np.exp(-1j), rel=1e-15)
+
+
+@pytest.mark.parametrize("shape", sorted(PACE))
+def test_a_scene_without_a_tolerance_takes_one_that_few_samples_meet(shape: str) -> None:
+    """The usual one was refused for most shapes: for millions of samples."""
+    written = scene("1e-10", shape=shape, amplitude=1, **{PACE[shape]: 1}).model_dump()
+    del written["output"]["tolerance"]
+    made = Scene(**written)
+    (load,) = made.load
+    assert isinstance(load, ShapedLoad)
+    assert len(load.samples) <= 2000
+    assert "tolerance" not in made.model_dump()["output"]
+    assert Scene(**made.model_dump()) == made
+    assert 1e-10 < made.tolerance <= Fraction(1, 100)
+    model = lower(made)
+    assert model.tolerance == rational(made.tolerance)
+    tau = np.linspace(0, 3, 301)
+    off = max(
+        abs(-value(shape, 1, t - 0.5) * (t >= 0.5) - f)
+        for t, f in zip(tau, wavesym.run(made, tau).values[0], strict=True)
+    )
+    assert off <= float(made.tolerance)
+    (note,) = (each for each in api.scene_notes(made) if "none is written" in each)
+    assert f"output.tolerance is {float(made.tolerance):g}" in note
+    longer = made.with_({"output.until": 30})
+    assert longer.tolerance >= made.tolerance
+    assert len(longer.load[0].samples) <= 2000
+    assert lower(scene("1e-6", shape=shape, amplitude=1, **{PACE[shape]: 1})).tolerance == rational(Fraction(1, 10**6))
 
 
 def test_a_shape_is_kept_as_it_was_written() -> None:

@@ -1,4 +1,4 @@
-"""python -m tools.bench FOLDER [corners|frames]: measure its scenes, or that part alone, and write its README.md."""
+"""python -m tools.bench FOLDER [corners|frames|vibration]: measure its scenes, or that part alone; writes README.md."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from tools.bench import corners, frames
-from tools.bench.report import corner_figures, frame_figures, report
+from tools.bench import corners, frames, vibration
+from tools.bench.report import corner_figures, frame_figures, report, vibration_figures
 
 
 def measure(lines: Iterable[str]) -> str:
@@ -33,7 +33,10 @@ if __name__ == "__main__":
         text = replace_section(page.read_text(encoding="utf-8"), corners.TITLE, section, "## Charts")
     elif sys.argv[2:] == ["frames"]:
         section = measure(frame_figures(folder.parent / "examples" / "records"))
-        text = replace_section(page.read_text(encoding="utf-8"), frames.TITLE, section, corners.TITLE)
+        text = replace_section(page.read_text(encoding="utf-8"), frames.TITLE, section, vibration.TITLE)
+    elif sys.argv[2:] == ["vibration"]:
+        section = measure(vibration_figures(folder.parent / "examples" / "records"))
+        text = replace_section(page.read_text(encoding="utf-8"), vibration.TITLE, section, corners.TITLE)
     else:
         text = measure(report(folder))
     page.write_text(text, encoding="utf-8")

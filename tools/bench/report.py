@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tools.bench import corners, frames, many_sets, panels, parameters, record_response, streaming, sweeps
+from tools.bench import corners, frames, many_sets, panels, parameters, record_response, streaming, sweeps, vibration
 from tools.bench.commands import ran
 from tools.bench.equal_degree import FittedPieces, at_degree, fit_pieces, ratios
 from tools.bench.harness import CALLS, EVERY, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
@@ -182,6 +182,17 @@ def _records(folder: Path) -> Iterator[str]:
     yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(sweeps.drive()))
     yield ""
     yield from frame_figures(folder.parent / "examples" / "records")
+    yield ""
+    yield from vibration_figures(folder.parent / "examples" / "records")
+
+
+def vibration_figures(records: Path) -> Iterator[str]:
+    """Frequencies and responses: also measured alone, by `python -m tools.bench FOLDER vibration`."""
+    yield vibration.TITLE
+    yield ""
+    yield f"Whole commands, start-up included: ten modes, none missed, and responses at {vibration.POINTS} frequencies."
+    yield ""
+    yield from _table(vibration.HEAD, vibration.rows(records))
 
 
 def frame_figures(records: Path) -> Iterator[str]:

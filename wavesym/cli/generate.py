@@ -150,8 +150,8 @@ def _notes(scene: Scene, request: Request, written: tuple[Path, ...]) -> Iterato
 
     if request.target:
         yield from api.fmu_notes(written[0])
-    if request.runtime and scene.output.tolerance < (finest := FINEST[request.precision]):
-        yield f"tolerance {float(scene.output.tolerance):g} taken as {float(finest):.0e} at run time"
+    if request.runtime and scene.tolerance < (finest := FINEST[request.precision]):
+        yield f"tolerance {float(scene.tolerance):g} taken as {float(finest):.0e} at run time"
     yield from api.scene_notes(scene, values=not request.stream, step=request.step)
     for manifest in (path for path in written if path.suffix == ".json"):
         content = json.loads(manifest.read_text(encoding="utf-8"))

@@ -6,7 +6,7 @@ is kept below a part of the tolerance, in parts of the amplitude. Each sample is
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from functools import cached_property
 from math import ceil, sqrt
@@ -16,7 +16,7 @@ from flint import arb, ctx, fmpq
 from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 
 from wavesym.errors import CostError
-from wavesym.fields.loads import Load, linear
+from wavesym.fields.loads import MOST_TIMES, Load, linear
 from wavesym.fields.numbers import Exact, Positive, exact
 from wavesym.fields.table import refusal, show
 from wavesym.mechanics.loads import AppliedLoad
@@ -24,7 +24,9 @@ from wavesym.numbers.doubles import fraction, middle, rational
 
 SHAPES = {"sine": "frequency", "half-sine": "duration", "exponential": "duration", "ricker": "frequency"}
 """Each shape, and what says how fast it is."""
-MOST_SAMPLES = 100_000
+MOST_SAMPLES = MOST_TIMES
+_USUAL_SAMPLES = 2_000  # where no tolerance is written: `run` takes some seconds for them
+_COARSEST = Fraction(1, 100)
 _SHARE = Fraction(1, 4)  # of the tolerance
 _ROUND = 20  # samples in a period are a multiple of it, so that tops and simple fractions are among them
 _BITS, _DIGITS = 192, 96  # of samples, in balls and behind the point
@@ -77,6 +79,8 @@ class ShapedLoad(Load):
     def truncate(self, until: Fraction, tolerance: Fraction) -> Self:
         """The same load as far as it matters to a horizon and a tolerance."""
         other = self.model_copy()
+        for found in ("_parts", "samples"):  # for another tolerance
+            vars(other).pop(found, None)
         other._until, other._tolerance = until, tolerance
         return other
 
@@ -128,14 +132,20 @@ class ShapedLoad(Load):
     def _decays(self) -> int:
         return ceil(float((_SHARE * self._tolerance).denominator.bit_length()) * 0.7 + 1)
 
+    @property
+    def count(self) -> int:
+        """How many samples it has."""
+        return ceil(self._last * self._parts) + 1
+
     @cached_property
     def samples(self) -> tuple[fmpq, ...]:
         """Its values, one `step` apart; after the last it is of no matter. CostError for too many."""
-        count = ceil(self._last * self._parts) + 1
+        count = self.count
         if count > MOST_SAMPLES:
+            article = "an" if self.shape.startswith("e") else "a"
             enough = float(self._tolerance) * (count / MOST_SAMPLES) ** 2
             raise CostError(
-                f"load: {count} samples of a {self.shape} for a tolerance of {float(self._tolerance):.1e}, the "
+                f"load: {count} samples of {article} {self.shape} for a tolerance of {float(self._tolerance):.1e}, the "
                 f"limit is {MOST_SAMPLES} (output.tolerance = {enough:.1e} or more, or fewer periods, help)"
             )
         size = rational(self.amplitude)
@@ -176,6 +186,18 @@ class ShapedLoad(Load):
     def sampling(self) -> str:
         """How it is sampled, for people."""
         return f"as {len(self.samples)} samples, within {float(self.error):.1e} of its amplitude"
+
+
+def usual_tolerance(loads: Iterable[Load], until: Fraction, finest: Fraction) -> Fraction:
+    """The tolerance of a scene that has none written: the finest, or what loads of a shape meet with a few thousand
+    samples, as 1, 2 or 5 times a power of ten; the finest where that is more than a hundredth.
+    """
+    shaped = [load for load in loads if isinstance(load, ShapedLoad)]
+    coarser = (Fraction(digit * 10**power) * finest for power in range(12) for digit in (1, 2, 5))
+    for tolerance in (each for each in coarser if each <= _COARSEST):
+        if all(load.truncate(until, tolerance).count <= _USUAL_SAMPLES for load in shaped):
+            return tolerance
+    return finest
 
 
 def _round(value: arb) -> fmpq:

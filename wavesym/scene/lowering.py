@@ -103,7 +103,7 @@ def _build_model(scene: Scene) -> Model:
         loads=merge_loads((*dead_loads(network), *_loads(scene))),
         probes=probes(scene, scene.outputs),
         until=rational(output.until),
-        tolerance=rational(output.tolerance),
+        tolerance=rational(scene.tolerance),
         labels=_labels(scene, chain, network),
         clock=scene.scale.clock if scene.scale else None,
         length=length,

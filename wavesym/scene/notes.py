@@ -93,11 +93,15 @@ def _record_notes(scene: Scene) -> Iterator[str]:
             )
 
 
+_USUAL = "; none is written, so output.tolerance is {:g}, which few samples meet: a smaller one takes more and longer"
+
+
 def _shape_notes(scene: Scene) -> Iterator[str]:
     """A line for each load that has a shape: as what it acts."""
     for k, load in enumerate(scene.load):
         if isinstance(load, ShapedLoad):
-            yield f"load[{k}]: {load.shape} {load.sampling}, one every {spacing_text(scene, load)}"
+            usual = "" if scene.tolerance == scene.output.tolerance else _USUAL.format(float(scene.tolerance))
+            yield f"load[{k}]: {load.shape} {load.sampling}, one every {spacing_text(scene, load)}{usual}"
 
 
 def damping_in_time(scene: Scene, network: Network) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import deepcopy
+from fractions import Fraction
 from functools import cached_property
 from os import PathLike
 from typing import Any, Self
@@ -23,7 +24,7 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
-from wavesym.fields.shapes import ShapedLoad
+from wavesym.fields.shapes import ShapedLoad, usual_tolerance
 from wavesym.fields.table import Fault, Faults, SceneTable, key_context, refusal, scene_error, show
 from wavesym.numbers.doubles import rational
 from wavesym.scene.describe import describe
@@ -160,6 +161,8 @@ class Scene(SceneTable):
         else:
             fields = handler(self)
             without |= {"units"} if self.title_block else {"units", "report"}
+        if any(isinstance(load, ShapedLoad) for load in self.load) and "tolerance" not in self.output.model_fields_set:
+            fields["output"] = {key: value for key, value in fields["output"].items() if key != "tolerance"}
         return {key: value for key, value in fields.items() if key not in without}
 
     @property
@@ -204,10 +207,17 @@ class Scene(SceneTable):
         vars(self)["output"] = self.output.of_every_rod(rods)
         _ = self.outputs
         if any(isinstance(load, ShapedLoad) for load in self.load):
-            until, tolerance = self.output.until, self.output.tolerance
+            until, tolerance = self.output.until, self.tolerance
             each = (load.truncate(until, tolerance) if isinstance(load, ShapedLoad) else load for load in self.load)
             vars(self)["load"] = tuple(each)
         return self
+
+    @cached_property
+    def tolerance(self) -> Fraction:
+        """As it is written; else the usual one, or, beside loads of a shape, what these meet with a few samples."""
+        if "tolerance" in self.output.model_fields_set:
+            return self.output.tolerance
+        return usual_tolerance(self.load, self.output.until, self.output.tolerance)
 
     @cached_property
     def outputs(self) -> tuple[Observable, ...]:
