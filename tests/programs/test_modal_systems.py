@@ -20,7 +20,7 @@ from wavesym.programs.modes.evaluator import modal_system
 from wavesym.programs.modes.loads import Roughness, roughness
 from wavesym.programs.modes.modal_system import scheme_tables
 from wavesym.programs.modes.rounding import rounding_errors
-from wavesym.programs.modes.stepped import SteppedModes
+from wavesym.programs.modes.stepping import SteppedModes
 from wavesym.programs.modes.truncation import ModalModes
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.scene import Scene, lower

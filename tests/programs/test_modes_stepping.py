@@ -19,7 +19,7 @@ from wavesym.programs.modes import rounding
 from wavesym.programs.modes.loads import LinearLoads, linear_loads
 from wavesym.programs.modes.modal_system import ModalSystem, Stepper, mode_step, scheme_tables
 from wavesym.programs.modes.records import RecordResponse
-from wavesym.programs.modes.stepped import SteppedModes
+from wavesym.programs.modes.stepping import SteppedModes
 from wavesym.programs.schemes.modes import ModesScheme
 
 KINDS = [(0, 0), (1e-9, 0.3), (0.2, 0), (0.7, 1), (0.7, 1 + 1e-9), (1.3, 0.05), (2, 4), (3, 300), (11, 0.9)]

@@ -26,7 +26,7 @@ from wavesym.programs.modes.modal_system import (
     stream_tables,
 )
 from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
-from wavesym.programs.modes.stepped import SteppedModes
+from wavesym.programs.modes.stepping import SteppedModes
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
 from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, SteppedRow, SteppedValues, Tables

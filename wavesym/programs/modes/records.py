@@ -23,7 +23,7 @@ from wavesym.numbers.arrays import Array
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
-from wavesym.programs.modes.stepped import SteppedModes
+from wavesym.programs.modes.stepping import SteppedModes
 from wavesym.programs.program import Program
 
 _KEPT = 128  # matrices: as many as panels of a few lengths have places

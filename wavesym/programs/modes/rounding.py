@@ -19,7 +19,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal_system import ModalSystem
-from wavesym.programs.modes.stepped import SteppedModes
+from wavesym.programs.modes.stepping import SteppedModes
 
 _STEP = 16
 _MORE = 1.01  # for the roundings of this file

@@ -26,7 +26,7 @@ from wavesym.programs.modes.loads import LinearLoads, Roughness, linear_loads, r
 from wavesym.programs.modes.modal_system import ModalSystem, scheme_tables
 from wavesym.programs.modes.projection import Driver, ModalOutput, drivers_of, modal_output, places
 from wavesym.programs.modes.rounding import rounding_errors
-from wavesym.programs.modes.stepped import SteppedModes
+from wavesym.programs.modes.stepping import SteppedModes
 from wavesym.programs.modes.zero_outputs import zero_outputs
 from wavesym.programs.request import unmet_tolerance
 

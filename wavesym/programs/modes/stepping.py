@@ -22,10 +22,10 @@ class SteppedModes(ModesScheme):
             while len(self._marks) <= block:  # each adds the mark of the next one
                 self.states(len(self._marks) - 1, (len(self._marks) - 1) * self.BLOCK)
             end = min(first + self.BLOCK, len(self._time) - 1)
-            stepped = self._step_states(self._marks[block], first, end)
+            states = self._step_states(self._marks[block], first, end)
             if len(self._marks) == block + 1 and end == first + self.BLOCK:
-                self._marks.append(stepped[-1])
-            self._last_block = block, stepped
+                self._marks.append(states[-1])
+            self._last_block = block, states
         return self._last_block[1][: last - first + 1]
 
     @property
