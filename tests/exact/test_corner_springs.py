@@ -137,7 +137,6 @@ def test_the_rest_of_a_spring_on_the_wrong_side_is_seen(monkeypatch: pytest.Monk
         ({"spring": 4, "gap": [1, 0]}, r"gap: a list is not in order"),
         ({"spring": 4, "yield": [1, -2]}, r"yield: a list has a negative number"),
         ({"spring": 4, "yield": 1, "only": "pull"}, r"yield: not together with only"),
-        ({"spring": 4, "only": "push", "dashpot": 1}, r"dashpot: with only it would act only while the spring does"),
         ({"spring": 4, "yield": [1, 2, 3]}, r"yield: a list are 3 numbers; write two"),
     ],
 )

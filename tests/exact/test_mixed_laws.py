@@ -32,6 +32,7 @@ LAWS: dict[str, Any] = {
     "contact": "contact",
     "gap": {"spring": 4, "gap": ["-1/8", "1/4"]},
     "push": {"spring": 4, "only": "push"},
+    "push, dashpot": {"spring": 4, "only": "push", "gap": "1/8", "dashpot": "1/5"},
     "yield": {"spring": 4, "yield": "1/8"},
     "friction": {"friction": "3/10"},
     "friction, dashpot": {"friction": "3/10", "dashpot": "1/5"},

@@ -237,6 +237,15 @@ def damped_chain(seed: int) -> dict[str, Any]:
     return table
 
 
+def engaging_chain(seed: int, draw: Mix | None = None) -> dict[str, Any]:
+    """One with dashpots that act while springs with gaps do; drawn otherwise, by default, as with friction alone."""
+    table, choose = (draw or seeded)(seed), Random(seed).choice
+    for part in table["system"]["parts"]:
+        if "only" in part or "gap" in part:
+            part["dashpot"] = choose(["1/5", "1", "3/2", 20])
+    return table
+
+
 def closed_chain(seed: int) -> dict[str, Any]:
     """One whose energy goes where it slides or yields, and nowhere else."""
     table = seeded(seed)

@@ -129,7 +129,7 @@ class PiecewiseChain:
         return total
 
     def dissipated(self) -> list[arb]:
-        """What each corner has taken by sliding or yielding, in the order of the text."""
+        """What each corner has taken by sliding or yielding, or its dashpot meanwhile, in the order of the text."""
         return list(self._dissipated)
 
     # time
@@ -194,6 +194,8 @@ class PiecewiseChain:
                 branch = self._on[number]
                 if branch.sign:
                     self._dissipated[number] += branch.rest * rate.integral()(arb(last))
+                elif branch.dashpot:
+                    self._dissipated[number] += branch.dashpot * (rate * rate).integral()(arb(last))
         for corner, branch, stretch in zip(made.corners, self._on, self._stretches(), strict=True):
             corner.law.keep(branch, stretch)
         return [(number, now + last) for number, time in first.items() if time <= last + SAME]

@@ -16,6 +16,7 @@ from tests.support.cornered import (
     Mix,
     breaking_chain,
     damped_chain,
+    engaging_chain,
     friction_beside_contacts,
     light_friction,
     sliding_chain,
@@ -31,7 +32,7 @@ from wavesym.verification.independent import independent_model
 from wavesym.verification.invariants import Balancing
 from wavesym.verification.midpoint import MidpointGrid
 from wavesym.verification.outcome import REFUSED, Outcome
-from wavesym.verification.problem import Change, corner_problem, match_all
+from wavesym.verification.problem import Change, LinkLaw, corner_problem, match_all
 from wavesym.verification.reference import ReferenceOutputs, known_outputs
 
 CHECKS = (integrations.midpoints, integrations.differences, integrations.corner_changes, checks.invariants)
@@ -72,6 +73,32 @@ def test_drawn_chains_pass_every_check(seed: int) -> None:
         outcomes = judged(check(seen))
         assert outcomes
         assert all(outcome.passed for outcome in outcomes)
+
+
+@pytest.mark.quick(1)
+@pytest.mark.parametrize("seed", [30, 33])
+def test_dashpots_that_act_while_springs_do_pass_every_check(seed: int) -> None:
+    seen = known(engaging_chain(seed))
+    for check in CHECKS:
+        assert all(outcome.passed for outcome in judged(check(seen)))
+
+
+def test_a_stop_that_lets_go_where_it_would_pull_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Release at no force in place of at the gap: another law, which both integrators follow here."""
+    body, stop = {"mass": 1, "velocity": 1, "name": "a"}, {"spring": 4, "only": "push", "gap": "1/3", "dashpot": 2}
+    parts = [{"rod": 1, "impedance": "1/2", "velocity": 1}, body, stop, "fixed"]
+    output = {"until": 4, "tolerance": 1e-9, "velocity": ["a"]}
+    seen = known({"name": "stopped", "system": {"type": "chain", "parts": parts}, "output": output})
+    push_back = LinkLaw.push_back
+    assert all(outcome.passed for outcome in judged(integrations.midpoints(seen)))
+
+    def never_pull(law: LinkLaw, free: float, compliance: float, step: Any) -> tuple[float, float, float]:
+        force, slope, middle = push_back(law, free, compliance, step)
+        return (force, slope, middle) if force > 0 else (0.0, 0.0, step.share * free + step.rest)
+
+    monkeypatch.setattr(LinkLaw, "push_back", never_pull)
+    for check in (integrations.midpoints, integrations.differences):
+        assert not all(outcome.passed for outcome in judged(check(seen)))
 
 
 @pytest.mark.slow

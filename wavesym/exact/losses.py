@@ -1,4 +1,7 @@
-"""What links lose where they slide or yield: their force then is constant, so that only how far they went is asked."""
+"""What links lose where they slide or yield: their force then is constant, so that only how far they went is asked.
+
+A dashpot that acts with a spring on one side takes c times the square of the rate meanwhile.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,7 @@ from wavesym.mechanics.network import Link
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 
+_BRIEF = 2**64  # longest stretches on which a branch may be left open: on shorter ones a spring may have acted
 _NOTHING = fmpq(1, 10**9)  # of a spring's limit: what it bears until it is certain that it yields without a force
 
 
@@ -27,6 +31,7 @@ _NOTHING = fmpq(1, 10**9)  # of a spring's limit: what it bears until it is cert
 class LinkLoss:
     """A link that rubs or yields: how far that took it until the end, `set`, and the energy `dissipated`, as balls.
 
+    Of a spring on one side, or on both sides of a gap, that is what the dashpot took that acts with it; it has no set.
     What `gives_way` is a spring of which one limit is 0, that yields on this side as soon as it is loaded, and never on
     the other.
     """
@@ -38,7 +43,7 @@ class LinkLoss:
 
 
 def losses(model: Model, solved: Model | None = None) -> tuple[LinkLoss, ...]:
-    """Those of all links with friction or a spring that yields that can reach an output, up to the horizon.
+    """Those of all links that can reach an output, up to the horizon: friction, springs that yield, engaged dashpots.
 
     `solved` is the same with more outputs, where what its links do is known already.
     CostError, GrazingError as in `events`.
@@ -46,23 +51,53 @@ def losses(model: Model, solved: Model | None = None) -> tuple[LinkLoss, ...]:
     until = rational(model.horizon())
     links = {n: model.network.links[n] for n in model.contacts(until)}
     losing = {n: link for n, link in links.items() if link.friction != 0 or link.limits is not None}
+    damped = {n: link for n, link in links.items() if link.side != 0 and link.damping != 0}
     solved = solved or model
-    known = contact_schedule(solved, until) if losing else None
+    known = contact_schedule(solved, until) if losing or damped else None
     if known is None:
         return ()
-    probes = {point: _displacement(model, point) for link in losing.values() for point in (link.left, link.right)}
+    probes = {
+        (quantity, point): _probe(model, quantity, point)
+        for quantity, some in (("displacement", losing), ("velocity", damped))
+        for link in some.values()
+        for point in (link.left, link.right)
+    }
     motion = Motion(solved.watching([*solved.probes, *probes.values()]), until)
     with ctx.workprec(bits := motion.first_bits):
-        where = {point: Balls(motion.segments(probe, bits)) for point, probe in probes.items()}
-        found = []
-        for n, link in losing.items():
+        seen = {key: Balls(motion.segments(probe, bits)) for key, probe in probes.items()}
+        found: list[LinkLoss] = []
+        for n, link in links.items():
             stages = known.stages[model.network.joint_of[link.left]]
-            stretch = _Stretch(where[link.left], where[link.right], link.ratio)
+            if n in damped:
+                rate = _Rate(seen["velocity", link.left], seen["velocity", link.right], link.ratio)
+                work = arb(link.damping) * _engaged_square(n, stages, until, rate, known.vague * _BRIEF)
+                other = found.pop() if found and _is_other_side(found[-1].link, link) else None
+                found.append(LinkLoss(link, arb(0), work + (other.dissipated if other else 0)))
+            if n not in losing:
+                continue
+            stretch = _Stretch(seen["displacement", link.left], seen["displacement", link.right], link.ratio)
             slides = _slides(n, stages, until)
             before = [stage.start for stage in stages if slides and stage.start <= slides[0][1]]
             gives_way = all(_bears_nothing(link, sign) for sign, *_ in slides) and _is_unstrained(link, stretch, before)
             found.append(replace(_loss(link, slides, stretch), gives_way=gives_way))
         return tuple(found)
+
+
+class _Rate(NamedTuple):
+    """How fast a link gets longer, by the velocities of its ends."""
+
+    left: Balls
+    right: Balls
+    ratio: fmpq
+
+    def square(self, low: fmpq, high: fmpq) -> arb:
+        """The integral of its square from one instant to another."""
+        starts = (segment.start for balls in (self.left, self.right) for segment in balls.segments)
+        total = arb(0)
+        for start, end in pairwise(sorted({low, high, *(start for start in starts if low < start < high)})):
+            rate = self.right.polynomial_from(start) - arb(self.ratio) * self.left.polynomial_from(start)
+            total += (rate * rate).integral()(arb(end - start))
+        return total
 
 
 class _Stretch(NamedTuple):
@@ -76,9 +111,25 @@ class _Stretch(NamedTuple):
         return self.right.evaluate(tau) - arb(self.ratio) * self.left.evaluate(tau)
 
 
-def _displacement(model: Model, point: int) -> Probe:
-    at = gauge_at("displacement", model.network, point)
-    return Probe(f"displacement of {point}", "displacement", at.rod, at.place, at.point)
+def _probe(model: Model, quantity: str, point: int) -> Probe:
+    at = gauge_at(quantity, model.network, point)
+    return Probe(f"{quantity} of {point}", quantity, at.rod, at.place, at.point)
+
+
+def _is_other_side(one: Link, other: Link) -> bool:
+    """Whether two springs are those of one gap."""
+    return one.side != 0 and (one.left, one.right, -one.side) == (other.left, other.right, other.side)
+
+
+def _engaged_square(number: int, stages: Sequence[Stage], until: fmpq, rate: _Rate, brief: fmpq) -> arb:
+    """The integral of the square of a rate while a spring acts, which it may also do while it idles `brief`ly."""
+    ends, total = [*(stage.start for stage in stages), until], arb(0)
+    for stage, (low, high) in zip(stages, pairwise(ends), strict=True):
+        if number in stage.closed_links and low < high:
+            total += rate.square(low, high)
+        elif low < high <= low + brief:
+            total += rate.square(low, high).union(arb(0))
+    return total
 
 
 def _slides(number: int, stages: Sequence[Stage], until: fmpq) -> list[tuple[int, fmpq, fmpq]]:

@@ -109,7 +109,8 @@ class Link:
     Where it has `friction` R it has neither, too: its sides stick while it takes no more than R to hold them, else it
     takes R against their sliding (Coulomb); where `breakaway` is not 0, it holds them while it takes no more than that,
     which is larger. With a `side` its spring only pulls (1) or only pushes (-1), where it is
-    longer, or shorter, than at tau = 0 by more than `gap`. With `limits` its spring yields: the largest pull and push.
+    longer, or shorter, than at tau = 0 by more than `gap`: it acts then, and so does its dashpot, which has a force of
+    either sign. With `limits` its spring yields: the largest pull and push.
     `preload` is what a spring pulls at tau = 0, where no gap says it. `place` is what a scene calls it.
     """
 
@@ -136,6 +137,11 @@ class Link:
     def is_spring_with_corner(self) -> bool:
         """Whether it is a spring that acts on one side alone, or that yields."""
         return self.side != 0 or self.limits is not None
+
+    @property
+    def steady_damping(self) -> fmpq:
+        """Its dashpot, where that acts all the time."""
+        return _ZERO if self.side != 0 else self.damping
 
     @property
     def law(self) -> str:

@@ -24,7 +24,7 @@ Stated = TypeVar("Stated", bound=Problem)
 def network_problem(model: Model, kind: type[Stated]) -> Stated:
     """State the problem of a model, contacts and modal damping included, as a `kind` of Problem.
 
-    Of links with other laws that have corners it has the dashpots alone.
+    Of links with other laws that have corners it has the dashpots alone, as far as they act all the time.
     """
     network = model.network
     points, bars = network.points, network.bars
@@ -36,7 +36,7 @@ def network_problem(model: Model, kind: type[Stated]) -> Stated:
             gaps.append(nearest(link.gap))
             parting.append(pair)
             continue
-        damping = damping + nearest(link.damping) * np.outer(pair, pair)
+        damping = damping + nearest(link.steady_damping) * np.outer(pair, pair)
         if not link.has_corner:
             stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
     events = tuple(_load_events(model))

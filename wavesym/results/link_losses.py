@@ -35,13 +35,14 @@ class MeasuredQuantity(NamedTuple):
 
 
 class LinkSummary(NamedTuple):
-    """A link with friction, or a spring that yields (`law`), at a `place` as the scene calls it, `between` two points.
+    """A link with friction or a spring with a corner (`law`), at a `place` as the scene calls it, `between` two points.
 
-    Points are called by their names, else by their places: links at one place differ in them, or in their laws.
-    `set` is how far it slid or yielded until the end of the horizon, lengthening it (or, of friction, along x) where
-    that is positive; `dissipated` the energy that this took, without that of a dashpot beside it. Both are right to
-    rounding. The `note` is a sentence on a spring that yielded without a force as soon as it was loaded, and never with
-    one; empty of all others.
+    Points are called by their names, else by their places: links at one place differ in them, or in their laws. `set`
+    is how far it slid or yielded until the end of the horizon, lengthening it (or, of friction, along x) where that is
+    positive; `dissipated` the energy that this took, without that of a dashpot beside it. Of a spring that has a gap,
+    or only pulls or pushes, `set` is 0 and `dissipated` what the dashpot took that acts with it; without one it is not
+    told of. Both are right to rounding. The `note` is a sentence on a spring that yielded without a force as soon as it
+    was loaded, and never with one; empty of all others.
     """
 
     place: str

@@ -191,7 +191,8 @@ class _Pen:
         self.paths[ground] = at
         self.places[len(self.links)] = place
         linear = {} if part.has_law else {"spring": Fraction(0)}  # which the point has
-        self._link(part.model_copy(update={"dashpot": Fraction(0), **linear}), ground, point, Fraction(1))
+        steady = {} if part.sides else {"dashpot": Fraction(0)}
+        self._link(part.model_copy(update=linear | steady), ground, point, Fraction(1))
 
     def _wheel(self, point: int, part: ChainPart | str, ratio: Fraction, at: Keys) -> None:
         """What stands first in a branch turns with its node, `ratio` times as fast: the node has all of it."""
@@ -273,7 +274,8 @@ class _Pen:
                 self.default_velocities[point] = at
             velocity = part.velocity if part.velocity is not None else min(velocities, default=Fraction(0))
             spring = Fraction(0) if part.has_law else part.spring
-            mass, damping, stiffness = map(rational, (part.inertia, part.dashpot, spring))
+            dashpot = Fraction(0) if part.sides else part.dashpot
+            mass, damping, stiffness = map(rational, (part.inertia, dashpot, spring))
             self.points[point] = Point(mass, damping, stiffness, rational(velocity), name=part.name or "")
         elif isinstance(part, MotionPart):
             start = rational(part.velocity)
@@ -298,7 +300,7 @@ class _Pen:
             held = any(number in (bar.left, bar.right) for bar in self.bars)
             if point.damping != 0 or point.mass != 0 or point.motion is not None or held:
                 return True
-            ties = [{link.left, link.right} for link in self.links if link.damping != 0]
+            ties = [{link.left, link.right} for link in self.links if link.steady_damping != 0]
             beside = set().union(*(tie for tie in ties if number in tie)) - seen
             seen |= beside
             coming += beside

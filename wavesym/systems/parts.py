@@ -83,7 +83,8 @@ class ChainPart(SceneTable):
 class SpringLaw(SceneTable):
     """A spring, a dashpot and friction, and what the spring does beyond being linear: it acts on one side, or yields.
 
-    A dashpot beside one that yields acts all the time, with all its force.
+    A dashpot beside one that yields acts all the time, with all its force; beside one that acts on one side, or has a
+    gap, only while the spring acts.
     """
 
     spring: NotNegative = Fraction(0)
@@ -118,12 +119,6 @@ class SpringLaw(SceneTable):
         if self.spring == 0:
             raise refusal("a law of a spring, and there is none; write spring = K too", written[0])
         self._check_preload()
-        if self.dashpot != 0 and (self.only is not None or self.gap is not None):
-            raise refusal(
-                f"with {written[0]} it would act only while the spring does, and its force would jump, which is not "
-                "served; leave it out, or write it at a node of its own",
-                "dashpot",
-            )
         if self.yields is not None and (self.only is not None or self.gap is not None):
             raise refusal(f"not together with {written[0]}; leave one of them out", "yield")
         if self.gap is not None and self.only is None and not isinstance(self.gap, tuple):

@@ -317,8 +317,9 @@ def _point(part: Any, beside: Sequence[Any]) -> Node:
     if isinstance(part, PointPart):
         velocity = part.velocity if part.velocity is not None else rods[0].velocity if rods else 0
         spring = 0 if part.has_law else part.spring
-        mass, dashpot, stiffness = map(rational, (getattr(part, "mass", 0), part.dashpot, spring))
-        sprung = _springs(part, Fraction(0)) if part.has_law else ()
+        steady, engaged = (0, part.dashpot) if part.sides else (part.dashpot, Fraction(0))
+        mass, dashpot, stiffness = map(rational, (getattr(part, "mass", 0), steady, spring))
+        sprung = _springs(part, engaged) if part.has_law else ()
         return Node(
             Point(mass, dashpot, stiffness, rational(velocity), name=part.name or ""), (*sprung, *_friction(part))
         )

@@ -206,12 +206,18 @@ def _pulls(
     pulls, pull, before = np.zeros(len(longer)), law.preload, 0.0
     for k in order.tolist():
         if law.side:
-            pull = law.limit(law.stiffness * (longer[k] - law.side * law.gap))
+            pull = law.limit(law.side * law.stiffness * law.excess(longer[k]))
         else:
             pull = law.limit(pull + law.stiffness * (longer[k] - before))
         before, pulls[k] = longer[k], pull
     wrong = max(float(np.max(np.abs(row) @ each.error)) for each in known)
-    return BoundedValues(pulls[: len(rates.value)], np.full(len(rates.value), 2 * law.stiffness * wrong))
+    errors = np.full(len(rates.value), 2 * law.stiffness * wrong)
+    if law.dashpot:
+        beyond = law.side * longer[: len(rates.value)] - law.gap
+        pulls[: len(rates.value)] += law.dashpot * np.where(beyond > 0, rates.value, 0.0)
+        unsure = np.where(np.abs(beyond) > wrong, 0.0, np.abs(rates.value))
+        errors += law.dashpot * (rates.error + unsure)
+    return BoundedValues(pulls[: len(rates.value)], errors)
 
 
 class _Books:

@@ -15,7 +15,7 @@ from operator import mul
 import numpy as np
 
 from wavesym.numbers.arrays import Array
-from wavesym.verification.problem import BranchChange, CornerProblem, LinkLaw
+from wavesym.verification.problem import BranchChange, CornerProblem, LinkLaw, OneSidedStep
 
 # pulls of links are found as exactly as this, relative to the largest, and as rates are rounded
 _EXACT, _NOISE = 1e-15, 4e-16
@@ -45,14 +45,15 @@ class _Spring:
     def mean(self, rate: float, longer: float, compliance: float, h: float) -> tuple[float, float]:
         """Its mean pull in a step, where it gets longer at a `rate` without: less by `compliance` times the pull."""
         law, stiff = self.law, self.law.stiffness * h / 2
-        slope = stiff / (1 + stiff * compliance)
         if law.side:
-            self.trial = law.stiffness * (longer + h / 2 * rate - law.side * law.gap) / (1 + stiff * compliance)
-            pull, mean = self.trial, law.limit(self.trial)
-        else:
-            self.trial = 2 * (self.pull + stiff * rate) / (1 + stiff * compliance) - self.pull
-            pull, mean = (self.pull + self.trial) / 2, (self.pull + law.limit(self.trial)) / 2
-        return mean, slope if mean == pull else 0.0
+            before = law.excess(longer)
+            step = OneSidedStep(h, before, 1 / 2, before / 2)
+            force, slope, middle = law.push_back(before + h * law.side * rate, h * compliance, step)
+            self.trial = law.side * law.stiffness * middle
+            return law.side * force, h * slope
+        self.trial = 2 * (self.pull + stiff * rate) / (1 + stiff * compliance) - self.pull
+        pull, mean = (self.pull + self.trial) / 2, (self.pull + law.limit(self.trial)) / 2
+        return mean, stiff / (1 + stiff * compliance) if mean == pull else 0.0
 
     def finish(self) -> None:
         """Go on to the next step."""

@@ -63,14 +63,26 @@ def match_all(found: Sequence[Sequence[Change]]) -> KnownChanges | None:
     return None
 
 
+class OneSidedStep(NamedTuple):
+    """A step of so much time; beyond its gap a spring is by `before` at first, by `share` times s + `rest` on average.
+
+    That is what its own pull follows, and s is by how much it is beyond at the end.
+    """
+
+    length: float
+    before: float
+    share: float
+    rest: float
+
+
 @dataclass(frozen=True)
 class LinkLaw:
     """Friction, or a spring with a corner, between two points: its pull depends on how much longer it gets.
 
     That is `row` @ displacements; it pulls on the points by `row` transposed. `corner` is its number among the links
     with corners. Friction takes `friction` either way, at rest up to `rest`. A spring has a `stiffness`; with a `side`
-    it acts where it is longer (1) or shorter (-1) by more than `gap`, else it yields at the largest `pull` and `push`,
-    and pulls with its `preload` at first.
+    it acts where it is longer (1) or shorter (-1) by more than `gap`, and a `dashpot` with it; else it yields at the
+    largest `pull` and `push`, and pulls with its `preload` at first.
     """
 
     corner: int
@@ -78,6 +90,7 @@ class LinkLaw:
     friction: float
     rest: float
     stiffness: float
+    dashpot: float
     side: int
     gap: float
     pull: float
@@ -92,7 +105,9 @@ class LinkLaw:
         rest = max(link.friction, link.breakaway)
         of_friction = nearest(link.friction), nearest(rest)
         stiffness, gap, preload = map(nearest, (link.stiffness, link.gap, link.preload))
-        return cls(corner, opening(network, link), *of_friction, stiffness, link.side, gap, pull, push, preload)
+        dashpot = nearest(link.damping - link.steady_damping)
+        row = opening(network, link)
+        return cls(corner, row, *of_friction, stiffness, dashpot, link.side, gap, pull, push, preload)
 
     @cached_property
     def limits(self) -> tuple[float, float]:
@@ -107,6 +122,32 @@ class LinkLaw:
         if self.friction and not least <= pull <= most:
             return copysign(self.friction, pull)
         return min(max(pull, least), most)
+
+    def excess(self, longer: float) -> float:
+        """How far beyond its gap a spring on one side is that has got so much longer."""
+        return self.side * longer - self.gap
+
+    def push_back(self, free: float, compliance: float, step: OneSidedStep) -> tuple[float, float, float]:
+        """The mean force of a spring on one side in a step, towards its gap; its slope over `free`; where it acts at.
+
+        With s beyond its gap it is K s + c s' where s > 0: the mean of the second is that of how fast max(s, 0) grows,
+        whatever happens within the step. So it never falls as s at the end gets larger, and there is one solution.
+
+        Args:
+            free: s at the end of the step without its force, which is less by `compliance` for each unit of force.
+            compliance: that.
+            step: what its force is made of.
+        """
+        stiffness, dashpot, before = self.stiffness, self.dashpot / step.length, max(step.before, 0.0)
+
+        def force(end: float) -> float:
+            return stiffness * max(step.share * end + step.rest, 0.0) + dashpot * (max(end, 0.0) - before)
+
+        acts, ends = (at + compliance * force(at) < free for at in (-step.rest / step.share, 0.0))
+        slope = acts * stiffness * step.share + ends * dashpot
+        constant = acts * stiffness * step.rest - dashpot * before
+        found = (slope * free + constant) / (1 + compliance * slope)
+        return found, slope / (1 + compliance * slope), step.share * (free - compliance * found) + step.rest
 
     @property
     def first(self) -> int:

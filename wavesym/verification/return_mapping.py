@@ -18,7 +18,7 @@ from wavesym.methods.elements import keep_places
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.verification.link_pulls import find_pulls
-from wavesym.verification.problem import CornerProblem, LinkLaw
+from wavesym.verification.problem import CornerProblem, LinkLaw, OneSidedStep
 
 REACH = 4
 """Steps before and after an instant, and cells beside a place, that what is read there rests on."""
@@ -44,7 +44,7 @@ def integrate_differences(problem: CornerProblem, step: Fraction, instants: NDAr
     h = float(step)
     grid = Grid(problem, np.array([int(delay / step) for delay in problem.delays]), h)
     steps = int(instants[-1]) + 1
-    motion = fields(grid, point_steps(problem, h, steps), _ReturnMapping(problem).settle)
+    motion = fields(grid, point_steps(problem, h, steps), _ReturnMapping(problem, h).settle)
     kept, stencils = keep_places([grid.stencil(reading) for reading in problem.readings])
     history, largest, rows = np.zeros((steps + 1, len(kept))), 0.0, []
     for row, field in zip(history[1:], motion, strict=False):
@@ -70,10 +70,12 @@ class _ReturnMapping:
     """What links pull, step by step: that of a spring which yields goes on from its pull a step before.
 
     A spring is as long in a step as those without a law are (`point_steps`): else it swings up where nothing has mass.
+    Forces are means from one step before to one after, in the first step over that.
     """
 
-    def __init__(self, problem: CornerProblem) -> None:
+    def __init__(self, problem: CornerProblem, h: float) -> None:
         self._laws = laws = problem.laws
+        self._h, self._span = h, h
         self._rows = np.array([law.row for law in laws])
         self._ways: list[float] = np.sign(self._rows @ problem.velocity).tolist()
         self._longer, self._pulls = [0.0] * len(laws), [law.preload for law in laws]
@@ -96,8 +98,13 @@ class _ReturnMapping:
                 held = (free - passed[number]) / compliance
                 pull = _rub(law, self._ways[number], held)[0]
                 return pull, 1 / compliance if pull == held else 0.0
-            kept = 0.0 if law.side else earlier[number] - law.stiffness * self._longer[number]
-            trial = kept + law.stiffness * ((free + known[number]) / 4 - law.side * law.gap)
+            if law.side:
+                rest = (law.side * known[number] - 3 * law.gap) / 4
+                step = OneSidedStep(self._span, law.excess(passed[number]), 1 / 4, rest)
+                force, slope, _ = law.push_back(law.excess(free), compliance, step)
+                return law.side * force, slope
+            kept = earlier[number] - law.stiffness * self._longer[number]
+            trial = kept + law.stiffness * (free + known[number]) / 4
             softer = 1 + law.stiffness * compliance / 4
             pull = law.limit(trial / softer)
             return pull, law.stiffness / (4 * softer) if pull == trial / softer else 0.0
@@ -110,7 +117,7 @@ class _ReturnMapping:
                 held = pulls[number] + (length - passed[number]) / self._coupling[number][number]
                 self._ways[number] = _rub(law, self._ways[number], held)[1]
             self._longer[number] = (length + known[number]) / 4
-        self._pulls = pulls
+        self._pulls, self._span = pulls, 2 * self._h
         return after
 
 

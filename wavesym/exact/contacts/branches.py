@@ -66,6 +66,11 @@ class Corner(ABC):
         """The signs with which it may slide where it is not closed; 0 of what does not rub."""
         return (0,)
 
+    @property
+    def late(self) -> fmpq:
+        """How long it has been open which branch it is on, where it is on none meanwhile."""
+        return fmpq(0)
+
     @abstractmethod
     def begins(self, moved: JointStretch) -> bool:
         """Whether its branch on a stretch is certainly right just after the start."""

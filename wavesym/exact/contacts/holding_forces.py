@@ -85,7 +85,7 @@ class HoldingForces:
         for k, factor in push:
             terms += scale_terms(forces[k], -factor)
             for j in cluster.points:
-                terms += scale_terms(velocities[j], factor * self._law.damping[k][j])
+                terms += scale_terms(velocities[j], factor * cluster.joint_law.damping[k][j])
         return terms
 
     def _add_springs(
@@ -108,6 +108,19 @@ class HoldingForces:
             for j, place in (places or {}).items()
         ]
         return add_terms([*pull, *exact])
+
+    def of_all_springs(
+        self, cluster: Cluster, places: JointMotion | Mapping[int, fmpq_poly] | None
+    ) -> dict[int, Enclosure]:
+        """What springs pull at each point of a cluster, at these places."""
+        if isinstance(places, JointMotion):
+            return {k: self.of_springs(cluster, places, k) for k in cluster.points}
+        return {
+            k: Enclosure.from_polynomial(
+                sum((cluster.joint_law.stiffness[k][j] * place for j, place in (places or {}).items()), fmpq_poly())
+            )
+            for k in cluster.points
+        }
 
     def of_springs(
         self, cluster: Cluster, motion: JointMotion, k: int, onsets: Mapping[int, Onset] = MappingProxyType({})

@@ -33,6 +33,11 @@ class JointSprings:
     def __bool__(self) -> bool:
         return bool(self.of_link)
 
+    @property
+    def have_dashpots(self) -> bool:
+        """Whether dashpots act with some of them."""
+        return any(spring.dashpot != 0 for spring in self.of_link.values())
+
     def take(self, moved: JointStretch) -> None:
         """Go on to the end of a stretch."""
         self._state |= moved.springs
@@ -47,12 +52,8 @@ class JointSprings:
         closed: Closed,
         sliding: Sliding,
         points: Mapping[int, PointState],
-        unknown: Mapping[int, arb],
     ) -> None:
-        """Add to forces on points what springs pull, besides what displacements of points make of it.
-
-        Their forces are `unknown` by so much.
-        """
+        """Add to forces on points what springs pull, besides what displacements of points make of it."""
         for n, spring in self.of_link.items():
             sign = sliding_sign(n, sliding)
             if n in closed:
@@ -60,8 +61,12 @@ class JointSprings:
             else:
                 constant = spring.pull(sign) if sign else fmpq(0)
             spring.add_pull(forces, [(constant, UNIT)] if constant != 0 else [])
-            if (force := unknown.get(n, arb(0))) != 0:
-                spring.add_pull(forces, [(fmpq(1), Enclosure(arb_poly(), force))])
+
+    def add_unknown(self, forces: list[Terms], unknown: Mapping[int, arb]) -> None:
+        """Add what springs pull besides, which is known to be no more than this."""
+        for n, force in unknown.items():
+            if force != 0:
+                self.of_link[n].add_pull(forces, [(fmpq(1), Enclosure(arb_poly(), force))])
 
     def strain(
         self,
@@ -77,6 +82,9 @@ class JointSprings:
             stretch = self._stretch(spring, state, cluster.points, displacements)
             if stretch.exact is None and state.exact is not None:
                 stretch = replace(stretch, onset=state.onset(spring.rate(result.velocities)))
+            if stretch.exact is None and spring.dashpot != 0:  # of what has just engaged it is known more closely
+                grown = state.grow(spring.rate(result.velocities), result.length)
+                stretch = grown if grown.error < stretch.error else stretch
             moving = acting_motion(spring, stretch)
             result.spring_motions[n] = moving
             result.springs[n] = replace(moving.at_end(result.length), shift=state.shift)
@@ -104,6 +112,22 @@ class JointSprings:
         polynomial = arb_poly(series[spring.right]) - arb(spring.ratio) * arb_poly(series[spring.left])
         error = (displacements.spring_error / arb(spring.stiffness).sqrt()).upper()
         return Enclosure(polynomial + arb(state.shift_known), error)
+
+    def doubts(self, moved: JointStretch) -> dict[int, arb]:
+        """Of springs with dashpots those that may be on the other branch: how wrong their forces are without these."""
+        damped = [n for n, spring in self.of_link.items() if spring.dashpot != 0]
+        wrong = self.wrong_forces(moved) if damped else {}
+        return {n: wrong[n] for n in damped if wrong[n] != 0}
+
+    def follow(self, moved: JointStretch, rates: Mapping[int, Enclosure]) -> None:
+        """Know how these get longer from how fast, which is known more closely than of their points."""
+        for n, rate in rates.items():
+            spring, state = self.of_link[n], self._state[n]
+            moving = idle_motion(spring, state, rate, moved.length)
+            if n in moved.closed_links:
+                moving = acting_motion(spring, state.grow(rate, moved.length))
+            moved.spring_motions[n] = moving
+            moved.springs[n] = replace(moving.at_end(moved.length), shift=moved.springs[n].shift)
 
     def wrong_forces(self, moved: JointStretch) -> dict[int, arb]:
         """How wrong the force of each may be on a stretch, as the true motion may be on another branch."""

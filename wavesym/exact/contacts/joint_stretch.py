@@ -51,7 +51,8 @@ class JointStretch:
     bears exp(`swing` length); it is `fleeting` where what decays fast keeps it short, until that has died away. `rests`
     is when friction of masses on the ground certainly has stopped them, if it holds them from then on; what it bears
     may be beyond its limit in `excesses`. `stops` are masses that it stops on the ground, and which way they may be
-    moving yet, unless it may be beyond.
+    moving yet, unless it may be beyond. Where springs have dashpots that act with them, `acting` is what acts on points
+    and is known, `elastic` what springs there pull back, and `doubts` are those that may be on their other branch.
     """
 
     length: fmpq
@@ -70,6 +71,9 @@ class JointStretch:
     rests: dict[int, fmpq] = field(default_factory=dict)
     stops: dict[int, tuple[int, int]] = field(default_factory=dict)
     excesses: set[int] = field(default_factory=set)
+    acting: list[Terms] = field(default_factory=list)
+    elastic: dict[int, Enclosure] = field(default_factory=dict)
+    doubts: frozenset[int] = frozenset()
     swing: fmpq = field(default_factory=fmpq)
     fleeting: bool = False
 

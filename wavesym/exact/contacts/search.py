@@ -21,6 +21,7 @@ from wavesym.exact.contacts.breakaway import Breakaway
 from wavesym.exact.contacts.cluster import Closed, Sliding, subsets
 from wavesym.exact.contacts.cost import Cost
 from wavesym.exact.contacts.course import Course, Doubt
+from wavesym.exact.contacts.engaging import Engaging
 from wavesym.exact.contacts.guards import BranchEnd
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, SwingError
 from wavesym.exact.contacts.spring_branches import OneSided, Yielding
@@ -109,8 +110,11 @@ class Search:
         return any(joint.has_relaxed for joint in self.waves.joints.values())
 
     def known_bits(self) -> float:
-        """To how many bits waves are known, relative to the largest, where they are known least."""
-        stretches = [known for wave in self.waves.sent.values() for known in wave.stretches]
+        """To how many bits waves are known, relative to the largest, where they are known least.
+
+        Stretches do not count that are as short as those on which it may be left open what a contact does.
+        """
+        stretches = [known for wave in self.waves.sent.values() for known in wave.stretches_beyond(self.width)]
         most = max((abs(known.polynomial[0]).upper() for known in stretches), default=arb(0))
         least = max((known.error for known in stretches), default=arb(0))
         return inf if least == 0 or most == 0 else float((most / least).log_base(2))
@@ -132,6 +136,8 @@ class Search:
         link, points = self._network.links[n], self._network.points
         if link.is_spring_with_corner:
             spring = self.waves.joints[number].springs.of_link[n]
+            if spring.dashpot != 0:
+                return Engaging.begin_damped(n, spring, self.waves.joints[number].slowing(n))
             return OneSided.begin(n, spring) if link.side else Yielding.begin(n, spring)
         if link.friction == 0:
             return Contact.begin(n, link.gap)
@@ -246,7 +252,8 @@ class Search:
             contact.take(moved)
             if contact.branch != before and (start > 0 or not contact.branch.closed):  # else it does so from the start
                 doubt = course.doubt
-                low = doubt.low if doubt is not None and doubt.high == start else start - course.late
+                late = max(course.late, contact.late)
+                low = doubt.low if doubt is not None and doubt.high == start else start - late
                 self.changes.append(Change(contact.link, before, contact.branch, low, start))
                 lately = self._lately.setdefault(contact.link, deque(maxlen=CHATTER))
                 lately.append(start)
@@ -274,6 +281,8 @@ class Search:
             moved = self._move(course, start, limit - start, closed, sliding, trial=True)
             if all(contact.begins(moved) for contact in course.contacts):
                 moved, end = self._cut(course, start, moved, fmpq(0))
+                if moved.doubts and not all(contact.lasts(moved, moved.length) for contact in course.contacts):
+                    return None  # a force that is not known may end another branch
                 return (moved, end) if end is None or end.length > 0 else None
         return None
 

@@ -19,7 +19,8 @@ from wavesym.exact.joints.enclosure import Enclosure
 
 _CLOSE = 64  # resolutions: a stretch is not shortened to less
 _NEAR = arb(2) ** -64
-_FINER = 2**112  # than what contacts are known by
+FINER = 2**112
+"""Finer than what contacts are known by."""
 _TURNED = 2**32  # errors: what yielded comes back at a rate that was known less closely than it is now
 
 
@@ -48,7 +49,7 @@ class _SpringCorner(Corner):
 
         What is not known of a force counts on all of a stretch: so those on which something is are short.
         """
-        resolution = resolution / _FINER
+        resolution = resolution / FINER
         falls = [certain_fall(each, low, moved.length, resolution) for each in moved.spring_motions[self.link].guards]
         first = min((fall for fall in falls if fall is not None), key=lambda fall: fall[1], default=None)
         clears = moved.spring_motions[self.link].clears if low == 0 else ()

@@ -13,7 +13,7 @@ it begins to act, r, is energy not known, K r^2 / 2, which grows no more while i
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
@@ -41,7 +41,7 @@ class CornerSpring:
     """A spring with a corner between two points of a joint, told by their places in it; right moves `ratio` times left.
 
     `rest` is how much longer it is than at tau = 0 where it has no force. One that yields is longer than without force
-    by `start` at first.
+    by `start` at first. A `dashpot` acts while the spring does, on one side.
     """
 
     left: int
@@ -52,13 +52,15 @@ class CornerSpring:
     gap: fmpq
     limits: tuple[fmpq, fmpq]
     start: fmpq
+    dashpot: fmpq = field(default_factory=fmpq)
 
     @classmethod
     def from_link(cls, link: Link, place: Mapping[int, int]) -> CornerSpring:
         """That of a link, where points have these places."""
         limits = link.limits or (fmpq(0), fmpq(0))
         start = link.preload / link.stiffness
-        return cls(place[link.left], place[link.right], link.ratio, link.stiffness, link.side, link.gap, limits, start)
+        left, right, dashpot = place[link.left], place[link.right], link.damping - link.steady_damping
+        return cls(left, right, link.ratio, link.stiffness, link.side, link.gap, limits, start, dashpot)
 
     @property
     def rest(self) -> fmpq:
@@ -82,9 +84,13 @@ class CornerSpring:
             return right.exact[1] - self.ratio * left.exact[1], True
         return middle(right.displacement) - self.ratio * middle(left.displacement), False
 
-    def rate(self, velocities: Mapping[int, Terms]) -> Enclosure:
+    def rate_terms(self, velocities: Mapping[int, Terms]) -> Terms:
         """How fast it gets longer."""
-        return add_terms([*velocities[self.right], *scale_terms(velocities[self.left], -self.ratio)])
+        return [*velocities[self.right], *scale_terms(velocities[self.left], -self.ratio)]
+
+    def rate(self, velocities: Mapping[int, Terms]) -> Enclosure:
+        """The same, added up."""
+        return add_terms(self.rate_terms(velocities))
 
     def add_pull(self, forces: list[Terms], terms: Terms) -> None:
         """Add what it does to the forces on points, where it pulls with the sum of some terms."""
@@ -120,6 +126,13 @@ class SpringState:
     def onset(self, rate: Enclosure) -> Onset | None:
         """How the stretch goes on at a `rate`, where both are known exactly at first."""
         return None if self.exact is None or rate.begins is None else rate.begins.integral(self.exact)
+
+    def grow(self, rate: Enclosure, length: fmpq) -> Enclosure:
+        """How long it is on a stretch of time, where it gets longer at a `rate`."""
+        if self.exact is not None and rate.exact is not None:
+            return Enclosure.from_polynomial(rate.exact.integral() + self.exact)
+        error = (rate.error * arb(length) + self.error).upper()
+        return Enclosure(rate.polynomial.integral() + self.stretch.mid(), error, onset=self.onset(rate))
 
     @property
     def shift_known(self) -> fmpq:
@@ -182,11 +195,7 @@ def acting_motion(spring: CornerSpring, stretch: Enclosure) -> SpringMotion:
 
 def idle_motion(spring: CornerSpring, state: SpringState, rate: Enclosure, length: fmpq) -> SpringMotion:
     """A spring on one side that does not act, and gets longer at a `rate`."""
-    if state.exact is not None and rate.exact is not None:
-        stretch = Enclosure.from_polynomial(rate.exact.integral() + state.exact)
-    else:
-        error = (rate.error * arb(length) + state.error).upper()
-        stretch = Enclosure(rate.polynomial.integral() + state.stretch.mid(), error, onset=state.onset(rate))
+    stretch = state.grow(rate, length)
     return SpringMotion(stretch, (add_terms([(spring.gap, UNIT), (fmpq(-spring.side), stretch)]),))
 
 

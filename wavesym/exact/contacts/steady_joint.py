@@ -19,11 +19,19 @@ from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, Touch, conn
 from wavesym.exact.contacts.cluster_states import ClusterStates
 from wavesym.exact.contacts.friction_stops import FrictionStops
 from wavesym.exact.contacts.holding_forces import HoldingForces
-from wavesym.exact.contacts.joint_springs import JointSprings
+from wavesym.exact.contacts.joint_springs import Displacements, JointSprings
 from wavesym.exact.contacts.joint_stretch import MOST_SWING, JointStretch, PointState, SwingError, sliding_sign
 from wavesym.exact.joints.enclosure import UNIT, Enclosure, Onset, Terms, add_terms, collect, scale_terms, with_bounds
 from wavesym.exact.joints.exact_motion import exact_motion, onsets
-from wavesym.exact.joints.joint_law import JointLaw, bound_sum, forces_on, joint_ends, outgoing_terms, scatter
+from wavesym.exact.joints.joint_law import (
+    JointLaw,
+    bound_sum,
+    exact_sum,
+    forces_on,
+    joint_ends,
+    outgoing_terms,
+    scatter,
+)
 from wavesym.exact.joints.joint_motion import JointMotion
 from wavesym.exact.joints.network_waves import LoadPolynomial
 from wavesym.mechanics.loads import AppliedLoad
@@ -127,11 +135,36 @@ class SteadyJoint(ABC):
         unknown: dict[int, arb] = {}
         for _ in range(_ROUNDS):
             moved = self._move(arriving, start, length, closed, vague, sliding, relaxing, unknown, trial)
-            off = self.springs.wrong_forces(moved)
+            off = self._wrong_forces(moved, arriving)
             if all(force <= unknown.get(n, arb(0)) for n, force in off.items()):
                 return moved
             unknown = {n: (2 * force).upper() for n, force in off.items()}
         raise SwingError(length / _SHORTER)
+
+    def _wrong_forces(self, moved: JointStretch, arriving: Sequence[Enclosure]) -> dict[int, arb]:
+        """How wrong the force of each spring with a corner may be, with the dashpots that act with them."""
+        doubts = self.springs.doubts(moved)
+        rates = self._resolve_doubts(moved, doubts, arriving) if doubts else {}
+        self.springs.follow(moved, rates)
+        off, span = self.springs.wrong_forces(moved), arb(0).union(arb(moved.length))
+        moved.doubts = frozenset(n for n in doubts if off[n] != 0)
+        for n in moved.doubts:
+            off[n] += (arb(self.springs.of_link[n].dashpot) * abs(rates[n].evaluate_on(span))).upper()
+        return off
+
+    @abstractmethod
+    def _resolve_doubts(
+        self, moved: JointStretch, doubts: Mapping[int, arb], arriving: Sequence[Enclosure]
+    ) -> dict[int, Enclosure]:
+        """How fast springs get longer of which it is in doubt whether they act with their dashpots."""
+
+    def slowing(self, n: int) -> fmpq:
+        """How many times as fast a spring gets longer without its dashpot, at most, where what is without mass does."""
+        spring, law = self.springs.of_link[n], self._law_of(frozenset())
+        push = [fmpq(0)] * len(law.mass)
+        push[spring.right], push[spring.left] = _ONE, -spring.ratio
+        given = law.light_velocities(push, {}, exact_sum)
+        return 1 + spring.dashpot * sum((push[k] * velocity for k, velocity in given.items()), fmpq(0))
 
     def _move(
         self,
@@ -148,8 +181,9 @@ class SteadyJoint(ABC):
         """The same, where forces of springs with a corner are `unknown` by so much."""
         acting = [load.polynomial_from(start) for load in self._loads]
         forces = self._add_friction(forces_on(self._ends, arriving, acting), sliding)
-        self.springs.add_pulls(forces, closed, sliding, self._states.of_point, unknown)
-        result = JointStretch(length, closed, vague, sliding, {})
+        self.springs.add_pulls(forces, closed, sliding, self._states.of_point)
+        result = JointStretch(length, closed, vague, sliding, {}, acting=list(forces))
+        self.springs.add_unknown(forces, unknown)
         clusters = self._split(closed, vague)
         for cluster in clusters:
             if any(self.touches[n].left in cluster.points for n in vague):
@@ -279,8 +313,14 @@ class SteadyJoint(ABC):
             result.state |= {k: before.get(k, self._states.of_point[k]).lose(lost) for k in points}
         else:
             raise ArithmeticError("what friction bears has no bound")
-        self.springs.strain(cluster, result, self._states.of_point, places if motion is None else motion)
+        self._strain(cluster, result, places if motion is None else motion)
         self.stops.find_rests(cluster, result)
+
+    def _strain(self, cluster: Cluster, result: JointStretch, places: Displacements | None) -> None:
+        """How springs with a corner get longer; and what all springs pull, where dashpots act with some."""
+        self.springs.strain(cluster, result, self._states.of_point, places)
+        if self.springs.have_dashpots:
+            result.elastic |= self.forces.of_all_springs(cluster, places)
 
     def _less_known(
         self, cluster: Cluster, result: JointStretch, velocities: Mapping[int, Terms], root: arb

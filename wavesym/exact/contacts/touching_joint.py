@@ -14,11 +14,12 @@ from itertools import product
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
+from wavesym.exact.contacts.choices import ChoiceMotions, Choices, any_of, near_first
 from wavesym.exact.contacts.cluster import Closed, Cluster, Sliding, subsets
 from wavesym.exact.contacts.joint_stretch import JointStretch, PointState, sliding_sign
 from wavesym.exact.contacts.steady_joint import SteadyJoint, group_forces, prescribed_terms, rate_terms, series_terms
-from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, one_at_each_instant, scale_terms, with_bounds
-from wavesym.exact.joints.joint_law import JointLaw, exact_sum, scatter
+from wavesym.exact.joints.enclosure import Enclosure, Terms, add_terms, scale_terms, with_bounds
+from wavesym.exact.joints.joint_law import JointLaw, exact_sum, outgoing_terms, scatter
 
 _ONE = fmpq(1)
 _SLACK = fmpq(1, 2**20)
@@ -64,13 +65,15 @@ class TouchingJoint(SteadyJoint):
             pulls = list(forces)
             for k in points:
                 pulls[k] = [*forces[k], (fmpq(-1), self.forces.of_springs(cluster, motion, k))]
-            found, takes = self._try_every_choice(cluster, closed, vague, known, arriving, pulls, span)
-            if tried < _ROUNDS // 2 and any(force.rad() * _CLOSER < taken[n].rad() for n, force in takes.items()):
-                taken |= takes
+            choices = Choices([cluster.joint_law], points, closed, vague, known)
+            found = self._try_every_choice(choices, arriving, pulls, span)
+            if tried < _ROUNDS // 2 and any(force.rad() * _CLOSER < taken[n].rad() for n, force in found.takes.items()):
+                taken |= found.takes
                 continue
-            largest = {n: found.pushes[n].evaluate_on(span).upper().max(arb(0)) for n in pressing}
+            forced = any_of(found.pushes, span)
+            largest = {n: forced[n].evaluate_on(span).upper().max(arb(0)) for n in pressing}
             after = self._states.state_at_end(cluster, motion, prescribed, result.length)
-            faster = self._hidden_rates(cluster, after, found.pushes, result.length)
+            faster = self._hidden_rates(cluster, after, forced, result.length)
             seen = all(rate <= slow.get(k, arb(0)) for k, rate in faster.items())
             if seen and all(largest[n] < bounds[n] or largest[n] == 0 for n in pressing):
                 break
@@ -79,21 +82,21 @@ class TouchingJoint(SteadyJoint):
             bounds |= {n: (largest[n] * arb(1 + _SLACK)).upper() for n in pressing}
         else:
             raise ArithmeticError("the force of a contact has no bound")
-        result.velocities |= found.velocities
+        result.velocities |= {k: [(_ONE, each)] for k, each in any_of(found.velocities, span).items()}
         for k in points:  # what has mass moves like that under every choice, as time goes on
             if (leader := cluster.leader(cluster.group(k))) in known:
                 result.velocities[k] = scale_terms(known[leader], cluster.ratio(k))
-        result.sends |= found.sends
+        result.sends |= any_of(found.sends, span)
         self._bound_sends(cluster, result, closed, vague, arriving, forces)
-        result.rates |= found.rates
-        result.pushes |= found.pushes
+        result.rates |= any_of(found.rates, span)
+        result.pushes |= forced
         result.pushes |= {
             n: force
             for n, force in self.forces.of_cluster(cluster, result, forces, acting, motion, None).items()
             if n in vague
         }
         result.state |= after
-        self.springs.strain(cluster, result, self._states.of_point, motion)
+        self._strain(cluster, result, motion)
         self.stops.lose_excess(cluster, result)
         self.stops.find_rests(cluster, result)
 
@@ -152,60 +155,75 @@ class TouchingJoint(SteadyJoint):
         return law.light_velocities(push, {}, exact_sum)
 
     def _try_every_choice(
-        self,
-        among: Cluster,
-        closed: Closed,
-        vague: Closed,
-        known: Mapping[int, Terms],
-        arriving: Sequence[Enclosure],
-        pulls: Sequence[Terms],
-        span: arb,
-    ) -> tuple[JointStretch, dict[int, arb]]:
-        """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points.
+        self, choices: Choices, arriving: Sequence[Enclosure], pulls: Sequence[Terms], span: arb
+    ) -> ChoiceMotions:
+        """Velocities, rates and forces, over all choices.
 
         And what friction without mass takes: no choice counts under which it would go back, or be beyond its limit.
         """
-        points = among.points
-        velocities: dict[int, list[Enclosure]] = {k: [] for k in points}
-        sends: dict[int, list[Enclosure]] = {n: [] for n, end in enumerate(self._ends) if end.place in points}
-        rates: dict[int, list[Enclosure]] = {}
-        pushes: dict[int, list[Enclosure]] = {}
-        takes: dict[int, arb] = {}
-        for chosen, sliding in self._branches(vague):
-            cluster = Cluster.from_law(among.joint_law, points, self.touches, closed | chosen)
+        points, vague, known = choices.points, choices.vague, choices.known_velocities
+        ends = [n for n, end in enumerate(self._ends) if end.place in points]
+        found = ChoiceMotions({k: [] for k in points}, {n: [] for n in ends}, {n: [] for n in choices.springs})
+        for law, (chosen, sliding) in product(choices.laws, self._branches(vague)):
+            cluster = Cluster.from_law(law, points, self.touches, choices.closed_links | chosen)
             if not _may_join(cluster, known, span):
                 continue
             rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
             rubbed = self._add_friction(pulls, sliding)
             q = scatter(cluster.law, group_forces(cluster, rubbed), rigid)
             moving = {k: scale_terms(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
+            moving |= choices.settled_velocities
             forces = {
                 n: self._friction_force(n, cluster, sliding, moving, rubbed, span) for n in vague if self._rubs_alone(n)
             }
             if any(force is None for force in forces.values()):
                 continue
-            takes |= {n: takes.get(n, force).union(force) for n, force in forces.items() if force is not None}
+            takes = {n: found.takes.get(n, force).union(force) for n, force in forces.items() if force is not None}
+            found.takes |= takes
             for k in points:
-                velocities[k].append(add_terms(moving[k]))
-            for n, each in sends.items():
-                each.append(self._outgoing(n, moving, arriving[n]))
+                found.velocities[k].append(moving[k])
+            for n, sent in found.sends.items():
+                sent.append(outgoing_terms(self._ends[n], moving[self._ends[n].place], arriving[n]))
+            for n, rates in found.spring_rates.items():
+                rates.append(self.springs.of_link[n].rate_terms(moving))
             for n, touch in self.touches.items():
                 if n in cluster.pushes:
-                    force = add_terms(self.forces.pull(cluster, cluster.pushes[n], moving, rubbed))
-                    pushes.setdefault(n, []).append(force)
+                    force = self.forces.pull(cluster, cluster.pushes[n], moving, rubbed)
+                    found.pushes.setdefault(n, []).append(force)
                 elif touch.left in moving and touch.right in moving:
-                    rates.setdefault(n, []).append(add_terms(rate_terms(touch, moving)))
-        result = JointStretch(
-            fmpq(0),
-            closed,
-            vague,
-            frozenset(),
-            {k: [(_ONE, one_at_each_instant(each, span))] for k, each in velocities.items()},
-        )
-        result.sends = {n: one_at_each_instant(each, span) for n, each in sends.items()}
-        result.rates = {n: one_at_each_instant(each, span) for n, each in rates.items()}
-        result.pushes = {n: one_at_each_instant(each, span) for n, each in pushes.items()}
-        return result, takes
+                    found.rates.setdefault(n, []).append(rate_terms(touch, moving))
+        return found
+
+    def _resolve_doubts(
+        self, moved: JointStretch, doubts: Mapping[int, arb], arriving: Sequence[Enclosure]
+    ) -> dict[int, Enclosure]:
+        """How fast springs get longer of which it is in doubt whether they act with their dashpots.
+
+        What has mass moves the same whatever they do, what has none as under one choice of those that act: the force
+        that is not known is that of the dashpots, and makes the velocity smaller that it comes from. Besides these the
+        forces of springs are wrong by their `doubts`. What else follows from velocities is known as closely then.
+        """
+        span, points = arb(0).union(arb(moved.length)), range(len(self.law.mass))
+        pulls = [[*terms, (fmpq(-1), moved.elastic[k])] for k, terms in enumerate(moved.acting)]
+        self.springs.add_unknown(pulls, doubts)
+        acting = self.springs.select(moved.closed_links)
+        touching = moved.closed_links - acting
+        laws = [self._law_of(acting ^ other) for other in subsets(doubts)]
+        together = Cluster.from_law(laws[0], points, self.touches, touching)
+        known = {k: moved.velocities[k] for k in points if self.law.mass[k] != 0 or self.law.motions[k] is not None}
+        settled = {k: moved.velocities[k] for k in points if together.leader(together.group(k)) in known}
+        choices = Choices(laws, points, touching, moved.vague, known, settled, tuple(doubts))
+        found = self._try_every_choice(choices, arriving, pulls, span)
+        if not together.stuck_points:
+            free = {k: ways for k, ways in found.velocities.items() if k not in settled}
+            for k, closer in near_first(free, span).items():
+                if closer.error < add_terms(moved.velocities[k]).error:
+                    moved.velocities[k] = [(_ONE, closer)]
+            pressing = {n: ways for n, ways in found.pushes.items() if self.touches[n].friction == 0}
+            for before, ways in ((moved.sends, found.sends), (moved.rates, found.rates), (moved.pushes, pressing)):
+                close = near_first({n: each for n, each in ways.items() if n in before}, span)
+                before |= {n: each for n, each in close.items() if each.error < before[n].error}
+        return near_first(found.spring_rates, span)
 
     def _rubs_alone(self, n: int) -> bool:
         """Whether what rubs has a side without mass: its joint has no other corner then."""

@@ -49,7 +49,8 @@ class JointLaw:
     def assemble(cls, network: Network, joint: Joint, acting: Collection[int] | None = None) -> JointLaw:
         """Assembled from points, links and rod ends, each as it is derived.
 
-        Of springs with a corner those `acting` (the numbers of their links) are in it; all of them, where that is None.
+        Of springs with a corner those `acting` (the numbers of their links) are in it, with the dashpots that act with
+        them; all of them, where that is None.
         """
         size = len(joint.points)
         place = {point: k for k, point in enumerate(joint.points)}
@@ -69,7 +70,8 @@ class JointLaw:
                 a, b = place[link.left], place[link.right]
                 idle = acting is not None and link.is_spring_with_corner and n not in acting
                 spring = fmpq(0) if idle else link.stiffness
-                for matrix, value in ((damping, rule.damping * link.damping), (stiffness, spring)):
+                dashpot = link.steady_damping if idle else link.damping
+                for matrix, value in ((damping, rule.damping * dashpot), (stiffness, spring)):
                     matrix[a][a] += link.ratio**2 * value
                     matrix[b][b] += value
                     matrix[a][b] -= link.ratio * value

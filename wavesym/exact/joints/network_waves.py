@@ -54,6 +54,11 @@ class SentWave:
         self._place = place
         return self.stretches[place], tau - starts[place]
 
+    def stretches_beyond(self, length: fmpq) -> list[Enclosure]:
+        """Those that are longer than this, and the last one."""
+        parts = zip(self.starts, self.starts[1:], self.stretches, strict=False)
+        return [known for start, end, known in parts if end - start > length] + self.stretches[-1:]
+
     def round_to_precision(self, last: fmpq) -> SentWave:
         """The same at the working precision, up to its `last` instant, without powers that count for nothing."""
         ends = [*self.starts[1:], last]

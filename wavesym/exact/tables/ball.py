@@ -110,6 +110,12 @@ class Balls:
             if not segment.vague:
                 yield abs(segment.evaluate(arb(0).union(arb(end - segment.start)))).upper()
 
+    def polynomial_from(self, tau: fmpq) -> arb_poly:
+        """Of an output without other rates than 0, what it is from tau on, as a polynomial in the time since then."""
+        segment = self.segments[bisect_right(self._starts, tau) - 1]
+        later = arb_poly([arb(tau - segment.start), 1])
+        return sum((polynomial(later) for polynomial in segment.families.values()), arb_poly())
+
     def evaluate(self, tau: fmpq) -> arb:
         """The value at tau; at a jump the one to the right of it."""
         place = bisect_right(self._starts, tau) - 1

@@ -263,7 +263,8 @@ class _Pen:
         """Whether a spring, a dashpot, friction hold a point to the ground."""
         point, links = self.network.points[number], ground_links(self.network, number)
         elastic = bool(point.stiffness) or any(link.stiffness for link in links)
-        return elastic, bool(point.damping), any(link.friction for link in links)
+        damped = bool(point.damping) or any(link.damping for link in links)
+        return elastic, damped, any(link.friction for link in links)
 
     def _loads(self, model: Model) -> None:
         acting = {load.source for load in model.loads}

@@ -1,0 +1,142 @@
+"""When a spring with a dashpot engages and releases: its force jumps then, so that its branch is taken once certain.
+
+Two motions of which one has engaged and the other has not may part, by as much as a dashpot gives to the one alone. So
+it acts where it is certainly beyond its gap, and idles where it certainly is not. In doubt it idles, too, with a force
+that is not known: anything that its spring and its dashpot may have then (`SteadyJoint.move`). That is for as short as
+can be: from the last instant at which it was certain to where it is again, on either side. A stretch beyond the gap
+that only touches 0 is such a stretch, and no event; the slower it is then the smaller is what is not known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from flint import arb, fmpq
+
+from wavesym.exact.contacts.branches import Branch
+from wavesym.exact.contacts.crossing import certain_rise, sign_after
+from wavesym.exact.contacts.guards import BranchEnd, lasts_until
+from wavesym.exact.contacts.joint_stretch import JointStretch
+from wavesym.exact.contacts.spring_branches import FINER, OneSided
+from wavesym.exact.contacts.springs import CornerSpring
+from wavesym.exact.joints.enclosure import Enclosure
+from wavesym.numbers.doubles import middle
+
+_LEAST = 64  # resolutions that a stretch in doubt has, at least
+_LONGER = 4  # times as long in doubt as it should take
+_CLEAR, _MOSTLY = 64, arb(7) / 8  # errors of its stretch, and the part of what is left of it that it may lose unseen
+_FASTER = 4  # times as fast as at its start it may get longer at most on one
+
+
+@dataclass
+class Engaging(OneSided):
+    """A spring on one side with a dashpot: it acts (`closed`), idles, or it is in doubt, and may do either.
+
+    It gets longer up to `slowing` times as fast without its dashpot; `doubt` is how long it has been in doubt.
+    """
+
+    slowing: fmpq = field(default_factory=lambda: fmpq(1))
+    doubt: fmpq = field(default_factory=fmpq)
+    _decision: Branch = field(default_factory=lambda: Branch(closed=False))
+
+    @classmethod
+    def begin_damped(cls, link: int, spring: CornerSpring, slowing: fmpq) -> Engaging:
+        """At the start, where what is at its gap is taken for acting."""
+        closed = spring.gap <= 0
+        return cls(link, spring, arb(0), closed, slowing=slowing, _decision=Branch(closed))
+
+    @property
+    def may_close(self) -> bool:
+        """It is not certainly within its gap."""
+        return not self._beyond < 0
+
+    @property
+    def is_held(self) -> bool:
+        """It is certainly beyond its gap."""
+        return bool(self._beyond > 0)
+
+    @property
+    def late(self) -> fmpq:
+        """How long it has been in doubt."""
+        return self.doubt
+
+    @property
+    def branch(self) -> Branch:
+        """It acts or idles, whichever was certain last."""
+        return self._decision
+
+    @property
+    def _beyond(self) -> arb:
+        """How far beyond its gap it is."""
+        return self.spring.side * self.stretch - arb(self.spring.gap)
+
+    def begins(self, moved: JointStretch) -> bool:
+        """Whether it acts or idles as it certainly does just after the start; in doubt it idles."""
+        side = self._side(moved)
+        if side == 0 and self._guard(moved).is_zero:
+            return True
+        return (side > 0) == (self.link in moved.closed_links)
+
+    def end(self, moved: JointStretch, low: fmpq, resolution: fmpq) -> BranchEnd | None:
+        """How long it certainly does what it does; in doubt, until it should no longer be."""
+        guard, resolution = self._guard(moved), resolution / FINER
+        if self._is_in_doubt(moved):
+            return self._doubt_end(guard, low, moved.length, resolution)
+        if low == 0 and guard.begins is None and not guard.polynomial(arb(0)) > guard.error:
+            return self._vague_end(guard, moved.length, resolution)
+        end = lasts_until(guard, low, moved.length, resolution)
+        if end is not None and end.spread is not None and end.length <= _LEAST * resolution:
+            return self._doubt_end(guard, low, moved.length, resolution)
+        return None if end is None else BranchEnd(end.length, None)
+
+    def advance(self, moved: JointStretch, length: fmpq) -> None:
+        """Know its stretch at the end of one of time, and how long it may have been on its other branch."""
+        self.doubt = self.doubt + length if self.link in moved.doubts else fmpq(0)
+        super().advance(moved, length)
+
+    def take(self, moved: JointStretch) -> None:
+        """Be on the branch that a stretch begins with; in doubt, still on the one before."""
+        super().take(moved)
+        if not self._is_in_doubt(moved):
+            self._decision = Branch(self.closed)
+
+    def _guard(self, moved: JointStretch) -> Enclosure:
+        (guard,) = moved.spring_motions[self.link].guards
+        return guard
+
+    def _side(self, moved: JointStretch) -> int:
+        """1 where it is beyond its gap just after the start, -1 where it is not, 0 where neither is certain."""
+        if self._beyond > 0 or self._beyond < 0:
+            return 1 if self._beyond > 0 else -1
+        guard, sign = self._guard(moved), 0
+        if guard.exact is not None:
+            sign = sign_after(guard.exact, fmpq(0))
+        elif guard.onset is not None:
+            sign = guard.onset.sign()
+        return sign if self.link in moved.closed_links else -sign
+
+    def _is_in_doubt(self, moved: JointStretch) -> bool:
+        return self._side(moved) == 0 and not self._guard(moved).is_zero
+
+    def _vague_end(self, guard: Enclosure, length: fmpq, resolution: fmpq) -> BranchEnd | None:
+        """The same where its own stretch is known more closely at first than its guard is on a long one."""
+        slope, margin = guard.polynomial.derivative()(arb(0)), abs(self._beyond).lower()
+        if slope > 0:
+            rise = certain_rise(guard, length, resolution)
+            return None if rise is None or rise >= length else BranchEnd(rise, None)
+        if slope < 0 and margin > _CLEAR * self.stretch.rad():
+            last = (middle(_MOSTLY * margin / abs(slope).upper()) / resolution).floor() * resolution
+            if last > _LEAST * resolution:
+                return BranchEnd(fmpq(last), None) if last < length else None
+        return self._doubt_end(guard, fmpq(0), length, resolution)
+
+    def _doubt_end(self, guard: Enclosure, low: fmpq, length: fmpq, resolution: fmpq) -> BranchEnd | None:
+        """Where it should be certain, were it as slow as its dashpot makes it; or where it gets much faster."""
+        slope, near = guard.polynomial.derivative(), abs(guard.evaluate(fmpq(0))).upper()
+        fast, last = abs(slope(arb(0))).upper(), length
+        if fast > 0:
+            last = min(length, middle(_LONGER * arb(self.slowing) * near / fast))
+            while last > _LEAST * resolution and abs(slope(arb(0).union(arb(last)))) > _FASTER * fast:
+                last /= 2
+        last = max((last / resolution).ceil() * resolution, _LEAST * resolution, low)
+        return BranchEnd(fmpq(last), None) if last < length else None
