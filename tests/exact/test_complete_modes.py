@@ -191,3 +191,19 @@ def test_rods_of_which_two_swing_as_they_like_end_the_list() -> None:
     assert all(mode.omega < pi for mode in found)
     assert len(found) == 3
     assert "none is missed up to" in found.why
+
+
+def test_with_rods_the_slowest_are_known_from_the_first_powers() -> None:
+    """A body of 3 10^9 and a little on a rod (a spring of 6) before a dashpot: a search of 30 s lost 1/20000."""
+    parts = [
+        {"mass": 1, "dashpot": 10},
+        {"spring": "10/13", "dashpot": "1/1000000000"},
+        {"mass": 1, "dashpot": 1000000},
+    ]
+    parts += [{"rod": 1, "impedance": 2, "speed": 3}, {"mass": 1000000000, "dashpot": "1/1000000000"}]
+    parts += [{"rod": 2, "impedance": 1000000000, "speed": 1}, {"mass": "31/12"}]
+    found = wavesym.modes(scene(parts), 4)
+    assert found.complete
+    s = np.roots([3e9, 6 * 3e9 / 1e6, 6])[0]  # 6 and 10^6 s in series
+    assert found[1].omega == pytest.approx(abs(s), rel=1e-5)
+    assert found[1].damping == pytest.approx(-s.real / abs(s), rel=1e-3)

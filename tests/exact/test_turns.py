@@ -109,8 +109,8 @@ def test_where_a_mode_is_missed_it_is_said(monkeypatch: pytest.MonkeyPatch) -> N
     """The third of a rod with a dashpot is left out by all searches: none is missed below it, and no more is said."""
     every = complete_modes.search_modes
 
-    def but_one(stiffness: Stiffness, count: int, again: int = 0) -> FoundModes:
-        found = every(stiffness, count, again)
+    def but_one(stiffness: Stiffness, *others: Any) -> FoundModes:
+        found = every(stiffness, *others)
         kept = [mode for mode in found.modes if abs(float(mode.frequency.real.mid()) - 2.5 * pi) > 0.1]
         return replace(found, modes=kept)
 

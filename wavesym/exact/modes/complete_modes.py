@@ -18,11 +18,11 @@ from wavesym.exact.modes.cuts import CutNetwork
 from wavesym.exact.modes.damped_modes import SHARP, distinct_modes, search_modes
 from wavesym.exact.modes.equal_branches import take_apart
 from wavesym.exact.modes.frequencies import CoincidenceError, undamped_modes
-from wavesym.exact.modes.polynomial_modes import MOST_ROOTS, polynomial_modes
+from wavesym.exact.modes.polynomial_modes import polynomial_modes
 from wavesym.exact.modes.resting import resting_modes
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
-from wavesym.exact.modes.turns import Circles
+from wavesym.exact.modes.turns import MOST_ROOTS, Circles
 from wavesym.exact.modes.zero_modes import zero_modes
 from wavesym.mechanics.network import Network
 
@@ -95,10 +95,10 @@ def _modes_of_part(network: Network, count: int, may_be_cut: bool) -> _OfPart:
         if len(known) == len(roots):
             return _OfPart(CompleteModes([*resting, *known], inf, are_roots=True))
     found: list[Mode] = []
-    reach, is_open = 0.0, False
+    reach, is_open, slow = 0.0, False, circles.slow_frequencies()
     meeting: float | None = None
     for again in range(_SEARCHES):
-        searched = search_modes(stiffness, count + _BEYOND, again)
+        searched = search_modes(stiffness, count + _BEYOND, again, slow)
         is_open = is_open or searched.is_open
         if is_open and may_be_cut:
             break

@@ -47,6 +47,7 @@ _FOUND = 1e-11
 _AWAY = 4.0  # times the last one wanted: what is still on its way there is no matter
 _CREEPING = 1e-4, 1e2  # where they are sought, spacings of frequencies from 0
 _CREEPERS = 24
+_NONE = np.zeros(0, complex)
 _I = acb(0, 1)
 
 
@@ -90,9 +91,14 @@ class DampedSpectrum(CutNetwork):
         return found.modes
 
 
-def search_modes(stiffness: Stiffness, count: int, again: int = 0) -> FoundModes:
-    """About the first `count` modes of a network as it is cut, as `DampedSpectrum.first` has them."""
+def search_modes(stiffness: Stiffness, count: int, again: int = 0, known: Complex = _NONE) -> FoundModes:
+    """About the first `count` modes of a network as it is cut, as `DampedSpectrum.first` has them.
+
+    Of some it is `known` where they are.
+    """
     guesses = estimate_frequencies(stiffness, count, again) if stiffness.points else np.zeros(1, complex)
+    new = [w for w in known.tolist() if not np.any(np.abs(guesses - w) < _MEETING * abs(w))]
+    guesses = np.concatenate([guesses, new])
     resting = _undamped_at_rest(stiffness, float(np.abs(guesses).max(initial=0.0)) * (1 + _MEETING))
     guesses = _leave_out(guesses, resting)
     found = _all_proved(stiffness, guesses) if stiffness.points else [None]

@@ -20,8 +20,6 @@ from flint import acb, arb, ctx, fmpq, fmpq_poly, fmpz_poly
 from wavesym.exact.modes.shape import Mode, complex_mode
 from wavesym.exact.modes.stiffness import Stiffness
 
-MOST_ROOTS = 120
-"""Of a polynomial whose roots are taken: of twice as many that takes ten seconds."""
 _BITS, _BITS_A_ROW = 256, 12
 _TIMES = (1, 4, 16)  # as many bits
 _OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it

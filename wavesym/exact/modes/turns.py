@@ -20,12 +20,15 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, pi
+from typing import Any
 
+import numpy as np
 from flint import acb, acb_series, arb, arb_series, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.modes.harmonic import BallFrequency, Quantity, Turn
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Bar, Network
+from wavesym.numbers.arrays import Complex
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.zero_counts import zeros_in_disc
 
@@ -39,7 +42,10 @@ _POWERS = 12  # of A on an arc
 _LONG = 900  # terms of A's power series: beyond, arcs take less
 _TERMS, _TERMS_A_RADIAN, _TERMS_A_ROW = 48, 7, 2  # of a series, a row being one with a mass or a spring
 _BITS_A_RADIAN = 22
+_SLOW_TERMS, _SLOW_BITS = 24, 768  # where a radian is turned at most
 _AGAIN = 3  # with twice as many bits and half as many terms more
+MOST_ROOTS = 120
+"""Of a polynomial whose roots are taken: of twice as many that takes ten seconds."""
 _I = acb(0, 1)
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
@@ -203,6 +209,23 @@ class Circles:
                 return found
             terms, bits = terms * 3 // 2, 2 * bits
         return self._count_turns(radius)
+
+    def slow_frequencies(self) -> Complex:
+        """Those beside 0 that are less than 1/(delay of all rods), w with Re w >= 0, in doubles: all, but for rounding.
+
+        They are zeros of the first terms of the power series; however far apart they are, none is searched for.
+        """
+        terms = _SLOW_TERMS + _TERMS_A_ROW * len(self._rows)
+        if terms > MOST_ROOTS or self.is_finite:
+            return np.zeros(0, complex)
+        with ctx.workprec(_SLOW_BITS):
+            first = self._coefficients(terms, _SLOW_BITS)[self._at_rest : terms]
+            exact = fmpq_poly(
+                [mantissa * fmpq(2) ** int(power) for mantissa, power in (c.man_exp() for c in map(arb.mid, first))]
+            )
+        roots: Any = exact.numer().complex_roots()
+        w = -1j * np.array([complex(s) for s, _ in roots])
+        return np.asarray(w[(w.real >= 0) & (np.abs(w) * nearest(self._stiffness.delay) < 1)])
 
     def _coefficients(self, terms: int, bits: int) -> Sequence[arb]:
         """Those of A, the first ones, as a power series in s = i w."""
