@@ -154,7 +154,7 @@ REFUSED = {
     "evaluator": ({"evaluator": "march"}, "--evaluator: march does not go with --stream; write auto"),
     "step": (
         {"evaluator": "modes", "step": Fraction(1, 8)},
-        "--step: 1/8 does not go with --evaluator modes, whose loads say the step",
+        "--step: 0.125 tau does not go with --evaluator modes, whose loads say the step",
     ),
     "target": ({"target": "fmu1"}, "target: fmu1 is unknown; write fmu2 or fmu3"),
 }

@@ -287,11 +287,11 @@ REFUSED = {
         "drive_m1",
         "load, but the inputs of a stream are its loads",
     ),
-    "step": ({"step": Fraction(1, 8)}, "drive_m1", "1/8 is that of a stream"),
+    "step": ({"step": Fraction(1, 8)}, "drive_m1", "0.125 tau is that of a stream"),
     "modes": (
         {"stream": True, "step": Fraction(1, 8), "evaluator": "modes"},
         "drive_m1",
-        "1/8 does not go with --evaluator",
+        "0.125 tau does not go with --evaluator",
     ),
     "beyond": ({"stream": True}, "beyond", "output: a stream needs numbers beyond the range of double precision"),
     "nothing left": ({"stream": True}, "weak", "rounding may leave nothing of strain@0.5"),
