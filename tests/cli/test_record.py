@@ -47,6 +47,17 @@ def test_what_the_file_does_not_say(tmp_path, capsys):
     assert told(capsys, path, "--unit", "m/s^2")["peak"] == ".5 m/s^2 at 0 s"
 
 
+def test_a_gallon_is_hinted_at(tmp_path, capsys):
+    path = made(tmp_path, "time [s],acc [gal]\n0,0\n0.1,1\n0.2,0\n")
+    assert told(capsys, path)["unit"] == "gal, which a scene refuses: did you mean Gal?"
+    assert told(capsys, made(tmp_path, "time [s],acc [Gal]\n0,0\n0.1,1\n0.2,0\n"))["unit"] == "Gal"
+    assert main(["init", "frame", "--record", str(path)]) == 0
+    path = made(tmp_path, "time [s],acc [gal]\n0,0\n0.1,1\n0.2,0\n")
+    capsys.readouterr()
+    assert main(["init", "frame", "--record", str(path)]) == 2
+    assert capsys.readouterr().err.endswith("the load of a frame is an acceleration. Did you mean Gal?\n")
+
+
 @pytest.mark.quick(1)
 @pytest.mark.parametrize("suffix", ["svg", "png"])
 def test_it_is_drawn_with_its_peak(tmp_path, capsys, suffix):

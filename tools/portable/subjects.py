@@ -106,7 +106,7 @@ _MODES = PortableProgram("modes", _BUILDING, Request("modes"), "stream", changes
 _MODES_SINGLE = replace(
     _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
 )
-_STREAM = PortableProgram("stream", _BUILDING, Request(stream=True), "stream")
+_STREAM = PortableProgram("stream", _BUILDING, Request(stream=True), "stream", effort="made")
 _TUNED = PortableProgram(
     "tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "tuned", effort="made"
 )

@@ -185,7 +185,7 @@ def _files(scene: Scene, directory: str | PathLike[str] | None, request: Request
     """The content of every file of a scene, by path."""
     from wavesym.targets.files import files, has_selftest, refuse_shadows
 
-    refuse_shadows(scene.name, "" if request.target else request.language)
+    refuse_shadows(lower(scene).name, "" if request.target else request.language)
     made = program(scene, request, tested=not request.target and has_selftest(request.language))
     folder = Path(directory or scene.name)
     if request.target:

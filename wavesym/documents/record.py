@@ -11,6 +11,7 @@ from pathlib import Path
 
 from wavesym.errors import SceneError, WavesymError, printable
 from wavesym.fields.numbers import decimal_text
+from wavesym.fields.quantity import likely_unit
 from wavesym.fields.table import show
 from wavesym.records.read import read_record
 from wavesym.records.record_file import RecordFile
@@ -100,5 +101,12 @@ def _rows(facts: RecordFacts) -> Iterator[tuple[str, str]]:
         yield "first", f"at {facts.format_time(facts.start)}{remark}"
         yield "duration", facts.format_time((count - 1) * step)
     yield "peak", facts.describe_peak()
-    yield "unit", facts.unit or "the file does not say; `unit` in a scene, or --unit, does"
+    yield "unit", _describe_unit(facts.unit)
     yield "after it", AFTER
+
+
+def _describe_unit(unit: str) -> str:
+    if not unit:
+        return "the file does not say; `unit` in a scene, or --unit, does"
+    meant = likely_unit(unit)
+    return unit if meant == unit else f"{unit}, which a scene refuses: did you mean {meant}?"

@@ -119,18 +119,24 @@ def base_units(unit: str) -> tuple[Fraction, Mapping[str, int]]:
     return _meaning(unit, unit, gravity=True)
 
 
+def likely_unit(text: str) -> str:
+    """What is meant by a unit that is often written for another, such as Gal by gal, a gallon; else the unit."""
+    for slip, right in _SLIPS:
+        text = slip.sub(right, text)
+    return text
+
+
 def _fitting(text: str, dimension: str, value: str) -> _Meaning:
     """What a unit means, which is one of a dimension; `value` is what the message shows where it is none."""
     gravity = dimension in ("acceleration", "jerk")
     meaning = _meaning(text, value, gravity=gravity, usual=f"{with_article(dimension)} in {_usual(dimension)}")
     if not fits(meaning.powers, DIMENSIONS[dimension]):
-        others = (slip.sub(right, text) for slip, right in _SLIPS)
-        meant = (
-            other
-            for other in others
-            if other != text and fits(_meaning(other, value, gravity=False).powers, DIMENSIONS[dimension])
+        meant = likely_unit(text)
+        hint = (
+            f'. Did you mean "{meant}"?'
+            if fits(_meaning(meant, value, gravity=False).powers, DIMENSIONS[dimension])
+            else ""
         )
-        hint = next((f'. Did you mean "{other}"?' for other in meant), "")
         raise refusal(f"{show(value)} is {dimension_name(meaning.powers)}, not {_example(dimension)}{hint}")
     return meaning
 

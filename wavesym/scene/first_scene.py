@@ -110,7 +110,9 @@ def _refuse_unit(kind: str, record: RecordFile, written: str | None) -> None:
     try:
         other = quantity.unit(record.unit, needed) if record.unit else size
     except PydanticCustomError:
-        what = f"samples in {record.unit}; the load of a {kind} is {with_article(needed)}"
+        meant = quantity.likely_unit(record.unit)
+        hint = f". Did you mean {meant}?" if meant != record.unit else ""
+        what = f"samples in {record.unit}; the load of a {kind} is {with_article(needed)}{hint}"
         raise SceneError(what, file=record.file) from None
     if size is not None and size != other:
         raise SceneError(f"--unit {written} is not that of the file; write {record.unit}, or none", file=record.file)
