@@ -25,7 +25,7 @@ from wavesym.pictures.page.png import SHADES
 from wavesym.pictures.page.sweep import sweep_page
 from wavesym.pictures.page.sweep_pictures import SweepOutput, output_picture
 from wavesym.scene import Scene
-from wavesym.sweeps import running
+from wavesym.sweeps import pace
 from wavesym.sweeps.results import StoredAxis, StoredColumn, SweepResults, results
 
 SWEEP: dict[str, Any] = {
@@ -39,7 +39,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A sweep of six cases, the first two of which fail, computed here however slow the machine is."""
     made = tmp_path_factory.mktemp("sweeps") / "stiff"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(running, "_several", lambda: False)
+        patch.setattr(pace, "processors", lambda: 1)
         assert api.run_sweep(SWEEP, made, None, None, False) == 2
     return made
 
@@ -99,7 +99,7 @@ def test_what_failed_says_why(page: str, folder: Path) -> None:
 
 def test_no_name_of_a_file_is_an_escape_sequence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Names may come from others; a page is read in a terminal, too."""
-    monkeypatch.setattr(running, "_several", lambda: False)
+    monkeypatch.setattr(pace, "processors", lambda: 1)
     for name in ("\x1b[31mred.csv", "red\x07.csv"):
         (tmp_path / name).write_text("no record")
     (tmp_path / "a.csv").write_text("accel\n0\n1\n")
@@ -209,7 +209,7 @@ def test_a_large_sweep_with_long_names_has_a_small_page_that_fits(
         "output": {"until": 30, "tolerance": 1e-4, "drift": [1, 2]},
     }
     ratios = {"from": 0.02, "to": 0.1, "count": 20}
-    monkeypatch.setattr(running, "_several", lambda: False)
+    monkeypatch.setattr(pace, "processors", lambda: 1)
     sweep = {"scene": scene, "records": str(tmp_path / "*.csv"), "vary": {"system.damping": ratios}}
     assert api.run_sweep(sweep, tmp_path / "out", None, None, False) == 0
     large = sweep_page(tmp_path / "out")

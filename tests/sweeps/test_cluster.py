@@ -104,7 +104,7 @@ class Lab:
     def client(self, *options: str, **environment: str) -> subprocess.Popen[str]:
         if not options:
             options = ("--scheduler", json.loads(self.address_file.read_text())["address"])
-        return self.start("wavesym", "sweep", str(self.sweep), "-o", str(self.out), *options, **environment)
+        return self.start("tests.support.eager_sweep", str(self.sweep), "-o", str(self.out), *options, **environment)
 
     def computed(self) -> list[int]:
         """The batches that workers have begun, in order."""
@@ -300,7 +300,8 @@ def test_a_script_without_a_guard_is_run_once(lab: Lab) -> None:
     """Processes that are started do not run the script that starts them."""
     script = lab.folder / "script.py"
     script.write_text(
-        "import sys, wavesym\nprint('once')\n"
+        "import sys, wavesym\nfrom tests.support import eager_sweep\n"
+        "eager_sweep.leave_to_workers()\nprint('once')\n"
         f"found = wavesym.sweep({str(lab.sweep)!r}, {str(lab.out)!r}, workers=2)\n"
         "print(int(found['max'].isnull().sum()), sys.modules['__main__'].__file__ == __file__)\n"
     )

@@ -22,7 +22,7 @@ from distributed import KilledWorker
 from tests.sweeps.test_cluster import files
 from tests.sweeps.test_store import fake
 from wavesym.sweeps import batches as cutting
-from wavesym.sweeps import cluster, running, work
+from wavesym.sweeps import cluster, pace, work
 from wavesym.sweeps.batches import Task
 from wavesym.sweeps.running import Computing, run
 from wavesym.sweeps.status import status
@@ -84,7 +84,7 @@ def swept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Clie
     """Computes the sweep, all in one batch, by such a cluster."""
     monkeypatch.setattr(cutting, "_MOST_BATCHES", 1)
     monkeypatch.setattr(work, "single", fake_summary)
-    monkeypatch.setattr(running, "_several", lambda: False)
+    monkeypatch.setattr(pace, "processors", lambda: 1)
     monkeypatch.setattr(cluster, "_LOOK", 0.001)
     run(SWEEP, tmp_path / "alone")
 

@@ -25,7 +25,7 @@ from wavesym import __version__, api
 from wavesym.cli import main
 from wavesym.errors import WavesymError
 from wavesym.pictures.page.sweep import sweep_page
-from wavesym.sweeps import running, work
+from wavesym.sweeps import pace, running, work
 from wavesym.sweeps.running import run
 from wavesym.sweeps.sealed_files import DamagedError, _seal
 from wavesym.sweeps.status import status
@@ -60,7 +60,7 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         return compute(plan, batches, batch, places)
 
     monkeypatch.setattr(running, "compute", counted)
-    monkeypatch.setattr(running, "_several", lambda: False)
+    monkeypatch.setattr(pace, "processors", lambda: 1)
     monkeypatch.setattr(work, "single", fake)
     return done
 
@@ -70,7 +70,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A sweep of five cases, one of which fails, each a batch."""
     folder = tmp_path_factory.mktemp("made") / "out"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(running, "_several", lambda: False)
+        patch.setattr(pace, "processors", lambda: 1)
         patch.setattr(work, "single", fake)
         assert run(SWEEP, folder) == 1
     return folder

@@ -10,11 +10,13 @@ import ctypes
 import json
 import re
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
+from flint import fmpq
 
 from tests.support.builds import scene
 from tests.support.generated import files
@@ -74,11 +76,15 @@ class Mutable:
 
 
 def mutable(evaluator, precision, tolerance, folder):
-    made = files(lower(scene("small", tolerance, UNTIL)), "c", evaluator, precision)
+    return opened(files(lower(scene("small", tolerance, UNTIL)), "c", evaluator, precision), precision, folder)
+
+
+def opened(made, precision, folder):
+    """The files of a program named small, compiled."""
     lengths = tables(made["small.c"])
-    opened = re.sub(r"static const (real|double|float) (\w+)\[\]", r"\1 \2[]", made["small.c"])
+    writable = re.sub(r"static const (real|double|float) (\w+)\[\]", r"\1 \2[]", made["small.c"])
     (folder / "small.h").write_text(made["small.h"])
-    (folder / "small.c").write_text(opened)
+    (folder / "small.c").write_text(writable)
     (folder / "small_selftest.c").write_text(made["small_selftest.c"].replace(*QUIET).replace("printf(", "quiet("))
     compiler().run(
         [
@@ -165,6 +171,29 @@ def test_every_coefficient_matters_to_it(evaluator, precision, tolerance, tmp_pa
         assert program.lengths[name] > 10
         assert unseen(program, name, right) == []
     assert program.passes()
+
+
+@pytest.mark.slow
+def test_an_edit_of_a_chain_is_seen_where_a_value_leaves_the_bound(tmp_path):
+    """Of the chain in the guide: how many are, grows with the edit; what passes has moved no output further."""
+    guide = (Path(__file__).parents[2] / "docs" / "guide" / "chains.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"```toml lift\.toml\n(.*?)```", guide, re.DOTALL)
+    (tmp_path / "lift.toml").write_text(text, encoding="utf-8")
+    lift = replace(lower(Scene.from_toml(tmp_path / "lift.toml")), name="small", tolerance=fmpq(1, 10**10))
+    program = opened(files(lift, "c", "pieces"), "double", tmp_path)
+    right, table, seen = program.outputs(), program.table("coefficient"), []
+    for edit in (1e-9, 1e-6, 1e-3):
+        seen.append(0)
+        for place, value in enumerate(table):
+            table[place] = value * (1 + edit)
+            if program.passes():
+                assert program.moved(right) < SEEN, (edit, place, value)
+            else:
+                seen[-1] += 1
+            table[place] = value
+    assert program.passes()
+    assert 0 < 2 * seen[0] < seen[1] < seen[2]
+    assert seen[2] > 0.9 * sum(value != 0 for value in table)
 
 
 @pytest.mark.slow

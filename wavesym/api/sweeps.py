@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -28,7 +29,8 @@ def sweep(
     Args:
         source: a file of TOML, or the same fields: `scene` (a Scene, or a path), `vary`, `records`, `keep`.
         folder: where the results go.
-        workers: so many processes of this machine compute; None for whoever is best.
+        workers: so many processes of this machine compute at most; None for as many as it has processors. They are
+            started where that is done sooner than by this process alone; a warning says where it is not.
         scheduler: the address of a Dask scheduler whose workers compute.
         retry_failed: whether cases that failed are tried again.
 
@@ -47,8 +49,11 @@ def sweep(
     from wavesym.sweeps.store import open_dataset, require_packages
 
     require_packages("xarray", "zarr")
+    told: list[str] = []
     with progress(f"sweep {folder}") as line:
-        run_sweep(source, folder, workers, scheduler, retry_failed, line.count)
+        run_sweep(source, folder, workers, scheduler, retry_failed, line.count, told.append)
+    for note in told:
+        warnings.warn(note, UserWarning, stacklevel=2)
     return open_dataset(folder)
 
 
@@ -59,14 +64,16 @@ def run_sweep(
     scheduler: str | None,
     retry_failed: bool,
     watch: Callable[[int, int, int], object] = lambda *_: None,
+    tell: Callable[[str], object] = lambda _: None,
 ) -> int:
     """Compute what is left of a sweep; how many of its cases have failed.
 
-    `watch` is called with the number of all cases, of those done, and of those done before; the rest as of `sweep`.
+    `watch` is called with the number of all cases, of those done, and of those done before; `tell` with why
+    fewer workers were started than asked for. The rest as of `sweep`.
     """
     from wavesym.sweeps.running import Computing, run
 
-    return run(source, folder, Computing(workers, scheduler), retry_failed, watch)
+    return run(source, folder, Computing(workers, scheduler), retry_failed, watch, tell)
 
 
 def sweep_status(folder: Path) -> SweepStatus:

@@ -13,7 +13,7 @@ from wavesym.progress import progress
 @click.command()
 @click.argument("source", metavar="SWEEP", type=PATH)
 @click.option("-o", "out", type=PATH, metavar="DIR", help="Folder of the results; where they are begun it goes on.")
-@click.option("--workers", type=click.IntRange(min=1), help="So many processes of this machine compute.")
+@click.option("--workers", type=click.IntRange(min=1), help="At most so many processes of this machine compute.")
 @click.option("--scheduler", metavar="ADDRESS", help="The workers of this Dask scheduler compute (tcp://HOST:PORT).")
 @click.option("--retry-failed", is_flag=True, help="Cases that failed are tried again.")
 @click.option("--status", "tell", is_flag=True, help="Say what is done in the folder SWEEP, and what failed.")
@@ -57,7 +57,10 @@ def sweep(
     if workers and scheduler:
         raise click.UsageError("--workers and --scheduler exclude each other; write one of them")
     refuse_unwritable(out, folder=True)
+    told: list[str] = []
     with progress(f"sweep {source}") as line:
-        failed = api.run_sweep(source, out, workers, scheduler, retry_failed, line.count)
+        failed = api.run_sweep(source, out, workers, scheduler, retry_failed, line.count, told.append)
+    for note in told:
+        click.echo(f"{out}: {note}", err=True)
     click.echo(f"{out}: {api.sweep_status(out).line}", err=True)
     return 1 if failed else 0

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from importlib.util import find_spec
 from pathlib import Path
-from time import monotonic
 from typing import Any, NamedTuple
 
 from filelock import FileLock, Timeout
@@ -18,6 +16,7 @@ from wavesym.sweeps.batches import Batches, Place, Task, batches
 from wavesym.sweeps.kinds import kind
 from wavesym.sweeps.manifest import settle
 from wavesym.sweeps.marks import BatchMark, FailedCase, Marks
+from wavesym.sweeps.pace import Pace
 from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
 from wavesym.sweeps.sealed_files import DamagedError, NoFileError
@@ -26,14 +25,14 @@ from wavesym.sweeps.store import Store, require_packages
 from wavesym.sweeps.values import BatchValues
 from wavesym.sweeps.work import compute
 
-_PATIENCE = 10.0  # seconds that a sweep may take, as far as can be seen, before more processes are started
-
 Watch = Callable[[int, int, int], object]
 """Told of the cases: how many there are, are done, and were before this start."""
+Tell = Callable[[str], object]
+"""Told a line for whoever asked for the sweep."""
 
 
 class Computing(NamedTuple):
-    """Who computes: so many processes of this machine, a cluster at an address, or whoever is best."""
+    """Who computes: so many processes of this machine at most, a cluster at an address, or whoever is best."""
 
     workers: int | None = None
     scheduler: str | None = None
@@ -48,13 +47,16 @@ def run(
     engine: Computing = _WHOEVER,
     retry_failed: bool = False,
     watch: Watch = lambda *_: None,
+    tell: Tell = lambda _: None,
 ) -> int:
     """Compute what is left of a sweep into a folder; how many cases have failed.
+
+    `tell` is told why fewer workers were started than `engine` asks for.
 
     WavesymError for a request that is wrong, a folder of another sweep, or one that another process works in.
     """
     file, request = SweepRequest.read(source)
-    require_packages("zarr")
+    require_packages("zarr", *(("dask", "distributed") if (engine.workers or 1) > 1 else ()))
     planned = plan(request, file)
     parts = batches(planned, *kind(planned))
     place = Path(folder)
@@ -63,7 +65,7 @@ def run(
         todo = _remaining_batches(planned, store, marks, retry_failed)
         before = done = planned.cases - sum(len(places) if places else parts.count(batch) for batch, places in todo)
         watch(planned.cases, done, before)
-        for batch, values in _compute(planned, parts, todo, engine):
+        for batch, values in _compute(planned, parts, todo, engine, tell):
             keep(planned, store, marks, batch, values)
             done += len(values.places)
             watch(planned.cases, done, before)
@@ -130,34 +132,33 @@ def _join_marks(
 
 
 def _compute(
-    planned: SweepPlan, parts: Batches, todo: Iterable[Task], engine: Computing
+    planned: SweepPlan, parts: Batches, todo: Iterable[Task], engine: Computing, tell: Tell
 ) -> Iterator[tuple[int, BatchValues]]:
-    """The batches by whoever is to compute them: this process, as long as that does not take long."""
-    left = deque(todo)
-    if not (engine.workers or engine.scheduler):
-        times = [monotonic()]
-        while left:
-            batch, places = left.popleft()
-            yield batch, compute(planned, parts, batch, places)
-            times.append(monotonic())
-            if _estimate(times) * len(left) > _PATIENCE and _several():
-                break
+    """The batches by whoever is to compute them: this process, as long as workers would not be done sooner."""
+    left, workers = deque(todo), None
+    if left and not engine.scheduler:
+        pace = Pace(len(left))
+        workers = yield from _compute_here(planned, parts, left, pace, engine.workers)
+        if (asked := engine.workers or 1) not in (1, workers):
+            tell(pace.explain(asked, workers))
     if left:
         from wavesym.sweeps.cluster import connect, on_workers
 
-        with connect(engine.workers or os.cpu_count(), engine.scheduler) as client:
+        with connect(workers, engine.scheduler) as client:
             yield from on_workers(client, planned, parts, left)
 
 
-def _estimate(times: list[float]) -> float:
-    """Seconds for a batch, from when each was done. The first one has much to do that is done once."""
-    first, rest = times[1] - times[0], times[-1] - times[1]
-    return rest / (len(times) - 2) if len(times) > 2 else first / _PATIENCE
-
-
-def _several() -> bool:
-    """Whether more than one process would be faster, and there is what starts them."""
-    return (os.cpu_count() or 1) > 1 and find_spec("distributed") is not None
+def _compute_here(
+    planned: SweepPlan, parts: Batches, left: deque[Task], pace: Pace, most: int | None
+) -> Generator[tuple[int, BatchValues], None, int]:
+    """The batches taken from those left, until workers are worth it; how many workers."""
+    while left:
+        batch, places = left.popleft()
+        yield batch, compute(planned, parts, batch, places)
+        pace.tick()
+        if workers := pace.useful_workers(most):
+            return workers
+    return 0
 
 
 @contextmanager
