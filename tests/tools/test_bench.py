@@ -5,13 +5,16 @@ from pathlib import Path
 import pytest
 from flint import fmpq
 
-from tools.bench import equal_degree, frames, record_response, report
+from tools.bench import equal_degree, frame_records, frames, record_response, report
 from tools.bench.equal_degree import FittedPieces, at_degree, fit_pieces, ratios
 from wavesym.exact.breakpoints import Breakpoints
 from wavesym.exact.contacts.events import events
 from wavesym.numbers.doubles import rational
 from wavesym.running.native import FAST
 from wavesym.scene import lower
+from wavesym.sweeps.kinds import kind
+from wavesym.sweeps.plan import plan
+from wavesym.sweeps.request import SweepRequest
 
 FOLDER = Path(__file__).parents[2] / "bench"
 CHAINS = report.scenes(FOLDER, report.CHAINS)
@@ -77,3 +80,24 @@ def test_frames_have_a_row(monkeypatch):
     monkeypatch.setattr(frames, "_HELD", 1)
     (row,) = frames.rows(FOLDER.parent / "examples" / "records")
     assert 0 < float(row[-1]) < 1
+
+
+@pytest.mark.slow
+def test_many_records_go_through_many_frames(monkeypatch, tmp_path):
+    """All records differ, and so do all frames; nothing is asserted of the time itself."""
+    pytest.importorskip("zarr")
+    records = FOLDER.parent / "examples" / "records"
+    text = frame_records.inputs(tmp_path, records / "elcentro_1940_ns_peknold.at2", 15, 3)
+    (tmp_path / "sweep.toml").write_text(text)
+    assert len({path.read_text() for path in (tmp_path / "records").iterdir()}) == 15
+    file, request = SweepRequest.read(tmp_path / "sweep.toml")
+    planned = plan(request, file)
+    assert planned.shape == (3, 15)
+    assert kind(planned)[0] == "recorded"
+    monkeypatch.setattr(frame_records, "STOREYS", 2)
+    monkeypatch.setattr(frame_records, "RECORDS", 3)
+    monkeypatch.setattr(frame_records, "FRAMES", 2)
+    (row,) = frame_records.rows(records)
+    assert row[0] == "3 x 2"
+    assert len(row) == len(frame_records.HEAD)
+    assert all(float(each) > 0 for each in row[1:])

@@ -237,7 +237,7 @@ _NOBODY = Running("", ())
 def run_sweep(folder: Path, text: str, running: Running = _NOBODY) -> tuple[str, str, str]:
     """Seconds, busy ones, and MB of the command, into a new folder."""
     (folder / "sweep.toml").write_text(text, encoding="ascii")
-    given = ["--scheduler", running.address] if running.address else []
+    given = ["--scheduler", running.address] if running.address else ["--workers", "1"]
     before = running.busy
     with TemporaryDirectory() as out:
         done = ran([sys.executable, "-m", "wavesym", "sweep", str(folder / "sweep.toml"), "-o", out, *given])
