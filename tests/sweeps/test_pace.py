@@ -100,7 +100,7 @@ def test_two_workers_need_more_work_than_four(tmp_path: Path, machine: Machine) 
 
 
 def test_a_first_batch_that_loads_much_starts_none(tmp_path: Path, machine: Machine) -> None:
-    machine.seconds = [3, *[0.1] * (CASES - 1)]
+    machine.seconds = [60, *[0.05] * (CASES - 1)]
     swept(tmp_path, None)
     assert machine.started == []
 

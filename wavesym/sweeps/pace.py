@@ -7,7 +7,6 @@ from importlib.util import find_spec
 from time import process_time
 
 _START = 10.0  # seconds of a processor until a worker of this machine computes
-_ONCE = 10.0  # of what the first batch takes, nearly all is done once: so large a part, until a second one is done
 
 
 class Pace:
@@ -35,9 +34,9 @@ class Pace:
         return workers if self._each() * self.left * (1 - 1 / workers) > _START else 0
 
     def _each(self) -> float:
-        """Seconds for a batch. The first one has much to do that is done once."""
-        first, *rest = (end - start for start, end in zip(self._times, self._times[1:], strict=False))
-        return sum(rest) / len(rest) if rest else first / _ONCE
+        """Seconds for a batch. The first one tells nothing: most that it does, loading and compiling, is done once."""
+        _, first, *rest = self._times
+        return (rest[-1] - first) / len(rest) if rest else 0.0
 
     def explain(self, asked: int, workers: int) -> str:
         """Why so many workers compute, not as many as asked for."""
