@@ -34,7 +34,9 @@ def _json(summary: Summary) -> str:
         for link in summary.links or ()
     ]
     lost = {"links": links} if links else {}
-    return json.dumps({"outputs": outputs, **lost, "bound": summary.bound}, indent=2) + "\n"
+    shapes = [each._asdict() for each in summary.labels.shapes] if summary.labels else []
+    lines = {"shapes": shapes} if shapes else {}
+    return json.dumps({"outputs": outputs, **lost, "bound": summary.bound, **lines}, indent=2) + "\n"
 
 
 def _statistic(statistic: Statistic, output: OutputSummary) -> float | dict[str, float | None] | None:

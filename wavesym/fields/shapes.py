@@ -2,6 +2,10 @@
 
 A line between two samples is off by at most h^2/8 times the greatest second derivative, h the time between them. That
 is kept below a part of the tolerance, in parts of the amplitude. Each sample is rounded once, to far less than that.
+
+Where the travel times of a structure have a common measure, samples are a part or a multiple of it apart: waves that
+they begin meet others then, and what has to be followed is what one rod has, however many there are. Half a sine ends
+at a sample, and lasts too short to gain by that.
 """
 
 from __future__ import annotations
@@ -25,11 +29,12 @@ from wavesym.numbers.doubles import fraction, middle, rational
 SHAPES = {"sine": "frequency", "half-sine": "duration", "exponential": "duration", "ricker": "frequency"}
 """Each shape, and what says how fast it is."""
 MOST_SAMPLES = MOST_TIMES
-_USUAL_SAMPLES = 2_000  # where no tolerance is written: `run` takes some seconds for them
-_COARSEST = Fraction(1, 100)
+# where no tolerance is written, most samples of a load, and the largest tolerance: few samples if these are good enough
+_USUAL = ((500, Fraction(1, 1000)), (2_000, Fraction(1, 100)))
 _SHARE = Fraction(1, 4)  # of the tolerance
 _ROUND = 20  # samples in a period are a multiple of it, so that tops and simple fractions are among them
 _BITS, _DIGITS = 192, 96  # of samples, in balls and behind the point
+_FINEST = 64  # of a common measure, that many fit between samples at most; a finer one is by chance
 _RICKER = 2  # periods from the start to the top, and from there to the end
 _RICKER_ENDS = Fraction(1, 10**15)  # of its amplitude, which is left out before and after: 78 exp(-4 pi^2) is 5.6e-16
 
@@ -65,6 +70,7 @@ class ShapedLoad(Load):
 
     _until: Fraction = PrivateAttr(default=Fraction(1))
     _tolerance: Fraction = PrivateAttr(default=Fraction(1, 10**10))
+    _measure: Fraction = PrivateAttr(default=Fraction(0))
 
     @model_validator(mode="after")
     def _check_frequency(self) -> Self:
@@ -76,12 +82,18 @@ class ShapedLoad(Load):
             raise refusal(f"not of a {self.shape}; write {needed}", other)
         return self
 
-    def truncate(self, until: Fraction, tolerance: Fraction) -> Self:
-        """The same load as far as it matters to a horizon and a tolerance."""
+    def truncate(self, until: Fraction, tolerance: Fraction, measure: Fraction = Fraction(0)) -> Self:
+        """The same load as far as it matters to a horizon and a tolerance, on what travel times are multiples of.
+
+        Args:
+            until: the horizon in tau.
+            tolerance: of the scene.
+            measure: the common measure of all travel times in tau; 0 where there is none.
+        """
         other = self.model_copy()
-        for found in ("_parts", "samples"):  # for another tolerance
+        for found in ("step", "samples"):  # for another tolerance
             vars(other).pop(found, None)
-        other._until, other._tolerance = until, tolerance
+        other._until, other._tolerance, other._measure = until, tolerance, measure
         return other
 
     @property
@@ -100,13 +112,20 @@ class ShapedLoad(Load):
     def error(self) -> Fraction:
         """How far it is from its lines at most, in parts of its amplitude: proved."""
         left_out = {"exponential": self._tolerance * _SHARE, "ricker": _RICKER_ENDS}.get(self.shape, Fraction(0))
-        lines = fraction(middle(self._bend)) / 8 / self._parts**2
+        lines = fraction(middle(self._bend)) / 8 * (self.step / self.period) ** 2
         return lines + left_out + Fraction(1, 2**_DIGITS)
 
-    @property
+    @cached_property
     def step(self) -> Fraction:
-        """The time between samples: a whole part of the period."""
-        return self.period / self._parts
+        """The time between samples: a part or a multiple of the common measure, or else a whole part of the period."""
+        needed = sqrt(float(self._bend) / (8 * float(self._tolerance * _SHARE)))
+        longest, measure = self.period / Fraction(needed), self._measure
+        if self.shape == "half-sine" or measure * _FINEST < longest:
+            return self.period / (_ROUND * max(1, ceil(needed / _ROUND)))
+        if measure <= longest:
+            return measure * (longest // measure)
+        parts = ceil(measure / longest)
+        return measure / (parts if parts < _ROUND else _ROUND * ceil(Fraction(parts, _ROUND)))
 
     @cached_property
     def _bend(self) -> arb:
@@ -114,11 +133,6 @@ class ShapedLoad(Load):
         pi = arb.pi()
         bends = {"sine": 4 * pi * pi, "half-sine": pi * pi, "exponential": arb(1), "ricker": 6 * pi * pi}
         return bends[self.shape].upper()
-
-    @cached_property
-    def _parts(self) -> int:
-        needed = sqrt(float(self._bend) / (8 * float(self._tolerance * _SHARE)))
-        return _ROUND * max(1, ceil(needed / _ROUND))
 
     @property
     def _last(self) -> Fraction:
@@ -135,7 +149,7 @@ class ShapedLoad(Load):
     @property
     def count(self) -> int:
         """How many samples it has."""
-        return ceil(self._last * self._parts) + 1
+        return ceil(self._last * self.period / self.step) + 1
 
     @cached_property
     def samples(self) -> tuple[fmpq, ...]:
@@ -150,7 +164,8 @@ class ShapedLoad(Load):
             )
         size = rational(self.amplitude)
         with ctx.workprec(_BITS):
-            values = [size * _round(self._value(arb(fmpq(k, self._parts)))) for k in range(count)]
+            each = rational(self.step / self.period)
+            values = [size * _round(self._value(arb(k * each))) for k in range(count)]
         if self.shape == "ricker":
             values[0] = fmpq(0)  # no jump
         return tuple(values)
@@ -188,15 +203,16 @@ class ShapedLoad(Load):
         return f"as {len(self.samples)} samples, within {float(self.error):.1e} of its amplitude"
 
 
-def usual_tolerance(loads: Iterable[Load], until: Fraction, finest: Fraction) -> Fraction:
-    """The tolerance of a scene that has none written: the finest, or what loads of a shape meet with a few thousand
-    samples, as 1, 2 or 5 times a power of ten; the finest where that is more than a hundredth.
+def usual_tolerance(loads: Iterable[Load], until: Fraction, finest: Fraction, measure: Fraction) -> Fraction:
+    """The tolerance of a scene that has none written: the finest, or what loads of a shape meet with few samples, as 1,
+    2 or 5 times a power of ten: some hundreds, or some thousands where these do not do; else the finest.
     """
     shaped = [load for load in loads if isinstance(load, ShapedLoad)]
-    coarser = (Fraction(digit * 10**power) * finest for power in range(12) for digit in (1, 2, 5))
-    for tolerance in (each for each in coarser if each <= _COARSEST):
-        if all(load.truncate(until, tolerance).count <= _USUAL_SAMPLES for load in shaped):
-            return tolerance
+    steps = [Fraction(digit * 10**power) * finest for power in range(12) for digit in (1, 2, 5)]
+    for most, coarsest in _USUAL:
+        for tolerance in (each for each in steps if each <= coarsest):
+            if all(load.truncate(until, tolerance, measure).count <= most for load in shaped):
+                return tolerance
     return finest
 
 

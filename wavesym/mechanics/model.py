@@ -6,6 +6,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
+from typing import NamedTuple
 
 from flint import fmpq
 
@@ -22,6 +23,18 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 
+class SampledShape(NamedTuple):
+    """A load of a shape as what it acts: straight lines between so many samples, `error` in parts of its amplitude."""
+
+    load: str
+    shape: str
+    samples: int
+    error: float
+
+    def __str__(self) -> str:
+        return f"{self.samples} samples of the {self.shape} {self.load}, within {self.error:.2g} of its amplitude"
+
+
 @dataclass(frozen=True)
 class Labels:
     """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load,
@@ -30,6 +43,7 @@ class Labels:
     `sha256` is that of the scene, whatever way it was written. `structure_notes` say how the structure was read where
     that may surprise, `time_notes` how its loads and the horizon were. `kind` is that of the rods of a physical scene.
     `size` is how many rods there are, `dimensions` what lengths and times count.
+    `shapes` are the loads that act as straight lines which are not quite what was asked for.
     """
 
     system: Mapping[str, str]
@@ -43,11 +57,17 @@ class Labels:
     load_names: tuple[str, ...] = ()
     sources: Mapping[str, str] = field(default_factory=dict)
     titles: Mapping[str, str] = field(default_factory=dict)
+    shapes: tuple[SampledShape, ...] = ()
 
     @property
     def notes(self) -> tuple[str, ...]:
         """How all of the scene was read where that may surprise."""
         return (*self.time_notes, *self.structure_notes)
+
+    @property
+    def lines_text(self) -> str:
+        """What bounds of errors leave out, to be said behind them; empty where there is nothing."""
+        return f", of straight lines between {' and '.join(map(str, self.shapes))}" if self.shapes else ""
 
     @property
     def type(self) -> str:

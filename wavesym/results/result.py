@@ -136,9 +136,10 @@ class Result(OutputRows):
     @property
     def accuracy(self) -> str:
         """How right values are, in a few words."""
+        lines = self._response.model.labels.lines_text
         if self.program is None:
-            return "right to the last bit"
-        return f"{self.program}, {'proved bound' if self.proved else 'estimated error'} {self.bound:.2g}"
+            return f"right to the last bit{lines}"
+        return f"{self.program}, {'proved bound' if self.proved else 'estimated error'} {self.bound:.2g}{lines}"
 
     def _repr_html_(self) -> str:
         """A table of the outputs, of long ones the start and the end."""

@@ -14,7 +14,7 @@ from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymErro
 from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes_and_averages
 from wavesym.exact.first_arrivals import first_arrivals, light_arrivals
 from wavesym.exact.joints.fronts import has_more_fronts
-from wavesym.mechanics.model import Model
+from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.probe import Probe, with_unit
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import midpoint, nearest, not_below, rational
@@ -43,7 +43,8 @@ class Summary:
     were found. `largest_drift` is that of the rod, of all in the main line, whose drift is the largest; None where it
     was not asked for, no rod changes, or `drifts_cost_too_much`; its bound is `drift_bound`, as what nobody asked for
     need not meet the tolerance. `time_unit` is None for a scene without units. `links` are those with friction and the
-    springs that yield; None where they would cost too much.
+    springs that yield; None where they would cost too much. `shapes` of `labels` are the loads that act as straight
+    lines: the error of these is in no bound.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Summary:
     drifts_cost_too_much: bool = False
     links: tuple[LinkSummary, ...] | None = ()
     drift_bound: float = 0.0
+    labels: Labels | None = None
 
     def __getitem__(self, name: str) -> OutputSummary:
         return self.outputs[output_number(name, [output.name for output in self.outputs], self.name)]
@@ -125,9 +127,10 @@ class Summary:
     @property
     def accuracy(self) -> str:
         """How right values are, in a few words."""
+        right, lines = f"right to {self.bound:g} of each output's largest", self.labels.lines_text if self.labels else ""
         if self.proved:
-            return f"right to {self.bound:g} of each output's largest, proved"
-        return f"an estimate (values are right to {self.bound:g} of each output's largest; higher tops may be missed)"
+            return f"{right}, proved{lines}"
+        return f"an estimate (values are {right}{lines}; higher tops may be missed)"
 
 
 def _cell(value: float | str | None) -> str:
@@ -172,6 +175,7 @@ def summary_and_program(
         bool(missing),
         link_summaries(model, solved),
         max((bound for _, _, bound in every), default=0.0),
+        model.labels,
     )
     return summary, found.program
 

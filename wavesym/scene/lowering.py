@@ -20,7 +20,7 @@ from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.dead_loads import dead_loads
 from wavesym.mechanics.loads import AppliedLoad, AppliedRecord, merge_loads
-from wavesym.mechanics.model import Labels, Model
+from wavesym.mechanics.model import Labels, Model, SampledShape
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
@@ -180,6 +180,11 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         load_names=load_names(scene),
         sources={source: load.label for load in scene.load for source in load.sources},
         titles={source: load.name for load in scene.load if load.name for source in load.sources},
+        shapes=tuple(
+            SampledShape(f"load[{k}]", load.shape, load.count, float(load.error))
+            for k, load in enumerate(scene.load)
+            if isinstance(load, ShapedLoad)
+        ),
     )
 
 

@@ -26,7 +26,7 @@ from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
 from wavesym.fields.shapes import ShapedLoad, usual_tolerance
 from wavesym.fields.table import Fault, Faults, SceneTable, key_context, refusal, scene_error, show
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import common_measure, fraction, rational
 from wavesym.scene.describe import describe
 from wavesym.scene.key_lines import key_lines, line_of
 from wavesym.scene.loads import loads
@@ -207,8 +207,8 @@ class Scene(SceneTable):
         vars(self)["output"] = self.output.of_every_rod(rods)
         _ = self.outputs
         if any(isinstance(load, ShapedLoad) for load in self.load):
-            until, tolerance = self.output.until, self.tolerance
-            each = (load.truncate(until, tolerance) if isinstance(load, ShapedLoad) else load for load in self.load)
+            of_scene = (self.output.until, self.tolerance, self._measure)
+            each = (load.truncate(*of_scene) if isinstance(load, ShapedLoad) else load for load in self.load)
             vars(self)["load"] = tuple(each)
         return self
 
@@ -217,7 +217,14 @@ class Scene(SceneTable):
         """As it is written; else the usual one, or, beside loads of a shape, what these meet with a few samples."""
         if "tolerance" in self.output.model_fields_set:
             return self.output.tolerance
-        return usual_tolerance(self.load, self.output.until, self.output.tolerance)
+        return usual_tolerance(self.load, self.output.until, self.output.tolerance, self._measure)
+
+    @cached_property
+    def _measure(self) -> Fraction:
+        """The common measure of the travel times of all rods in tau; 0 without any."""
+        system = self.system
+        bars = system.drawing.bars if isinstance(system, ExplicitChain) else system.network(()).bars
+        return fraction(common_measure(bar.delay for bar in bars))
 
     @cached_property
     def outputs(self) -> tuple[Observable, ...]:
