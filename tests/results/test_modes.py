@@ -360,3 +360,22 @@ def test_participation_at_the_end_of_a_free_rod_is_that_of_cosines() -> None:
     assert [abs(mode.loads["l"].factor) for mode in found] == pytest.approx([1] * 6, rel=1e-12)
     middles = [mode.loads["m"].factor * np.sign(mode.loads["l"].factor) for mode in found]
     assert middles == pytest.approx([1, 0, -1, 0, 1, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "link",
+    [
+        {"spring": 7, "gap": ["-1/3", "1/5"], "dashpot": "1/2"},
+        {"spring": 7, "only": "push", "dashpot": "1/2"},
+        {"spring": 7, "yield": 1, "dashpot": "1/2"},
+        {"friction": "1/4", "dashpot": 1},
+        {"contact": "1/4"},
+    ],
+)
+def test_a_law_with_a_corner_has_no_modes_beside_dashpots_either(link: dict[str, object]) -> None:
+    """They were served as if every law were linear for good: both sides of a gap at once."""
+    beyond = [{"rod": 1}, "free"] if "contact" in link else [{"mass": 1}]
+    parts = ["fixed", {"rod": 1}, {"mass": 2, "dashpot": 1, "name": "c"}, link, *beyond]
+    scene = wavesym.Scene(name="corner", system={"type": "chain", "parts": parts})
+    with pytest.raises(wavesym.UnservedError, match=r"at .* is not supported by modes"):
+        wavesym.modes(scene, 2)

@@ -127,7 +127,10 @@ class Summary:
     @property
     def accuracy(self) -> str:
         """How right values are, in a few words."""
-        right, lines = f"right to {self.bound:g} of each output's largest", self.labels.lines_text if self.labels else ""
+        right, lines = (
+            f"right to {self.bound:g} of each output's largest",
+            self.labels.lines_text if self.labels else "",
+        )
         if self.proved:
             return f"{right}, proved{lines}"
         return f"an estimate (values are {right}{lines}; higher tops may be missed)"

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from flint import fmpq
 
+from wavesym.errors import UnservedError
 from wavesym.mechanics.network import Bar, End, Network, Point
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
@@ -70,9 +71,15 @@ def _pieces(bar: Bar, places: tuple[fmpq, ...], first: int) -> list[Bar]:
 
 
 class CutNetwork:
-    """A network that is cut at places (bar, part of it), and once more where all points of a mode may be at rest."""
+    """A network that is cut at places (bar, part of it), and once more where all points of a mode may be at rest.
+
+    UnservedError for laws with corners: there are no modes of what is not one linear law for good.
+    """
 
     def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
+        for link in (network.links[number] for number in network.corners):
+            at = link.place or network.points[link.left].label
+            raise UnservedError(f"system: the {link.law} at {at} is not supported by modes (pieces serve it)")
         self._cuts = [cut(network, places)]
         if not network.parallel_bars:  # where cuts would make rings
             self._cuts.append(cut(network, places, aside=True))

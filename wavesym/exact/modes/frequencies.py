@@ -37,7 +37,7 @@ class CoincidenceError(ArithmeticError):
 
 
 def refuse_damped(network: Network) -> None:
-    """UnservedError for what has no real modes, or is no one chain: dashpots, absorbing ends, contacts."""
+    """UnservedError for what has no real modes: dashpots, absorbing ends."""
     for point in network.points:
         if point.damping != 0 and point.motion is None:
             raise UnservedError(
@@ -45,12 +45,9 @@ def refuse_damped(network: Network) -> None:
                 "(take pieces or march)"
             )
     for link in network.links:
-        if link.has_corner or link.damping != 0:
-            what, serve = "dashpot", "pieces and march serve"
-            if link.has_corner:
-                what, serve = link.law, "pieces serve"
+        if link.damping != 0:
             at = link.place or network.points[link.left].label
-            raise UnservedError(f"system: the {what} at {at} is not supported by modes ({serve} it)")
+            raise UnservedError(f"system: the dashpot at {at} is not supported by modes (pieces and march serve it)")
 
 
 def frequencies(network: Network, count: int) -> tuple[arb, ...]:
@@ -75,8 +72,8 @@ class Spectrum(CutNetwork):
     """
 
     def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
-        refuse_damped(network)
         super().__init__(network, places)
+        refuse_damped(network)
         self._found: list[Mode] = []
 
     def first(self, count: int) -> list[Mode]:
