@@ -142,6 +142,9 @@ def test_a_march_on_too_fine_a_step_is_one_line(tmp_path: Path, capsys: pytest.C
     assert (out, err.count("\n")) == ("", 1)
     assert "delays 1, 1001/1000 have the common measure 1/1000" in err
     assert 'speed_adjustment = "0.5 %" under [system], or pieces, help' in err
+    for options in (["--stream"], ["--runtime", "impedance"]):  # with which pieces do not go
+        assert main(["generate", str(file), *options, "-o", str(tmp_path / "out")]) == 2
+        assert 'speed_adjustment = "0.5 %" under [system] helps' in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 

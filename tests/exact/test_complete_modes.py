@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import pi
 from typing import Any
 
@@ -100,6 +101,53 @@ def test_without_rods_none_is_missed_however_slow(
     assert found.complete
 
 
+TINY = {"mass": "1/500000000"}
+ARM = [{"spring": 100000}, TINY, {"dashpot": "1/10000"}, {"mass": 3, "spring": 20000000}]
+FEET: list[tuple[list[Any], int]] = [
+    (["fixed", {"spring": 2000}, TINY | {"name": "g"}, {"spring": 1}, {"mass": 1, "dashpot": 10**8}], 8),
+    (["fixed", {"spring": 2000}, TINY | {"name": "g"}, {"spring": 10**5, "dashpot": "1/50"}, {"mass": "3/1000000"}], 7),
+]
+
+
+@pytest.mark.parametrize(("foot", "count"), FEET)
+def test_branches_equal_but_for_their_ratios_leave_no_root_out(foot: list[Any], count: int) -> None:
+    """Eigenvalues with 90 digits; of two that are one in doubles one had no shape, and one mode of all was told."""
+    arms = [{"from": "g", "name": f"b{k}", "ratio": ratio, "parts": ARM} for k, ratio in enumerate((1, -2))]
+    tip = [{"spring": "1/500"}, TINY]
+    made = Scene(
+        name="s",
+        system={"type": "chain", "parts": [*foot, *tip], "branch": arms},
+        output={"until": 1, "velocity": ["0-"]},
+    )
+    found = wavesym.modes(made, 20)
+    parts = [(None, 0, 1, foot[1]), (0, 1, 1, foot[3]), (1, 2, 1, tip[0])]
+    bodies = [foot[2], foot[4], tip[1]]
+    for ratio in (1, -2):
+        here = len(bodies)
+        parts += [(0, here, ratio, ARM[0]), (here, here + 1, 1, ARM[2])]
+        bodies += [ARM[1], ARM[3]]
+    parts += [(None, k, 1, body) for k, body in enumerate(bodies)]
+    with mpmath.workdps(90):
+        n = len(bodies)
+        fractions = [Fraction(body["mass"]) for body in bodies]
+        masses = [mpmath.mpf(mass.numerator) / mass.denominator for mass in fractions]
+        matrix = mpmath.zeros(2 * n)
+        for near, far, ratio, part in parts:
+            for shift, key in ((0, "spring"), (n, "dashpot")):
+                size = Fraction(part.get(key, 0))
+                moved = {far: 1} if near is None else {near: -ratio, far: 1}
+                for i, a in moved.items():
+                    for j, b in moved.items():
+                        matrix[n + i, shift + j] -= mpmath.mpf(a * b * size.numerator) / size.denominator / masses[i]
+        for k in range(n):
+            matrix[k, n + k] = 1
+        roots = [s for s in mpmath.eig(matrix, left=False, right=False) if s.imag > -1e-30 * abs(s)]
+        expected = sorted((float(abs(s)), float(-s.real / abs(s))) for s in roots)
+    assert (len(found), found.complete) == (count, True)
+    assert [mode.omega for mode in found] == pytest.approx([size for size, _ in expected], rel=1e-15)
+    assert [mode.damping for mode in found] == pytest.approx([ratio for _, ratio in expected], rel=1e-12)
+
+
 def test_critical_damping_is_one_mode_twice() -> None:
     """(s + 1)^2, and of two such bodies tied by a dashpot (s + 1)^2 (s^2 + 4 s + 1): they were refused."""
     one = {"mass": 1, "spring": 1, "dashpot": 2}
@@ -181,6 +229,17 @@ def test_below_where_frequencies_meet_modes_are_printed(
     found = wavesym.modes(made, 10)
     assert [mode.omega for mode in found] == pytest.approx([every[0].omega], rel=1e-15)
     assert 0.212 < float(found.why.split()[5]) < 0.6532
+    assert not found.complete  # it was said to be, as none is missed up to the one that is there
+    assert wavesym.modes(made, 1).complete
+    assert wavesym.modes(made, below=every[0].omega * 1.001).complete
+    assert not wavesym.modes(made, below=1).complete
+
+
+def test_a_long_list_without_rods_is_complete_where_it_has_all() -> None:
+    """Of 61 bodies a polynomial is of degree 122, whose roots are sought: as many as its degree are all."""
+    made = scene(["fixed", *[{"spring": 1, "dashpot": "1/9"}, {"mass": 1}] * 61])
+    every = wavesym.modes(made, 99)
+    assert (zeros(every), every.complete) == (122, True)
 
 
 def test_rods_of_which_two_swing_as_they_like_end_the_list() -> None:

@@ -30,15 +30,19 @@ _KEPT = fmpq(9, 10)  # of what speeds may change
 _DIGITS = Context(prec=2, rounding=ROUND_CEILING)
 
 
-def step_of(delays: Sequence[fmpq]) -> fmpq:
-    """The greatest common measure of travel times. MeasureError where the shortest is more than 64 of it."""
+def step_of(delays: Sequence[fmpq], *, or_pieces: bool = True) -> fmpq:
+    """The greatest common measure of travel times. MeasureError where the shortest is more than 64 of it.
+
+    `or_pieces` says whether pieces could be made instead, which need none.
+    """
     step = common_measure(delays)
     if step * FINEST < (shortest := min(delays)):
         few = ", ".join(map(str, sorted(set(delays))[:3])) + (", ..." if len(set(delays)) > 3 else "")
         helps = f'speed_adjustment = "{percent(max(_LITTLE, _nearest(delays, _LITTLE)[0]))}"'
+        or_else = ", or pieces, help" if or_pieces else " helps"
         raise MeasureError(
             f"system.parts: delays {few} have the common measure {step}, {float(shortest / step):.3g} to the "
-            f"shortest, the limit in a march is {FINEST} ({helps} under [system], or pieces, help)",
+            f"shortest, the limit in a march is {FINEST} ({helps} under [system]{or_else})",
             helps,
         )
     return step

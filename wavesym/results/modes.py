@@ -73,9 +73,9 @@ class ModeRow:
 class Modes:
     """The modes of a scene, by their frequencies; `wavesym.modes` makes it.
 
-    `complete` says whether none is missed up to the last one, `why` in words; `time_unit` is "s", or None for tau.
-    `notes` are lines of how the scene was read, where that may surprise. `line_shapes` are the shapes along lines,
-    where they were asked for.
+    `complete` says whether none is missed, of as many or up to the frequency that were asked for, `why` in words;
+    `time_unit` is "s", or None for tau. `notes` are lines of how the scene was read, where that may surprise.
+    `line_shapes` are the shapes along lines, where they were asked for.
     """
 
     name: str
@@ -239,8 +239,9 @@ def modes(
     found = first.modes
     seconds = fmpq(1) if model.clock is None else model.clock.seconds
     per_tau = nearest(seconds)
+    reach_needed = abs(complex(found[-1].frequency)) if len(found) == count else inf
     if below is not None:
-        limit = below * (2 * pi * per_tau if model.clock else 1.0)
+        reach_needed = limit = below * (2 * pi * per_tau if model.clock else 1.0)
         wanted = _FIRST_GUESS
         while len(found) == wanted and abs(complex(found[-1].frequency)) <= limit:
             if len(found) >= _MOST:
@@ -252,7 +253,7 @@ def modes(
     rows = tuple(_row(model, k, mode, seconds) for k, mode in enumerate(found, 1))
     if isinstance(spectrum, Spectrum):
         rows = _with_ratios(model, rows, spectrum, per_tau)
-    complete = not found or first.reach >= abs(complex(found[-1].frequency))
+    complete = first.reach >= reach_needed
     why = _why(first, complete, model, per_tau) if damped else _COMPLETE
     unit = "s" if model.clock else None
     along = line_shapes(found, spectrum.cut, model, lines, points) if lines and points else ()
@@ -270,12 +271,12 @@ def _why(found: CompleteModes, complete: bool, model: Model, per_tau: float) -> 
     """Whether modes of a chain with dashpots are all there, and why."""
     per = "rad/s" if model.clock else "rad/tau"
     reach = f"none is missed up to {found.reach / per_tau:.6g} {per}"
+    if complete:
+        return _ROOTS if found.are_roots else _COUNTED
     if found.meeting is not None:
         place = found.meeting / per_tau
         return f"{reach}; near {place:.6g} {per} two or more meet which cannot be told apart, and modes end there"
-    if not complete:
-        return f"{reach}; beyond, each is proved, and that none is missed is not"
-    return _ROOTS if found.are_roots else _COUNTED
+    return f"{reach}; beyond, each is proved, and that none is missed is not"
 
 
 def _notes(found: Sequence[Mode]) -> list[str]:

@@ -37,7 +37,8 @@ class CompleteModes:
     Attributes:
         modes: those at 0 first, rigid motion before shifts; each as often as its frequency is one.
         reach: up to which absolute value none is missed.
-        meeting: where two or more frequencies meet that are not told apart; None where none do. Modes end before it.
+        meeting: where two or more frequencies meet that are not told apart; None where none are known to. Modes end
+            before it.
         are_roots: whether they are the roots of a polynomial.
     """
 
@@ -68,7 +69,7 @@ class CompleteSpectrum(CutNetwork):
         return CompleteModes(
             below[:count],
             min(each.complete.reach for each in found),
-            None if meeting == inf or len(below) > count else meeting,
+            None if meeting == inf else meeting,
             all(each.complete.are_roots for each in found),
         )
 

@@ -14,7 +14,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from flint import acb, arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from wavesym.exact.modes.shape import Mode, complex_mode
@@ -22,7 +21,7 @@ from wavesym.exact.modes.stiffness import Stiffness
 
 _BITS, _BITS_A_ROW = 256, 12
 _TIMES = (1, 4, 16)  # as many bits
-_OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it
+_OFF = 4  # a frequency itself tells less of its mode than one near it: off by 2^-(a fourth of all bits) of it
 _I = acb(0, 1)
 
 
@@ -72,9 +71,8 @@ def _roots(determinant: fmpq_poly) -> Iterator[_Root]:
 def _shapes(stiffness: Stiffness, root: _Root, sharp: arb) -> list[Mode | None]:
     w = root.frequency
     if root.multiplicity == 1:
-        near = np.array([complex(w) * (1 + _OFF)])
-        row = int(stiffness.softest_rows(near, 1j * near)[0])
-        return [complex_mode(stiffness, stiffness.law(arb), w, row, sharp)]
+        law, near = stiffness.law(arb), w.mid() * (1 + arb(2) ** -(ctx.prec // _OFF))
+        return [complex_mode(stiffness, law, w, stiffness.softest_row(law, near, _I * near), sharp)]
     if stiffness.network.bars:
         return [None] * root.multiplicity
     points = [stiffness.point_motions(rows) for rows in _null_space(stiffness, root.factor, _I * w)]

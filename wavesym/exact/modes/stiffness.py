@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from typing import Any, ClassVar
 
 import numpy as np
@@ -308,14 +309,23 @@ class Stiffness:
         """
         angles = [w * delay for delay in self.doubles.delays]
         with np.errstate(all="ignore"):
-            pivots, up = self._eliminate(w, angles, [np.sin(angle) for angle in angles], rate)
-            # what is left of a row once all others are eliminated
-            left = list(pivots)
-            for row in reversed(range(len(left))):
-                parent = self.parents[row]
-                if parent is not None:
-                    left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
+            left = self._left_of_rows(*self._eliminate(w, angles, [np.sin(angle) for angle in angles], rate))
         return np.asarray(np.argmin(np.nan_to_num(np.abs(left), nan=np.inf), axis=0))
+
+    def softest_row(self, law: HarmonicLaw, w: Quantity, rate: Quantity) -> int:
+        """The same at one w, in balls: for modes whose frequencies are one in doubles. `law` is in balls."""
+        diagonal, up = law.matrix(w, *cot_csc(law, w), rate)
+        sizes = [abs(left) for left in self._left_of_rows(self.pivots(diagonal, up), up)]
+        return min(range(len(sizes)), key=lambda row: float(sizes[row]) if sizes[row].is_finite() else inf)
+
+    def _left_of_rows(self, pivots: Sequence[Quantity], up: Sequence[Quantity]) -> list[Quantity]:
+        """What is left of each row once all others are eliminated."""
+        left = list(pivots)
+        for row in reversed(range(len(left))):
+            parent = self.parents[row]
+            if parent is not None:
+                left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
+        return left
 
     def _eliminate(
         self, w: Quantity, angles: Sequence[Quantity], sines: Sequence[Quantity], rate: Quantity = None

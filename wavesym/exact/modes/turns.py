@@ -157,6 +157,8 @@ class Circles:
         gaps = [k for k in range(1, len(sizes)) if sizes[k] > sizes[k - 1] * (1 + _BESIDE)]
         radii: list[float] = [(sizes[k - 1] * sizes[k]) ** 0.5 for k in gaps]
         if len(found) <= count:
+            if self.determinant is not None and self.determinant.degree() == self._zeros(found, inf):
+                return inf
             gaps.append(len(sizes))
             radii.append(_BEYOND_LAST[self.is_finite] * sizes[-1])
         # the widest gap beyond those that are wanted, and where that fails nearer ones
@@ -174,8 +176,11 @@ class Circles:
         return radii[low - 1] if low else 0.0
 
     def _is_complete(self, found: Sequence[complex], radius: float) -> bool:
-        inside = sum(2 if w.real else 1 for w in found if abs(w) < radius)
-        return self.count(radius) == inside + self._at_rest
+        return self.count(radius) == self._zeros(found, radius)
+
+    def _zeros(self, found: Sequence[complex], radius: float) -> int:
+        """How many A has below a radius, if modes there are all found."""
+        return self._at_rest + sum(2 if w.real else 1 for w in found if abs(w) < radius)
 
     @cached_property
     def _at_rest(self) -> int:
@@ -185,7 +190,7 @@ class Circles:
             terms *= 2
         return found[0]
 
-    @property
+    @cached_property
     def determinant(self) -> fmpq_poly | None:
         """A as a polynomial of s; None where there are rods."""
         if not self.is_finite:

@@ -213,9 +213,16 @@ class MarchPlan:
 
 
 def march_plan(
-    model: Model, real: Real = DOUBLE, space: Callable[[Network, Joint], Any] = joint_space, helps: str = HELPS
+    model: Model,
+    real: Real = DOUBLE,
+    space: Callable[[Network, Joint], Any] = joint_space,
+    helps: str = HELPS,
+    *,
+    or_pieces: bool = True,
 ) -> MarchPlan:
-    """The plan of a chain in `real` numbers; `space` makes the laws of its joints, `helps` is for a refusal.
+    """The plan of a chain in `real` numbers; `space` makes the laws of its joints.
+
+    For refusals: what `helps` where load times do not fit, and whether pieces could be made instead (`or_pieces`).
 
     UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
@@ -223,7 +230,7 @@ def march_plan(
     network.refuse_corners()
     network.refuse_dead_loads()
     model.refuse_damping()
-    network.refuse_rodless("a march", "take pieces or modes")
+    network.refuse_rodless("a march", "take pieces or modes" if or_pieces else "take modes")
     model = with_derivatives(model)
     network = model.network
     tau_max = model.horizon(real)
@@ -231,7 +238,7 @@ def march_plan(
     reached = model.joints_in_reach(until)
     modelled = {end for number in reached for end, _ in network.joints[number].ends}
     bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.gauges if read.point is None})
-    step = step_of([network.bars[bar].delay for bar in bars])
+    step = step_of([network.bars[bar].delay for bar in bars], or_pieces=or_pieces)
     track_of = {End(bar, side): 2 * k + side for k, bar in enumerate(bars) for side in (0, 1)}
     tracks = [
         Track(int(bar.delay / step), bar.initial_wave(side), bar.impedance)

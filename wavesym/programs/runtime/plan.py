@@ -129,7 +129,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[AppliedLoad], 
         for load, changes in zip(loads, acting, strict=True)
         for change in changes
     )
-    own = march_plan(replace(model, loads=merge_loads(known)), real, helps=HELPS)
+    own = march_plan(replace(model, loads=merge_loads(known)), real, helps=HELPS, or_pieces=False)
     is_zero = zero_outputs(free.some, loads, real)
     output_terms = tuple(
         (number, replace(wave, gain=fmpq(0)) if is_zero[number] else wave)
@@ -146,7 +146,7 @@ def free_march(model: Model, free: FreeNetwork, loads: tuple[AppliedLoad, ...], 
     """The plan of a march whose laws and gains are functions; where `loads` act is all that counts of them here."""
     points = zip(free.network.points, model.network.points, strict=True)
     network = replace(free.network, points=tuple(replace(point, loads=own.loads) for point, own in points))
-    plan = march_plan(replace(model, network=network, loads=loads), real, joint_rows, helps)
+    plan = march_plan(replace(model, network=network, loads=loads), real, joint_rows, helps, or_pieces=False)
     forces = [probe.computed_quantity == "force" for probe in model.probes]
     factors: list[Any] = [free.factors.force if force else fmpq(1) for force in forces]
     outputs = (

@@ -150,7 +150,7 @@ def stream_plan(
     Raises:
         UnservedError: The model has contacts or damped modes.
     """
-    march = march_plan(replace(model, loads=steps_of(inputs)), real)
+    march = march_plan(replace(model, loads=steps_of(inputs)), real, or_pieces=False)
     acting = acting_inputs(model.network, march.loaded_points, inputs)
     count = _panels(march, spacing, quicker)
     length = march.step / count
