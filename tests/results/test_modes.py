@@ -110,6 +110,25 @@ def test_a_dashpot_makes_frequencies_complex() -> None:
         w = complex((2 * n - 1) * pi / 2, decay)
         assert mode.omega == pytest.approx(abs(w), rel=1e-12)
         assert mode.damping == pytest.approx(w.imag / abs(w), rel=1e-12)
+        assert abs(mode.decay - decay) <= mode.radius + 4e-16
+    assert f"{decay:.7g}" in found.text().splitlines()[1].split()
+    assert "decay [1/tau]" in found.text().splitlines()[0]
+    assert [row["decay"] for row in json.loads(found.json())["modes"]] == [mode.decay for mode in found]
+    held = wavesym.modes(chain("fixed", {"rod": 1}, "free"), 2)
+    assert "decay" not in held.text()
+    assert [mode.decay for mode in held] == [0.0, 0.0]
+    assert held.csv().splitlines()[0].split(",")[4:7] == ["damping", "decay", "radius"]
+
+
+@pytest.mark.parametrize(("spring", "decay"), [("400 N/m", 3.0), ("8 N/m", 3 - sqrt(5))])
+def test_decay_is_that_of_a_mass_on_a_spring_and_a_dashpot(spring: str, decay: float) -> None:
+    """2 s^2 + 12 s + k = 0, in kg, N and s: the real part, and of two real roots the slower one."""
+    parts = ["fixed", {"spring": spring, "dashpot": "12 N*s/m"}, {"mass": "2 kg", "name": "m"}]
+    output = {"until": "1 s", "velocity": ["m"]}
+    scene = Scene(name="bob", units={"time": "ms"}, system={"type": "chain", "parts": parts}, output=output)
+    first = wavesym.modes(scene, 1)[0]
+    assert first.decay == pytest.approx(decay, rel=1e-14)
+    assert first.decay == pytest.approx(first.damping * first.omega, rel=1e-14)
 
 
 @pytest.mark.slow
@@ -149,6 +168,10 @@ def test_in_units_they_are_per_second() -> None:
 def test_damping_of_modes_is_that_of_the_scene() -> None:
     frame = Scene.from_toml("building_m2").with_({"system.base": "ground", "system.damping": ["1/10", "1/50"]})
     assert [mode.damping for mode in wavesym.modes(frame, 4)] == [0.1, 0.02, 0.02, 0.02]
+    assert all(mode.decay == mode.damping * mode.omega for mode in wavesym.modes(frame, 4))
+    slow = wavesym.modes(frame.with_({"system.damping": "500 %"}), 1)[0]  # s^2 + 10 w s + w^2 = 0
+    assert slow.decay**2 - 10 * slow.omega * slow.decay + slow.omega**2 == pytest.approx(0, abs=1e-14)
+    assert slow.decay < slow.omega
 
 
 def test_rayleigh_damping_may_name_modes_that_are_not_asked_for() -> None:

@@ -338,6 +338,13 @@ def test_it_compiles_without_a_warning(make, language, tmp_path):
             "--runtime: kappa is unknown; write mass, dashpot, impedance, velocity or load",
         ),
         (shaft(NUMBERS[shaft]), ["spring"], "spring is unknown; write mass, dashpot, impedance, velocity or load"),
+        (shaft(NUMBERS[shaft]), ["diameter"], "diameter is in the impedance of a rod: write that; or `wavesym sweep`"),
+        (
+            shaft(NUMBERS[shaft]),
+            ["G"],
+            r"load \(G changes travel times of a march, .* modes take stiffness",
+        ),
+        (wavesym.Scene.from_toml("drive_m1"), ["diameter"], r"load \(diameter changes the impedance .*`wavesym sweep`"),
         (wavesym.Scene.from_toml("examples/chains/mass_on_fixed_bar.toml"), ["mass"], "the contact at 0 opens"),
     ],
 )

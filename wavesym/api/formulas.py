@@ -115,7 +115,7 @@ def formula(
         -1 + exp(-w)
     """
     from wavesym.documents.formula import output_formula, symbolic_formula
-    from wavesym.numbers.doubles import rational
+    from wavesym.numbers.doubles import nearest, rational
 
     refuse_unknown("format", format, ("text", "latex", "sympy", "c"))
     model, output = lower(scene), _output_name(scene, output)
@@ -124,7 +124,10 @@ def formula(
             model.clock.per_tau if model.clock else 1
         )
         if not 0 < last <= model.until:
-            raise WavesymError(f"--until: {float(until):g} is not between 0 and the horizon of the scene")
+            unit, horizon = "tau", f"{nearest(model.until):.9g} tau"
+            if model.clock:
+                unit, horizon = model.clock.unit, model.clock.format(model.until)
+            raise WavesymError(f"--until: {float(until):g} {unit} is not between 0 and the horizon, {horizon}")
         model = model.shorten(last)
     if not symbolic:
         return output_formula(model, output).render(format)

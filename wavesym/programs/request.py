@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -33,6 +33,8 @@ OF_MODES = {
     "damping": "is that of modes",
 }
 """The parameters at run time that modes alone have, and what of them no march can take."""
+_OF_TRAVEL_TIMES = frozenset({"length", "height", "speed", "E", "G", "I", "EI", "GJ", "EA", "GA", "rho"})
+_OF_SECTIONS = frozenset({"A", "J", "diameter", "bore"})
 POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedance"})
 """The parameters at run time that have to be positive, and that a largest rate is about."""
 
@@ -173,11 +175,30 @@ class Request:
             raise WavesymError(f"language: {only_c} makes C, not {self.language}; write c")
 
 
-def refuse_others(option: str, names: Sequence[str], known: Sequence[str]) -> None:
-    """WavesymError for a name that is none of those there are, and for one that is given twice."""
+def why_constant(name: str, known: Sequence[str]) -> str:
+    """Why a quantity of rods is no parameter at run time, and what varies it; nothing for what is none."""
+    if name not in _OF_TRAVEL_TIMES | _OF_SECTIONS:
+        return ""
+    sweep = "`wavesym sweep` varies keys of rods, by their paths under [vary]"
+    if "stiffness" in known:
+        return f"{name} is in the stiffness or the mass of a rod: write stiffness or rod_mass; or {sweep}"
+    if name in _OF_SECTIONS and "impedance" in known:
+        return f"{name} is in the impedance of a rod: write that; or {sweep}"
+    modes = "modes take stiffness and rod_mass at run time, where no load jumps and no dashpot acts"
+    if name in _OF_SECTIONS:
+        return f"{name} changes the impedance of a rod, which stays here; {sweep}; {modes}"
+    return f"{name} changes travel times of a march, which stay at run time; {sweep}; {modes}"
+
+
+def refuse_others(
+    option: str, names: Sequence[str], known: Sequence[str], why: Callable[[str, Sequence[str]], str] | None = None
+) -> None:
+    """WavesymError for a name that is none of those there are, with `why`, and for one that is given twice."""
     for place, name in enumerate(names):
         if name not in known:
             choice = f"{alternatives(known)}. {did_you_mean(name, known)}".rstrip(". ")
+            if why and (reason := why(name, known)):
+                choice = f"{alternatives(known)} ({reason})"
             raise WavesymError(f"{option}: {name or 'an empty name'} is unknown; write {choice}")
         if name in names[:place]:
             raise WavesymError(f"{option}: {name} stands twice; write it once")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import inf, pi
+from math import inf, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -51,7 +51,9 @@ class ModeRow:
         hz: omega / 2 pi.
         period: 1 / hz; None of a rigid mode.
         damping: the ratio to critical damping; 1 of what creeps, also of a shift that stays.
-        radius: omega, as the double it is, is right to so much: proved.
+        decay: the rate at which its amplitude falls, as exp(-decay t), per s or per tau: minus the real part of s in
+            exp(s t). Beyond critical damping of a modal ratio that of the slower motion.
+        radius: omega, as the double it is, is right to so much, and so is the decay of a complex one: proved.
         effective_mass: what of the mass moves with all supports, in parts of the whole; None where nothing holds the
             chain, or gears make it mean nothing.
         shape: how far each node moves, the largest 1; complex where there are dashpots.
@@ -63,6 +65,7 @@ class ModeRow:
     hz: float
     period: float | None
     damping: float
+    decay: float
     radius: float
     effective_mass: float | None
     shape: dict[str, complex]
@@ -155,6 +158,8 @@ class Modes:
         """As a table for people."""
         per, hz = ("rad/s", "Hz") if self.time_unit else ("rad/tau", "1/tau")
         head = ["mode", f"omega [{per}]", f"frequency [{hz}]", f"period [{self.time_unit or 'tau'}]", "damping"]
+        if damped := any(mode.damping for mode in self.modes):
+            head.append(f"decay [1/{self.time_unit or 'tau'}]")
         massive = any(mode.effective_mass is not None for mode in self.modes)
         loads = list(dict.fromkeys(name for mode in self.modes for name in mode.loads))
         rows = [[*head, *["effective mass"] * massive, *(f"participation@{name}" for name in loads)]]
@@ -165,7 +170,7 @@ class Modes:
             known = [mode.loads.get(name) for name in loads]
             shares = ["-" if each is None else f"{each.factor:.5g}" for each in known]
             numbers = [str(mode.number), f"{mode.omega:.9g}", f"{mode.hz:.9g}", period, damping]
-            rows.append([*numbers, *[mass] * massive, *shares])
+            rows.append([*numbers, *[f"{mode.decay:.7g}"] * damped, *[mass] * massive, *shares])
         lines = align_columns(rows, left=())
         if shapes and self.modes:
             nodes = list(self.modes[0].shape)
@@ -194,6 +199,7 @@ class Modes:
                 "hz": mode.hz,
                 "period": mode.period,
                 "damping": mode.damping,
+                "decay": mode.decay,
                 "radius": mode.radius,
                 "effective_mass": mode.effective_mass,
                 **{f"{key}@{name}": value for name, load in mode.loads.items() for key, value in _numbers(load)},
@@ -315,8 +321,9 @@ def _row(model: Model, number: int, mode: Mode, seconds: fmpq) -> ModeRow:
     size = abs(w) if isinstance(w, acb) else w
     with ctx.workprec(_BITS):  # what a double leaves off an exact frequency is in its radius
         angular = size / arb(seconds)
-        omega = midpoint(angular)
-        radius = upper_double(abs(angular - omega))
+        fall = w.imag / arb(seconds) if isinstance(w, acb) else arb(0)
+        omega, decay = midpoint(angular), midpoint(fall)
+        radius = upper_double(abs(angular - omega).max(abs(fall - decay)))
     ratio = midpoint(w.imag / size) if isinstance(w, acb) and not size.contains(0) else float(mode.stays)
     return ModeRow(
         number=number,
@@ -324,6 +331,7 @@ def _row(model: Model, number: int, mode: Mode, seconds: fmpq) -> ModeRow:
         hz=omega / (2 * pi),
         period=2 * pi / omega if omega else None,
         damping=ratio,
+        decay=decay,
         radius=radius,
         effective_mass=None if isinstance(w, acb) else effective_mass(model.network, mode),
         shape=_shape(model.network, mode),
@@ -342,7 +350,13 @@ def _with_ratios(model: Model, rows: Sequence[ModeRow], spectrum: Spectrum, per_
         frequencies = [midpoint(abs(mode.frequency)) for mode in spectrum.first(named + 1)]  # one may be rigid
         known = [w for w in frequencies if w]
     ratios = iter(damping_ratios(model.damping, known).ratios_at(np.array(elastic)).tolist())
-    return tuple(replace(row, damping=next(ratios)) if row.omega else row for row in rows)
+    return tuple(_with_ratio(row, next(ratios)) if row.omega else row for row in rows)
+
+
+def _with_ratio(row: ModeRow, ratio: float) -> ModeRow:
+    """A mode with a damping ratio; beyond 1 it has two motions, and decay is that of the slower one."""
+    rate = ratio if ratio <= 1 else 1 / (ratio + sqrt(ratio * ratio - 1))
+    return replace(row, damping=ratio, decay=rate * row.omega)
 
 
 def _largest(network: Network, mode: Mode) -> arb:

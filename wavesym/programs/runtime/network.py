@@ -20,7 +20,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.parameters import Factors, ModelParameter
 from wavesym.numbers.ratio import Ring
-from wavesym.programs.request import OF_MODES, POSITIVE, refuse_others
+from wavesym.programs.request import OF_MODES, POSITIVE, refuse_others, why_constant
 
 NAMES = ("kappa", "inertia", "velocity", "load")
 
@@ -130,7 +130,7 @@ def runtime_fields(
         WavesymError: for a name that is none of these, and one that stands twice.
     """
     loaded = amplitudes or any(load.source != "impact" for load in model.loads)
-    refuse_others("--runtime", names, [*numbers, *(["load"] if loaded else [])])
+    refuse_others("--runtime", names, [*numbers, *(["load"] if loaded else [])], why_constant)
     chosen = {
         name: [(each.label, each.value, unit(model, name), each.about) for each in every]
         for name, every in numbers.items()
