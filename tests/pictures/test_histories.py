@@ -369,3 +369,28 @@ def test_a_picture_takes_what_is_made_quickly(horizon: int, kind: str) -> None:
     made = made_of.drawable(lower(Scene.from_toml("drive_m1").with_({"output.until": horizon})))
     assert made.evaluator == kind
     assert made.error_bound < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("largest", "beside", "power"),
+    [
+        (15_000.0, {"15\u202f000", "\u22125000"}, ""),
+        (0.004, {"0.002", "\u22120.002"}, ""),
+        (2e-5, {"20", "\u221210"}, "\u00d710\u207b\u2076"),
+        (3e6, {"2", "\u22121"}, "\u00d710\u2076"),
+    ],
+)
+def test_numbers_beside_axes_are_those_that_people_write(largest: float, beside: set[str], power: str) -> None:
+    """1e4 stood above 0.25 to 1.00, which were thousands of kN."""
+    probe = Probe("force@0", "force", 1, fmpq(0), unit="kN")
+    curve = History(probe, (np.array([[0.0, 0.0], [1.0, largest], [2.0, -largest / 2]]),))
+    stack = [PlotPanel("force\nin kN", (curve,)), PlotPanel("load", (), height=1.2)]
+    drawn = stack_panels(stack, 2.0, ["a title"])
+    drawn.canvas.draw()
+    axes = drawn.axes[0]
+    assert beside <= {each.get_text() for each in axes.get_yticklabels()}
+    assert axes.yaxis.get_offset_text().get_text() == power
+    title = axes.yaxis.label.get_window_extent()
+    assert title.x0 >= 0
+    assert not any(title.overlaps(each.get_window_extent()) for each in axes.get_yticklabels())
+    assert len({each.get_position().x0 for each in drawn.axes}) == 1

@@ -29,9 +29,12 @@ from wavesym.pictures.page import small
 from wavesym.pictures.page.curves import HEIGHT, Grid
 from wavesym.pictures.page.document import _bound, page
 from wavesym.pictures.page.headline import _value
+from wavesym.pictures.page.load_spectrum import _picture
 from wavesym.pictures.page.page_tables import PageTable
+from wavesym.pictures.page.plots import LETTER
 from wavesym.pictures.page.small import LARGEST, first_rows, first_text, fitting
 from wavesym.pictures.page.structure import structure
+from wavesym.pictures.timescale import Timescale
 from wavesym.programs.making import make
 from wavesym.scene import Scene, builtin_text, lower
 
@@ -282,6 +285,23 @@ def test_the_spectrum_of_the_load_is_what_an_oscillator_does() -> None:
         assert value == pytest.approx(w * w * largest, rel=5e-3)  # tops between steps: 16 steps a period, and parabolas
     periods = [mode.period for mode in wavesym.modes(Scene(**FRAME), 3)]
     assert [f"T{k} = {period:.3g} s" in text for k, period in enumerate(periods, 1)] == [True] * len(periods)
+
+
+def test_no_line_of_a_period_crosses_the_name_of_another() -> None:
+    """The line of T2 went through "T3 = 0.125 s"."""
+    periods, own = np.geomspace(0.02, 4, 50), np.array([1.01, 0.14, 0.125, 0.12, 0.06])
+    drawn = _picture("spectrum", "a title", periods, np.full(50, 3.0), own, "m/s^2", Timescale(1.0, "s")).markup
+    lines = [[float(each) for each in found] for found in re.findall(r'"period" x1="(.*?)" y1="(.*?)" x2', drawn)]
+    names = re.findall(r'<text x="([\d.]+)" y="([\d.]+)"[^>]*>(T\d = [^<]*)', drawn)
+    assert len(names) == len(lines) == len(own)
+    for x, y, words in names:
+        crossed = [at for at, top in lines if float(x) < at < float(x) + LETTER * len(words) and top < float(y)]
+        assert not crossed, words
+    curve = re.search(r'class="spectrum" d="M[\d.]+ ([\d.]+)', drawn)
+    assert curve
+    assert max(float(y) for _, y, _ in names) < float(curve[1])
+    assert "3 m/s\u00b2 at T1" in drawn
+    assert "m/s^2" not in unquote(drawn)
 
 
 @pytest.mark.slow

@@ -24,7 +24,7 @@ from wavesym.pictures.labels import Curve, label
 from wavesym.pictures.naming import heading
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.pictures.stations import slip_times, slip_words
-from wavesym.pictures.style import FONT, HALO, SLIPS, WIDTH, draw_grid, new_figure, with_style
+from wavesym.pictures.style import FONT, HALO, SLIPS, WIDTH, draw_grid, new_figure, with_style, write_plain_numbers
 from wavesym.pictures.timescale import Timescale, timescale
 
 CHARACTERS = 66  # in a line of text across the figure
@@ -32,6 +32,7 @@ _LEFT, _RIGHT, _GAP = 1.05, 0.1, 0.22  # inches
 _TITLE = 0.62  # of an axis, to its left
 _LINE = 0.21  # height of a line of text
 _WIDEST_TIME, _WIDEST_VALUE = 4, 5  # characters of a tick that there is room for: right of the last, beside the title
+_CHARACTER = 0.106  # inches
 _AXIS = 0.55  # below the last panel
 _BEYOND = 1.01  # what happens at the end of the horizon is not hidden by the frame
 _Dashes = str | tuple[int, tuple[int, ...]]
@@ -109,14 +110,15 @@ def stack_panels(
     top = height - above
     for k, (panel, gap) in enumerate(zip(panels, gaps, strict=True)):
         top -= gap + panel.height
-        width = 1 - (_LEFT + _RIGHT) / WIDTH
-        axes = figure.add_axes((_LEFT / WIDTH, top / height, width, panel.height / height))
+        axes = figure.add_axes((_LEFT / WIDTH, top / height, 1 - (_LEFT + _RIGHT) / WIDTH, panel.height / height))
         axes.set_xlim(0, _BEYOND * until)
-        axes.yaxis.set_label_coords(-_TITLE / WIDTH / width, 0.5)
         axes.tick_params(labelbottom=k == len(panels) - 1)
-        _fill(axes, panel, instants)
+        _draw_curves(axes, panel, instants)
         for low, high in shaded:
             axes.axvspan(low * scale.per_tau, high * scale.per_tau, color=SLIPS, alpha=_SHADE, linewidth=0, zorder=0)
+    _make_room(figure.axes)
+    for axes, panel in zip(figure.axes, panels, strict=True):
+        _name_curves(axes, panel, instants)
     axes.set_xlabel(scale.title)
     _shorten_times(axes)
     return figure
@@ -156,16 +158,24 @@ def _in_scene_time(panel: PlotPanel, scale: Timescale) -> PlotPanel:
     )
 
 
-def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
+def _make_room(panels: Sequence[Axes]) -> None:
+    """Move the left of panels to the right where their numbers are wider than the room beside the titles."""
+    titled = [_characters(axes.yaxis) for axes in panels if axes.get_ylabel()]
+    missing = _CHARACTER * (max([_WIDEST_VALUE, *titled]) - _WIDEST_VALUE)
+    for axes in panels:
+        x, y, width, height = axes.get_position().bounds
+        axes.set_position((x + missing / WIDTH, y, width - missing / WIDTH, height))
+        axes.yaxis.set_label_coords(-(_TITLE + missing) / WIDTH / (width - missing / WIDTH), 0.5)
+
+
+def _draw_curves(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     axes.set_ylabel(panel.title)
     draw_grid(axes)
-    axes.ticklabel_format(axis="y", scilimits=(-2, 5))
+    write_plain_numbers(axes.yaxis)
     for history, (dashes, color) in zip(panel.histories, _STYLES, strict=False):
         _curve(axes, history, dashes, color)
     axes.margins(x=0, y=0.14)
     axes.autoscale_view(scalex=False)
-    if _characters(axes.yaxis) > _WIDEST_VALUE:
-        axes.ticklabel_format(axis="y", scilimits=(-1, 4))
     for instant in instants:
         axes.axvline(instant.tau, color="black", linestyle=instant.dashes, linewidth=0.9, zorder=1)
     for mark in panel.marks:
@@ -173,7 +183,11 @@ def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
         axes.plot(*mark.points.T, "-o" if upright else ":o", color="black", markersize=3, linewidth=0.9, zorder=4)
     if panel.limits:
         _strip(axes, panel)
-        return
+
+
+def _name_curves(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
+    if panel.limits:
+        return  # a strip says what it is
     names = _labels(axes, panel, instants)
     if names:
         label(axes, names, FONT)

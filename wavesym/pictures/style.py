@@ -5,17 +5,22 @@ A picture is WIDTH inches across, all its text has FONT points: shown 376 px acr
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from io import BytesIO
+from itertools import pairwise
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import Formatter
+
+from wavesym.pictures.ticks import omitted_power, power_text, tick_text
 
 WIDTH, FONT, DPI = 6.9, 12.0, 120  # inches, points, dots an inch
 MAIN, GREATEST, LEAST, OTHER = "#1f4e9c", "#b2431f", "#1f4e9c", "#d0692b"
@@ -71,6 +76,30 @@ def draw_grid(axes: Axes, *, zero: bool = True) -> None:
     axes.grid(True, color=_GRID, linewidth=0.6)
     if zero:
         axes.axhline(0, color=_ZERO, linewidth=0.7, zorder=1)
+
+
+class _PlainFormatter(Formatter):
+    """Numbers as they are beside the axes of pages, with as many digits as the steps between them have."""
+
+    def format_ticks(self, values: Sequence[float]) -> list[str]:
+        self.set_locs(list(values))
+        size = 10.0**self._power
+        step = min((high - low for low, high in pairwise(values)), default=values[0] if len(values) else 1.0)
+        return [tick_text(value / size, step / size).replace("-", "\u2212") for value in values]
+
+    def get_offset(self) -> str:
+        return power_text(self._power) if self._power else ""
+
+    @property
+    def _power(self) -> int:
+        assert self.axis is not None  # ticks are those of an axis
+        low, high = self.axis.get_view_interval()
+        return omitted_power(low, high)
+
+
+def write_plain_numbers(axis: Axis) -> None:
+    """Write the numbers of an axis as people do: 10\u202f000, not 1.0 and a power of ten apart."""
+    axis.set_major_formatter(_PlainFormatter())
 
 
 def colours(*, signed: bool) -> Colormap:

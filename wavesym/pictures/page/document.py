@@ -28,6 +28,7 @@ from wavesym.pictures.page.plots import PagePicture, panel, picture
 from wavesym.pictures.page.small import first_rows, first_text, fitting
 from wavesym.pictures.page.structure import structure
 from wavesym.pictures.timescale import Timescale, timescale
+from wavesym.pictures.units import unit_text
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.results.summary import Summary, summary_and_program
@@ -261,7 +262,9 @@ def _loads(model: Model, loads: Sequence[History]) -> str:
     if model.clock is None:
         return "; ".join(map(": ".join, zip(model.labels.load_names, model.labels.loads, strict=True)))
     values = ((load, load.points[:, 1]) for load in loads)
-    return "; ".join(f"{load.name}, from {min(v):.4g} to {max(v):.4g} {load.output.unit}" for load, v in values)
+    return "; ".join(
+        f"{each.name}, from {min(v):.4g} to {max(v):.4g} {unit_text(each.output.unit)}" for each, v in values
+    )
 
 
 def _system_choices(model: Model) -> list[str]:

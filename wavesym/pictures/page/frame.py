@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from math import ceil, floor, log10
 
 from wavesym.pictures.page.svg import Svg, concatenate, line, text
-from wavesym.pictures.units import RAISED
-from wavesym.results.presentation import group_thousands
+from wavesym.pictures.ticks import omitted_power, power_text, tick_text
 
 _NICE = (1, 2, 2.5, 5, 10)
 
@@ -29,9 +28,7 @@ class PlotAxis:
     @property
     def power(self) -> int:
         """That of ten which is left out of long numbers, 0 for short ones."""
-        largest = max(abs(self.low), abs(self.high))
-        power = 3 * floor(log10(largest) / 3)
-        return power if not 1e-3 <= largest < 1e5 else 0
+        return omitted_power(self.low, self.high)
 
     def ticks(self, most: int, power: int = 0) -> list[tuple[float, str]]:
         """At most so many round numbers on the axis, as they are written without 10**power."""
@@ -40,15 +37,6 @@ class PlotAxis:
         step = next(nice * coarse for nice in _NICE if size / (nice * coarse) <= most)
         first, last = ceil(self.low / step - 1e-9), floor(self.high / step + 1e-9)
         return [(k * step, tick_text(k * step / 10.0**power, step / 10.0**power)) for k in range(first, last + 1)]
-
-
-def tick_text(value: float, step: float) -> str:
-    """A number to the last digit that steps of such a size change."""
-    if abs(step) >= 1e5 or abs(step) < 1e-4:
-        digits = max(0, floor(log10(abs(value))) - floor(log10(step)) + 1) if value else 0
-        return f"{value:.{digits}e}" if value else "0"
-    decimals = next(d for d in range(6) if abs(round(step, d) - step) < 1e-6 * step)
-    return f"{value:.{decimals}f}" if value else "0"
 
 
 def spread(low: float, high: float, room: float) -> tuple[float, float]:
@@ -82,11 +70,11 @@ class Frame:
             power = self.y.power
             upward = [(at, number) for at, number in self.y.ticks(max(3, int((bottom - top) / 32)), power)]
             if power:
-                parts.append(text(left - 6, top - 1, f"\u00d710{str(power).translate(RAISED)}", "end"))
+                parts.append(text(left - 6, top - 1, power_text(power), "end"))
         for value, number in upward:
             at = self.y.pixel(value)
             parts.append(line(left, at, right, at, "grid"))
-            parts.append(text(left - 6, at + 4, group_thousands(number), "end"))
+            parts.append(text(left - 6, at + 4, number, "end"))
         if self.places is None and self.y.low < 0 < self.y.high:
             parts.append(line(left, self.y.pixel(0), right, self.y.pixel(0), "zero"))
         if numbers:

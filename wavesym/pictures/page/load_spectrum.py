@@ -89,7 +89,8 @@ def _picture(
     key: str, title: str, periods: Array, values: Array, own: Array, unit: str, scale: Timescale
 ) -> PagePicture:
     x = PlotAxis(log10(periods[0]), log10(periods[-1]), LEFT, WIDTH - RIGHT)
-    y = PlotAxis(0.0, 1.3 * float(values.max()) or 1.0, TOP + _HEIGHT, TOP)
+    above = 12 * (len(own) + 1)  # a row for the name of each period
+    y = PlotAxis(0.0, _HEIGHT / (_HEIGHT - above) * float(values.max()) or 1.0, TOP + _HEIGHT, TOP)
     time = scale.unit or "tau"
     frame = Frame(
         x,
@@ -101,10 +102,10 @@ def _picture(
     marks, words = [], []
     for number, period in enumerate(sorted(own, reverse=True), 1):
         value = float(np.interp(period, periods, values))
-        at = x.pixel(log10(period))
-        marks += [line(at, TOP, at, TOP + _HEIGHT, "period"), spot(at, y.pixel(value))]
-        marks.append(text(at + 5, TOP + 12 * number, f"T{number} = {period:.3g} {time}", "start", class_="halo"))
-        words.append(f"{value:.4g}{unit and ' '}{unit} at T{number} = {period:.3g} {time}")
+        at, top = x.pixel(log10(period)), TOP + 12 * (len(own) - number)  # below the names of those to the left
+        marks += [line(at, top + 2, at, TOP + _HEIGHT, "period"), spot(at, y.pixel(value))]
+        marks.append(text(at + 5, top + 12, f"T{number} = {period:.3g} {time}", "start", class_="halo"))
+        words.append(f"{value:.4g}{unit and ' '}{unit_text(unit)} at T{number} = {period:.3g} {time}")
     points = [(x.pixel(log10(t)), y.pixel(v)) for t, v in zip(periods.tolist(), values.tolist(), strict=True)]
     markup = picture(
         key,

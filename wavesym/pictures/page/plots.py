@@ -15,6 +15,7 @@ from wavesym.pictures.page.frame import Frame, PlotAxis, spread
 from wavesym.pictures.page.svg import Svg, concatenate, element, line, text
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.pictures.timescale import Timescale
+from wavesym.pictures.units import unit_text
 
 WIDTH, LEFT, RIGHT, TOP, BELOW = 900.0, 84.0, 12.0, 10.0, 44.0
 _LOAD, _STRIP, _PANEL = 90.0, 66.0, 190.0  # pixels high
@@ -125,7 +126,7 @@ def _size(given: PlotPanel) -> tuple[float, tuple[float, float]]:
 
 def _describe(history: History, scale: Timescale) -> str:
     least, greatest = history.extremes
-    unit = f" {history.output.unit}".rstrip()
+    unit = f" {unit_text(history.output.unit)}".rstrip()
     return (
         f"{history.name}: from {least[1]:.4g}{unit} at {scale.format(least[0])} "
         f"to {greatest[1]:.4g}{unit} at {scale.format(greatest[0])}."
