@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import pi
+from math import exp, pi
 from typing import Any
 
 import mpmath
@@ -158,6 +158,17 @@ def test_critical_damping_is_one_mode_twice() -> None:
     both = wavesym.modes(scene([one, {"dashpot": 1}, one]), 6)
     assert [mode.omega for mode in both] == pytest.approx([2 - 3**0.5, 1, 1, 2 + 3**0.5], rel=1e-15)
     assert [list(mode.shape.values()) for mode in both] == [[1, -1] if k in (0, 3) else [1, 1] for k in range(4)]
+
+
+def test_critical_damping_by_what_absorbs_is_one_mode_twice() -> None:
+    """(s + 1)^2 of a body before two rods of one impedance: ends move as exp(-s T) = exp(T), and modes ended there."""
+    parts = ["absorbing", {"rod": 3, "impedance": "1/2", "speed": 2}, {"joint": True, "name": "a"}]
+    parts += [{"rod": 1, "impedance": "1/2"}, {"mass": 1, "spring": 1, "dashpot": "3/2", "name": "m"}]
+    found = wavesym.modes(scene(parts), 6)
+    assert ([(mode.omega, mode.damping) for mode in found], found.complete) == ([(1.0, 1.0)] * 2, True)
+    for mode in found:
+        moved = list(mode.shape.values())
+        assert [each / moved[-1] for each in moved] == pytest.approx([exp(2.5), exp(1), 1], rel=1e-14)
 
 
 def test_equal_bodies_without_rods_have_shapes_of_their_own() -> None:

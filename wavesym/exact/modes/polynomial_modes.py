@@ -18,6 +18,7 @@ from flint import acb, arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from wavesym.exact.modes.shape import Mode, complex_mode
 from wavesym.exact.modes.stiffness import Stiffness
+from wavesym.exact.modes.turns import absorb
 
 _BITS, _BITS_A_ROW = 256, 12
 _TIMES = (1, 4, 16)  # as many bits
@@ -73,11 +74,24 @@ def _shapes(stiffness: Stiffness, root: _Root, sharp: arb) -> list[Mode | None]:
     if root.multiplicity == 1:
         law, near = stiffness.law(arb), w.mid() * (1 + arb(2) ** -(ctx.prec // _OFF))
         return [complex_mode(stiffness, law, w, stiffness.softest_row(law, near, _I * near), sharp)]
-    if stiffness.network.bars:
-        return [None] * root.multiplicity
-    points = [stiffness.point_motions(rows) for rows in _null_space(stiffness, root.factor, _I * w)]
-    modes: list[Mode | None] = [Mode(stiffness, w, each) for each in points]
+    bare = Stiffness(absorb(stiffness.network))
+    points = [bare.point_motions(rows) for rows in _null_space(bare, root.factor, _I * w)]
+    modes: list[Mode | None] = [Mode(stiffness, w, _with_far_ends(stiffness, bare, each, w)) for each in points]
     return modes + modes[-1:] * (root.multiplicity - len(modes))
+
+
+def _with_far_ends(stiffness: Stiffness, bare: Stiffness, points: list[acb], w: acb) -> list[acb]:
+    """Points with those at the far ends of rods that absorb, which do what the near ends did a delay before."""
+    known, coming = set(bare.points), list(stiffness.network.bars)
+    while coming:
+        bar = next(bar for bar in coming if known & {bar.left, bar.right})
+        coming.remove(bar)
+        (near, ratio), (far, far_ratio) = sorted(
+            zip((bar.left, bar.right), bar.ratios, strict=True), key=lambda end: end[0] not in known
+        )
+        points[far] = points[near] * (ratio / far_ratio) * (-_I * w * bar.delay).exp()
+        known.add(far)
+    return points
 
 
 def _null_space(stiffness: Stiffness, factor: fmpz_poly, s: acb) -> list[list[acb]]:
