@@ -355,9 +355,44 @@ def test_a_narrow_peak_between_points_is_not_missed() -> None:
     assert peak.frequency == pytest.approx(np.pi / 2, abs=1e-6)
 
 
+LAYER = Scene(
+    name="layer",
+    system={"type": "chain", "parts": [{"joint": True, "name": "rock", "dashpot": 4}, {"rod": 1}, "free"]},
+    load=[{"at": "rock", "times": [0], "steps": [1]}],
+    output={"until": 1, "velocity": ["1"]},
+)
+
+
+def test_the_place_of_a_peak_is_enclosed(capsys: pytest.CaptureFixture[str]) -> None:
+    """A layer on rock, 1/|4 cos w + i sin w|: 1 at pi/2 and, as high, at 3 pi/2; it rises before the first."""
+    (peak,) = wavesym.frf(LAYER, [0.0, 4.0]).peaks()
+    with ctx.workprec(128):
+        assert peak.frequency_low < arb.pi() / 2 < peak.frequency_high
+    assert peak.frequency_high - peak.frequency_low <= 2 * ULP
+    assert peak.frequency_low <= peak.frequency <= peak.frequency_high
+    (rise,) = wavesym.frf(LAYER, [0.25, 1.0]).peaks()
+    assert (rise.frequency_low, rise.frequency, rise.frequency_high) == (1.0, 1.0, 1.0)
+    (both,) = wavesym.frf(LAYER, [1.0, 5.0]).peaks()
+    assert both.frequency_low < np.pi / 2
+    assert both.frequency_high > 3 * np.pi / 2
+    json_peak = json.loads(wavesym.frf(LAYER, [0.0, 4.0]).peaks().json())["peaks"][0]
+    assert (json_peak["frequency_low"], json_peak["frequency_high"]) == (peak.frequency_low, peak.frequency_high)
+
+
+def test_the_rest_of_a_taylor_polynomial_is_there() -> None:
+    """Power series are cut at ctx.cap terms: what bounds the rest is the last of these, not a 0 behind it."""
+    model = lower(LAYER)
+    found = resonance._fractions(Transfer(model, harmonic_load(model, ("rock:step",))), arb(1).union(arb(2)))
+    assert found is not None
+    assert len(found.divisor) <= ctx.cap
+    assert found.divisor[-1].real.rad() > 0
+
+
 @pytest.mark.slow
 def test_what_nothing_damps_has_no_greatest_amplitude() -> None:
     peak = wavesym.frf(rod(), [1.0, 2.0]).peaks()["strain@0"]
+    assert 0 < peak.frequency_high - peak.frequency_low <= 2 * ULP
+    assert peak.frequency_low <= np.pi / 2 <= peak.frequency_high
     assert (peak.amplitude, peak.high) == (np.inf, np.inf)
     assert peak.frequency == pytest.approx(np.pi / 2)
     spring = Scene(

@@ -42,7 +42,8 @@ _MOST = 600_000  # intervals times parts
 _SHARP = arb(2) ** -80  # of a frequency: the place of a pole
 _ASIDE = arb(509) / 1024
 _NEWTON = 3
-_TERMS = 10  # of Taylor polynomials
+_HALVINGS = 30
+_TERMS = 9  # of Taylor polynomials: with the rest 10, which power series are cut at (ctx.cap)
 _LOOKS = 96  # at parts of such a polynomial
 _ROUNDED = arb(2) ** -20  # of a radius: what rounding adds to it, in a few products
 _PARTS = 64  # of the band at first
@@ -73,6 +74,9 @@ class AmplitudePeak:
         name: the output; `unit` its unit, per unit of the load.
         frequency: where it is, in Hz, or in rad per tau without [units]; of places that are equally high one, the lower
             end of the band if that is.
+        frequency_low: proved: amplitudes are lower below it, and above `frequency_high`; these are far apart where
+            places are equally high. A pole (one of those that there are) is between them. nan where amplitude is.
+        frequency_high: see there.
         amplitude: what it is there, to the nearest double; inf at a natural frequency that nothing damps; nan where it
             is not decided whether there is a greatest one: at a natural frequency that the load may not excite.
         low: proved: it is at least this, and at most `high`, inf where amplitude is inf or nan.
@@ -84,6 +88,8 @@ class AmplitudePeak:
     amplitude: float
     low: float
     high: float
+    frequency_low: float
+    frequency_high: float
 
 
 @dataclass(frozen=True)
@@ -118,8 +124,10 @@ class AmplitudePeaks:
 
     def csv(self) -> str:
         """A line for each output."""
-        head = f"output,{self.frequency_label},amplitude,low,high\n"
-        rows = ((p.name, p.frequency, p.amplitude, p.low, p.high) for p in self.peaks)
+        head = f"output,{self.frequency_label},amplitude,low,high,frequency_low,frequency_high\n"
+        rows = (
+            (p.name, p.frequency, p.amplitude, p.low, p.high, p.frequency_low, p.frequency_high) for p in self.peaks
+        )
         return head + "".join(map(csv_line, rows))
 
     def json(self) -> str:
@@ -132,6 +140,8 @@ class AmplitudePeaks:
                 "amplitude": p.amplitude if isfinite(p.amplitude) else None,
                 "low": p.low,
                 "high": None if p.high == inf else p.high,
+                "frequency_low": None if isnan(p.frequency_low) else p.frequency_low,
+                "frequency_high": None if isnan(p.frequency_high) else p.frequency_high,
             }
             for p in self.peaks
         ]
@@ -159,10 +169,7 @@ def peaks(model: Model, load: HarmonicLoad, low: float, high: float) -> Amplitud
         with ctx.workprec(bits):
             found = _searches(model, load, angular(model, low), angular(model, high), shortest)
             per = angular(model, 1.0)
-            made = [
-                _peak(probe, each, low if each.at is None else min(max(midpoint(each.at / per), low), high))
-                for probe, each in zip(model.probes, found, strict=True)
-            ]
+            made = [_peak(probe, each, per, (low, high)) for probe, each in zip(model.probes, found, strict=True)]
         if not any(each.is_open for each in found):
             break
     label = "omega" if model.clock is None else "frequency [Hz]"
@@ -187,8 +194,16 @@ def _searches(model: Model, load: HarmonicLoad, first: arb, last: arb, shortest:
     return found
 
 
-def _peak(probe: Probe, search: _Search, frequency: float) -> AmplitudePeak:
+def _peak(probe: Probe, search: _Search, per: arb, band: tuple[float, float]) -> AmplitudePeak:
     square, rest, bounded = search.square, search.rest, not (search.pole or search.is_open)
+    low, high = band
+    frequency = low if search.at is None else min(max(midpoint(search.at / per), low), high)
+    if search.is_open:
+        low = high = nan
+    elif search.place is not None:
+        least, most = search.place
+        low, high = max(low, -upper_double(-least / per)), min(high, upper_double(most / per))
+        frequency = min(max(frequency, low), high)
     return AmplitudePeak(
         name=probe.name,
         unit=probe.unit,
@@ -196,6 +211,8 @@ def _peak(probe: Probe, search: _Search, frequency: float) -> AmplitudePeak:
         amplitude=midpoint(square.sqrt()) if bounded else inf if search.pole else nan,
         low=-upper_double(rest - square.sqrt()) if square > rest**2 else 0.0,
         high=upper_double((square * (1 + _SHARE)).sqrt() + rest) if bounded else inf,
+        frequency_low=low,
+        frequency_high=high,
     )
 
 
@@ -211,11 +228,34 @@ class _Search:
         self.pole = False
         self.is_open = False
         """Whether there is a place where it has no bound, and no pole that is proved."""
+        self.place: tuple[arb, arb] | None = None
+        """Between which frequencies the greatest amplitude is proved to be; None for somewhere in the band."""
+        self.near_top: list[tuple[arb, arb, arb]] = []
+        """From where to where amplitudes, squared, are at most the third, and may be the greatest."""
+
+    @property
+    def surpassed(self) -> arb:
+        """What is less, squared, without the rest, is not the greatest amplitude."""
+        if self.rest == 0:
+            return self.square
+        root = (self.square.sqrt() - 2 * self.rest).lower()
+        return root**2 if root > 0 else arb(0)
+
+    def enclose_place(self) -> None:
+        """Take what may still be the greatest amplitude together."""
+        left = [(low, high) for low, high, most in self.near_top if not most < self.surpassed]
+        if left and not (self.pole or self.is_open):
+            self.place = min(low for low, _ in left), max(high for _, high in left)
 
     def amplitude_squared(self, w: arb, square: arb) -> None:
         """An amplitude, squared, at a frequency."""
         if square.is_finite() and (self.at is None or square.lower() > self.square * (1 + _NOISE)):
             self.square, self.at = square.lower(), w
+
+    def leave(self, low: arb, high: arb, most: arb) -> None:
+        """Look no further at an interval in which amplitudes, squared, are at most so much."""
+        if not most < self.surpassed:
+            self.near_top.append((low, high, most))
 
     def excludes(self, square: arb) -> bool:
         """Whether what is nowhere above so much cannot matter."""
@@ -244,13 +284,14 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
 
     What is not finite at 0 is searched from a 2^-40 of the band on: there it has a pole, or goes on as it comes.
     """
-    if first.contains(0) and not all(square.is_finite() for square, _, _ in _squares(transfer, first)):
+    is_from_zero = first.contains(0) and not all(square.is_finite() for square, _, _ in _squares(transfer, first))
+    if is_from_zero:
         first = (last * _LEAST).mid()
         near, next_to = _squares(transfer, first), _squares(transfer, 2 * first)
         for search, (square, _, _), (later, _, _) in zip(found, near, next_to, strict=True):
             if square > later * _GROWTH:
                 search.amplitude_squared(first, square)
-                search.pole, search.at = True, arb(0)
+                search.pole, search.at, search.place = True, arb(0), (arb(0), arb(0))
     every = list(range(len(found)))
     edges = [(first + (last - first) * k / _PARTS).mid() for k in range(_PARTS + 1)]
     edges[0], edges[-1] = first.lower(), last.upper()
@@ -279,16 +320,23 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
                 value, slope, _ = squares[k]
                 rest = value + abs(slope) * half + abs(whole[k][2]) * half * half
                 most = (whole[k][0] if _reaches_zero(ball) else rest).upper()
-                if found[k].pole or found[k].is_open or (most.is_finite() and found[k].excludes(most)):
+                if found[k].pole or found[k].is_open:
                     continue
-                if fractions is not None and fractions.stays_below(k, found[k].square * (1 + _SHARE), half):
+                if most.is_finite() and found[k].excludes(most):
+                    found[k].leave(each.low, each.high, most)
+                    continue
+                enough = found[k].square * (1 + _SHARE)
+                if fractions is not None and fractions.stays_below(k, enough, half):
+                    if not fractions.stays_below(k, found[k].surpassed, half):
+                        found[k].leave(each.low, each.high, enough)
                     continue
                 width, wide = each.high - each.low, (last - first).min(each.high)
                 below, above = each.low - width, each.high + width
                 if width > wide * shortest:  # what is nearer to an end of the band than that is at it
                     below, above = below.max(edges[0]), above.min(edges[-1])
                 if width < wide * _LEAST and transfer.has_pole(k, below, above):
-                    found[k].pole, found[k].at = True, _locate_pole(transfer, k, below, above)
+                    pole = _locate_pole(transfer, k, below, above)
+                    found[k].pole, found[k].place, found[k].at = True, pole, ((pole[0] + pole[1]) / 2).mid()
                 elif width < wide * (shortest if transfer.lowest_terms(k) is None else _LEAST):
                     found[k].is_open, found[k].at = True, each.middle
                 else:
@@ -296,9 +344,53 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
             if open_for:
                 following += each.halves(open_for)
         level = following
+    for k, search in enumerate(found):
+        search.enclose_place()
+        _sharpen_place(transfer, search, k)
+        if search.place is not None and is_from_zero and search.place[0] == edges[0]:
+            search.place = arb(0), search.place[1]
 
 
-def _locate_pole(transfer: Transfers, k: int, low: arb, high: arb) -> arb:
+def _sharpen_place(transfer: Transfers, search: _Search, k: int) -> None:
+    """Enclose the place of the greatest amplitude better: where it rises or falls all the way, or has one top."""
+    if search.place is None or search.at is None or search.pole:
+        return
+    low, high = (_approach(transfer, search, k, end, search.at) for end in search.place)
+    search.place = low, high
+    for _ in range(_NEWTON if search.rest == 0 else 0):
+        low, high = search.place
+        if not low < high:
+            return
+        ball = low.union(high)
+        if _reaches_zero(ball):
+            return
+        _, slope, bend = _squares(transfer, ball, _fractions(transfer, ball))[k]
+        at_low, at_middle, at_high = (_squares(transfer, w)[k][1] for w in (low, ball.mid(), high))
+        if slope > 0 or (bend < 0 and at_high > 0):
+            search.place = high, high
+        elif slope < 0 or (bend < 0 and at_low < 0):
+            search.place = low, low
+        elif bend < 0 and at_low > 0 > at_high:
+            top = ball.mid() - at_middle / (2 * bend)
+            search.place = low.max(top.lower()), high.min(top.upper())
+        else:
+            return
+
+
+def _approach(transfer: Transfers, search: _Search, k: int, end: arb, top: arb) -> arb:
+    """How near to the greatest amplitude found all are proved to be lower from `end` on, half of the way at a time."""
+    for _ in range(_HALVINGS):
+        middle = ((end + top) / 2).mid()
+        ball, half = end.union(middle), abs(end - middle) / 2
+        fractions = _fractions(transfer, ball)
+        is_lower = _squares(transfer, ball, fractions)[k][0] < search.surpassed
+        if not is_lower and (fractions is None or not fractions.stays_below(k, search.surpassed, half)):
+            break
+        end = middle
+    return end
+
+
+def _locate_pole(transfer: Transfers, k: int, low: arb, high: arb) -> tuple[arb, arb]:
     """Where output k has the pole that it is proved to have between two frequencies, far closer than a double tells."""
     while high - low > high * _SHARP:
         part = (low + (high - low) * _ASIDE).mid()  # the middle of all is a pole sooner than that
@@ -308,7 +400,7 @@ def _locate_pole(transfer: Transfers, k: int, low: arb, high: arb) -> arb:
             low = part
         else:
             break
-    return ((low + high) / 2).mid()
+    return low.mid(), high.mid()
 
 
 def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb) -> None:
