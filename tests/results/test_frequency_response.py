@@ -460,6 +460,12 @@ def test_units_are_those_of_one_unit_of_the_load() -> None:
     assert found.units == ("mm",)
     assert found["displacement@bob"] == pytest.approx(1e3 * per / (2.1e7 - 100 * w**2 + 300j * w), rel=1e-8)
     assert found.frequency_label == "frequency [Hz]"
+    row = json.loads(found.json())["outputs"][0]
+    assert row["unit"] == "mm"
+    assert row["amplitude"] == pytest.approx(
+        [abs(complex(*each)) for each in zip(row["real"], row["imag"], strict=True)]
+    )
+    assert row["phase"] == pytest.approx(np.degrees(-np.arctan2(300 * w, 2.1e7 - 100 * w**2)), rel=1e-8)
 
 
 @pytest.mark.parametrize(

@@ -124,10 +124,18 @@ class FrequencyResponse(OutputRows):
             yield csv_line([f, *row])
 
     def json(self) -> str:
-        """As JSON: `frequency`, and of each output `real` and `imag`; null where there is no value."""
+        """As JSON: `frequency`, and the parts, amplitude and phase of each output; null where there is no value."""
+        rows = zip(self.outputs, self.units, self.values, self.amplitude, self.phase, strict=True)
         outputs = [
-            {"name": name, "unit": unit, "real": _numbers(row.real), "imag": _numbers(row.imag)}
-            for name, unit, row in zip(self.outputs, self.units, self.values, strict=True)
+            {
+                "name": name,
+                "unit": unit,
+                "real": _numbers(row.real),
+                "imag": _numbers(row.imag),
+                "amplitude": _numbers(amplitude),
+                "phase": _numbers(phase),
+            }
+            for name, unit, row, amplitude, phase in rows
         ]
         about = {"load": self.load, "load_unit": self.load_unit, "frequency_label": self.frequency_label}
         more = {"bound": self.bound, "poles": list(self.poles), "outputs": outputs}
