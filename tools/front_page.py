@@ -38,7 +38,7 @@ _GREY, _BLUE = "0.62", "#1b5e9e"
 _METHODS = {  # of the chart: language, label, colour, marker, and where its label stands beside its best point
     "pieces": ("C", "wavesym, generated C", _BLUE, "o", (10, -6)),
     "characteristics, order 4": ("C", "characteristics, C", "#8c5a00", "s", (10, 2)),
-    "central differences": ("NumPy", "central differences", "#3f6f3a", "^", (-6, -20)),
+    "central differences": ("NumPy", "central differences", "#3f6f3a", "^", (-22, -20)),
     "finite elements, Newmark": ("SciPy", "finite elements", "#7a3b8f", "D", (-88, 10)),
     "Laplace inversion": ("SciPy", "Laplace inversion", "#8a2f2f", "v", (-62, -22)),
 }

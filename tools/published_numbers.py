@@ -5,6 +5,7 @@ A number is the same where ours, rounded to as many digits as are printed, is wh
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
@@ -15,6 +16,7 @@ import wavesym
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "examples" / "published"
+PRINTED = FOLDER / "printed.toml"
 PAGE = ROOT / "docs" / "published.md"
 
 
@@ -46,7 +48,7 @@ class ComparedNumber(NamedTuple):
 
 def cases() -> list[Mapping[str, Any]]:
     """What was printed."""
-    found: list[Mapping[str, Any]] = tomllib.loads((FOLDER / "printed.toml").read_text(encoding="utf-8"))["case"]
+    found: list[Mapping[str, Any]] = tomllib.loads(PRINTED.read_text(encoding="utf-8"))["case"]
     return found
 
 
@@ -99,9 +101,12 @@ def page(
     )
     total = same = 0
     body: list[str] = []
+    differing: list[str] = []
     for case in cases():
+        title = f"{case['scene']}: {case['area']}"
+        before = total - same
         body += [
-            f"## {case['scene']}: {case['area']}\n\n",
+            f"## {title}\n\n",
             f"{case['what'][0].upper()}{case['what'][1:]}. Source: {case['source']}.\n\n",
         ]
         if "inferred" in case:
@@ -115,9 +120,18 @@ def page(
             if "why" in numbers:
                 reasons.append(f"Why they differ: {numbers['why']}.\n")
         body += ["\n", *reasons, *(["\n"] if reasons else [])]
+        if differ := total - same - before:
+            anchor = re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+            differing.append(f"- [{title}](#{anchor}), {differ}: {case['source']}\n")
     inferred = sum("inferred" in case for case in cases())
     yield f"{total} numbers of {len(cases())} cases: {same} are the same, {total - same} differ.\n"
     yield f"Some data of {inferred} cases are inferred from results, which prove less then; these say so.\n\n"
+    yield "Sources with numbers that differ, and how many; what follows the numbers of each says why:\n\n"
+    yield "".join(differing) + "\n"
+    printed = {case["scene"] for case in cases()}
+    if others := [path for path in sorted(FOLDER.glob("*.toml")) if path != PRINTED and path.stem not in printed]:
+        names = ", ".join(f"[{path.stem}](../examples/published/{path.name})" for path in others)
+        yield f"Scenes of which no number was printed where we could read it: {names}.\n\n"
     yield "".join(body).rstrip("\n") + "\n"
 
 

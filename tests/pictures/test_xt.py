@@ -134,6 +134,20 @@ def test_units_are_on_the_axes_and_in_the_colours():
     assert [text.get_text() for text in figure.texts[2:]] == ["Angular velocity in rpm", "Moment in kN\u00b7m"]
 
 
+def test_rods_are_named_where_there_is_room_and_titles_keep_their_capitals():
+    scene = wavesym.Scene.from_toml("examples/chains/split_hopkinson_bar.toml")
+    figure = xt.draw(lower(scene), scene.system.lines)
+    assert figure.texts[0].get_text() == "Split Hopkinson bar: waves over place and time"
+    named = {text.get_text(): text for text in figure.axes[0].texts}
+    assert set(named) == {"striker", "incident", "specimen", "transmitter"}
+    figure.canvas.draw()
+    for name, low, high in (("striker", 0, 2), ("incident", 2, 7), ("specimen", 7, 7.5), ("transmitter", 7.5, 12.5)):
+        box, limits = named[name].get_window_extent(), figure.axes[0].transData.transform([(low, 0), (high, 0)])[:, 0]
+        assert limits[0] <= box.x0 < box.x1 <= limits[1], name
+    narrow, lines = _made([{"rod": "1/100", "name": "thin"}, {"rod": 3, "name": "long_one"}], until=2, strain=["1"])
+    assert [text.get_text() for text in xt.draw(narrow, lines).axes[0].texts] == ["long one"]
+
+
 def test_names_do_not_lie_over_one_another():
     """Nor over the numbers at the axis: the first name begins at its place, the last one ends there."""
     named = [{"mass": 1, "name": "a_long_name"}, {"rod": "1/50"}, {"mass": 1, "name": "another_name"}, {"rod": 3}]

@@ -66,12 +66,12 @@ def plot_modes(scene: Scene, found: Modes, path: Path) -> None:
     save(draw_modes(found, lower(scene, in_time=False), scene.system.lines), path)
 
 
-def plot_frf(found: FrequencyResponse, path: Path) -> None:
+def plot_frf(scene: Scene, found: FrequencyResponse, path: Path) -> None:
     """Draw amplitudes and phases over frequency. SceneError for a suffix that is no picture's."""
     from wavesym.pictures.result_pictures import draw_frequency_response
     from wavesym.pictures.saving import save
 
-    save(draw_frequency_response(found), path)
+    save(draw_frequency_response(found, lower(scene, in_time=False)), path)
 
 
 def plot_spectra(found: Spectra, path: Path) -> None:

@@ -87,7 +87,7 @@ def frf(
             text = table.json() if format == "json" else "".join(table.csv())
             notes = (*found.notes, *table.notes) if peaks else found.notes
         if drawn and out is not None:
-            api.plot_frf(found, out)
+            api.plot_frf(scene, found, out)
         elif out is not None:
             write_whole({out: text})
     put_notes(scene, notes)

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wavesym.documents.record import RecordFacts
-from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.pictures.naming import heading
+from wavesym.pictures.groups import axis_title
+from wavesym.pictures.naming import heading, in_words, with_titles
 from wavesym.pictures.style import MAIN, OTHER, draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.units import unit_text
 from wavesym.records.record_file import RecordFile
@@ -80,10 +80,19 @@ def draw_modes(found: Modes, model: Model, lines: Lines) -> Figure:
         for row, moved in zip(found.modes, each.displacements, strict=False):
             axes.plot(each.x, moved.real, label=f"{row.number}: {row.hz:.4g} {unit}", linewidth=1.3)
         draw_grid(axes)
-        axes.set_xlabel(axis_text(each.line, model.length))
+        axes.set_xlabel(_place_title(each.line, model))
         axes.set_ylabel("shape")
     figure.legend(*axes.get_legend_handles_labels(), ncols=3, frameon=False, loc="outside lower center")
     return figure
+
+
+def _place_title(line: str, model: Model) -> str:
+    """What is counted along a line: storeys of a building, lengths, or rods."""
+    if model.labels.system["type"] == "building":
+        return "floor (0: foundation)"
+    unit = "lengths of the first rod" if model.labels.system["type"] == "chain" else "rods"
+    title = f"position in {model.length.text if model.length else unit}"
+    return f"{title}, along {in_words(line)}" if line else title
 
 
 def _plain_period(period: float, _: float) -> str:
@@ -113,30 +122,33 @@ def draw_spectra(found: Spectra) -> Figure:
 
 
 @with_style
-def draw_frequency_response(found: FrequencyResponse) -> Figure:
+def draw_frequency_response(found: FrequencyResponse, model: Model) -> Figure:
     """The amplitude and the phase of each output; gaps where there is no value.
 
     Args:
         found: the frequency response of a scene.
+        model: that of the scene, whose outputs have names for people.
     """
-    units = list(dict.fromkeys(zip((name.partition("@")[0] for name in found), found.units, strict=True)))
+    probes = with_titles(model).probes
+    kinds = [(probe.quantity, probe.unit) for probe in probes]
+    units = list(dict.fromkeys(kinds))
     figure = new_figure(2.4 + 2.6 * len(units))
     *amplitudes, phase = figure.subplots(len(units) + 1, 1, sharex=True)
-    per = f" per {found.load_unit} of {found.load}" if found.load_unit else f" per unit of {found.load}"
-    for axes, (quantity, unit) in zip(amplitudes, units, strict=True):
-        for k, name in enumerate(found):
-            if (name.partition("@")[0], found.units[k]) == (quantity, unit):
+    per = f"{unit_text(found.load_unit) or 'unit'} of {'load ' * found.load.isdecimal()}{in_words(found.load)}"
+    for axes, kind in zip(amplitudes, units, strict=True):
+        for k, probe in enumerate(probes):
+            if kinds[k] == kind:
                 size = np.where(found.amplitude[k] > 0, found.amplitude[k], np.nan)
-                axes.semilogy(found.frequency, size, label=name, color=f"C{k % 10}", linewidth=1.2)
-        axes.set_ylabel(f"{quantity} in {unit_text(unit)}" if unit else quantity)
+                axes.semilogy(found.frequency, size, label=probe.title, color=f"C{k % 10}", linewidth=1.2)
+        axes.set_ylabel(axis_title(model, *kind))
         draw_grid(axes, zero=False)
         axes.legend(ncols=1 + len(found) // 8)
     for k in range(len(found)):
         phase.plot(found.frequency, found.phase[k], color=f"C{k % 10}", linewidth=1.0)
-    phase.set_ylabel("phase in degrees")
+    phase.set_ylabel("phase\nin degrees")
     phase.set_yticks([-180, -90, 0, 90, 180])
-    phase.set_xlabel("w [rad per tau]" if found.frequency_label == "omega" else found.frequency_label)
+    phase.set_xlabel("angular frequency in rad per tau" if model.clock is None else "frequency in Hz")
     phase.set_xlim(found.frequency[0], found.frequency[-1])
     draw_grid(phase)
-    set_title(figure, f"{heading(found.name)}: amplitudes{per}")
+    set_title(figure, f"{heading(found.name)}: amplitudes per {per}")
     return figure

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
 from wavesym.mechanics.network import Link, Network, Point
+from wavesym.pictures.naming import in_words
 from wavesym.pictures.stations import Loose, ground_links, standing
-from wavesym.pictures.style import FONT, SLIPS
+from wavesym.pictures.style import FONT, HALO, SLIPS
 from wavesym.systems.station import Lines, Station
 
 _MASS, _LINK, _CONTACT, _THIN = 4.0, 2.5, 5.0, 0.6  # points
@@ -138,6 +140,30 @@ def _place_name(part: float, name: str, points: float, rows: list[float]) -> tup
     row = next((k for k, end in enumerate(rows) if end < begin), len(rows))
     rows[row : row + 1] = [begin + width]
     return row, align
+
+
+def name_rods(axes: Axes, network: Network, stations: Sequence[Station]) -> None:
+    """The names of rods at the top of them, upright in narrow ones; none where there is no room for that."""
+    left, right = axes.get_xlim()
+    points = axes.get_window_extent().width / axes.figure.dpi * 72
+    for station, following in pairwise(stations):
+        assert station.right is not None  # between two stations there is a bar
+        name = in_words(network.bars[station.right].name)
+        middle = float(station.x + following.x) / 2
+        room = points * float(following.x - station.x) / (right - left)
+        upright = _LETTER * FONT * len(name) > room
+        if name and room > FONT:
+            axes.annotate(
+                name,
+                (middle, 1),
+                (0, -4),
+                ("data", "axes fraction"),
+                "offset points",
+                ha="center",
+                va="top",
+                rotation=90 if upright else 0,
+                path_effects=HALO,
+            )
 
 
 def name_rows(network: Network, stations: Sequence[Station], inches: float) -> int:
