@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.papers.falsified import changed_passage
-from tests.support.tex import read_tex
+from tests.support.tex import TexError, read_tex
 from wavesym.papers.entries import WHOLE, Paper, problems
 from wavesym.papers.pages.document import Findings
 from wavesym.papers.pages.formats import FORMATS, markdown
@@ -79,7 +79,12 @@ def test_the_errata_are_what_is_found_now(judged):
 
 
 def test_a_fragment_of_the_errata_is_read_by_tex_as_it_is_meant(judged):
-    read_tex(FORMATS["fragment"](Findings(paper(), judged, True, reproduce=True)))
+    fragment = FORMATS["fragment"](Findings(paper(), judged, True, reproduce=True))
+    read_tex(fragment)
+    with pytest.raises(TexError, match="_ in text"):  # it is read to its end
+        read_tex(f"{fragment} a_1")
+    with pytest.raises(TexError, match="no ASCII"):
+        read_tex(fragment.replace("(4.8)", "(4\u20138)", 1))
 
 
 def test_ids_are_unique():

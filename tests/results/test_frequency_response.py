@@ -21,7 +21,7 @@ from wavesym.cli import main
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.harmonic import Amplitudes
 from wavesym.mechanics.network import Network
-from wavesym.results import resonance
+from wavesym.results import amplitude_polynomials, resonance
 from wavesym.results.transfer import Transfer, harmonic_load
 from wavesym.scene import lower
 
@@ -382,7 +382,9 @@ def test_the_place_of_a_peak_is_enclosed(capsys: pytest.CaptureFixture[str]) -> 
 def test_the_rest_of_a_taylor_polynomial_is_there() -> None:
     """Power series are cut at ctx.cap terms: what bounds the rest is the last of these, not a 0 behind it."""
     model = lower(LAYER)
-    found = resonance._fractions(Transfer(model, harmonic_load(model, ("rock:step",))), arb(1).union(arb(2)))
+    found = amplitude_polynomials.transfer_fractions(
+        Transfer(model, harmonic_load(model, ("rock:step",))), arb(1).union(arb(2))
+    )
     assert found is not None
     assert len(found.divisor) <= ctx.cap
     assert found.divisor[-1].real.rad() > 0
@@ -623,12 +625,15 @@ def test_taylor_polynomials_enclose_a_response_and_its_slopes() -> None:
     with ctx.workprec(128):
         for middle, radius in ((2.0, 0.03), (7.5, 0.01), (11.0, 0.002)):
             ball = arb(middle, radius)
-            fractions = resonance._fractions(transfer, ball)
+            fractions = amplitude_polynomials.transfer_fractions(transfer, ball)
             assert fractions is not None
-            around = [resonance._coefficients(each, 3) for each in resonance._power_series(transfer, ball, fractions)]
+            around = [
+                amplitude_polynomials.coefficients(each, 3)
+                for each in amplitude_polynomials.power_series(transfer, ball, fractions)
+            ]
             for part in (-1, -0.5, 0.3, 1):
                 w = acb(arb(middle + part * radius))
-                here = [resonance._coefficients(each, 3) for each in transfer(acb_series([w, 1], prec=3))]
+                here = [amplitude_polynomials.coefficients(each, 3) for each in transfer(acb_series([w, 1], prec=3))]
                 for known, exact in zip(around, here, strict=True):
                     assert all(known[k].contains(exact[k].mid()) for k in range(3))
                     assert known[0].is_finite()
@@ -736,7 +741,7 @@ def test_a_polynomial_is_below_what_is_above_its_top_and_not_below_what_is_not(s
     s = np.linspace(-half, half, 400_001)
     largest = float((np.abs((1 + a * s) / (1 + b * s + c * s * s)) ** 2).max())
     with ctx.workprec(200):
-        fractions = resonance._Fractions([powers[0]], powers[1])
+        fractions = amplitude_polynomials.TransferFractions([powers[0]], powers[1])
         assert fractions.stays_below(0, arb(largest * (1 + 1e-9)), arb(half))
         assert not fractions.stays_below(0, arb(largest * (1 - 1e-9)), arb(half))
 
@@ -749,8 +754,8 @@ def test_equal_peaks_of_many_parts_take_few_intervals(monkeypatch: pytest.Monkey
         counts[0] += 1
         return fractions(transfer, w)
 
-    fractions = resonance._fractions
-    monkeypatch.setattr(resonance, "_fractions", counted)
+    fractions = amplitude_polynomials.transfer_fractions
+    monkeypatch.setattr(resonance, "transfer_fractions", counted)
     (_, bit) = wavesym.frf(drill_string(14), [0.5, 15.0]).peaks()
     assert bit.low <= 20.0 * (1 + 1e-12)
     assert bit.high >= 20.0 * (1 - 1e-9)

@@ -16,18 +16,21 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import comb, inf, isfinite, isnan, nan
-from typing import Protocol
+from math import inf, isfinite, isnan, nan
 
-from flint import acb, acb_series, arb, arb_poly, ctx
+from flint import arb, ctx
 
 from wavesym.errors import CostError, WavesymError
-from wavesym.exact.modes.harmonic import Quantity
-from wavesym.exact.modes.lowest_terms import LowestTerms
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import midpoint, upper_double
 from wavesym.programs.modes.undamped_modes import UndampedModes
+from wavesym.results.amplitude_polynomials import (
+    Transfers,
+    reaches_zero,
+    squared_amplitudes,
+    transfer_fractions,
+)
 from wavesym.results.modal_transfer import ModalTransfer
 from wavesym.results.presentation import csv_line, output_number
 from wavesym.results.transfer import HarmonicLoad, Transfer, angular
@@ -43,27 +46,8 @@ _SHARP = arb(2) ** -80  # of a frequency: the place of a pole
 _ASIDE = arb(509) / 1024
 _NEWTON = 3
 _HALVINGS = 30
-_TERMS = 9  # of Taylor polynomials: with the rest 10, which power series are cut at (ctx.cap)
-_LOOKS = 96  # at parts of such a polynomial
-_ROUNDED = arb(2) ** -20  # of a radius: what rounding adds to it, in a few products
 _PARTS = 64  # of the band at first
 _FIRST_MODES, _MOST_MODES = 32, 2048
-
-
-class Transfers(Protocol):
-    """Amplitudes of some outputs as functions of the frequency."""
-
-    def __call__(self, w: Quantity) -> list[Quantity]:
-        """Those at a frequency, or on all of a ball."""
-
-    def parts(self, w: Quantity) -> tuple[list[Quantity], Quantity] | None:
-        """The same as numerators and one divisor without poles, where that can be."""
-
-    def has_pole(self, k: int, low: arb, high: arb) -> bool:
-        """Whether it is proved that output k has one between two frequencies."""
-
-    def lowest_terms(self, k: int) -> LowestTerms | None:
-        """Output k without common factors, where that can be and is more than it has."""
 
 
 @dataclass(frozen=True)
@@ -284,10 +268,12 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
 
     What is not finite at 0 is searched from a 2^-40 of the band on: there it has a pole, or goes on as it comes.
     """
-    is_from_zero = first.contains(0) and not all(square.is_finite() for square, _, _ in _squares(transfer, first))
+    is_from_zero = first.contains(0) and not all(
+        square.is_finite() for square, _, _ in squared_amplitudes(transfer, first)
+    )
     if is_from_zero:
         first = (last * _LEAST).mid()
-        near, next_to = _squares(transfer, first), _squares(transfer, 2 * first)
+        near, next_to = squared_amplitudes(transfer, first), squared_amplitudes(transfer, 2 * first)
         for search, (square, _, _), (later, _, _) in zip(found, near, next_to, strict=True):
             if square > later * _GROWTH:
                 search.amplitude_squared(first, square)
@@ -296,7 +282,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
     edges = [(first + (last - first) * k / _PARTS).mid() for k in range(_PARTS + 1)]
     edges[0], edges[-1] = first.lower(), last.upper()
     for edge in (edges[0], edges[-1]):
-        for search, (square, _, _) in zip(found, _squares(transfer, edge), strict=True):
+        for search, (square, _, _) in zip(found, squared_amplitudes(transfer, edge), strict=True):
             search.amplitude_squared(edge, square)
     level, count = [_Interval(*each, every) for each in pairwise(edges)], 0
     allowed = _MOST // parts
@@ -304,7 +290,7 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
         count += len(level)
         if count > allowed:
             raise CostError(f"--peaks: {count} intervals, the limit is {allowed} (a narrower band or fewer parts help)")
-        middles = [_squares(transfer, each.middle) for each in level]
+        middles = [squared_amplitudes(transfer, each.middle) for each in level]
         for each, squares in zip(level, middles, strict=True):
             for k in each.outputs:
                 found[k].amplitude_squared(each.middle, squares[k][0])
@@ -313,13 +299,13 @@ def _search(transfer: Transfers, found: Sequence[_Search], first: arb, last: arb
         following: list[_Interval] = []
         for each, squares in zip(level, middles, strict=True):
             ball, half = each.low.union(each.high), (each.high - each.low) / 2
-            fractions = _fractions(transfer, ball)
-            whole = _squares(transfer, ball, fractions)
+            fractions = transfer_fractions(transfer, ball)
+            whole = squared_amplitudes(transfer, ball, fractions)
             open_for = []
             for k in each.outputs:
                 value, slope, _ = squares[k]
                 rest = value + abs(slope) * half + abs(whole[k][2]) * half * half
-                most = (whole[k][0] if _reaches_zero(ball) else rest).upper()
+                most = (whole[k][0] if reaches_zero(ball) else rest).upper()
                 if found[k].pole or found[k].is_open:
                     continue
                 if most.is_finite() and found[k].excludes(most):
@@ -362,10 +348,10 @@ def _sharpen_place(transfer: Transfers, search: _Search, k: int) -> None:
         if not low < high:
             return
         ball = low.union(high)
-        if _reaches_zero(ball):
+        if reaches_zero(ball):
             return
-        _, slope, bend = _squares(transfer, ball, _fractions(transfer, ball))[k]
-        at_low, at_middle, at_high = (_squares(transfer, w)[k][1] for w in (low, ball.mid(), high))
+        _, slope, bend = squared_amplitudes(transfer, ball, transfer_fractions(transfer, ball))[k]
+        at_low, at_middle, at_high = (squared_amplitudes(transfer, w)[k][1] for w in (low, ball.mid(), high))
         if slope > 0 or (bend < 0 and at_high > 0):
             search.place = high, high
         elif slope < 0 or (bend < 0 and at_low < 0):
@@ -382,8 +368,8 @@ def _approach(transfer: Transfers, search: _Search, k: int, end: arb, top: arb) 
     for _ in range(_HALVINGS):
         middle = ((end + top) / 2).mid()
         ball, half = end.union(middle), abs(end - middle) / 2
-        fractions = _fractions(transfer, ball)
-        is_lower = _squares(transfer, ball, fractions)[k][0] < search.surpassed
+        fractions = transfer_fractions(transfer, ball)
+        is_lower = squared_amplitudes(transfer, ball, fractions)[k][0] < search.surpassed
         if not is_lower and (fractions is None or not fractions.stays_below(k, search.surpassed, half)):
             break
         end = middle
@@ -408,132 +394,12 @@ def _polish(transfer: Transfers, search: _Search, k: int, first: arb, last: arb)
     for _ in range(_NEWTON):
         if search.pole or search.is_open or search.at is None or search.at.contains(0):
             return
-        _, slope, bend = _squares(transfer, search.at)[k]
+        _, slope, bend = squared_amplitudes(transfer, search.at)[k]
         if not bend < 0:
             return
         better = (search.at - slope / (2 * bend)).mid()
         if first < better < last:
-            search.amplitude_squared(better, _squares(transfer, better)[k][0])
-
-
-@dataclass(frozen=True)
-class _Fractions:
-    """The transfer functions on a ball: a numerator for each output and one divisor, of which none has a pole there.
-
-    Each is a Taylor polynomial about the middle, and with its last coefficient the rest, which the next one on the
-    whole ball bounds. So balls are not blown up by what cancels part by part.
-    """
-
-    numerators: list[list[acb]]
-    divisor: list[acb]
-
-    def quotients(self, reach: arb) -> list[Quantity]:
-        """The transfer functions, their slopes and half their second derivatives on all of a ball, as power series."""
-        divisor = _on_ball(self.divisor, reach)
-        if divisor[0].contains(0):
-            return [acb_series([acb("nan"), 0, 0], prec=3)] * len(self.numerators)
-        return [acb_series(_on_ball(each, reach), prec=3) / acb_series(divisor, prec=3) for each in self.numerators]
-
-    def stays_below(self, k: int, square: arb, half: arb) -> bool:
-        """Whether an amplitude squared is less than so much within `half` of the middle, looked at in parts."""
-        excess = _square_of(self.numerators[k]) - square * _square_of(self.divisor)
-        left = [(excess, half)]
-        for _ in range(_LOOKS):
-            if not left:
-                return True
-            part, half = left.pop()
-            first, *others = part.coeffs() or [arb(0)]
-            if first + sum((abs(c) * half**n for n, c in enumerate(others, 1)), start=arb(0)) < 0:
-                continue
-            if not first < 0:
-                return False
-            half = half / 2
-            left += [(part(arb_poly([sign * half, 1])), half) for sign in (-1, 1)]
-        return False
-
-
-def _reaches_zero(w: arb) -> bool:
-    """Whether 0 is in a ball, or so near to it that a product of the ball may have it: then it has no power series."""
-    return not w > w.rad() * _ROUNDED
-
-
-def _square_of(powers: Sequence[acb]) -> arb_poly:
-    """The absolute value squared of a polynomial of a real number."""
-    re, im = arb_poly([each.real for each in powers]), arb_poly([each.imag for each in powers])
-    return re * re + im * im
-
-
-def _fractions(transfer: Transfers, w: arb) -> _Fractions | None:
-    """None near 0, and where transfer functions are no such fractions."""
-    if _reaches_zero(w):
-        return None
-    middle = acb_series([acb(w.mid()), 1], prec=_TERMS)
-    near, around = transfer.parts(middle), transfer.parts(acb_series([acb(w), 1], prec=_TERMS + 1))
-    if near is None or around is None:
-        return None
-    *numerators, divisor = (
-        _taylor(_coefficients(one, _TERMS), _coefficients(all_, _TERMS + 1)[-1])
-        for one, all_ in zip([*near[0], near[1]], [*around[0], around[1]], strict=True)
-    )
-    return _Fractions(numerators, divisor)
-
-
-def _squares(transfer: Transfers, w: arb, fractions: _Fractions | None = None) -> list[tuple[arb, arb, arb]]:
-    """Of each output the square of the amplitude, its slope, and half its second derivative, on all of a ball.
-
-    The last two are 0 where it reaches 0: there the first alone says something.
-    """
-    if _reaches_zero(w):
-        sizes = (abs(acb(value)) for value in transfer(w))
-        return [(size * size, arb(0), arb(0)) for size in sizes]
-    made = []
-    for value in _power_series(transfer, w, fractions):
-        c = _coefficients(value, 3)
-        re, im = [each.real for each in c], [each.imag for each in c]
-        made.append(
-            (
-                re[0] * re[0] + im[0] * im[0],
-                2 * (re[0] * re[1] + im[0] * im[1]),
-                re[1] * re[1] + im[1] * im[1] + 2 * (re[0] * re[2] + im[0] * im[2]),
-            )
-        )
-    return made
-
-
-def _power_series(transfer: Transfers, w: arb, fractions: _Fractions | None) -> list[Quantity]:
-    """The transfer functions, their slopes and half their second derivatives on all of a ball, as power series."""
-    series = acb_series([acb(w), 1], prec=3)
-    if fractions is None:
-        return transfer(series)
-    found = fractions.quotients(arb(0, w.rad()))
-    if isinstance(transfer, Transfer) and transfer.imposed_outputs:
-        direct = transfer(series)
-        for k in transfer.imposed_outputs:
-            found[k] = direct[k]
-    return found
-
-
-def _taylor(powers: Sequence[acb], following: acb) -> list[acb]:
-    """A polynomial, and as its last coefficient all that the next one may be on a ball."""
-    size = abs(following).upper()
-    return [*powers, acb(arb(0, size), arb(0, size))]
-
-
-def _on_ball(powers: Sequence[acb], reach: arb) -> list[acb]:
-    """A function, its slope and half its second derivative at all distances within reach of where powers are of."""
-    made = []
-    for order in range(3):
-        value = acb(0)
-        for k in reversed(range(order, len(powers))):
-            value = value * reach + powers[k] * comb(k, order)
-        made.append(value)
-    return made
-
-
-def _coefficients(value: Quantity, count: int) -> list[acb]:
-    """The first coefficients of a power series, or of what does not change."""
-    found = [acb(each) for each in (value.coeffs() if isinstance(value, acb_series) else [value])]
-    return [*found, *[acb(0)] * (count - len(found))][:count]
+            search.amplitude_squared(better, squared_amplitudes(transfer, better)[k][0])
 
 
 def _transfers(model: Model, load: HarmonicLoad, last: arb) -> Iterator[tuple[Transfers, list[arb]]]:
