@@ -79,17 +79,3 @@ class JointRule(NamedTuple):
 
 DERIVATIVE = Weights(Linear(fmpq(0), fmpq(-1)), Linear(fmpq(1), fmpq(1)), fmpq(1))
 """The weights of D alone: with them on the left, a rule integrates."""
-
-
-def joint_rule() -> JointRule:
-    """What rods and points bring to a joint; derived when it is first asked for: SymPy is needed only there."""
-    from wavesym.derivation.recurrence import joint_rule
-
-    return joint_rule()
-
-
-def factor_weights(rate: fmpq) -> Weights:
-    """What D + `rate` does to the coefficients of exponentials times powers; derived as `joint_rule` is."""
-    from wavesym.derivation.recurrence import factor_weights
-
-    return factor_weights(rate)

@@ -23,7 +23,7 @@ from math import factorial
 
 from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
 
-from wavesym.derivation.rules import joint_rule
+from wavesym.derivation.factors import joint_rule
 from wavesym.exact.joints.fronts import departures
 from wavesym.exact.joints.joint_law import JointLaw, joint_ends
 from wavesym.mechanics.gauge import Gauge, Sum

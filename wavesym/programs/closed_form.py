@@ -32,7 +32,8 @@ from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.form import Form
-from wavesym.programs.program import ProgramOutput, Tables, firsts
+from wavesym.programs.program import ProgramOutput
+from wavesym.programs.tables import Tables, firsts
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000

@@ -11,7 +11,8 @@ from flint import fmpq
 from wavesym.exact.reference import Reference, beginning
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
-from wavesym.programs.program import BoundedOutputs, Program, Provenance, ReferenceValues, SteppedValues, Tables
+from wavesym.programs.program import BoundedOutputs, Program, Provenance, ReferenceValues, SteppedValues
+from wavesym.programs.tables import Tables
 
 _MOST_POINTS = 2000
 _MOST_VALUES = 40_000

@@ -26,9 +26,10 @@ from wavesym.programs.form import Form
 from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judge_march
 from wavesym.programs.march.plan import readable
-from wavesym.programs.program import Program, ProgramOutput, Provenance, Tables
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
+from wavesym.programs.tables import Tables
 
 _MOST = 100_000  # samples of a record
 _FEW = 4  # instants that are marched as they are

@@ -11,7 +11,8 @@ from flint import fmpq
 
 from wavesym.numbers.reals import Real
 from wavesym.programs.form import Form
-from wavesym.programs.program import ProgramOutput, Tables, firsts
+from wavesym.programs.program import ProgramOutput
+from wavesym.programs.tables import Tables, firsts
 
 # The numbers from 0 on that C has for the widest vectors (templates/c/pieces/pieces.c).
 _OFFSETS = 16

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import accumulate
 from math import ceil
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal
 
 from flint import fmpq
 
@@ -15,6 +13,7 @@ from wavesym.exact.contacts.events import ContactEnd
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
+from wavesym.programs.tables import Tables
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,15 +21,6 @@ if TYPE_CHECKING:
 
     from wavesym.programs.runtime.laws import RuntimeLaws
     from wavesym.programs.schemes import Scheme
-
-
-Tables: TypeAlias = "dict[str, tuple[float, ...]]"
-"""The tables of a program by name: flat, each number as it is written, indices as ints."""
-
-
-def firsts(counts: Iterable[int]) -> tuple[int, ...]:
-    """Where each group starts in a flat table, and where the last one ends."""
-    return tuple(accumulate(counts, initial=0))
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.mode_sets.making import ModeSetsTables
 from wavesym.programs.mode_sets.parameters import ModeParameters
-from wavesym.programs.program import Tables
+from wavesym.programs.tables import Tables
 from wavesym.results.near_zero import zero_within
 from wavesym.results.statistics import RUNTIME_ARRAYS
 from wavesym.running.mode_sets import ModalSets

@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeVar
 
 from flint import arb, fmpq, fmpq_mat, fmpq_poly
 
-from wavesym.derivation.rules import joint_rule
+from wavesym.derivation.factors import joint_rule
 from wavesym.exact.joints.enclosure import Enclosure, Terms, scale_terms
 from wavesym.mechanics.network import End, Joint, Network
 

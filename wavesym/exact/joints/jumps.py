@@ -13,7 +13,7 @@ from heapq import heappop, heappush
 
 from flint import fmpq
 
-from wavesym.derivation.rules import joint_rule
+from wavesym.derivation.factors import joint_rule
 from wavesym.errors import WavesymError
 from wavesym.exact.joints.joint_law import JointLaw, exact_sum, joint_ends
 from wavesym.mechanics.gauge import Gauge

@@ -14,8 +14,8 @@ from math import inf
 
 from flint import fmpq
 
+from wavesym.derivation.factors import joint_rule
 from wavesym.derivation.increments import Increment, add, combine, integrate, trim
-from wavesym.derivation.rules import joint_rule
 from wavesym.derivation.table import Function, Part, Row, table_rows
 from wavesym.derivation.table_size import refuse_size
 from wavesym.exact.joints.fronts import departures

@@ -22,7 +22,8 @@ from wavesym.programs.march.bound import Verdict, judge
 from wavesym.programs.march.plan import HIGHEST_DEGREE, MarchPlan, least_numbers, march_plan
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
 from wavesym.programs.march.tables import MarchTables, state_bytes, table_bytes
-from wavesym.programs.program import ProgramOutput, Tables
+from wavesym.programs.program import ProgramOutput
+from wavesym.programs.tables import Tables
 
 _MOST_BYTES = 1 << 22  # of tables, and of the state, which programs keep on the stack
 _MOST_WORK = 2e10  # multiplications of trying all degrees, half a minute or so

@@ -18,7 +18,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.derivation.rules import joint_rule
+from wavesym.derivation.factors import joint_rule
 from wavesym.errors import SpacingError
 from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.gauge import Sum

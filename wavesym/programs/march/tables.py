@@ -14,7 +14,7 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm
 from wavesym.programs.march.responses import BlockResponse, BodyOperator, block_response, body_operator
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
-from wavesym.programs.program import Tables, firsts
+from wavesym.programs.tables import Tables, firsts
 
 
 class MarchTables:

@@ -20,9 +20,10 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.mode_sets.parameters import ModeParameters, SampledAmplitudes, mode_parameters, sampled_amplitudes
 from wavesym.programs.modes.evaluator import driven_inputs, modes
 from wavesym.programs.modes.modal_system import LANES, padded_count
-from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, ReferenceValues, Tables, firsts
+from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.tables import Tables, firsts
 
 _SERVED = ("peaks",)
 _POINTS, _PER_CROSSING = 16, 4  # instants of a step that is looked at closely

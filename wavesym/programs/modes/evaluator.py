@@ -29,7 +29,8 @@ from wavesym.programs.modes.rounding import RoundingErrors, rounding_errors
 from wavesym.programs.modes.stepping import SteppedModes
 from wavesym.programs.modes.truncation import ModalModel, ModalModes, truncate
 from wavesym.programs.modes.undamped_modes import UndampedModes
-from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, SteppedRow, SteppedValues, Tables
+from wavesym.programs.program import Input, Program, ProgramOutput, Provenance, SteppedRow, SteppedValues
+from wavesym.programs.tables import Tables
 
 _CHECKED = 40  # samples of a self-test
 _ULPS = 8  # by which a step may differ from the spacing

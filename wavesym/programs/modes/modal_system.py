@@ -13,7 +13,7 @@ from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import middle, rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.program import Tables
+from wavesym.programs.tables import Tables
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from flint import fmpq, fmpq_mat, fmpq_mpoly
 
 from wavesym.numbers.ratio import Ratio
 from wavesym.programs.march.plan import MarchedJoint
-from wavesym.programs.program import firsts
 from wavesym.programs.runtime.network import RuntimeField
+from wavesym.programs.tables import firsts
 
 Function = Ratio | fmpq
 """Of the parameters."""

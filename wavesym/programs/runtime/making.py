@@ -15,12 +15,13 @@ from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.form import reference_values
 from wavesym.programs.march.space import BLOCK, BODY, JointRows
 from wavesym.programs.march.tables import port_tables
-from wavesym.programs.program import Program, ProgramOutput, Provenance, Tables, firsts
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places, most_roundings
 from wavesym.programs.runtime.network import free_network
 from wavesym.programs.runtime.plan import RuntimePlan, as_one_load, reading_tables, runtime_plan
+from wavesym.programs.tables import Tables, firsts
 
 FINEST = {"double": fmpq(1, 10**13), "single": fmpq(1, 10**5)}
 """The smallest tolerance that numbers keep, by precision."""

@@ -28,9 +28,9 @@ from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import MarchPlan, OutputTerm, Stretch, load_events, march_plan, unit_action
 from wavesym.programs.march.space import joint_rows
-from wavesym.programs.program import firsts
 from wavesym.programs.runtime.laws import Function
 from wavesym.programs.runtime.network import FreeNetwork, drawn_number
+from wavesym.programs.tables import firsts
 
 HELPS = "in tau, to which samples may be interpolated in a scene without units"
 """Beside another spacing, where loads leave too many panels."""

@@ -18,12 +18,13 @@ from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import HELPS, MarchPlan
 from wavesym.programs.march.tables import matrix_size
-from wavesym.programs.program import Input, Program, firsts
+from wavesym.programs.program import Input, Program
 from wavesym.programs.runtime.laws import Function, RuntimeLaws, matrix_laws, matrix_places
 from wavesym.programs.runtime.network import RuntimeField, free_network
 from wavesym.programs.runtime.plan import free_march
 from wavesym.programs.stream.plan import InputForce, StreamPlan, acting_inputs, steps_of
 from wavesym.programs.stream.tables import StreamTables, slip_size
+from wavesym.programs.tables import firsts
 
 QUICKER = fmpq(10)
 """Panels and the degree are enough for joints that parameters make so many times as fast as the scene's own are."""

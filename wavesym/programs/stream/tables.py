@@ -15,9 +15,9 @@ from wavesym.programs.march.evaluator import step_multiplications
 from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.march.space import BLOCK, BODY, SHOWN, JointSpace
 from wavesym.programs.march.tables import MarchTables, term_tables
-from wavesym.programs.program import Tables, firsts
 from wavesym.programs.stream.interpolation import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
+from wavesym.programs.tables import Tables, firsts
 
 _OF_HORIZON = ("events", "slots", "cycle", "span", "step")  # constants of a march that a stream has not
 _LONGEST = 10**6  # panels of a step, each of which takes its time
