@@ -97,7 +97,7 @@ bench: install
 # the site, into build/site: open build/site/index.html
 docs: .venv/.docs
 	$(BIN)/python -m tools.site
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
 # what `pip install` takes, into dist
 wheel: install

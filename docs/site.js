@@ -1,5 +1,9 @@
 // code and tables that are wider than the page are scrolled by the keyboard, too
-for (const wide of document.querySelectorAll("pre > code, .md-typeset table")) wide.tabIndex = 0;
+for (const wide of document.querySelectorAll("pre > code, .md-typeset table")) {
+  wide.tabIndex = 0;
+  // the theme takes it away where nothing can hover
+  new MutationObserver(() => wide.tabIndex < 0 && (wide.tabIndex = 0)).observe(wide, { attributeFilter: ["tabindex"] });
+}
 document.querySelector(".md-search")?.setAttribute("aria-label", "Search");
 // a section whose own page leads it has a label without words
 for (const section of document.querySelectorAll("nav.md-nav[aria-labelledby]"))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import tomllib
 from pathlib import Path
 
 import wavesym
@@ -18,7 +19,7 @@ from tools.notebooks import write_pages
 ROOT = Path(__file__).parents[1]
 PAGES = ROOT / "build" / "pages"
 FOLDERS = ("docs", "examples", "bench", "generated")
-FILES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE")
+FILES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "CITATION.cff", "LICENSE")
 NAMED = re.compile(r"^```(\w+) (\S+)$", re.MULTILINE)  # a block with the file that it is saved as
 NOTEBOOK = re.compile(r"(\]\([^)]*notebooks/\w+)\.py\)")  # a link, which leads to its page here
 TITLE = re.compile(r"^# (.*)$", re.MULTILINE)
@@ -44,7 +45,9 @@ def gallery(examples: Path) -> str:
         else:
             others.append(f"[{title[1]}]({link}/README.md)")
         for picture in pictures:
-            name = picture.stem.replace("_", " ").capitalize()
+            scene = picture.with_suffix(".toml")
+            called = tomllib.loads(scene.read_text(encoding="utf-8")).get("name", picture.stem) if scene.is_file() else picture.stem
+            name = called[0].upper() + called[1:].replace("_", " ")
             shown = f"![]({link}/{picture.name}){{ loading=lazy }}"
             lines += [f"[{shown}{name}]({link}/README.md){{ .thumbnail }}", ""]
     return "\n".join([*lines, "", f"Without pictures: {', '.join(others)}.", ""])
