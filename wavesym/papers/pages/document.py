@@ -220,7 +220,7 @@ def statistics(findings: Findings) -> Block:
     for name, records in by_place(findings.records).items():
         counts = Counter(record.verdict for record in records)
         rows.append(word_cells(name, *(str(counts[verdict] or "") for verdict in used)))
-    return Block("By section and table", table=Table(word_cells("", *used), tuple(rows)))
+    return Block("By section and table", table=Table(word_cells("where", *used), tuple(rows)))
 
 
 def appendices(findings: Findings) -> list[Section]:
