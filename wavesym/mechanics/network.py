@@ -46,8 +46,8 @@ class Point:
 
     @property
     def label(self) -> str:
-        """What people call it: by its name, or else by its place."""
-        return self.name or self.place
+        """What people call it: by its name, or else by its place, which tells a wall beside a spring by its side alone."""
+        return self.name or ("fixed" if self.motion == "fixed" and self.place.endswith(("-", "+")) else self.place)
 
     def action(self, unit: UnitLoad) -> tuple[Any, ...]:
         """The force that a unit load makes here, or the velocity that it prescribes: coefficients by powers of tau."""
