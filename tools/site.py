@@ -46,8 +46,9 @@ def gallery(examples: Path) -> str:
             others.append(f"[{title[1]}]({link}/README.md)")
         for picture in pictures:
             scene = picture.with_suffix(".toml")
-            called = tomllib.loads(scene.read_text(encoding="utf-8")).get("name", picture.stem) if scene.is_file() else picture.stem
-            name = called[0].upper() + called[1:].replace("_", " ")
+            fields = tomllib.loads(scene.read_text(encoding="utf-8")) if scene.is_file() else {}
+            called = str(fields.get("name", picture.stem)).replace("_", " ")
+            name = called[0].upper() + called[1:]
             shown = f"![]({link}/{picture.name}){{ loading=lazy }}"
             lines += [f"[{shown}{name}]({link}/README.md){{ .thumbnail }}", ""]
     return "\n".join([*lines, "", f"Without pictures: {', '.join(others)}.", ""])

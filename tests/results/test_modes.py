@@ -74,7 +74,7 @@ def test_effective_masses_are_those_of_a_rod_and_add_up_to_all() -> None:
     )
     found = wavesym.modes(mixed, 60)
     assert 0.99 < sum(mode.effective_mass or 0.0 for mode in found) < 1
-    assert list(found[0].shape)[0] == "fixed"  # the wall before the spring: its place is that of the mass, too
+    assert next(iter(found[0].shape)) == "fixed"  # the wall before the spring: its place is that of the mass, too
 
 
 def test_nodes_at_rest_are_0_in_shapes() -> None:

@@ -46,7 +46,7 @@ class Point:
 
     @property
     def label(self) -> str:
-        """What people call it: by its name, or else by its place, which tells a wall beside a spring by its side alone."""
+        """What people call it: by its name, or else by its place, of which a wall beside a spring has a side alone."""
         return self.name or ("fixed" if self.motion == "fixed" and self.place.endswith(("-", "+")) else self.place)
 
     def action(self, unit: UnitLoad) -> tuple[Any, ...]:
