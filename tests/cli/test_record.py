@@ -56,6 +56,11 @@ def test_a_gallon_is_hinted_at(tmp_path, capsys):
     capsys.readouterr()
     assert main(["init", "frame", "--record", str(path)]) == 2
     assert capsys.readouterr().err.endswith("the load of a frame is an acceleration. Did you mean Gal?\n")
+    assert told(capsys, made(tmp_path, "time [s],acc [G]\n0,0\n0.1,1\n"))["unit"].endswith("did you mean g?")
+    path = made(tmp_path, "time [s],acc [%g]\n0,0\n0.1,1\n0.2,0\n")
+    assert told(capsys, path)["unit"].startswith("%g, which a scene does not know; write another")
+    assert main(["init", "frame", "--record", str(path)]) == 2
+    assert '"%g" is not a known unit' in capsys.readouterr().err
 
 
 @pytest.mark.quick(1)

@@ -109,6 +109,9 @@ def test_both_forms_of_the_fourth_line_are_read(tmp_path, line):
         ("t;torque [N*m]", "N*m", ""),
         ("tau\ta_g", "", ""),  # the acceleration of the ground, and not a in g
         ("time,acc (g)", "g", ""),
+        ("time,acc [cm/s2]", "cm/s^2", ""),
+        ("t [s];a [m/s²]", "m/s^2", "s"),
+        ("t [s];a [cm/sec2]", "cm/sec^2", "s"),
     ],
 )
 def test_a_header_says_units_behind_names(tmp_path, head, unit, clock):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from wavesym.errors import SceneError, WavesymError, printable
 from wavesym.fields.numbers import decimal_text
-from wavesym.fields.quantity import likely_unit
+from wavesym.fields.quantity import is_unit, likely_unit
 from wavesym.fields.table import show
 from wavesym.records.read import read_record
 from wavesym.records.record_file import RecordFile
@@ -109,4 +109,6 @@ def _describe_unit(unit: str) -> str:
     if not unit:
         return "the file does not say; `unit` in a scene, or --unit, does"
     meant = likely_unit(unit)
-    return unit if meant == unit else f"{unit}, which a scene refuses: did you mean {meant}?"
+    if meant != unit:
+        return f"{unit}, which a scene refuses: did you mean {meant}?"
+    return unit if is_unit(unit) else f"{unit}, which a scene does not know; write another behind the column's name"

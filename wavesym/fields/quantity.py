@@ -31,6 +31,7 @@ _FACTOR = re.compile(rf"([*/]?)({_NAME})(?:\^(-?[1-9]))?")
 _SLIPS = (
     (re.compile(r"N([ms])(?![A-Za-z_0-9])"), r"N*\1"),  # Nm is a unit of its own, of yarn
     (re.compile(r"(?<![A-Za-z_0-9])([mk]?)gals?(?![A-Za-z_0-9])"), r"\1Gal"),  # a gallon
+    (re.compile(r"\AG\Z"), "g"),  # gauss, or nothing
 )
 _AMBIGUOUS = {
     **dict.fromkeys(("ton", "tons", "kton", "Mton"), "t (1000 kg) or short_ton (2000 lb)"),
@@ -126,6 +127,14 @@ def likely_unit(text: str) -> str:
     return text
 
 
+def is_unit(text: str) -> bool:
+    """Whether a scene takes it as a unit of something."""
+    try:
+        return bool(_meaning(text, text, gravity=True))
+    except PydanticCustomError:
+        return False
+
+
 def _fitting(text: str, dimension: str, value: str) -> _Meaning:
     """What a unit means, which is one of a dimension; `value` is what the message shows where it is none."""
     gravity = dimension in ("acceleration", "jerk")
@@ -134,7 +143,7 @@ def _fitting(text: str, dimension: str, value: str) -> _Meaning:
         meant = likely_unit(text)
         hint = (
             f'. Did you mean "{meant}"?'
-            if fits(_meaning(meant, value, gravity=False).powers, DIMENSIONS[dimension])
+            if fits(_meaning(meant, value, gravity=gravity).powers, DIMENSIONS[dimension])
             else ""
         )
         raise refusal(f"{show(value)} is {dimension_name(meaning.powers)}, not {_example(dimension)}{hint}")
@@ -161,7 +170,8 @@ def _meaning(
             drawn = f'Did you mean "{raised[1]}^{raised[2]}"?' if raised and _unit_meaning(raised[1]) else ""
             alike = next((f'Did you mean "{each}"?' for each in _names() if each.casefold() == name.casefold()), "")
             meant = drawn or alike or did_you_mean(name, _names())
-            raise refusal(f"{show(value)}: {show(name)} is not a known unit; write {usual}{meant and f'. {meant}'}")
+            where = "" if value == name else f"{show(value)}: "
+            raise refusal(f"{where}{show(name)} is not a known unit; write {usual}{meant and f'. {meant}'}")
         factor *= one.factor**power
         for base, exponent in one.powers.items():
             powers[base] = powers.get(base, 0) + exponent * power

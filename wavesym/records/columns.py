@@ -4,7 +4,8 @@ Without a header one column is samples, and of two the first is the times. A fir
 whatever name.
 
 The unit of a column stands behind its name in brackets, `accel [m/s^2]` or `acc (g)`, or, where the name is a plain
-word for a quantity, after an underscore: `time_s`, `accel_g`. (a_g is the acceleration of the ground.)
+word for a quantity, after an underscore: `time_s`, `accel_g`. (a_g is the acceleration of the ground.) Powers may be
+written as loggers do: m/s2 and m/s² are m/s^2.
 
 Columns stand apart by tabs, semicolons or commas, or where there are none by blanks; cells may be quoted. A decimal
 comma is read where no comma parts columns, and all numbers have it that have a fraction.
@@ -30,6 +31,8 @@ _HEADLESS = "begin lines of words, but one header, with #"
 _QUOTING = re.compile(r'(?:[^"#]|"[^"]*("|$))*')
 _NAMES = re.compile(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?")  # of columns, each with its unit
 _BRACKETS = re.compile(r"(.*\S)\s*(?:\[(.*)\]|\((.*)\))")
+_POWER = re.compile(r"(?<=[A-Za-z])[2-9](?![A-Za-z0-9])")
+_RAISED = str.maketrans({"²": "2", "³": "3"})
 _SUFFIX = re.compile(rf"(time|t|{_QUANTITIES})_([a-z].*)", re.IGNORECASE)
 
 
@@ -151,10 +154,15 @@ class _Decimals:
 
 def _column(place: int, header: str) -> _Column:
     if found := _BRACKETS.fullmatch(header):
-        return _Column(place, header, found[1], bare((found[2] or found[3] or "").strip()))
+        return _Column(place, header, found[1], _unit(found[2] or found[3] or ""))
     if found := _SUFFIX.fullmatch(header):
-        return _Column(place, header, found[1], bare(found[2]))
+        return _Column(place, header, found[1], _unit(found[2]))
     return _Column(place, header, header, "")
+
+
+def _unit(text: str) -> str:
+    """A unit of a header, its powers as scenes write them."""
+    return bare(_POWER.sub(r"^\g<0>", text.translate(_RAISED).strip()))
 
 
 def _choose(

@@ -109,8 +109,10 @@ def _refuse_unit(kind: str, record: RecordFile, written: str | None) -> None:
         raise WavesymError(f"--unit: {error}") from None
     try:
         other = quantity.unit(record.unit, needed) if record.unit else size
-    except PydanticCustomError:
+    except PydanticCustomError as error:
         meant = quantity.likely_unit(record.unit)
+        if meant == record.unit and not quantity.is_unit(record.unit):
+            raise SceneError(f"the unit of its samples: {error}", file=record.file) from None
         hint = f". Did you mean {meant}?" if meant != record.unit else ""
         what = f"samples in {record.unit}; the load of a {kind} is {with_article(needed)}{hint}"
         raise SceneError(what, file=record.file) from None
