@@ -79,7 +79,10 @@ class History:
 
 @dataclass(frozen=True)
 class Histories:
-    """The outputs of a model; contacts that open; whether fronts lie too close to be told apart; what computed them."""
+    """The outputs of a model; contacts that open; whether fronts lie too close to be told apart; what computed them.
+
+    Fronts are where outputs jump: none that is computed in equal steps does.
+    """
 
     model: Model
     outputs: tuple[History, ...]
@@ -112,7 +115,7 @@ def histories(model: Model, columns: int = 1, program: Program | None = None) ->
             for probe, row, own, late in zip(model.probes, rows, fronts, formal, strict=True)
         ),
         contacts,
-        dense,
+        dense and not program.has_equal_steps,
         program,
     )
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import groupby
+
+from flint import fmpq
 
 from wavesym import __version__
 from wavesym.errors import CostError, ToleranceError, WavesymError
@@ -41,6 +44,7 @@ _VERTICES = 60_000  # of all curves together: what keeps the page small
 _COLUMNS = (300, 1200)  # of a picture of histories, at least and at most
 _LOADS = 8
 _PIECES = 2_000_000  # of all outputs along a chain with contacts: tables of more are refused, after seconds
+_SHOWN = fmpq(1, 10**5)  # a tenth of the last figure of the page
 _FEW = 8  # outputs beside those along the chain, without which these cost hardly less
 
 
@@ -160,9 +164,18 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
 
 
 def _summary(model: Model, drifts: Sequence[Probe]) -> tuple[Summary | WavesymError, Program | None]:
-    """The extremes, and the program that they are of, whose curves are drawn; or why there are none."""
+    """The extremes, and the program that they are of, whose curves are drawn; or why there are none.
+
+    Those of a coarser tolerance, which still is finer than what the page shows, where the scene's cannot be met.
+    """
     try:
         return summary_and_program(model, drifts=drifts)
+    except ToleranceError as error:
+        if error.bound > float(nearest(_SHOWN)):
+            return error, None
+        with suppress(WavesymError):
+            return summary_and_program(model.tolerating(max(model.tolerance, _SHOWN)), drifts=drifts)
+        return error, None
     except WavesymError as error:
         return error, None
 
@@ -288,5 +301,7 @@ def _bound(what: str, program: Program, model: Model) -> str:
             f"value, {what} may be."
         )
     met = rational(program.error_bound) <= model.tolerance
-    coarse = f" That is more than the tolerance asked for, {nearest(model.tolerance):g}, but less than a picture shows."
+    coarse = (
+        f" That is more than the tolerance of the scene, {nearest(model.tolerance):g}, but less than a picture shows."
+    )
     return f"{program.error_bound:.2g}, {known}{'' if met else coarse}"
