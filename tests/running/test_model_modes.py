@@ -236,6 +236,29 @@ def test_instants_outside_the_horizon_have_no_value(sprung):
         values = sprung.values([-1.0, 1.0])
     assert np.isnan(values[0, :, 0]).all()
     assert np.isfinite(values[0, :, 1]).all()
+    frame = wavesym.model(FRAME, ["damping"])
+    with pytest.warns(UserWarning, match=r"1 of 2 times are outside 0 to [0-9.]+ s, where"):
+        frame.run(times=[0.5, 100.0])
+
+
+def test_numbers_are_taken_as_people_write_them():
+    """One number for a field of one, for all sets; a ratio that was meant as percent is seen."""
+    frame = wavesym.model(FRAME, ["damping", "load"])
+    found = frame.peaks(damping=0.03)
+    assert np.array_equal(found.max, frame.peaks(damping=[[0.03]]).max)
+    with pytest.warns(UserWarning, match=r"damping: 5 is 500 % of critical; write 0\.05 for 5 %"):
+        frame.peaks(damping=[0.05, 5])
+
+
+def test_peaks_say_when_in_the_unit_of_results():
+    pytest.importorskip("xarray")
+    scene = FRAME.with_({"output.force": [{"at": 0, "name": "Base shear"}]})
+    frame = wavesym.model(scene, ["damping"])
+    found = frame.peaks(damping=[0.02, 0.05])
+    labelled = found.to_xarray()
+    assert np.allclose(labelled["time_max"], found.tau_max * frame.seconds_per_tau, rtol=1e-15)
+    assert labelled["time_min"].attrs["units"] == "s"
+    assert "Base shear" in labelled["title"].values
 
 
 def test_what_modes_cannot_give_is_refused_in_one_line(sprung):

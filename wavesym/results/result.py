@@ -177,7 +177,7 @@ def result(
     pairs = np.array(list(instants(model, samples, at)), dtype=np.float64).reshape(-1, 2)
     time, tau = pairs[:, 0], pairs[:, 1]
     response = Response(model)
-    check_horizon(tau, model.horizon(), strict=strict)
+    check_horizon(tau, model.horizon(), strict=strict, clock=model.clock)
     values = np.asarray(response.values(tau))
     program = response.program
     return Result(

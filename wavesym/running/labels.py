@@ -14,6 +14,7 @@ from wavesym.results.optional import require_packages
 from wavesym.results.statistics import ARRAYS
 
 SETS = "set"
+_TIMES = {"min": "time of the least value", "max": "time of the greatest value"}
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,9 @@ class SetLabels:
         parameters: the numbers of each field that were given, (sets, numbers) or (numbers,), by name.
         names, units: of each field what its numbers are called, and their units.
         outputs, output_units: the names of the outputs and their units.
+        titles: the names of the outputs for people.
         time_unit: that of times, None for a scene without units.
+        time_per_tau: how many of it one tau is, 1 without.
     """
 
     parameters: Mapping[str, Array]
@@ -32,7 +35,9 @@ class SetLabels:
     units: Mapping[str, tuple[str, ...]]
     outputs: tuple[str, ...]
     output_units: tuple[str, ...]
+    titles: tuple[str, ...]
     time_unit: str | None
+    time_per_tau: float
 
     def label_values(self, values: Array, tau: Array, times: Array) -> Any:
         """Values as an xarray.DataArray.
@@ -70,10 +75,15 @@ class SetLabels:
         """
         along, sets = self._sets()
         fields = {name: ((along, "output"), values, {"long_name": ARRAYS[name]}) for name, values in arrays.items()}
+        if self.time_unit is not None:
+            for name, about in _TIMES.items():
+                times = arrays[f"tau_{name}"] * self.time_per_tau
+                fields[f"time_{name}"] = (along, "output"), times, {"long_name": about, "units": self.time_unit}
         return require_packages("xarray", "arrays").Dataset(fields, {**self._outputs(), **sets})
 
     def _outputs(self) -> dict[str, Any]:
-        return {"output": list(self.outputs), "unit": ("output", list(self.output_units))}
+        names = {"unit": self.output_units, "title": self.titles}
+        return {"output": list(self.outputs)} | {name: ("output", list(texts)) for name, texts in names.items()}
 
     def _sets(self) -> tuple[str, dict[str, Any]]:
         """The dimension of sets, and the numbers that vary along it."""

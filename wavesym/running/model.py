@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING, Any, NoReturn, Protocol
+from warnings import warn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, did_you_mean
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from wavesym.running.sets import FoundSets
 
 
+_NONE = np.zeros(0)
 _SAMPLES = 1001
 _WHY = (
     "",
@@ -78,7 +80,10 @@ class SetPeaks:
         return f"SetPeaks({sets} sets of {outputs} outputs: {', '.join(RUNTIME_ARRAYS)})"
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset with the outputs and the numbers that vary as coordinates. WavesymError without xarray."""
+        """An xarray.Dataset with the outputs and the numbers that vary as coordinates. WavesymError without xarray.
+
+        Of a scene with units it has `time_min` and `time_max` beside tau, in `time_unit`.
+        """
         return self.labels.label_extremes({name: getattr(self, name) for name in RUNTIME_ARRAYS})
 
 
@@ -126,9 +131,9 @@ class RuntimeModel:
 
     `outputs` are the names of its outputs, `tau_max` its horizon, `parameters` the scene's own numbers of each field,
     by name. They are given by these names, as arrays of shape (sets, numbers), or (numbers,) for all sets, or (sets,)
-    for a field of one number; those that are not given are the scene's. A set that is refused is NaN throughout, and
-    `check` says why; so is tau out of range. WavesymError for a field that there is not, and for arrays of other
-    shapes; CompilerError where there is no C compiler.
+    for a field of one number, which may be a number; those that are not given are the scene's. A set that is refused is
+    NaN throughout, and `check` says why; so is tau out of range. WavesymError for a field that there is not, and for
+    arrays of other shapes; CompilerError where there is no C compiler. A damping ratio above 1 is warned of.
     """
 
     def __init__(self, engine: SetsEngine) -> None:
@@ -151,6 +156,8 @@ class RuntimeModel:
         """That of `times`; None of a scene without units, whose times are tau."""
         self.seconds_per_tau = nearest(clock.seconds) if clock else None
         """What one tau is; None of a scene without units."""
+        self.time_per_tau = nearest(clock.per_tau) if clock else 1.0
+        """The same in `time_unit`."""
 
     def run(
         self,
@@ -186,7 +193,7 @@ class RuntimeModel:
             tau = np.linspace(0.0, self.tau_max, _SAMPLES)
         instants, shown = self._instants(tau, times)
         labels = self._labels(parameters)
-        check_horizon(instants, self.tau_max, strict=strict)
+        check_horizon(instants, self.tau_max, strict=strict, clock=self._model.clock if times is not None else None)
         return labels.label_values(self._compute(instants, parameters), instants, shown)
 
     def _labels(self, parameters: Mapping[str, ArrayLike]) -> SetLabels:
@@ -194,7 +201,10 @@ class RuntimeModel:
         fields = self._fields(parameters)
         units = tuple(probe.unit for probe in self._model.probes)
         varied = {name: fields[name] for name in parameters}
-        return SetLabels(varied, self.labels, self.units, self.outputs, units, self.time_unit)
+        titles = tuple(probe.label for probe in self._model.probes)
+        return SetLabels(
+            varied, self.labels, self.units, self.outputs, units, titles, self.time_unit, self.time_per_tau
+        )
 
     def _instants(self, tau: ArrayLike | None, times: ArrayLike | None) -> tuple[Array, Array]:
         """Instants as tau, and in the unit of results."""
@@ -202,7 +212,7 @@ class RuntimeModel:
         if times is None:
             assert tau is not None
             found = _numbers("tau", tau)
-            return found, found * nearest(clock.per_tau) if clock else found
+            return found, found * self.time_per_tau
         shown = _numbers("times", times)
         if clock is None:
             return shown, shown
@@ -306,11 +316,13 @@ class RuntimeModel:
         columns = dict(self.parameters)
         for name, values in parameters.items():
             if name not in columns:
-                raise WavesymError(f"{name}: not a parameter of this model; write {' or '.join(columns)}")
+                meant = did_you_mean(name, columns)
+                hint = f". {meant}" if meant else ""
+                raise WavesymError(f"{name}: not a parameter of this model; write {' or '.join(columns)}{hint}")
             wanted = columns[name].shape
             columns[name] = _numbers(name, values)
-            if wanted == (1,) and columns[name].ndim == 1:
-                columns[name] = columns[name][:, None]
+            if wanted == (1,) and columns[name].ndim <= 1:
+                columns[name] = columns[name].reshape(-1, 1)
             if columns[name].ndim not in (1, 2) or columns[name].shape[-1:] != wanted:
                 raise WavesymError(
                     f"{name}: an array of shape {columns[name].shape}; write one of shape (sets, {wanted[0]})"
@@ -320,6 +332,8 @@ class RuntimeModel:
     def _parameter_rows(self, parameters: Mapping[str, ArrayLike]) -> Array:
         """All fields side by side, a row for each set."""
         columns = self._fields(parameters)
+        if (largest := float(np.max(columns.get("damping", _NONE), initial=0.0))) > 1:
+            warn(f"damping: {largest:g} is {100 * largest:g} % of critical; write 0.05 for 5 %", stacklevel=3)
         counts = {len(values) for values in columns.values() if values.ndim == 2} - {1}  # which is for all sets
         if len(counts) > 1:
             raise WavesymError(f"{' and '.join(map(str, sorted(counts)))} sets; write as many of each parameter")
