@@ -236,6 +236,7 @@ def test_zipped_cases_have_one_dimension(tmp_path: Path) -> None:
     found = api.sweep({**SWEEP, "zip": True, "vary": {"output.until": [4, 5], "system.kappa[0]": [1, 2]}}, tmp_path)
     assert found["max"].dims == ("case", "output")
     assert found["output.until"].values.tolist() == [4, 5]
+    assert found["case"].values.tolist() == [0, 1], "0 is a number, and none that stands for a missing one"
     api.sweep_table(tmp_path, tmp_path / "t.csv")
     assert (tmp_path / "t.csv").read_text().startswith("output.until,system.kappa[0],strain@0.min,")
 

@@ -66,6 +66,14 @@ def test_a_table_has_them_with_their_unit(folder: Path, tmp_path: Path) -> None:
     assert [float(row[name]) for row in rows] == expected()
 
 
+def test_a_page_draws_them(folder: Path) -> None:
+    from wavesym.pictures.page.sweep import sweep_page
+
+    text = sweep_page(folder)
+    assert f"set of {TOE} over {VARIED}" in text
+    assert f"set of {TOE}, mm, greatest" in text
+
+
 def test_parquet_has_units_of_all_columns(folder: Path, tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     write_table(folder, tmp_path / "a.parquet")

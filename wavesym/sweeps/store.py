@@ -207,7 +207,8 @@ def _coordinates(group: Any, dimension: SweepAxis) -> None:
 
 def _plain(group: Any, name: str, dimension: str, values: Any, **attributes: object) -> None:
     metadata = {DIMENSIONS: [dimension], **attributes}
-    group.create_array(name, data=values, chunks=values.shape, compressors=None, attributes=metadata)
+    # without a value that stands for none: xarray would take a 0 for it
+    group.create_array(name, data=values, chunks=values.shape, compressors=None, fill_value=None, attributes=metadata)
 
 
 def open_dataset(folder: str | PathLike[str]) -> Any:

@@ -131,8 +131,8 @@ def _output_label(output: SweepOutput) -> str:
 def _notes(found: SweepResults, outputs: list[SweepOutput]) -> Iterator[str]:
     if not outputs:
         yield "Neither min nor max was kept, so that there is nothing to draw"
-    elif len(outputs) < len(found.outputs):
-        yield f"The first {len(outputs)} of {len(found.outputs)} outputs are shown; wavesym sweep --table has all"
+    elif len(found.outputs) > _OUTPUTS:
+        yield f"The first {_OUTPUTS} of {len(found.outputs)} outputs are shown; wavesym sweep --table has all"
     yield from (f"{note[:1].upper()}{note[1:]}" for note in found.status.notes)
     if found.status.left:
         yield f"{found.status.left} cases are left: this page shows what was done when it was made"

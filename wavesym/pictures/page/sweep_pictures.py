@@ -45,12 +45,19 @@ class SweepOutput:
 
 
 def outputs_of(found: SweepResults, most: int) -> list[SweepOutput]:
-    """The first outputs; of statistics that were not kept, the other one stands for both."""
+    """The first outputs, then what was kept of the first links, which has one value a case.
+
+    Of statistics that were not kept, the other one stands for both.
+    """
     low, high = ("min" if "min" in found.statistics else "max"), ("max" if "max" in found.statistics else "min")
-    if low not in found.statistics:
-        return []
-    names = list(found.outputs.items())[:most]
-    every = [SweepOutput(*each, found.values(low, k), found.values(high, k)) for k, each in enumerate(names)]
+    every = []
+    if low in found.statistics:
+        names = list(found.outputs.items())[:most]
+        every += [SweepOutput(*each, found.values(low, k), found.values(high, k)) for k, each in enumerate(names)]
+    for statistic in found.link_statistics:
+        for k, (link, unit) in enumerate(list(found.manifest.links.items())[:most]):
+            values = found.values(statistic, k)
+            every.append(SweepOutput(f"{statistic} of {link}", unit, values, values))
     return [_readable(each) for each in every]
 
 
