@@ -338,4 +338,6 @@ def test_a_result_says_that_speeds_were_changed() -> None:
     (note,) = found.notes
     assert "speeds of waves are changed by" in note
     assert note in found._repr_html_()
+    assert "of waves whose speeds are changed by" in found.accuracy
+    assert "of waves whose speeds are changed by" in wavesym.summary(Scene.from_toml(TWO_RODS)).text()
     assert Scene.from_toml(TWO_RODS.replace("speed_adjustment", "# ")).run(samples=3).notes == ()

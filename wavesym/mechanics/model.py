@@ -65,9 +65,11 @@ class Labels:
         return (*self.time_notes, *self.structure_notes)
 
     @property
-    def lines_text(self) -> str:
+    def left_out_text(self) -> str:
         """What bounds of errors leave out, to be said behind them; empty where there is nothing."""
-        return f", of straight lines between {' and '.join(map(str, self.shapes))}" if self.shapes else ""
+        lines = f", of straight lines between {' and '.join(map(str, self.shapes))}" if self.shapes else ""
+        change = self.system.get("speeds_changed_by")
+        return f"{lines}, of waves whose speeds are changed by {change}" if change else lines
 
     @property
     def type(self) -> str:

@@ -290,8 +290,8 @@ def _notes(found: Sequence[Mode]) -> list[str]:
     notes = []
     if shifts := [number for number, mode in enumerate(found, 1) if mode.stays]:
         notes.append(
-            f"frequency 0 of {_mode_numbers(shifts)}: a shift that stays, as nothing but dashpots resists it, and only "
-            "while it moves"
+            f"frequency 0 of {_mode_numbers(shifts)}: motion without strain that dashpots alone resist (a rotor that "
+            "turns against bearings), so that a shift stays"
         )
     places: dict[int, list[int]] = {}
     for number, mode in enumerate(found, 1):

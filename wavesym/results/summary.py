@@ -129,7 +129,7 @@ class Summary:
         """How right values are, in a few words."""
         right, lines = (
             f"right to {self.bound:g} of each output's largest",
-            self.labels.lines_text if self.labels else "",
+            self.labels.left_out_text if self.labels else "",
         )
         if self.proved:
             return f"{right}, proved{lines}"

@@ -61,7 +61,7 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
         },
     )
     if not rods.alike:
-        yield _rods(physical)
+        yield _rods(physical, model)
     found = [*remarks(physical), *model.labels.notes]
     yield Listing("remarks", "Remarks", [{"remark": line} for line in found], ("remark",))
 
@@ -102,18 +102,22 @@ def _damped_periods(model: Model) -> tuple[list[float], str]:
     return periods, f"{', '.join(texts)}, damping of critical in brackets; `wavesym modes` has more"
 
 
-def _rods(physical: PhysicalScene) -> Listing:
-    """Rods that differ."""
+def _rods(physical: PhysicalScene, model: Model) -> Listing:
+    """Rods that differ; behind a speed that is changed what it is taken as."""
     rods, seconds = physical.scale.rods, float(physical.scale.seconds)
+    bars, written = model.network.bars, model.written_speeds
+    changes = [float(bar.speed / speed) for bar, speed in zip(bars, written, strict=True)] if written else []
     rows: list[dict[str, Plain | Display]] = []
     for number, (rod, ratio) in enumerate(zip(rods.all, rods.ratios, strict=True), 1):
         delay = seconds * float(ratio)
+        speed = float(rod.length) / delay
+        taken = f", taken as {speed * changes[number - 1]:.6g} m/s" if changes else ""
         rows.append(
             {
                 "rod": number,
                 "length": Display(float(rod.length), f"{float(rod.length):.6g} m"),
                 "l/c": Display(delay, _si(delay, "s")),
-                "c": Display(float(rod.length) / delay, f"{float(rod.length) / delay:.6g} m/s"),
+                "c": Display(speed, f"{speed:.6g} m/s{taken}"),
                 "impedance": float(rods.impedance(number - 1)),
             }
         )
