@@ -339,5 +339,5 @@ def test_a_result_says_that_speeds_were_changed() -> None:
     assert "speeds of waves are changed by" in note
     assert note in found._repr_html_()
     assert "of waves whose speeds are changed by" in found.accuracy
-    assert "of waves whose speeds are changed by" in wavesym.summary(Scene.from_toml(TWO_RODS)).text()
+    assert "of waves whose speeds are changed by" in str(wavesym.summary(Scene.from_toml(TWO_RODS)))
     assert Scene.from_toml(TWO_RODS.replace("speed_adjustment", "# ")).run(samples=3).notes == ()
