@@ -35,6 +35,9 @@ def program(scene: Scene, request: Request, *, tested: bool = False) -> Program:
         CostError, UnservedError, WavesymError: for what is too expensive, not supported, or contradicts itself.
     """
     lowered = lower(scene)
+    if request.runtime or request.stream or request.target or request.evaluator == "modes":
+        scene = scene.in_lines  # all of these take loads sample by sample
+        lowered = lower(scene)
     if request.runtime and request.is_of_mode_sets(lowered):
         from wavesym.programs.mode_sets.making import mode_sets_program
 
@@ -228,6 +231,7 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
 
     if isinstance(runtime, str):
         raise WavesymError(f'runtime: "{runtime}" is not a list of names; write ["{runtime}"]')
+    scene = scene.in_lines
     lowered, loads = lower(scene), _varied_loads(scene, runtime)
     if not Request(runtime=tuple(runtime)).is_of_mode_sets(lowered):
         return compiled_model(sets_program(lowered, runtime, loads))

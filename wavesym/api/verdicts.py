@@ -52,7 +52,8 @@ def verify(
         Request.from_options(evaluator=kind, precision=precision, runtime=runtime, stream=stream) for kind in kinds
     ]
     some = any((evaluator, precision, runtime, stream))
-    return verify_scenes(((scene, lower(scene)) for scene in each), requests if some else None)
+    in_lines = (scene.in_lines for scene in each)  # as integrators take them
+    return verify_scenes(((scene, lower(scene)) for scene in in_lines), requests if some else None)
 
 
 def verify_derivation(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:

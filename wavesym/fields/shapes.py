@@ -1,11 +1,13 @@
-"""Loads of a given shape: a sine, half of one, a decay, Ricker's pulse; as straight lines between samples.
+"""Loads of a given shape: a sine, half of one, a decay, Ricker's pulse; as polynomials, or as lines between samples.
 
-A line between two samples is off by at most h^2/8 times the greatest second derivative, h the time between them. That
-is kept below a part of the tolerance, in parts of the amplitude. Each sample is rounded once, to far less than that.
+Polynomials (shape_polynomials.py) are a few, and as near to the shape as doubles are. What takes nothing but samples
+(modes, programs with parameters at run time) has straight lines. A line between two samples is off by at most h^2/8
+times the greatest second derivative, h the time between them. That is kept below a part of the tolerance, in parts of
+the amplitude. Each sample is rounded once, to far less than that.
 
-Where the travel times of a structure have a common measure, samples are a part or a multiple of it apart: waves that
-they begin meet others then, and what has to be followed is what one rod has, however many there are. Half a sine ends
-at a sample, and lasts too short to gain by that.
+Where the travel times of a structure have a common measure, pieces and samples are a part or a multiple of it apart:
+waves that they begin meet others then, and what has to be followed is what one rod has, however many there are. Half a
+sine ends at a sample, and lasts too short to gain by that.
 """
 
 from __future__ import annotations
@@ -16,14 +18,26 @@ from functools import cached_property
 from math import ceil, sqrt
 from typing import Annotated, Self
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpq_poly
 from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 
 from wavesym.errors import CostError
 from wavesym.fields.loads import MOST_TIMES, Load, linear
 from wavesym.fields.numbers import Exact, Positive, exact
+from wavesym.fields.shape_polynomials import (
+    BITS,
+    CLOSE,
+    DEGREE,
+    DIGITS,
+    RICKER,
+    derivative_bound,
+    interpolate,
+    longest_piece,
+    nearest_dyadic,
+    value,
+)
 from wavesym.fields.table import refusal, show
-from wavesym.mechanics.loads import AppliedLoad
+from wavesym.mechanics.loads import AppliedLoad, power_source
 from wavesym.numbers.doubles import fraction, middle, rational
 
 SHAPES = {"sine": "frequency", "half-sine": "duration", "exponential": "duration", "ricker": "frequency"}
@@ -33,9 +47,7 @@ MOST_SAMPLES = MOST_TIMES
 _USUAL = ((500, Fraction(1, 1000)), (2_000, Fraction(1, 100)))
 _SHARE = Fraction(1, 4)  # of the tolerance
 _ROUND = 20  # samples in a period are a multiple of it, so that tops and simple fractions are among them
-_BITS, _DIGITS = 192, 96  # of samples, in balls and behind the point
 _FINEST = 64  # of a common measure, that many fit between samples at most; a finer one is by chance
-_RICKER = 2  # periods from the start to the top, and from there to the end
 _RICKER_ENDS = Fraction(1, 10**15)  # of its amplitude, which is left out before and after: 78 exp(-4 pi^2) is 5.6e-16
 
 
@@ -71,6 +83,7 @@ class ShapedLoad(Load):
     _until: Fraction = PrivateAttr(default=Fraction(1))
     _tolerance: Fraction = PrivateAttr(default=Fraction(1, 10**10))
     _measure: Fraction = PrivateAttr(default=Fraction(0))
+    _straight: bool = PrivateAttr(default=False)
 
     @model_validator(mode="after")
     def _check_frequency(self) -> Self:
@@ -82,24 +95,32 @@ class ShapedLoad(Load):
             raise refusal(f"not of a {self.shape}; write {needed}", other)
         return self
 
-    def truncate(self, until: Fraction, tolerance: Fraction, measure: Fraction = Fraction(0)) -> Self:
+    def truncate(
+        self, until: Fraction, tolerance: Fraction, measure: Fraction = Fraction(0), *, straight: bool = False
+    ) -> Self:
         """The same load as far as it matters to a horizon and a tolerance, on what travel times are multiples of.
 
         Args:
             until: the horizon in tau.
             tolerance: of the scene.
             measure: the common measure of all travel times in tau; 0 where there is none.
+            straight: whether it acts as straight lines between samples, for what takes nothing else.
         """
         other = self.model_copy()
-        for found in ("step", "samples"):  # for another tolerance
+        for found in ("step", "_samples"):  # for another tolerance
             vars(other).pop(found, None)
-        other._until, other._tolerance, other._measure = until, tolerance, measure
+        other._until, other._tolerance, other._measure, other._straight = until, tolerance, measure, straight
         return other
 
     @property
     def begin(self) -> Fraction:
         """The time of the first sample."""
         return self.start
+
+    @property
+    def degree(self) -> int:
+        """That of its polynomials; 1 where it acts as straight lines."""
+        return 1 if self._straight else DEGREE
 
     @property
     def period(self) -> Fraction:
@@ -110,18 +131,21 @@ class ShapedLoad(Load):
 
     @property
     def error(self) -> Fraction:
-        """How far it is from its lines at most, in parts of its amplitude: proved."""
-        left_out = {"exponential": self._tolerance * _SHARE, "ricker": _RICKER_ENDS}.get(self.shape, Fraction(0))
+        """How far what acts is from it at most, in parts of its amplitude: proved."""
+        share = self._tolerance * _SHARE if self._straight else CLOSE
+        left_out = {"exponential": share, "ricker": _RICKER_ENDS}.get(self.shape, Fraction(0))
         lines = fraction(middle(self._bend)) / 8 * (self.step / self.period) ** 2
-        return lines + left_out + Fraction(1, 2**_DIGITS)
+        return (lines if self._straight else CLOSE) + left_out + Fraction(DEGREE, 2**DIGITS)
 
     @cached_property
     def step(self) -> Fraction:
-        """The time between samples: a part or a multiple of the common measure, or else a whole part of the period."""
+        """The time between samples, or of a polynomial: a part or a multiple of the common measure, or else a whole
+        part of the period."""
         needed = sqrt(float(self._bend) / (8 * float(self._tolerance * _SHARE)))
-        longest, measure = self.period / Fraction(needed), self._measure
+        longest = self.period * (1 / Fraction(needed) if self._straight else longest_piece(self.shape))
+        round_, measure = _ROUND if self._straight else 1, self._measure
         if self.shape == "half-sine" or measure * _FINEST < longest:
-            return self.period / (_ROUND * max(1, ceil(needed / _ROUND)))
+            return self.period / (round_ * max(1, ceil(self.period / longest / round_)))
         if measure <= longest:
             return measure * (longest // measure)
         parts = ceil(measure / longest)
@@ -130,61 +154,93 @@ class ShapedLoad(Load):
     @cached_property
     def _bend(self) -> arb:
         """The greatest second derivative for amplitude and period 1: not below it."""
-        pi = arb.pi()
-        bends = {"sine": 4 * pi * pi, "half-sine": pi * pi, "exponential": arb(1), "ricker": 6 * pi * pi}
-        return bends[self.shape].upper()
+        if self.shape == "ricker":  # at its top
+            return (6 * arb.pi() ** 2).upper()
+        return derivative_bound(self.shape, 2).upper()
+
+    @property
+    def _end(self) -> Fraction | None:
+        """After how many periods it is 0, or so little that it does not matter; None for a sine."""
+        left = _SHARE * self._tolerance if self._straight else CLOSE
+        decays = ceil(float(left.denominator.bit_length()) * 0.7 + 1)
+        ends = {"half-sine": Fraction(1), "ricker": Fraction(2 * RICKER), "exponential": Fraction(decays)}
+        return ends.get(self.shape)
 
     @property
     def _last(self) -> Fraction:
         """How long it lasts, in periods; what comes after the horizon does not matter."""
         left = max(self._until - self.start, Fraction(0)) / self.period
-        # a decay is below the tolerance after so many
-        ends = {"half-sine": Fraction(1), "ricker": Fraction(2 * _RICKER), "exponential": Fraction(self._decays)}
-        return min(left, ends.get(self.shape, left))
+        return left if self._end is None else min(left, self._end)
 
     @property
-    def _decays(self) -> int:
-        return ceil(float((_SHARE * self._tolerance).denominator.bit_length()) * 0.7 + 1)
+    def _steps(self) -> int:
+        """How many lines, or polynomials, it is made of."""
+        return ceil(self._last * self.period / self.step)
 
     @property
     def count(self) -> int:
         """How many samples it has."""
-        return ceil(self._last * self.period / self.step) + 1
+        return self._steps * (1 if self._straight else DEGREE) + 1
+
+    @property
+    def samples(self) -> tuple[fmpq, ...]:
+        """Its values where lines, or polynomials, meet; after the last it is of no matter. CostError for too many."""
+        size = rational(self.amplitude)
+        return tuple(size * sample for sample in self._samples)
 
     @cached_property
-    def samples(self) -> tuple[fmpq, ...]:
-        """Its values, one `step` apart; after the last it is of no matter. CostError for too many."""
-        count = self.count
-        if count > MOST_SAMPLES:
-            article = "an" if self.shape.startswith("e") else "a"
-            enough = float(self._tolerance) * (count / MOST_SAMPLES) ** 2
-            raise CostError(
-                f"load: {count} samples of {article} {self.shape} for a tolerance of {float(self._tolerance):.1e}, the "
-                f"limit is {MOST_SAMPLES} (output.tolerance = {enough:.1e} or more, or fewer periods, help)"
-            )
-        size = rational(self.amplitude)
-        with ctx.workprec(_BITS):
+    def _samples(self) -> tuple[fmpq, ...]:
+        """Those of amplitude 1."""
+        if self.count > MOST_SAMPLES:
+            raise CostError(f"load: {self._too_many}")
+        with ctx.workprec(BITS):
             each = rational(self.step / self.period)
-            values = [size * _round(self._value(arb(k * each))) for k in range(count)]
+            values = [nearest_dyadic(value(self.shape, arb(k * each))) for k in range(self._steps + 1)]
         if self.shape == "ricker":
             values[0] = fmpq(0)  # no jump
+        if not self._straight and self._has_ended:
+            values[-1] = fmpq(0)
         return tuple(values)
 
-    def _value(self, t: arb) -> arb:
-        """Of amplitude 1, after so many periods."""
-        match self.shape:
-            case "sine":
-                return (2 * t).sin_pi()
-            case "half-sine":
-                return (t if t < arb(0.5) else 1 - t).sin_pi()  # exactly 0 at its end
-            case "exponential":
-                return (-t).exp()
-        a = (arb.pi() * (t - _RICKER)) ** 2
-        return (1 - 2 * a) * (-a).exp()
+    @property
+    def _too_many(self) -> str:
+        article = "an" if self.shape.startswith("e") else "a"
+        enough = float(self._tolerance) * (self.count / MOST_SAMPLES) ** 2
+        tolerance, helps = "", "fewer periods help"
+        if self._straight:
+            tolerance = f" for a tolerance of {float(self._tolerance):.1e}"
+            helps = f"output.tolerance = {enough:.1e} or more, or fewer periods, help"
+        return f"{self.count} samples of {article} {self.shape}{tolerance}, the limit is {MOST_SAMPLES} ({helps})"
+
+    @property
+    def _has_ended(self) -> bool:
+        """Whether it is over where its last polynomial ends."""
+        return self._end is not None and self._steps * self.step >= self._end * self.period
 
     def units(self) -> Iterator[AppliedLoad]:
         """The load as unit responses."""
-        return linear(self.start, self.step, self.polyline, self.sources)
+        if self._straight:
+            return linear(self.start, self.step, self.polyline, self.sources)
+        return self._changes()
+
+    def _changes(self) -> Iterator[AppliedLoad]:
+        """What changes where polynomials meet, by powers of the time since then."""
+        samples, step, size = self._samples, rational(self.step), rational(self.amplitude)
+        length, (constant, ramp) = rational(self.step / self.period), self.sources
+        sources = (constant, ramp, *(power_source(ramp, power) for power in range(2, DEGREE + 1)))
+        before = fmpq_poly()
+        for k in range(len(samples)):
+            if k + 1 < len(samples):
+                now = size * interpolate(self.shape, k * length, length, (samples[k], samples[k + 1]))
+            elif self._has_ended:
+                now = fmpq_poly()
+            else:
+                return
+            change = now - before
+            for power, source in enumerate(sources):
+                if change[power]:
+                    yield AppliedLoad(source, rational(self.start) + k * step, change[power] / step**power)
+            before = now(fmpq_poly([1, 1]))
 
     @property
     def polyline(self) -> tuple[fmpq, ...]:
@@ -200,7 +256,8 @@ class ShapedLoad(Load):
     @property
     def sampling(self) -> str:
         """How it is sampled, for people."""
-        return f"as {len(self.samples)} samples, within {float(self.error):.1e} of its amplitude"
+        lines = "" if self._straight else f"{self._steps} polynomials of degree {DEGREE} through "
+        return f"as {lines}{self.count} samples, within {float(self.error):.1e} of its amplitude"
 
 
 def usual_tolerance(loads: Iterable[Load], until: Fraction, finest: Fraction, measure: Fraction) -> Fraction:
@@ -211,11 +268,6 @@ def usual_tolerance(loads: Iterable[Load], until: Fraction, finest: Fraction, me
     steps = [Fraction(digit * 10**power) * finest for power in range(12) for digit in (1, 2, 5)]
     for most, coarsest in _USUAL:
         for tolerance in (each for each in steps if each <= coarsest):
-            if all(load.truncate(until, tolerance, measure).count <= most for load in shaped):
+            if all(load.truncate(until, tolerance, measure, straight=True).count <= most for load in shaped):
                 return tolerance
     return finest
-
-
-def _round(value: arb) -> fmpq:
-    """The nearest fraction of so many binary digits."""
-    return fmpq(int((value.mid() * 2**_DIGITS + fmpq(1, 2)).floor().unique_fmpz()), 2**_DIGITS)

@@ -38,6 +38,11 @@ class AppliedRecord(AppliedLoad):
         return self.samples
 
 
+def power_source(ramp: str, power: int) -> str:
+    """What the unit load is called that grows with a power of the time, beside a ramp of this name."""
+    return f"{ramp}^{power}"
+
+
 def merge_loads(loads: Iterable[AppliedLoad]) -> tuple[AppliedLoad, ...]:
     """Loads of the same source and time as one, none of weight 0, sorted by time and then by source."""
     # M2 comes before M10: a shorter name is a smaller number; sorted, as an fmpq is slow to hash

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import NamedTuple
@@ -24,15 +24,22 @@ from wavesym.numbers.reals import DOUBLE, Real
 
 
 class SampledShape(NamedTuple):
-    """A load of a shape as what it acts: straight lines between so many samples, `error` in parts of its amplitude."""
+    """A load of a shape as what it acts: polynomials through so many samples, `error` in parts of its amplitude.
+
+    Those of degree 1 are straight lines.
+    """
 
     load: str
     shape: str
+    degree: int
     samples: int
     error: float
 
     def __str__(self) -> str:
-        return f"{self.samples} samples of the {self.shape} {self.load}, within {self.error:.2g} of its amplitude"
+        curves = "straight lines between" if self.degree == 1 else f"polynomials of degree {self.degree} through"
+        return (
+            f"{curves} {self.samples} samples of the {self.shape} {self.load}, within {self.error:.2g} of its amplitude"
+        )
 
 
 @dataclass(frozen=True)
@@ -43,7 +50,7 @@ class Labels:
     `sha256` is that of the scene, whatever way it was written. `structure_notes` say how the structure was read where
     that may surprise, `time_notes` how its loads and the horizon were. `kind` is that of the rods of a physical scene.
     `size` is how many rods there are, `dimensions` what lengths and times count.
-    `shapes` are the loads that act as straight lines which are not quite what was asked for.
+    `shapes` are the loads that act as lines or polynomials which are not quite what was asked for.
     """
 
     system: Mapping[str, str]
@@ -67,9 +74,9 @@ class Labels:
     @property
     def left_out_text(self) -> str:
         """What bounds of errors leave out, to be said behind them; empty where there is nothing."""
-        lines = f", of straight lines between {' and '.join(map(str, self.shapes))}" if self.shapes else ""
+        shapes = f", of {' and '.join(map(str, self.shapes))}" if self.shapes else ""
         change = self.system.get("speeds_changed_by")
-        return f"{lines}, of waves whose speeds are changed by {change}" if change else lines
+        return f"{shapes}, of waves whose speeds are changed by {change}" if change else shapes
 
     @property
     def type(self) -> str:
@@ -89,7 +96,7 @@ class Model:
     a network that a preset made, None where they are those of its parts. Contacts and other corners are followed
     as far as `followed_probes` need, too, so that one solution serves several models. `written_speeds` are those of the
     bars before they were adjusted, none where they were not; a speed may change by `speed_adjustment`, None where its
-    scene cannot say so.
+    scene cannot say so. `lines` makes the model whose loads are linear between samples, where these are polynomials.
     """
 
     name: str
@@ -109,6 +116,24 @@ class Model:
     followed_probes: tuple[Probe, ...] = ()
     written_speeds: tuple[fmpq, ...] = ()
     speed_adjustment: fmpq | None = None
+    lines: Callable[[], Model] | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def in_lines(self) -> Model:
+        """The same under loads that are linear between samples, for programs that take no others.
+
+        CostError for too many samples.
+        """
+        if self.lines is None:
+            return self
+        kept = {name: getattr(self, name) for name in ("probes", "until", "endless", "followed_probes")}
+        lines = self.lines()
+        return replace(lines, tolerance=max(self.tolerance, lines.tolerance), **kept)
+
+    def refuse_polynomials(self) -> None:
+        """UnservedError where a load is more than linear: for what takes `in_lines`."""
+        if self.lines is not None:
+            raise UnservedError("load: polynomials of a shape are supported by closed forms and pieces only")
 
     @property
     def network_as_written(self) -> Network:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import zip_longest
 
 from flint import fmpq
 
@@ -54,7 +55,7 @@ def _derivative(load: AppliedLoad, points: Sequence[Point]) -> AppliedLoad | Non
         return None
     for other in point.loads:
         action = [*point.action(other)]
-        pairs = [(action[k] if k < len(action) else 0, slope[k] if k < len(slope) else 0) for k in range(4)]
+        pairs = list(zip_longest(action, slope, fillvalue=0))
         factor = next((fmpq(b) / fmpq(a) for a, b in pairs if a != 0), None)
         if factor is not None and all(b == factor * a for a, b in pairs):
             return AppliedLoad(_copy_load(other).source, load.time, factor * load.weight)

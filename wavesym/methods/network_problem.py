@@ -24,8 +24,10 @@ Stated = TypeVar("Stated", bound=Problem)
 def network_problem(model: Model, kind: type[Stated]) -> Stated:
     """State the problem of a model, contacts and modal damping included, as a `kind` of Problem.
 
-    Of links with other laws that have corners it has the dashpots alone, as far as they act all the time.
+    Of links with other laws that have corners it has the dashpots alone, as far as they act all the time. Loads of a
+    shape are straight lines.
     """
+    model = model.in_lines
     network = model.network
     points, bars = network.points, network.bars
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))

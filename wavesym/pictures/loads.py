@@ -1,4 +1,5 @@
-"""What acts on a chain, over tau: each load as it is, straight between its changes, upright where it steps."""
+"""What acts on a chain, over tau: each load as it is, straight or a polynomial between its changes, upright where it
+steps."""
 
 from __future__ import annotations
 
@@ -6,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from flint import fmpq
+from flint import fmpq, fmpq_poly
 
 from wavesym.mechanics.loads import AppliedLoad
 from wavesym.mechanics.model import Model
@@ -19,6 +20,7 @@ from wavesym.pictures.histories import History
 
 Acting = Sequence[tuple[AppliedLoad, int]]
 """Loads on one node, each with the power of tau that it grows with: 0 for a step, 1 for a ramp."""
+_CURVED = 16  # straight parts of a polynomial
 
 
 def load_histories(model: Model) -> tuple[History, ...]:
@@ -40,21 +42,23 @@ def load_histories(model: Model) -> tuple[History, ...]:
 def stretches(acting: Acting, until: fmpq) -> Iterator[Array]:
     """The sum of loads as polylines (n, 2) of tau and value; between them it jumps."""
     times = sorted({fmpq(0), until, *(load.time for load, _ in acting if load.time < until)})
-    changes: dict[fmpq, list[fmpq]] = {time: [fmpq(0), fmpq(0)] for time in times}
+    changes = {time: fmpq_poly() for time in times}
     for load, power in acting:
         if load.time < until:
-            changes[load.time][power] += load.weight
-    value = slope = fmpq(0)
+            changes[load.time] += fmpq_poly([fmpq(0)] * power + [load.weight])
+    value = fmpq_poly()
     vertices: list[tuple[float, float]] = []
     for time, after in zip(times, [*times[1:], until], strict=True):
-        step, bend = changes[time]
-        if step and vertices:
-            vertices.append((nearest(time), nearest(value)))
+        if changes[time][0] and vertices:
+            vertices.append((nearest(time), nearest(value[0])))
             yield np.array(vertices)
             vertices = []
-        value, slope = value + step, slope + bend
-        vertices.append((nearest(time), nearest(value)))
-        value += slope * (after - time)
+        value += changes[time]
+        parts, length = _CURVED if value.degree() > 1 else 1, after - time
+        vertices += [
+            (nearest(time + since), nearest(value(since))) for since in (length * k / parts for k in range(parts))
+        ]
+        value = value(fmpq_poly([length, 1]))
     yield np.array(vertices)
 
 

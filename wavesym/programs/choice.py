@@ -38,13 +38,15 @@ _OF_MANY = 3
 class Attempt:
     """What came of trying one kind of program: its `form`, where it could be made, and the `refusal`, a sentence.
 
-    The sentence is empty where the form meets the tolerance. `error` is for whoever requested this kind by its name.
+    The sentence is empty where the form meets the tolerance. `error` is for whoever requested this kind by its name,
+    `model` what the form is of, where that is not what was asked for: loads of a shape act as straight lines there.
     """
 
     kind: str
     form: Form | None
     refusal: str = ""
     error: WavesymError | None = None
+    model: Model | None = None
 
     @property
     def why(self) -> str:
@@ -60,11 +62,12 @@ class Attempt:
 
 
 class Choice(NamedTuple):
-    """The name of the evaluator chosen, itself, and the reason in one line."""
+    """The name of the evaluator chosen, itself, the reason in one line, and the model that it is of."""
 
     name: str
     evaluator: Form
     reason: str
+    model: Model
 
 
 def choose(
@@ -136,6 +139,7 @@ def attempt(
         served: whether another one meets the tolerance, so that less is.
     """
     try:
+        model = model.in_lines if kind in _LAST else model
         form = MAKERS[kind](model, REALS[precision], asked, optimize or _USUAL_TABLES[precision], served)
     except (CostError, UnservedError) as refusal:
         return Attempt(kind, None, str(refusal), refusal)
@@ -145,13 +149,13 @@ def attempt(
         beyond = f"numbers beyond the range of {precision} precision"
         return Attempt(kind, None, beyond, RangeError(f"output: {kind} needs {beyond}"))
     if rational(min(form.error_bound, 2.0)) <= model.tolerance:
-        return Attempt(kind, form)
-    return Attempt(kind, form, form.shortfall(model.tolerance).removeprefix(f"{kind}: "))
+        return Attempt(kind, form, model=model)
+    return Attempt(kind, form, form.shortfall(model.tolerance).removeprefix(f"{kind}: "), model=model)
 
 
 def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) -> Choice:
     """The best of what was tried and meets the tolerance, and why. ToleranceError where nothing does."""
-    found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
+    found = [(one.kind, one.form, one.model or model) for one in tried if one.form and not one.refusal]
     # where modes are for something else altogether that is no news, but of a record that nothing serves
     silent = found or not model.spacing
     refused = [one for one in tried if one.refusal and not (silent and one.kind == "modes" and _is_unserved(one))]
@@ -168,9 +172,10 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
             raise short_steps(model)
         raise unmet_tolerance(model.tolerance, refusals, bound)
     small = optimize == "size"
-    name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
-    dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]
-    return Choice(name, chosen, "; ".join([*(one.why for one in refused), *dearer, chosen.summary]))
+    name, chosen, its_model = min(found, key=lambda one: one[1].bytes if small else one[1].work)
+    loses = "is larger" if small else "takes longer"
+    dearer = [f"{form.summary}, {loses}" for _, form, _ in found if form is not chosen]
+    return Choice(name, chosen, "; ".join([*(one.why for one in refused), *dearer, chosen.summary]), its_model)
 
 
 def _is_unserved(one: Attempt) -> bool:

@@ -25,7 +25,7 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked
         ToleranceError: where no evaluator, or not the one requested, meets the tolerance.
         CostError: where the one requested would cost too much.
     """
-    _, form, why = choose(model, request.evaluator, request.precision, request.optimize, asked=asked)
+    _, form, why, model = choose(model, request.evaluator, request.precision, request.optimize, asked=asked)
     happening = events(model, form.real) if model.network.corners else None
     provenance = Provenance(model, why, request.options(model), contact_ends(model, form.real), happening)
     return _finish(model, form, provenance, tested)

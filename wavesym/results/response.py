@@ -78,6 +78,11 @@ class Response:
             self._values([])
         return self._programs[0] if self._programs else None
 
+    @property
+    def acting_model(self) -> Model:
+        """What values are of: the model, or where a program takes lines in place of shapes the one with these."""
+        return self.program.provenance.model if self.program else self.model
+
     @cached_property
     def events(self) -> tuple[ContactEvent, ...]:
         return events(self.model)
@@ -128,4 +133,4 @@ def _program(model: Model, error: WavesymError) -> Program:
     if not served and not model.spacing and not model.damping:
         raise error
     choice = best(model, tried)
-    return choice.evaluator.program(Provenance(model, choice.reason))
+    return choice.evaluator.program(Provenance(choice.model, choice.reason))

@@ -136,7 +136,7 @@ class Result(OutputRows):
     @property
     def accuracy(self) -> str:
         """How right values are, in a few words."""
-        lines = self._response.model.labels.left_out_text
+        lines = self._response.acting_model.labels.left_out_text
         if self.program is None:
             return f"right to the last bit{lines}"
         return f"{self.program}, {'proved bound' if self.proved else 'estimated error'} {self.bound:.2g}{lines}"

@@ -178,7 +178,7 @@ def summary_and_program(
         bool(missing),
         link_summaries(model, solved),
         max((bound for _, _, bound in every), default=0.0),
-        model.labels,
+        (found.program.provenance.model if found.program else model).labels,
     )
     return summary, found.program
 

@@ -30,6 +30,7 @@ def _lines(scene: Scene) -> Iterator[str]:
         raise UnservedError(
             "system.type: a chain has all of its parts written already; write collision, drive or building"
         )
+    scene = scene.in_lines
     model, parts = lower(scene), scene.system.parts
     numbers = InUnits(scene.physical.scale, parts) if scene.physical else Dimensionless()
     yield f"# {scene.name}, a {system_fields.get('type', scene.system.type)}, written out part by part."

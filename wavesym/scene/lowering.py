@@ -8,20 +8,22 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import count
 from typing import NamedTuple
 
 from flint import fmpq
 
 from wavesym.errors import SceneError
-from wavesym.fields.loads import SampledLoad, TimedLoad
+from wavesym.fields.loads import Load, SampledLoad, TimedLoad
 from wavesym.fields.shapes import ShapedLoad
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.dead_loads import dead_loads
-from wavesym.mechanics.loads import AppliedLoad, AppliedRecord, merge_loads
+from wavesym.mechanics.loads import AppliedLoad, AppliedRecord, merge_loads, power_source
 from wavesym.mechanics.model import Labels, Model, SampledShape
 from wavesym.mechanics.network import Network
+from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
@@ -95,8 +97,8 @@ def _in_frequency(scene: Scene) -> Scene:
 
 def _build_model(scene: Scene) -> Model:
     output = scene.output
-    length = scene.physical.length if scene.physical else None
-    chain, network = named_chain(scene), scene.system.network(scene.load, length)
+    length, in_lines = scene.physical.length if scene.physical else None, scene.in_lines
+    chain, network = named_chain(scene), _with_powers(scene.system.network(scene.load, length), scene.load)
     return Model(
         name=scene.name,
         network=network,
@@ -113,7 +115,27 @@ def _build_model(scene: Scene) -> Model:
         preset=SystemParameters(chain) if chain else None,
         written_speeds=written_speeds(scene),
         speed_adjustment=_speed_adjustment(scene),
+        lines=partial(lower, in_lines) if in_lines is not scene else None,
     )
+
+
+def _with_powers(network: Network, loads: Iterable[Load]) -> Network:
+    """A network whose loaded points take the powers of time, too, that loads of a shape are made of."""
+    degrees = {load.sources: load.degree for load in loads if isinstance(load, ShapedLoad)}
+    points = list(network.points)
+    for (step, ramp), degree in degrees.items():
+        number, unit = next((k, u) for k, p in enumerate(points) for u in p.loads if u.source == step)
+        _, *rising = unit.coefficients  # of an acceleration that moves a point, with the velocity that a step makes
+        powers = [
+            UnitLoad(
+                power_source(ramp, k),
+                None,
+                (fmpq(0),) * (k + len(rising)) + (unit.coefficients[-1] / (k + 1 if rising else 1),),
+            )
+            for k in range(2, degree + 1)
+        ]
+        points[number] = replace(points[number], loads=(*points[number].loads, *powers))
+    return replace(network, points=tuple(points))
 
 
 def named_chain(scene: Scene) -> Chain | None:
@@ -181,7 +203,7 @@ def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
         sources={source: load.label for load in scene.load for source in load.sources},
         titles={source: load.name for load in scene.load if load.name for source in load.sources},
         shapes=tuple(
-            SampledShape(f"load[{k}]", load.shape, load.count, float(load.error))
+            SampledShape(f"load[{k}]", load.shape, load.degree, load.count, float(load.error))
             for k, load in enumerate(scene.load)
             if isinstance(load, ShapedLoad)
         ),

@@ -74,6 +74,7 @@ class Scene(SceneTable):
     title_block: ReportTable | None = Field(default=None, alias="report")
 
     _physical: PhysicalScene | None = PrivateAttr(default=None)
+    _straight: bool = PrivateAttr(default=False)  # loads of a shape act as straight lines
 
     def __init__(self, /, **fields: Any) -> None:
         faults, fields = Faults(), {"output": NoOutput(), **fields}
@@ -161,7 +162,7 @@ class Scene(SceneTable):
         else:
             fields = handler(self)
             without |= {"units"} if self.title_block else {"units", "report"}
-        if any(isinstance(load, ShapedLoad) for load in self.load) and "tolerance" not in self.output.model_fields_set:
+        if self._is_shaped and "tolerance" not in self.output.model_fields_set:
             fields["output"] = {key: value for key, value in fields["output"].items() if key != "tolerance"}
         return {key: value for key, value in fields.items() if key not in without}
 
@@ -206,16 +207,38 @@ class Scene(SceneTable):
         rods = sum(station.right is not None for station in self.system.lines[""])
         vars(self)["output"] = self.output.of_every_rod(rods)
         _ = self.outputs
-        if any(isinstance(load, ShapedLoad) for load in self.load):
-            of_scene = (self.output.until, self.tolerance, self._measure)
-            each = (load.truncate(*of_scene) if isinstance(load, ShapedLoad) else load for load in self.load)
-            vars(self)["load"] = tuple(each)
+        if self._is_shaped:
+            damping = getattr(self.system, "damping", None)  # of modes, which take lines alone
+            self._shape_loads(straight=damping is not None and damping.acts)
         return self
+
+    @property
+    def _is_shaped(self) -> bool:
+        return any(isinstance(load, ShapedLoad) for load in self.load)
+
+    def _shape_loads(self, *, straight: bool) -> None:
+        """Fit loads of a shape to horizon, tolerance and travel times."""
+        self._straight = straight
+        of_scene = (self.output.until, self.tolerance, self._measure)
+        each = (
+            load.truncate(*of_scene, straight=straight) if isinstance(load, ShapedLoad) else load for load in self.load
+        )
+        vars(self)["load"] = tuple(each)
+
+    @property
+    def in_lines(self) -> Scene:
+        """The same scene, its loads of a shape as straight lines between samples; itself, if it has none."""
+        if self._straight or not self._is_shaped:
+            return self
+        other = self.model_copy()
+        vars(other).pop("tolerance", None)
+        other._shape_loads(straight=True)
+        return other
 
     @cached_property
     def tolerance(self) -> Fraction:
-        """As it is written; else the usual one, or, beside loads of a shape, what these meet with a few samples."""
-        if "tolerance" in self.output.model_fields_set:
+        """As it is written; else the usual one, or, where shapes act as lines, what these meet with a few samples."""
+        if "tolerance" in self.output.model_fields_set or not self._straight:
             return self.output.tolerance
         return usual_tolerance(self.load, self.output.until, self.output.tolerance, self._measure)
 

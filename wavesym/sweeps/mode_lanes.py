@@ -84,6 +84,7 @@ def own_numbers(fields: Sequence[RuntimeField]) -> Array:
 
 def structure_parameters(scene: Scene) -> ModeParameters:
     """All numbers of a scene's modes, the factors of its loads last."""
+    scene = scene.in_lines
     model = lower(scene)
     names = (*names_of(model), *(["load"] if model.loads else []))
     return mode_parameters(model, names, amplitudes(scene))

@@ -31,6 +31,7 @@ class RuntimeCase:
     @classmethod
     def from_scene(cls, scene: Scene, names: tuple[str, ...]) -> RuntimeCase:
         """That of a scene. WavesymError where it has no such fields, or cannot be served."""
+        scene = scene.in_lines
         model, given = lower(scene), amplitudes(scene) if "load" in names else ()
         own = free_network(model, names, given).fields
         rest = model.parameters.fixed_part(names)

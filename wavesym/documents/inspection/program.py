@@ -40,7 +40,7 @@ def program_sections(model: Model, sources: Sequence[str]) -> Iterator[Section]:
     yield choice(model, tried)
     with suppress(ToleranceError):  # which is shown already
         found = best(model, tried)
-        yield from _numbers(found.evaluator.program(Provenance(model, found.reason)))
+        yield from _numbers(found.evaluator.program(Provenance(found.model, found.reason)))
     yield contacts(model)
     yield stream(model, sources)
     yield variants(model, tried)

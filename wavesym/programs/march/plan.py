@@ -230,6 +230,7 @@ def march_plan(
     network.refuse_corners()
     network.refuse_dead_loads()
     model.refuse_damping()
+    model.refuse_polynomials()
     network.refuse_rodless("a march", "take pieces or modes" if or_pieces else "take modes")
     model = with_derivatives(model)
     network = model.network

@@ -156,6 +156,7 @@ def driven_inputs(model: Model, sources: Sequence[tuple[str, str]]) -> tuple[Inp
 
 def modal_model(model: Model) -> ModalModel[Any]:
     """A model as modes, until its last double or later: with dashpots these have complex frequencies."""
+    model.refuse_polynomials()
     model = model.to_horizon()
     return ComplexModes(model) if model.network.loses else UndampedModes(model)
 
