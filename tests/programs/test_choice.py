@@ -106,7 +106,12 @@ def test_a_march_is_made_only_where_nothing_else_does(makers):
 
 def test_only_the_one_asked_for_is_made(makers):
     made = makers(closed=Made("closed", 1e-9), pieces=Made("pieces", 1), march=Made("march", 1e-9))
-    assert choose(lower(scene()), "closed", "single") == ("closed", made.closed, "closed is good to 1e-09")
+    assert choose(lower(scene()), "closed", "single") == (
+        "closed",
+        made.closed,
+        "closed is good to 1e-09",
+        lower(scene()),
+    )
     assert made.closed.asked == [(lower(scene()), REALS["single"], True, "size", False)]
     assert not made.pieces.asked + made.march.asked
     with pytest.raises(ToleranceError, match=r"cannot be met \(pieces: 1 at best\)$"):

@@ -98,7 +98,7 @@ def test_the_bound_is_met_and_is_near_the_error(name, count):
     made = files(lower(chosen), "all", "pieces")
     module = import_text(made[f"{name}.py"], name)
     assert module.ERROR_BOUND <= 1e-14
-    _, form, _ = choose(lower(chosen), "pieces")
+    form = choose(lower(chosen), "pieces").evaluator
     taus = np.sort(np.concatenate([np.random.default_rng(7).uniform(0, form.tau_max, count), form.check_points]))
     expected = np.array(Reference(lower(chosen)).values(taus.tolist()))
     with compile_files(made, len(form.outputs)) as program:
@@ -175,7 +175,7 @@ def sources(scene, kind):
 
 
 def test_auto_takes_what_meets_the_tolerance_and_says_why():
-    name, _, reason = choose(lower(scene("D")))
+    name, _, reason, _ = choose(lower(scene("D")))
     assert name == "pieces"
     assert re.fullmatch(
         r"closed: loses (all|\d+) digits after tau = .*; pieces, degree \d+\.\.\d+, \d+ KiB, bound .*", reason
@@ -213,7 +213,7 @@ def test_an_output_that_cancels_throughout_is_nothing():
         system={"type": "collision", "m": 6, "kappa": ["1/2", "1/2", "1/2"], "velocity": [1, 0, -1]},
         output={"until": 3, "tolerance": "1e-10", "strain": ["3-"], "velocity": ["3-"]},
     )
-    _, form, _ = choose(lower(symmetric), "pieces")
+    form = choose(lower(symmetric), "pieces").evaluator
     assert [output.largest > 0 for output in form.outputs] == [True, False]
     assert not any(c for grid in form.grids for piece in grid.powers for c in piece[grid.outputs.index(1)])
 

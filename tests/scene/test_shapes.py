@@ -168,7 +168,7 @@ def test_too_many_samples_are_refused_where_they_would_act_alone() -> None:
     fine = scene("1e-10", shape="sine", amplitude=1, frequency=1)
     with pytest.raises(
         CostError,
-        match=r"load: 1332901 samples of a sine .* \(output.tolerance = 7.1e-08 or more, or fewer periods",
+        match=r"load: 1332901 samples of a sine .* \(output.tolerance = 7.1e-08 or more, or fewer periods help",
     ):
         wavesym.run(fine.in_lines)
     with pytest.raises(CostError, match=r"load: 114241 samples of a sine, the limit is 50000 \(fewer periods help\)"):

@@ -192,7 +192,16 @@ class ShapedLoad(Load):
     def _samples(self) -> tuple[fmpq, ...]:
         """Those of amplitude 1."""
         if self.count > MOST_SAMPLES:
-            raise CostError(f"load: {self._too_many}")
+            article = "an" if self.shape.startswith("e") else "a"
+            tolerance, larger = "", ""
+            if self._straight:
+                enough = float(self._tolerance) * (self.count / MOST_SAMPLES) ** 2
+                tolerance = f" for a tolerance of {float(self._tolerance):.1e}"
+                larger = f"output.tolerance = {enough:.1e} or more, or "
+            raise CostError(
+                f"load: {self.count} samples of {article} {self.shape}{tolerance}, the limit is {MOST_SAMPLES} "
+                f"({larger}fewer periods help)"
+            )
         with ctx.workprec(BITS):
             each = rational(self.step / self.period)
             values = [nearest_dyadic(value(self.shape, arb(k * each))) for k in range(self._steps + 1)]
@@ -201,16 +210,6 @@ class ShapedLoad(Load):
         if not self._straight and self._has_ended:
             values[-1] = fmpq(0)
         return tuple(values)
-
-    @property
-    def _too_many(self) -> str:
-        article = "an" if self.shape.startswith("e") else "a"
-        enough = float(self._tolerance) * (self.count / MOST_SAMPLES) ** 2
-        tolerance, helps = "", "fewer periods help"
-        if self._straight:
-            tolerance = f" for a tolerance of {float(self._tolerance):.1e}"
-            helps = f"output.tolerance = {enough:.1e} or more, or fewer periods, help"
-        return f"{self.count} samples of {article} {self.shape}{tolerance}, the limit is {MOST_SAMPLES} ({helps})"
 
     @property
     def _has_ended(self) -> bool:

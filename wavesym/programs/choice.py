@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from typing import NamedTuple, TypeAlias
 
@@ -46,7 +46,7 @@ class Attempt:
     form: Form | None
     refusal: str = ""
     error: WavesymError | None = None
-    model: Model | None = None
+    model: Model | None = field(default=None, compare=False, repr=False)
 
     @property
     def why(self) -> str:

@@ -21,6 +21,7 @@ from flint import acb, arb, ctx
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import CutNetwork
+from wavesym.exact.modes.equal_branches import take_apart
 from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.resting import resting_modes
 from wavesym.exact.modes.shape import Mode, complex_mode, trial
@@ -77,18 +78,27 @@ class DampedSpectrum(CutNetwork):
     def first(self, count: int, again: int = 0) -> list[Mode]:
         """About the first `count` modes, by the absolute values of their frequencies, with real parts of at least 0.
 
-        Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it. UnservedError where
-        frequencies coincide, as of equal branches. `again` says how often they were sought before.
+        Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it. Equal branches are
+        taken apart (equal_branches.py); UnservedError where other frequencies coincide. `again` says how often they
+        were sought before.
         """
-        found = search_modes(Stiffness(self.cut.network), count, again)
-        if found.is_open and self.cut_again():  # all points may be at rest
+        whole = Stiffness(self.cut.network)
+        bits = _BITS + _BITS_A_ROW[-1][0] * len(whole.points)  # of all that is proved
+        with ctx.workprec(bits):
+            parts = take_apart(self.cut.network)
+        found = [search_modes(Stiffness(part.network), count, again) for part in parts]
+        if any(each.is_open for each in found) and self.cut_again():  # all points may be at rest
             return self.first(count, again)
-        if found.meeting is not None:
-            raise UnservedError(
-                f"system: two frequencies meet near {found.meeting:.6g}, which modes with dashpots cannot "
-                "tell apart (take pieces or march)"
-            )
-        return found.modes
+        for each in found:
+            if each.meeting is not None:
+                raise UnservedError(
+                    f"system: two frequencies meet near {each.meeting:.6g}, which modes with dashpots cannot "
+                    "tell apart (take pieces or march)"
+                )
+        pairs = [(part, mode) for part, each in zip(parts, found, strict=True) for mode in each.modes]
+        with ctx.workprec(bits):
+            every = [copy for part, mode in pairs for copy in part.modes_of_whole(mode, whole)]
+        return sorted(every, key=lambda mode: abs(complex(mode.frequency)))
 
 
 def search_modes(stiffness: Stiffness, count: int, again: int = 0, known: Complex = _NONE) -> FoundModes:

@@ -65,13 +65,17 @@ class ModeEnergies:
         )
 
     def products(self) -> tuple[Complex, Complex]:
-        """<X, Y> of all modes, and <X, conj Y>, each wrong by a few roundings for each dashpot."""
+        """<X, Y> of all modes, and <X, conj Y>, each wrong by a few roundings for each dashpot.
+
+        Modes of equal branches that swing for ever at one frequency are at right angles.
+        """
         weighted = self.size[:, None] * self.extension_rates
         rates = self.rates
         with np.errstate(divide="ignore", invalid="ignore"):
             swing = (rates.imag[:, None] - rates.imag) + (self.finer[:, None] - self.finer)
             same = -2 * (weighted.T @ self.extension_rates.conj()) / (rates.real[:, None] + rates.real + 1j * swing)
             other = -2 * (weighted.T @ self.extension_rates) / (rates[:, None] + rates)
+            same[(rates.real[:, None] + rates.real == 0) & (swing == 0)] = 0.0
         np.fill_diagonal(same, self.energy)
         return same, other
 
@@ -160,6 +164,8 @@ class Dissipation:
         rate, fast = self.rates[k], self._fast[k]
         if conjugate:
             rate, fast = rate.conjugate(), [v.conjugate() for v in fast]
+        if (rate + self.rates[n].conjugate()).contains(0):  # equal branches that swing for ever, at right angles
+            return acb(0)
         return acb(-2 * self._dissipation(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
 
     def _response(self, port: SlowPort, shares: Sequence[acb]) -> PortResponse:
