@@ -6,7 +6,7 @@ A scope is the whole meaning of a formula: an adapter writes one, and there is n
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from flint import fmpq
@@ -41,6 +41,12 @@ MOST_TERMS = 1000
 
 class MeaninglessError(Exception):
     """A symbol, an index or a limit means nothing at a place: the reason, in a few words."""
+
+
+def undefined(symbol: Symbol, index: Sequence[int]) -> MeaninglessError:
+    """A letter has no meaning with these indices, or without any."""
+    which = f"with indices ({', '.join(map(str, index))})" if index else "without an index"
+    return MeaninglessError(f"{latex(symbol)} is not defined {which}")
 
 
 class Scope:
@@ -78,8 +84,7 @@ class Scope:
         try:
             return means(*index, *arguments)
         except (LookupError, TypeError):
-            which = f"with indices ({', '.join(map(str, index))})" if index else "without an index"
-            raise MeaninglessError(f"{latex(symbol)} is not defined {which}") from None
+            raise undefined(symbol, index) from None
 
     def derivative(self, derivative: Derivative) -> Any:
         """The value of a partial derivative."""
