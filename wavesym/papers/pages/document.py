@@ -12,7 +12,19 @@ from operator import attrgetter
 
 from wavesym import __version__
 from wavesym.papers.entries import Paper, PaperEntry
-from wavesym.papers.pages.lines import Code, Line, correction, formula, join_lines, prose, readable, statement
+from wavesym.papers.pages.lines import (
+    Code,
+    Line,
+    Sentence,
+    correction,
+    fault,
+    formula,
+    formula_or_words,
+    join_lines,
+    prose,
+    sentence,
+    statement,
+)
 from wavesym.papers.record import VERDICTS, Record, Reproduction, Verdict
 from wavesym.papers.tables import PrintedTable, TableHead, places
 
@@ -231,12 +243,12 @@ def appendices(findings: Findings) -> list[Section]:
         for before, after, why in record.entry.edits
     )
     survivors = tuple(
-        (Cell((record.id,)), Cell((Code(change),)), Cell((because or "unknown",)))
+        (Cell((record.id,)), Cell((fault(change),)), Cell((sentence(because or "unknown"),)))
         for record in findings.visible
         for change, because in record.mutations.survivors
     )
     unjudged = tuple(
-        (Cell((span(lines), f", {where}" if where else "")), Cell((Code(" ".join(scan.split())),)), Cell((why,)))
+        (Cell((span(lines), f", {where}" if where else "")), Cell((Sentence(Code(scan), prose(scan)),)), Cell((why,)))
         for lines, where, scan, why in _unjudged_parts(findings)
     )
     parts = [
@@ -268,7 +280,7 @@ def _holding_blocks(records: Sequence[Record]) -> list[Block]:
                     Cell((record.id,), anchor=_anchor(record)),
                     Cell((f"{record.entry.where}, {span(record.entry.lines)}",)),
                     Cell(_full_statement(record)),
-                    Cell((f"{' '.join(record.evidence)} {_faults(record)}.", *_note(record))),
+                    Cell((sentence(f"{' '.join(record.evidence)} {_faults(record)}."), *_note(record))),
                 )
                 for record in same
             ]
@@ -279,7 +291,7 @@ def _holding_blocks(records: Sequence[Record]) -> list[Block]:
 
 
 def _note(record: Record) -> Line:
-    return (f" Note: {readable(record.note)}",) if record.note else ()
+    return (" Note: ", sentence(record.note)) if record.note else ()
 
 
 def _full_statement(record: Record) -> Line:
@@ -310,15 +322,15 @@ def fields(record: Record, findings: Findings) -> Iterable[Field]:
     if slip:
         yield Field("corrected", correction(record))
     if record.difference:
-        yield Field("difference", ((Code(record.difference),),))
-    yield Field("evidence", ((readable(" ".join(record.evidence)),),))
+        yield Field("difference", ((formula(record.difference),),))
+    yield Field("evidence", ((sentence(" ".join(record.evidence)),),))
     if record.note:
-        yield Field("note", ((readable(record.note),),))
+        yield Field("note", ((sentence(record.note),),))
     if origin := describe_origin(record):
         yield Field("origin", ((origin,),))
-    yield Field("tested", ((f"Compared with {record.reference}; {_faults(record)}.",),))
+    yield Field("tested", ((sentence(f"Compared with {record.reference}; {_faults(record)}."),),))
     for change, because in record.mutations.survivors if not findings.whole else ():
-        yield Field("survived", ((Code(change), f": {because}"),))
+        yield Field("survived", ((fault(change), ": ", sentence(because)),))
     for problem in record.problems:
         yield Field("problem", ((problem,),))
     if findings.reproduce:
@@ -398,7 +410,7 @@ def _printed_table(
         else:
             line = (formula(known[id].printed),)
             more += known[id].ranges
-        line = (*line, " ", readable(", ".join(more))) if more else line
+        line = (*line, " ", *join_lines([(formula_or_words(each),) for each in more])) if more else line
         return Cell(line, judged[id].verdict, _anchor(judged[id])) if id in judged else Cell(line)
 
     heads = (Cell(("",)), *(head(column, table.column_id(column)) for column in table.columns))

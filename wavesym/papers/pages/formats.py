@@ -22,7 +22,7 @@ from wavesym.papers.pages.document import (
     statistics,
     word_cells,
 )
-from wavesym.papers.pages.lines import Code, Different, Formula, Inline, Line
+from wavesym.papers.pages.lines import Code, Different, Formula, Inline, Line, Sentence
 from wavesym.papers.pages.marks import mark
 from wavesym.papers.pages.mathml import mathml
 from wavesym.papers.record import VERDICTS, Record
@@ -41,6 +41,8 @@ class Style:
     code: Callable[[str], str] = lambda text: " ".join(text.split())
     formula: Callable[[Formula], str] = lambda formula: " ".join(formula.text.split())
     mark: Callable[[str], str] = str
+    sets_formulas: bool = False
+    """Whether formulas among words are set as formulas."""
 
     def line(self, line: Line) -> str:
         """A line in this format."""
@@ -54,6 +56,8 @@ class Style:
                 return self.code(text)
             case Different(inner):
                 return self.mark(self._part(inner))
+            case Sentence(plain, parts):
+                return self.line(parts) if self.sets_formulas else self._part(plain)
         return self.words(part)
 
 
@@ -65,12 +69,14 @@ HTML = Style(
     code=lambda text: f"<code>{escape(text)}</code>",
     formula=lambda formula: f'<span class="formula">{mathml(formula.tree, formula.differing)}</span>',
     mark=lambda part: f"<mark>{part}</mark>",
+    sets_formulas=True,
 )
 LATEX = Style(
     words=lambda text: tex(text),
     code=lambda text: rf"\texttt{{{tex(TEXT.code(text))}}}",
     formula=lambda formula: _tex_formula(formula),
     mark=lambda part: rf"\markedtext{{{part}}}",
+    sets_formulas=True,
 )
 
 

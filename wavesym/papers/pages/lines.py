@@ -36,11 +36,30 @@ class Different:
     part: str | Code | Formula
 
 
-Inline = str | Code | Formula | Different
+@dataclass(frozen=True)
+class Sentence:
+    """Words with formulas among them: as plain text shows them, and in parts where formulas are set as such."""
+
+    plain: str | Code
+    parts: Line
+
+
+Inline = str | Code | Formula | Different | Sentence
 Line = tuple[Inline, ...]
 
 _TOKENS = re.compile(r"(\$[^$]*\$|\s+)")
 _SIGNS = {"dots": "...", "leq": "≤", "geq": "≥", "langle": "⟨", "rangle": "⟩"}
+_GREEK = "alpha|gamma|kappa|tau"
+_BRACES = r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}"
+_SCRIPT = rf"[_^](?:{_BRACES}|\([^()]+\)|[A-Za-z0-9]+)"
+_NOTATION = re.compile(
+    rf"((?<![\w.\\])(?:\\[a-z]+(?:{_BRACES})*'*(?:{_SCRIPT})*|(?:{_GREEK}|[A-Za-z])'*(?:{_SCRIPT})+)(?!\w))"
+)
+"""What words have of formulas: a letter with indices, \\tau or tau, and commands with what they take."""
+_FAULT = re.compile(
+    r"(,?\s*\b(?:the formula|a term|sign of|index|first|last|with|without|for|number|in)\b(?<!\\in)\s*)"
+)
+"""The words in what `mutations` calls a fault."""
 
 
 def formula(text: str, readers: Sequence[Callable[[str], Tree]] = (read_formula, read_range)) -> Formula | Code:
@@ -64,15 +83,40 @@ def prose(text: str) -> Line:
 
 
 def _token(text: str) -> str | Formula:
-    if not text.startswith("$"):
-        return readable(text)
-    tree = formula(text.strip("$"))
-    return tree if isinstance(tree, Formula) else readable(text.strip("$"))
+    return formula_or_words(text.strip("$")) if text.startswith("$") else readable(text)
+
+
+def formula_or_words(text: str, words: str = "") -> str | Formula:
+    """A formula; where it cannot be read the words, which are the same text if there are no others."""
+    found = formula(text)
+    return found if isinstance(found, Formula) else readable(words or text)
 
 
 def readable(text: str) -> str:
     """Words with the letters and signs that they have as LaTeX written out."""
     return re.sub(r"\\([a-z]+)(?![A-Za-z])", _sign, text)
+
+
+def sentence(text: str) -> Sentence:
+    """Words among which letters have indices, or commands of LaTeX, without dollar signs."""
+    return Sentence(readable(text), tuple(map(_notation, filter(None, _NOTATION.split(text)))))
+
+
+def _notation(text: str) -> str | Formula:
+    """A formula as words have it, J_0i or tau_(0,i), where it can be read; else words."""
+    if not _NOTATION.fullmatch(text):
+        return readable(text)
+    braced = re.sub(r"([_^])(?:\(([^()]+)\)|([A-Za-z0-9]+))", r"\1{\2\3}", re.sub(rf"^({_GREEK})", r"\\\1", text))
+    return formula_or_words(braced, text)
+
+
+def fault(change: str) -> Sentence:
+    """What became what in a formula, as `mutations` names it; words where it is a fault in a sentence."""
+    parts = [part for part in _FAULT.split(change) if part]
+    limbs = [part for part in parts if not _FAULT.fullmatch(part)]
+    if any(re.search(r"(?<![\\A-Za-z])[A-Za-z]{2}", limb) for limb in limbs):
+        return Sentence(Code(change), (readable(change),))
+    return Sentence(Code(change), tuple(formula_or_words(part) if part in limbs else part for part in parts))
 
 
 def _sign(command: re.Match[str]) -> str:
