@@ -43,7 +43,7 @@ class MeaninglessError(Exception):
     """A symbol, an index or a limit means nothing at a place: the reason, in a few words."""
 
 
-def undefined(symbol: Symbol, index: Sequence[int]) -> MeaninglessError:
+def missing_meaning(symbol: Symbol, index: Sequence[int]) -> MeaninglessError:
     """A letter has no meaning with these indices, or without any."""
     which = f"with indices ({', '.join(map(str, index))})" if index else "without an index"
     return MeaninglessError(f"{latex(symbol)} is not defined {which}")
@@ -84,7 +84,7 @@ class Scope:
         try:
             return means(*index, *arguments)
         except (LookupError, TypeError):
-            raise undefined(symbol, index) from None
+            raise missing_meaning(symbol, index) from None
 
     def derivative(self, derivative: Derivative) -> Any:
         """The value of a partial derivative."""

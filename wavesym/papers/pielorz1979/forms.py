@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides, undefined
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, missing_meaning, places, sides
 from wavesym.papers.pielorz1979.chains import Exact, LoadedChain, building, collision, drive, example, loads
 from wavesym.papers.pielorz1979.transcript import entries, ids, right_reading
 from wavesym.papers.record import Case, Reading, Reproduction, by_size, case
@@ -301,7 +301,7 @@ class FormScope(Scope):
                 else:
                     self._limits[key] = _right_limit(id, m, bound.get("i", 0), bound.get("n", 0))
             except KeyError:
-                raise undefined(Symbol(name), indices) from None
+                raise missing_meaning(Symbol(name), indices) from None
         return self._limits[key]
 
     def last(self, source: str) -> int:
