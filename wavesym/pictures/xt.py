@@ -30,7 +30,7 @@ from wavesym.pictures.stations import loose_times
 from wavesym.pictures.style import WIDTH, colours, new_figure, with_style
 from wavesym.pictures.timescale import timescale
 from wavesym.pictures.units import unit_text
-from wavesym.pictures.xt_nodes import draw_nodes, legend, name_rods, name_rows
+from wavesym.pictures.xt_nodes import draw_nodes, legend, name_rows, write_names
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.physical.scene import PhysicalScene
 from wavesym.systems.station import Lines, Station
@@ -100,7 +100,7 @@ def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> F
                 _lengths(axes, axis_text(name, model.length), float(model.length.size))
             _thin_ticks(axes, room, first=left == _LEFT)
             draw_nodes(axes, model.network, stations, loose, until)
-            name_rods(axes, model.network, stations)
+            write_names(axes, model.network, stations)
             if not name:
                 _formal(axes, model, float(stations[-1].x))
             left += own

@@ -16,12 +16,13 @@ from matplotlib.transforms import ScaledTranslation
 from wavesym.mechanics.network import Link, Network, Point
 from wavesym.pictures.naming import in_words
 from wavesym.pictures.stations import Loose, ground_links, standing
-from wavesym.pictures.style import FONT, HALO, SLIPS
+from wavesym.pictures.style import FONT, SLIPS
 from wavesym.systems.station import Lines, Station
 
 _MASS, _LINK, _CONTACT, _THIN = 4.0, 2.5, 5.0, 0.6  # points
 _MOVED, _HELD = "0.55", "gold"
 _LETTER, _ROW = 0.62, 15  # of the font's size; points
+_ROD_NAME, _ROD_ROWS = "0.4", 2
 
 
 def legend(network: Network, lines: Lines) -> str:
@@ -41,8 +42,7 @@ def legend(network: Network, lines: Lines) -> str:
 
 
 def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], loose: Loose, until: float) -> None:
-    """The stations of a line, and the names of their points above them."""
-    rows: list[float] = []
+    """The stations of a line."""
     for station in stations:
         items = list(_items(network, station))
         width = sum(item.width for item in items)
@@ -55,8 +55,6 @@ def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], loose:
         for item in items:
             _draw_item(_Pen(axes, float(station.x), at + item.width / 2), item, loose, until)
             at += item.width
-        if names := _names(network, station):
-            _write(axes, float(station.x), names, rows)
     axes.spines[["left", "right"]].set_visible(False)
 
 
@@ -124,56 +122,46 @@ def _draw_item(pen: _Pen, item: _Item, loose: Loose, until: float) -> None:
             pen.line(low, high, _THIN, "black" if link.contact else _HELD, side * item.width / 2)
 
 
-def _write(axes: Axes, x: float, name: str, rows: list[float]) -> None:
-    """A name above its place, in the lowest row where it does not lie over another; `rows` end so far to the right."""
-    left, right = axes.get_xlim()
+def write_names(axes: Axes, network: Network, stations: Sequence[Station]) -> None:
+    """The names of nodes and rods, those of rods in grey, above their places: in a picture they would lie on waves."""
     points = axes.get_window_extent().width / axes.figure.dpi * 72
-    row, align = _place_name((x - left) / (right - left), name, points, rows)
-    axes.annotate(name, (x, 1), (0, 3 + _ROW * row), ("data", "axes fraction"), "offset points", ha=align)
-
-
-def _place_name(part: float, name: str, points: float, rows: list[float]) -> tuple[int, str]:
-    """The row of a name at a part of an axis that is so many points wide, and how it is aligned there."""
-    middle, width = points * part, _LETTER * FONT * len(name)
-    align = {0.0: "left", 1.0: "right"}.get(part, "center")
-    begin = {"left": middle, "right": middle - width, "center": middle - width / 2}[align]
-    row = next((k for k, end in enumerate(rows) if end < begin), len(rows))
-    rows[row : row + 1] = [begin + width]
-    return row, align
-
-
-def name_rods(axes: Axes, network: Network, stations: Sequence[Station]) -> None:
-    """The names of rods at the top of them, upright in narrow ones; none where there is no room for that."""
-    left, right = axes.get_xlim()
-    points = axes.get_window_extent().width / axes.figure.dpi * 72
-    for station, following in pairwise(stations):
-        assert station.right is not None  # between two stations there is a bar
-        name = in_words(network.bars[station.right].name)
-        middle = float(station.x + following.x) / 2
-        room = points * float(following.x - station.x) / (right - left)
-        upright = _LETTER * FONT * len(name) > room
-        if name and room > FONT:
-            axes.annotate(
-                name,
-                (middle, 1),
-                (0, -4),
-                ("data", "axes fraction"),
-                "offset points",
-                ha="center",
-                va="top",
-                rotation=90 if upright else 0,
-                path_effects=HALO,
-            )
+    for name, is_rod, x, row, align in _placed_names(network, stations, points):
+        colour = _ROD_NAME if is_rod else "black"
+        above = (0, 3 + _ROW * row)
+        axes.annotate(name, (x, 1), above, "axes fraction", "offset points", ha=align, color=colour)
 
 
 def name_rows(network: Network, stations: Sequence[Station], inches: float) -> int:
     """How many rows the names of a line take above an axis of such a width."""
-    rows: list[float] = []
-    for station in stations:
-        if names := _names(network, station):
-            _place_name(float(station.x / stations[-1].x), names, 72 * inches, rows)
-    return len(rows)
+    return max((row + 1 for *_, row, _ in _placed_names(network, stations, 72 * inches)), default=0)
 
 
-def _names(network: Network, station: Station) -> str:
-    return ", ".join(filter(None, (network.points[point].name for point in station.points)))
+def _placed_names(
+    network: Network, stations: Sequence[Station], points: float
+) -> Iterator[tuple[str, bool, float, int, str]]:
+    """Each name, whether it is a rod's, its part of an axis of so many points, its row, and how it is aligned.
+
+    It has the lowest row where it does not lie over another. A rod goes without, where that is not one of the first.
+    """
+    ends: list[float] = []  # of each row, so far to the right
+    for name, is_rod, x in _names(network, stations):
+        width, part = _LETTER * FONT * len(name), x / float(stations[-1].x)
+        begin = points * part - width / 2
+        align = "left" if begin < 0 else "right" if begin + width > points else "center"
+        begin, part = {"left": (0.0, 0.0), "right": (points - width, 1.0), "center": (begin, part)}[align]
+        row = next((k for k, end in enumerate(ends) if end < begin), len(ends))
+        if row < _ROD_ROWS or not is_rod:
+            ends[row : row + 1] = [begin + width]
+            yield name, is_rod, part, row, align
+
+
+def _names(network: Network, stations: Sequence[Station]) -> Iterator[tuple[str, bool, float]]:
+    """From left to right: names, whether they are a rod's, and their places."""
+    for station, following in pairwise([*stations, None]):
+        assert station is not None
+        if points := ", ".join(filter(None, (network.points[point].name for point in station.points))):
+            yield points, False, float(station.x)
+        if following is not None:
+            assert station.right is not None  # between two stations there is a bar
+            if rod := in_words(network.bars[station.right].name):
+                yield rod, True, float(station.x + following.x) / 2
