@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 import wavesym
 
 STOREY, LIMIT = 3500.0, 0.005  # mm; of it
-mpl.rcParams.update({"font.family": "DejaVu Sans", "font.size": 8.5})
+mpl.rcParams.update({"font.family": "DejaVu Sans", "font.size": 12})
 found = wavesym.sweep("fragility.toml", "fragility")
 drift = np.maximum(-found["min"], found["max"]).sel(output="drift@1").values / STOREY
 
@@ -28,9 +28,9 @@ synthetic = np.array(["synthetic" in str(name) for name in found["record"].value
 # the frame is linear: that many times the record is that many times the drift
 capacity = peaks * LIMIT / drift[:, None]
 
-figure = Figure(figsize=(10.4, 4.2), dpi=100, layout="constrained")
+figure = Figure(figsize=(6.9, 8.2), dpi=120, layout="constrained")
 for axes, own, what, unit in zip(
-    figure.subplots(1, 2), capacity.T, ("acceleration", "velocity"), ("g", "m/s"), strict=True
+    figure.subplots(2, 1), capacity.T, ("acceleration", "velocity"), ("g", "m/s"), strict=True
 ):
     steps = np.sort(own[synthetic])
     median, spread = np.exp(np.mean(np.log(steps))), np.std(np.log(steps), ddof=1)
@@ -41,5 +41,6 @@ for axes, own, what, unit in zip(
     axes.plot(at, [NormalDist().cdf(np.log(x / median) / spread) for x in at], color="black", label="lognormal")
     axes.axvline(real, color="#b2431f", linestyle="--", label="El Centro 1940")
     axes.set(xlabel=f"peak ground {what} [{unit}]", ylabel="part that drifts 0.5 % or more", ylim=(0, 1.02))
-    axes.legend(loc="lower right")
+    axes.legend(loc="lower right", frameon=False)
+figure.suptitle("How likely the lowest storey drifts 0.5 % or more", x=0.01, ha="left", weight="bold", size=12)
 figure.savefig("fragility.png", metadata={"Software": None})
