@@ -75,9 +75,7 @@ def _draw(model: Model, lines: Lines, field: Field, name: str, units: Scale | No
     height = TOP + _TALL + BELOW + 34
     size = float(model.length.size) if model.length else 1.0
     frame = Frame(replace(x, high=size * long), y, axis_text("", model.length), scale.title).draw()
-    return PagePicture(
-        title, picture(f"xt-{name}", title, description, height, frame, image, formal, nodes, bar, class_="plot")
-    )
+    return PagePicture(title, picture(f"xt-{name}", title, description, height, frame, image, formal, nodes, bar))
 
 
 def _line_text(name: str) -> str:

@@ -131,7 +131,14 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         facts=tuple(_facts(model, made, found, loads, scale)),
         structure=PagePicture(
             title,
-            picture("structure", title, structured.description, structured.height, structured.markup, class_="plot"),
+            picture(
+                "structure",
+                title,
+                structured.description,
+                structured.height,
+                structured.markup,
+                is_upright=structured.is_upright,
+            ),
         ),
         spectrum=load_spectrum(model, loads, periods, scale),
         floor_spectrum=floor_spectrum(model, made.program, periods, scale),

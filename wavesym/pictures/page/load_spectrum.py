@@ -81,7 +81,7 @@ def floor_spectrum(
     except WavesymError:
         return None
     own = np.array([each for each in periods if found.periods[0] <= each <= found.periods[-1]])
-    title = f"Response spectrum of {probe.label}, damping {100 * damping:.3g} %"
+    title = f"{probe.label}: response spectrum, damping {100 * damping:.3g} %"
     return _picture("floor", title, found.periods, found.values[0], own, probe.unit, scale)
 
 
@@ -115,7 +115,6 @@ def _picture(
         frame.draw(),
         polyline(points, "spectrum"),
         *marks,
-        class_="plot",
     )
     name = f"{'floor ' if key == 'floor' else ''}pseudo-acceleration{unit and ' in '}{unit_text(unit)}"
     return PagePicture(title, markup, ((0, name, csv_address((f"period in {time}", name), periods, values)),))

@@ -61,7 +61,7 @@ def motion(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Mo
     name = axis_title(model, quantity.quantity, quantity.unit).replace("\n", " ")
     description = f"Drawn at {scale.format(float(instants[still]))}; the largest {name} is {largest:.4g}."
     content, height = (_building if sways else _chain)(frames[:, still], quantity)
-    drawn = picture("motion", title, description, height, *content, class_="plot moving")
+    drawn = picture("motion", title, description, height, *content, class_="plot moving", is_upright=sways)
     return Motion(PagePicture(title, drawn), "".join(f"{each:02x}" for each in bytes_.ravel().tolist()), count, sways)
 
 

@@ -43,7 +43,7 @@ def along_pictures(model: Model, found: Sequence[LineHistories], scale: Timescal
             description = describe_extremes(quantity, band, scale)
             make = _over_height if upright else _along_line
             content, height = make(model, quantity, band, scale)
-            yield PagePicture(title, picture(f"along-{k}-{j}", title, description, height, content, class_="plot"))
+            yield PagePicture(title, picture(f"along-{k}-{j}", title, description, height, content))
 
 
 def _over_height(model: Model, quantity: LineHistories, band: Band, scale: Timescale) -> tuple[Svg, float]:
@@ -106,7 +106,7 @@ def maps(model: Model, found: Sequence[LineHistories], scale: Timescale) -> Iter
             title = f"{name} over place and time".capitalize()
             description = describe_extremes(quantity, band, scale)
             content, height = _map(model, quantity, band, own, largest, scale)
-            yield PagePicture(title, picture(f"map-{k}-{j}", title, description, height, content, class_="plot"))
+            yield PagePicture(title, picture(f"map-{k}-{j}", title, description, height, content))
 
 
 def _map(

@@ -20,6 +20,7 @@ from wavesym.pictures.units import unit_text
 WIDTH, LEFT, RIGHT, TOP, BELOW = 900.0, 84.0, 12.0, 10.0, 44.0
 _LOAD, _STRIP, _PANEL = 90.0, 66.0, 190.0  # pixels high
 LETTER = 6.6  # wide
+_UPRIGHT = (230.0, 470.0)  # from here, so wide: what stands in the middle, and words beside it
 _PER_ROW = 12  # columns of a picture that have three rows of a CSV
 
 
@@ -33,8 +34,18 @@ class PagePicture:
     strip: bool = False
 
 
-def picture(number: str, title: str, description: str, height: float, *content: Svg, **attributes: str | float) -> Svg:
-    """An SVG that those who do not see it are told of."""
+def picture(
+    number: str,
+    title: str,
+    description: str,
+    height: float,
+    *content: Svg,
+    class_: str = "plot",
+    is_upright: bool = False,
+    **attributes: str | float,
+) -> Svg:
+    """An SVG that those who do not see it are told of; one that `is_upright` shows the middle of the width alone."""
+    left, width = _UPRIGHT if is_upright else (0.0, WIDTH)
     return element(
         "svg",
         element("title", title, id=f"{number}-title"),
@@ -42,7 +53,8 @@ def picture(number: str, title: str, description: str, height: float, *content: 
         *content,
         role="img",
         aria_labelledby=f"{number}-title {number}-told",
-        viewBox=f"0 0 {WIDTH:.0f} {height:.0f}",
+        viewBox=f"{left:.0f} 0 {width:.0f} {height:.0f}",
+        class_=f"{class_} upright" if is_upright else class_,
         **attributes,
     )
 

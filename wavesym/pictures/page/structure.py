@@ -34,11 +34,12 @@ _STOREY, _TALLEST, _FLOOR = 46.0, 520.0, 190.0
 
 @dataclass(frozen=True)
 class Picture:
-    """Markup, how high it is, and what it says for those who do not see it."""
+    """Markup, how high it is, what it says for those who do not see it, and whether it stands upright in the middle."""
 
     markup: Svg
     height: float
     description: str
+    is_upright: bool = False
 
 
 def structure(model: Model, lines: Lines) -> Picture:
@@ -93,7 +94,7 @@ def _building(model: Model) -> Picture:
     ]
     kind = "moves with the ground" if network.points[0].motion else "is pushed by the force of the paper's (4.5)"
     description = f"A building of {m} storeys, elastic columns between rigid floors; its foundation {kind}."
-    return Picture(concatenate(*parts), base + (60 if acting else 30), description)
+    return Picture(concatenate(*parts), base + (60 if acting else 30), description, is_upright=True)
 
 
 def _floor_note(k: int, m: int) -> str:

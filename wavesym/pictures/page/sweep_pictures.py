@@ -134,7 +134,7 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> PagePicture:
     parts.append(
         labelled_spot(x.pixel(float(along[worst])), y.pixel(value), _short(_case_label(axis, worst)), above=value > 0)
     )
-    return PagePicture(title, picture(number, title, description, TOP + _TALL + BELOW, *parts, class_="plot"))
+    return PagePicture(title, picture(number, title, description, TOP + _TALL + BELOW, *parts))
 
 
 def _leading(axis: StoredAxis) -> StoredColumn | None:
@@ -179,7 +179,7 @@ def _map(number: str, output: SweepOutput, size: Array, axes: list[StoredAxis], 
     mark = labelled_spot(across_at, upward_at, _short(where), above=upward_at > TOP + 30)
     return PagePicture(
         title,
-        picture(number, title, description, TOP + _MAP + BELOW + 34, frame.draw(), image, mark, bar, class_="plot"),
+        picture(number, title, description, TOP + _MAP + BELOW + 34, frame.draw(), image, mark, bar),
     )
 
 
