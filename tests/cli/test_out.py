@@ -37,6 +37,14 @@ def test_a_scene_is_not_replaced(command: str, tmp_path: Path, capsys: pytest.Ca
     assert (tmp_path / "mine.toml").read_text(encoding="utf-8") == text
 
 
+@pytest.mark.parametrize("words", ["init frame", "scenes drive_m1", "run drive_m1"])
+def test_another_scene_is_not_replaced_either(words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine.toml").write_text("# edited for days\n")
+    assert main([*words.split(), "-o", str(tmp_path / "mine.toml")]) == 2
+    assert "mine.toml is there already, and may be a scene of yours; write another file" in capsys.readouterr().err
+    assert (tmp_path / "mine.toml").read_text() == "# edited for days\n"
+
+
 def test_a_file_in_no_folder_is_refused_before_the_work(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "plain").write_text("")
     assert main(["verify", "--derived", "-o", str(tmp_path / "plain" / "out.txt")]) == 2

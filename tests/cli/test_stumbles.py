@@ -118,6 +118,21 @@ def test_a_scene_without_a_load_is_told(command: str, capsys: pytest.CaptureFixt
     assert "no load" not in capsys.readouterr().err
 
 
+def test_a_striker_that_flies_away_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    text = """name = "bars"
+[system]
+type = "chain"
+parts = [{ rod = 1, velocity = VELOCITY }, "contact", { rod = 1 }]
+[output]
+until = 2
+strain = [1.5]
+"""
+    for velocity, told in (("-1", True), ("1", False)):
+        Path("mine.toml").write_text(text.replace("VELOCITY", velocity))
+        assert main(["summary", "mine.toml"]) == 0
+        assert ("its two sides move apart from the start" in capsys.readouterr().err) == told
+
+
 def test_what_was_meant_is_asked(capsys: pytest.CaptureFixture[str]) -> None:
     assert refused(capsys, "genrate", "mine.toml").startswith(
         "wavesym: No such command 'genrate'. Did you mean \"generate\"?"

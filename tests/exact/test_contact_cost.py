@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tests.support.touching import FIXED, contact, line, q, rod
+from tests.support.touching import FIXED, body, contact, line, q, rod
 from wavesym.api import summary
-from wavesym.errors import CostError
+from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.contacts import cost
 from wavesym.exact.contacts.events import contact_schedule, events
 from wavesym.exact.joints.fronts import front_sources, front_times
@@ -106,6 +106,12 @@ def test_a_hopkinson_specimen_in_layers_is_refused_before_it_is_computed() -> No
     with pytest.raises(CostError, match=r"make 1024 stretches .*springs in place of thin rods help"):
         events(lower(Scene(**specimen("1000 us"))))
     assert events(lower(Scene(**specimen("250 us")))) == ()
+
+
+def test_a_horizon_is_blamed_and_not_the_tolerance() -> None:
+    """Pieces alone follow laws with corners: what stops them is what is said."""
+    with pytest.raises(ToleranceError, match=r"^output.until: fronts and 1 openings .* the limit is 10000"):
+        make(line([rod(1, velocity=1), contact(), rod(1), body(3), rod("7/5"), FIXED], 30000))
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from flint import fmpq
@@ -21,6 +22,13 @@ from wavesym.scene import Scene, SceneError, outputs
 from wavesym.scene.lowering import load_names
 from wavesym.scene.scene_file import parse_text
 from wavesym.systems.contacts import refuse_joined_corners
+
+
+@pytest.mark.parametrize("source", [None, b"name", 3, ["a"]])
+def test_what_is_no_path_is_refused_in_a_line(source: Any) -> None:
+    with pytest.raises(SceneError, match=r"is no path and no text; write Scene.from_toml"):
+        Scene.from_toml(source)
+
 
 COLLISION = """name = "good"
 [system]

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
+_REMEDY = "leave it out: tables and derivations are of waves alone"
+
 
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system, exact; errors as of `tables`."""
@@ -31,7 +33,7 @@ def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     from wavesym.numbers.doubles import rational
 
     lowered = lower(scene)
-    lowered.refuse_damping()
+    lowered.refuse_damping(_REMEDY)
     network, until, chain = lowered.network, rational(lowered.horizon()), named_chain(scene)
     return named_table(chain, network, intervals, until) if chain else network_table(network, intervals, until)
 
@@ -209,7 +211,7 @@ def derive(source: str | Scene, m: int | None = None, format: str = "text") -> D
         made._systems, made._m = tuple(systems(source, m)), m
         return made
     lowered = lower(source)
-    lowered.refuse_damping()
+    lowered.refuse_damping(_REMEDY)
     chain = named_chain(source)
     if chain is None:
         return Derivation(network_derivation(lowered, format))
@@ -235,7 +237,7 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
 
 def _paper_chain(scene: Scene, lowered: Model, option: str, command: str) -> Chain:
     """The chain as the paper has it. UnservedError for a general chain."""
-    lowered.refuse_damping()
+    lowered.refuse_damping(_REMEDY)
     chain = named_chain(scene)
     if chain is None:
         raise UnservedError(

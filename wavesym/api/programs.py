@@ -231,7 +231,7 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
 
     if isinstance(runtime, str):
         raise WavesymError(f'runtime: "{runtime}" is not a list of names; write ["{runtime}"]')
-    scene = scene.in_lines
+    scene = scene.in_lines if isinstance(scene, Scene) else scene  # which is refused in a line
     lowered, loads = lower(scene), _varied_loads(scene, runtime)
     if not Request(runtime=tuple(runtime)).is_of_mode_sets(lowered):
         return compiled_model(sets_program(lowered, runtime, loads))

@@ -181,6 +181,8 @@ def peaks(
     if not every:
         raise WavesymError("peaks: no scene; write at least 1")
     for scene in every:
+        if not isinstance(scene, Scene):
+            raise WavesymError(f"peaks: {type(scene).__name__} is not a Scene; write Scene.from_toml(...)")
         scene.refuse_without_output()
     return peaks_of(every, keep, several=not isinstance(scenes, Scene), at_samples=at_samples)
 

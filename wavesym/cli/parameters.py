@@ -101,13 +101,19 @@ def refuse_scene(out: Path) -> None:
 
 
 def refuse_unwritable(out: Path, *, folder: bool = False) -> None:
-    """OSError where a file, or one in a folder, cannot be written: before the work that takes long."""
+    """OSError where a file, or one in a folder, cannot be written: before the work that takes long.
+
+    UsageError where it would take the place of what may be a scene.
+    """
     place = out / "_" if folder else out
     if not folder and out.is_dir():
         raise IsADirectoryError(21, "Is a directory; write the path of a file", str(out))
+    if not folder and out.suffix.lower() == ".toml" and out.exists():
+        what = f"-o: {out} is there already, and may be a scene of yours; write another file, or delete it"
+        raise click.UsageError(what, click.get_current_context())
     there = next(each for each in (place, *place.absolute().parents) if each.exists())
     if there != place and not there.is_dir():
-        raise NotADirectoryError(20, "Not a directory", str(there))
+        raise NotADirectoryError(20, "Not a directory", str(out))
     if not os.access(there, os.W_OK):
         raise PermissionError(13, "Permission denied", str(out))
 
@@ -244,9 +250,9 @@ def refuse_out(out: Path | None) -> None:
     """Refuse a file that cannot be written, or would take the place of the scene: before the work that takes long."""
     if out is None:
         return
-    refuse_unwritable(out)
     if _ARGUMENT in click.get_current_context().meta:
         refuse_scene(out)
+    refuse_unwritable(out)
 
 
 def deliver(text: str, out: Path | None) -> None:

@@ -47,9 +47,10 @@ def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
     if published and scene:
         raise click.UsageError("SCENE and --published exclude each other; write one of them", context)
     require_matplotlib()
-    refuse_unwritable(out, folder=published)
     if scene:
         refuse_scene(out)
+    refuse_unwritable(out, folder=published)
+    if scene:
         with progress(f"plot {scene.name}"):
             from wavesym import api
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, decimals, put, put_notes, refuse_scene
+from wavesym.cli.parameters import PATH, SCENE, decimals, put, put_notes, refuse_out
 from wavesym.progress import progress
 
 if TYPE_CHECKING:
@@ -50,8 +50,7 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
     from wavesym import api
     from wavesym.writing import write_whole
 
-    if out is not None:
-        refuse_scene(out)
+    refuse_out(out)
     with progress(f"run {scene.name}"):
         notes: list[str] = []
         lines = api.run_csv(scene, samples or DEFAULT_SAMPLES, taus, notes.append)

@@ -14,7 +14,7 @@ from wavesym.cli.parameters import (
     fragment_option,
     put,
     put_notes,
-    refuse_scene,
+    refuse_out,
     written_format,
 )
 from wavesym.progress import progress
@@ -58,8 +58,7 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, fra
     from wavesym.writing import write_whole
 
     written = written_format(format, fragment)
-    if out is not None:
-        refuse_scene(out)
+    refuse_out(out)
     equations: list[str] = []
     with progress(f"tables {scene.name}"):
         if symbolic:

@@ -172,10 +172,10 @@ class Model:
                 found[Gauge("velocity", probe.rod, probe.place, probe.point)] = None
         return tuple(found)
 
-    def refuse_damping(self) -> None:
-        """UnservedError where modes are damped: for what knows nothing but waves."""
+    def refuse_damping(self, remedy: str = "write --evaluator modes, or leave it out") -> None:
+        """UnservedError, with a remedy, where modes are damped: for what knows nothing but waves."""
         if self.damping is not None:
-            raise UnservedError("system.damping: supported by modes only (write --evaluator modes, or leave it out)")
+            raise UnservedError(f"system.damping: supported by modes only ({remedy})")
 
     @property
     def is_damped(self) -> bool:

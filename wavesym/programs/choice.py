@@ -163,6 +163,10 @@ def best(model: Model, tried: Sequence[Attempt], optimize: str | None = None) ->
         if len(tried) == 1 and tried[0].error:
             raise tried[0].error
         refusals, bound = {one.kind: one.refusal for one in refused}, min(one.bound for one in tried)
+        if model.network.corners:  # which pieces alone follow, whatever the tolerance
+            costs = (str(one.error) for one in tried if one.kind == "pieces" and isinstance(one.error, CostError))
+            for cost in costs:
+                raise ToleranceError(cost, cost)
         measure = next((one.error for one in tried if isinstance(one.error, MeasureError)), None)
         if measure and bound >= 1:
             raise unfollowed_waves(model, measure, {kind: refusals[kind] for kind in refusals if kind == "modes"})

@@ -20,10 +20,20 @@ def value_notes(model: Model) -> list[str]:
 
 
 def _load_notes(model: Model) -> list[str]:
-    """A line for a scene in which nothing happens."""
+    """A line for a scene in which nothing happens, and for each contact whose sides fly apart."""
     network = model.network
-    moving = any(bar.velocity or bar.strain for bar in network.bars) or any(point.velocity for point in network.points)
-    return [] if model.loads or moving else ["no load, so that all outputs are 0"]
+    if model.loads:
+        return []
+    if not any(bar.velocity or bar.strain for bar in network.bars) and not any(p.velocity for p in network.points):
+        return ["no load, so that all outputs are 0"]
+    speeds = {end: bar.velocity for bar in network.bars for end in (bar.left, bar.right)}
+    speeds |= {number: point.velocity for number, point in enumerate(network.points) if point.mass}
+    return [
+        f"contact at x = {link.place}: its two sides move apart from the start; where one strikes the other, write the "
+        "velocity of the left one above that of the right one"
+        for link in network.links
+        if link.contact and speeds.get(link.left, 0) < speeds.get(link.right, 0)
+    ]
 
 
 def horizon_notes(model: Model, at: Sequence[float]) -> list[str]:

@@ -42,7 +42,8 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, str, dict[str, Any]]:
 
 def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
     """The name a source goes by in messages, and its text, not parsed yet. Raises SceneError."""
-    path = os.fspath(source)
+    if not isinstance(source, str | PathLike) or not isinstance(path := os.fspath(source), str):
+        raise SceneError(f'{type(source).__name__} is no path and no text; write Scene.from_toml("scene.toml")')
     if isinstance(source, str) and "\n" in source and "=" in source:  # no scene has but one line
         return _TEXT, source
     if path in builtin_names():

@@ -13,6 +13,7 @@ from wavesym import __version__
 from wavesym.errors import CostError, ToleranceError, WavesymError
 from wavesym.exact.contacts.events import events
 from wavesym.exact.joints.fronts import has_more_fronts
+from wavesym.mechanics.event import LAW_OF
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
@@ -254,7 +255,7 @@ def _facts(
         yield "Loads", load_texts
     yield "Horizon", scale.format(nearest(model.until))
     if model.clock is not None:
-        yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross a rod of length 1"
+        yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross the first rod"
     yield "Computed by", program.provenance.reason.rpartition("; ")[2]
     yield (
         "Bound",
@@ -272,7 +273,7 @@ def _facts(
         place = network.links[number].place
         if own := [each for each in program.provenance.events or () if each.x == place]:
             yield (
-                "Contact",
+                LAW_OF[own[0].kind].capitalize(),
                 f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.format(each.double)}" for each in own),
             )
 

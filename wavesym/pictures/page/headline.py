@@ -140,7 +140,10 @@ def neglected_effects(model: Model) -> Iterator[str]:
         yield "Columns carry shear alone; the soil does not give way" * (model.network.points[0].motion is not None)
     else:
         yield "Waves run along rods in one dimension: cross-sections stay plane, and nothing spreads sideways"
-    yield "Everything stays linear: no yielding, no cracks, no change of geometry"
+    if model.network.corners:
+        yield "Rods stay linear: no yielding, no cracks, no change of geometry; links follow the laws of the scene"
+    else:
+        yield "Everything stays linear: no yielding, no cracks, no change of geometry"
     if model.damping is None:
         yield "The material does not damp"
 
@@ -155,14 +158,19 @@ def _outputs(scene: Scene, model: Model, summary: Summary | WavesymError) -> dic
 
 
 def _largest_values(model: Model, summary: Summary) -> Iterator[Figure]:
-    """The largest value of each output, with its sign and when it is there, and what links lost."""
-    scale = timescale(model)
-    for each in summary.outputs[:_OUTPUTS]:
+    """The largest values of the first outputs, with their signs and when they are there, and what links lost most.
+
+    Of a scene with forces or stresses one is among them.
+    """
+    scale, quantities = timescale(model), {probe.name: probe.quantity for probe in model.probes}
+    forces = [each for each in summary.outputs if quantities.get(each.name) in ("force", "stress")]
+    first = [*summary.outputs[: _OUTPUTS - 1], *forces, *summary.outputs[_OUTPUTS - 1 :]]
+    for each in list({each.name: each for each in first}.values())[:_OUTPUTS]:
         shown = each.readable
         peak = shown.largest
         when = f"at {scale.symbol} = {number_text(peak.at.in_scene_time, scale.unit, 4)}"
         yield Figure(each.label, group_thousands(number_text(peak.value, unit_text(shown.unit), 4)), when)
-    for link in (summary.links or ())[:_LINKS]:
+    for link in sorted(summary.links or (), key=lambda link: -abs(link.set.value))[:_LINKS]:
         yield Figure(f"Set at {link.where}", link.set.describe(4), f"{link.dissipated.describe(4)} dissipated")
 
 
