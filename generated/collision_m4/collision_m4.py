@@ -55,7 +55,7 @@ CONTACT_END = {
 }
 _REAL = np.float64
 
-# the numbers of the program; the first class below says what they are
+# the numbers of the program; the second class below says what they are
 _TABLES = {
     "first_member": [
         0, 8, 10
@@ -513,7 +513,48 @@ _CONSTANTS = {
 }
 
 
-class PiecesScheme:
+class Scheme:
+    """Outputs at any tau from 0 to `tau_max`, in `real` numbers, from tables and single numbers.
+
+    Each kind of program has a scheme that reads these, and has the outputs at ascending tau in range.
+    """
+
+    TABLES: tuple[str, ...]
+    CONSTANTS: tuple[str, ...]
+    outputs: int
+
+    def __init__(
+        self,
+        tables: dict[str, tuple[float, ...]],
+        constants: dict[str, float],
+        tau_max: float,
+        real: type[np.float64],
+    ) -> None:
+        self.tau_max, self.real = tau_max, real
+        self._read(tables, constants)
+
+    def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
+        raise NotImplementedError
+
+    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        raise NotImplementedError
+
+    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
+        taus = np.asarray(tau, dtype=self.real)
+        flat = taus.ravel()
+        order = None if flat.size < 2 or np.all(flat[1:] >= flat[:-1]) else np.argsort(flat, kind="stable")
+        ascending = flat if order is None else flat[order]
+        inside = slice(np.searchsorted(ascending, 0.0), np.searchsorted(ascending, self.tau_max, side="right"))
+        if order is None and 0 < inside.stop - inside.start == flat.size:
+            return self._values(flat).reshape(self.outputs, *taus.shape)
+        out = np.full((self.outputs, flat.size), np.nan, self.real)
+        if inside.start < inside.stop:
+            out[:, inside if order is None else order[inside]] = self._values(ascending[inside])
+        return out.reshape(self.outputs, *taus.shape)
+
+
+class PiecesScheme(Scheme):
     """Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p].
 
     Outputs that may jump or bend at the same times share a grid of pieces. Of grid g the outputs are
@@ -533,19 +574,13 @@ class PiecesScheme:
     )
     CONSTANTS = ()
 
-    def __init__(
-        self,
-        tables: dict[str, tuple[float, ...]],
-        constants: dict[str, float],
-        tau_max: float,
-        real: type[np.float64],
-    ) -> None:
-        self._tau_max, self._real = tau_max, real
+    def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
+        real = self.real
         member, first_member, first_piece, first_power = (
             [int(place) for place in tables[name]] for name in ("member", "first_member", "first_piece", "first_power")
         )
         start, centre, coefficient = (np.array(tables[name], real) for name in ("start", "centre", "coefficient"))
-        self._outputs = len(member)
+        self.outputs = len(member)
         self._grids = []
         for g in range(len(first_piece) - 1):
             members = member[first_member[g] : first_member[g + 1]]
@@ -558,24 +593,11 @@ class PiecesScheme:
                 rows[: len(of_piece)] = of_piece[::-1]
             self._grids.append((members, start[low + g : high + g + 1], centre[low:high], powers))
 
-    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
-        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
-        taus = np.asarray(tau, dtype=self._real)
-        flat = taus.ravel()
-        order = None
-        if flat.size > 1 and not np.all(flat[1:] >= flat[:-1]):
-            order = np.argsort(flat, kind="stable")
-            flat = flat[order]
-        inside = slice(np.searchsorted(flat, 0.0), np.searchsorted(flat, self._tau_max, side="right"))
-        out = np.full((self._outputs, flat.size), np.nan, self._real)
-        if inside.stop > inside.start:
-            for outputs, starts, centres, powers in self._grids:
-                out[outputs, inside] = self._on_pieces(flat[inside], starts, centres, powers)
-        if order is not None:
-            result = np.empty_like(out)
-            result[:, order] = out
-            out = result
-        return out.reshape(self._outputs, *taus.shape)
+    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        out = np.empty((self.outputs, tau.size), self.real)
+        for outputs, starts, centres, powers in self._grids:
+            out[outputs] = self._on_pieces(tau, starts, centres, powers)
+        return out
 
     def _on_pieces(
         self,
@@ -593,7 +615,7 @@ class PiecesScheme:
         pieces, _, outputs = powers.shape
         even = pieces * counts.max() <= 2 * tau.size + 64
         sizes = np.ones(pieces, int) if even else np.frexp(counts)[1]
-        out = np.empty((outputs, tau.size), self._real)
+        out = np.empty((outputs, tau.size), self.real)
         for size in sorted({*sizes.tolist()} - {0}):
             some = np.flatnonzero(sizes == size)
             along = np.arange(counts[some].max())
@@ -608,7 +630,7 @@ class PiecesScheme:
     def _product(self, w: NDArray[np.float64], powers: NDArray[np.float64]) -> NDArray[np.float64]:
         """The polynomials `powers` (pieces, degree + 1, outputs) at w (pieces, samples): (pieces, samples, outputs)."""
         size = powers.shape[1]
-        basis = np.empty((*w.shape, size - 1), self._real)
+        basis = np.empty((*w.shape, size - 1), self.real)
         for k in range(size - 1):
             np.multiply(basis[..., k - 1] if k else 1, w, out=basis[..., k])
         return basis @ powers[:, 1:] + powers[:, :1]

@@ -131,7 +131,7 @@ class OneMode(SteppedModes):
         ramp, start = self.load[:2, first:last, 0].astype(float)
         y, v = one * start + two * ramp, p12 * start + one * ramp
         past = [1, -p11 - p22, p11 * p22 - p12 * p21]
-        made = np.zeros((last - first + 1, 2, 1), self._real)
+        made = np.zeros((last - first + 1, 2, 1), self.real)
         made[1:, 0, 0] = lfilter([1, -p22], past, y) + lfilter([0, p12], past, v)
         made[1:, 1, 0] = lfilter([1, -p11], past, v) + lfilter([0, p21], past, y)
         return made

@@ -12,6 +12,7 @@ import pytest
 from tests.support.builds import SOURCES, scene
 from tests.support.generated import files
 from wavesym.programs.schemes import PARTS, SCHEMES
+from wavesym.programs.schemes.scheme import Scheme
 from wavesym.scene import lower
 from wavesym.targets import TARGETS
 from wavesym.targets import files as written
@@ -59,7 +60,7 @@ def test_generated_python_imports_nothing_but_numpy(evaluator, precision):
 @pytest.mark.parametrize("kind", SCHEMES)
 def test_nor_does_the_arithmetic_that_is_written_into_it(kind):
     """But for other files of it, and names of types, which are above what is written."""
-    parts = (*PARTS.get(kind, ()), SCHEMES[kind])
+    parts = (Scheme, *PARTS.get(kind, ()), SCHEMES[kind])
     for part in parts:
         scheme = Path(inspect.getfile(part)).read_text(encoding="utf-8")
         others = {other.__module__ for other in parts}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from wavesym.programs.runtime.laws import RuntimeLaws
-    from wavesym.programs.schemes import Scheme
+    from wavesym.programs.schemes.scheme import Scheme
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from wavesym.programs.program import Program
 from wavesym.programs.schemes import PARTS, SCHEMES
+from wavesym.programs.schemes.scheme import Scheme
 from wavesym.rendering import render
 from wavesym.targets.description import Description
 from wavesym.targets.literals import lines, literal
@@ -28,7 +29,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         scene=scene,
         tables={name: lines(literals(program.tables[name]), _WIDTH) for name in scheme.TABLES},
         constants=dict(zip(scheme.CONSTANTS, literals(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
-        scheme="\n\n\n".join(map(_text, (*PARTS.get(program.kernel, ()), scheme))),
+        scheme="\n\n\n".join(map(_text, (Scheme, *PARTS.get(program.kernel, ()), scheme))),
         scheme_name=scheme.__name__,
     )
     return {f"{scene.name}.py": text}

@@ -39,14 +39,14 @@ class Panels(SteppedModes):
 
     def sample(self, step: float) -> tuple[Array, Array]:
         """Instants no more than `step` apart, each panel in an even number of equal parts, and the outputs there."""
-        starts = self._time[self._time < self._tau_max]
+        starts = self._time[self._time < self.tau_max]
         last = len(starts) - 1
         lengths = self._length[self._kind[: last + 1]] if len(self._time) > 1 else np.empty(0)
-        lengths = np.append(lengths[:last], self._tau_max - starts[-1])  # the last one ends with the horizon
+        lengths = np.append(lengths[:last], self.tau_max - starts[-1])  # the last one ends with the horizon
         counts = [2 * ceil(length / (2 * step)) for length in lengths.tolist()]
         edges = np.cumsum([0, *counts])
         taus = np.empty(edges[-1] + 1)
-        out = np.empty((self.output_count, edges[-1] + 1))
+        out = np.empty((self.outputs, edges[-1] + 1))
         kinds, kind = np.unique(lengths, return_inverse=True)
         reads = lru_cache(_KEPT)(lambda s: self.reads(np.array([s]))[0])
         for first in range(0, last + 1, self.BLOCK):
@@ -69,7 +69,7 @@ class Panels(SteppedModes):
                     at = edges[chosen] + part
                     taus[at] = starts[chosen] + s
                     out[:, at] = (known @ reads(s)).T
-        taus[-1], out[:, -1] = self._tau_max, self.evaluate(self._tau_max)
+        taus[-1], out[:, -1] = self.tau_max, self.evaluate(self.tau_max)
         return taus, out
 
     def turns(self, s: Array) -> tuple[Array, ...]:

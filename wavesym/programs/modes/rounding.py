@@ -67,7 +67,7 @@ def _sum_over_panels(system: ModalSystem, lengths: Array, swift: Array, tau_max:
 
 def _sizes(scheme: SteppedModes, reach: Array, tau_max: float) -> tuple[Array, Array]:
     """The largest |y|/T + |v| of each mode at the instants, and the largest size there of each output."""
-    size, largest = np.zeros(len(reach)), np.zeros(scheme.output_count)
+    size, largest = np.zeros(len(reach)), np.zeros(scheme.outputs)
     for states, outputs in scheme.starts():
         y, v = np.abs(states).astype(np.float64).max(axis=0)
         size = np.maximum(size, y / np.where(reach > 0, reach, 1.0) + v)

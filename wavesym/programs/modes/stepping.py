@@ -28,11 +28,6 @@ class SteppedModes(ModesScheme):
             self._last_block = block, states
         return self._last_block[1][: last - first + 1]
 
-    @property
-    def output_count(self) -> int:
-        """How many outputs there are."""
-        return int(self._direct.shape[2])
-
     def starts(self) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
         """Block by block the states at the starts of its panels, and the outputs there: (panels, outputs)."""
         last = len(self._time) - 1
@@ -40,7 +35,7 @@ class SteppedModes(ModesScheme):
             first, end = block * self.BLOCK, min((block + 1) * self.BLOCK - 1, last)
             states = self.states(block, end)
             _, load, once, twice = self.load[:, first : end + 1]
-            inside = self._time[first : end + 1] <= self._tau_max
+            inside = self._time[first : end + 1] <= self.tau_max
             out = states[:, 0] @ self._moved + states[:, 1] @ self._moving
             out += load @ self._direct[0] + once @ self._direct[1] + twice @ self._direct[2]
             yield states, out[inside]

@@ -13,8 +13,7 @@ from wavesym.programs.schemes.march import MarchScheme
 from wavesym.programs.schemes.march_joints import MarchNumbers
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.programs.schemes.pieces import PiecesScheme
-
-Scheme = ClosedScheme | PiecesScheme | MarchScheme | HatScheme | ModesScheme
+from wavesym.programs.schemes.scheme import Scheme
 
 SCHEMES: dict[str, type[Scheme]] = {
     "closed": ClosedScheme,
@@ -28,4 +27,4 @@ PARTS: dict[str, tuple[type, ...]] = {
     "march": (MarchNumbers,),
     "hats": (MarchNumbers, MarchScheme),
 }
-"""A class of each other file that a scheme is made of, in order."""
+"""A class of each other file that a scheme is made of, in order, below `Scheme`."""

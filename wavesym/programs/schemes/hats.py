@@ -3,12 +3,13 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from wavesym.programs.schemes.march import Marching, MarchScheme, WindowBlock
+from wavesym.programs.schemes.scheme import Scheme
 
 
-class HatScheme:
+class HatScheme(Scheme):
     """The march of a chain under loads that are linear between samples, however far these are apart.
 
         output(tau) = rest(tau) + sum over records j and samples i of sample[j, i] hat_j(tau - begin_j - i spacing_j)
@@ -22,14 +23,8 @@ class HatScheme:
     TABLES = (*MarchScheme.TABLES, "extent", "constant", "spacing", "begin_at", "first_sample", "sample")
     CONSTANTS = ("rest",)
 
-    def __init__(
-        self,
-        tables: dict[str, tuple[float, ...]],
-        constants: dict[str, float],
-        tau_max: float,
-        real: type[np.float64],
-    ) -> None:
-        self._tau_max, self._real = tau_max, real
+    def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
+        real = self.real
         extents = np.array(tables["extent"], int).reshape(-1, len(MarchScheme.TABLES))
         ends = np.cumsum(np.vstack([np.zeros_like(extents[:1]), extents]), axis=0)
         numbers = np.array(tables["constant"], real).reshape(len(extents), -1).tolist()
@@ -40,7 +35,7 @@ class HatScheme:
                     for name, first, last in zip(MarchScheme.TABLES, ends[k], ends[k + 1], strict=True)
                 },
                 dict(zip(MarchScheme.CONSTANTS, numbers[k], strict=True)),
-                tau_max,
+                self.tau_max,
                 real,
             )
             for k in range(len(extents))
@@ -53,17 +48,11 @@ class HatScheme:
             for j, march in enumerate(marches[rest:])
         ]
         self._rest = marches[:rest]
+        self.outputs = marches[0].outputs
 
-    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
-        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
-        taus = np.asarray(tau, dtype=self._real)
-        flat = taus.ravel()
-        inside = (flat >= 0) & (flat <= self._tau_max)
-        parts = [part.evaluate(flat[inside]) for part in self._rest]
-        parts += [part.evaluate(flat[inside]) for part in self._records]
-        out = np.full((len(parts[0]), flat.size), np.nan, self._real)
-        out[:, inside] = sum(parts[1:], parts[0])
-        return out.reshape(len(out), *taus.shape)
+    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        first, *others = [*(rest.evaluate(tau) for rest in self._rest), *(hats.evaluate(tau) for hats in self._records)]
+        return np.asarray(sum(others, first))
 
     def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """Each output at instants of its own in range: tau and values are (outputs, n)."""

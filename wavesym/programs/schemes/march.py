@@ -1,7 +1,7 @@
 """The march in NumPy: how it goes on window by window, and outputs at any tau."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from wavesym.programs.schemes.march_joints import MarchNumbers
 
@@ -202,27 +202,17 @@ class MarchScheme(MarchNumbers):
     SAMPLES = 4096
     """So many samples at once."""
 
-    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
-        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range.
-
-        Marches once, up to the last tau.
-        """
-        taus = np.asarray(tau, dtype=self.real)
-        flat = taus.ravel()
-        out = np.full((self.outputs, flat.size), np.nan, self.real)
-        inside = np.flatnonzero((flat >= 0) & (flat <= self.tau_max))
-        if inside.size:
-            order = inside[np.argsort(flat[inside], kind="stable")]
-            windows = self.places(flat[order])[0]
-            marching = Marching(self)
-            count = int(windows[-1]) + 1
-            for first in range(0, count, marching.most):
-                block = marching.block(first, min(marching.most, count - first))
-                begin, end = np.searchsorted(windows, [first, first + block.count])
-                for low in range(begin, end, self.SAMPLES):
-                    part = order[low : min(low + self.SAMPLES, end)]
-                    out[:, part] = block.read(flat[part])
-        return out.reshape(self.outputs, *taus.shape)
+    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        out = np.empty((self.outputs, tau.size), self.real)
+        windows = self.places(tau)[0]
+        marching, count = Marching(self), int(windows[-1]) + 1
+        for first in range(0, count, marching.most):
+            block = marching.block(first, min(marching.most, count - first))
+            begin, end = np.searchsorted(windows, [first, first + block.count])
+            for low in range(begin, end, self.SAMPLES):
+                part = slice(low, min(low + self.SAMPLES, end))
+                out[:, part] = block.read(tau[part])
+        return out
 
 
 def _series(c: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -3,8 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.programs.schemes.scheme import Scheme
 
-class MarchNumbers:
+
+class MarchNumbers(Scheme):
     """The march. All delays are multiples of one step, so what arrives at a joint on a window (one step long) was sent
     on a window before, and each joint needs to know no more. A window is cut into panels at the instants of loads; on a
     panel waves are Chebyshev series in u, -1 <= u <= 1. A track is what is sent into an end of a bar.
@@ -72,20 +74,15 @@ class MarchNumbers:
     )
     CONSTANTS = ("degree", "step", "span", "forces")
 
-    def __init__(
-        self,
-        tables: dict[str, tuple[float, ...]],
-        constants: dict[str, float],
-        tau_max: float,
-        real: type[np.float64],
-    ) -> None:
+    def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
+        real = self.real
+
         def reals(name: str, *shape: int) -> NDArray[np.float64]:
             return np.array(tables[name], real).reshape(shape or -1)
 
         def indices(name: str, *shape: int) -> NDArray[np.int_]:
             return np.array(tables[name], int).reshape(shape or -1)
 
-        self.tau_max, self.real = tau_max, real
         self.degree, self.forces = int(constants["degree"]), int(constants["forces"])
         self.step, self.span = real(constants["step"]), real(constants["span"])
         # one track more than there are: for ports that are missing

@@ -1,10 +1,12 @@
 """Modes in NumPy."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from wavesym.programs.schemes.scheme import Scheme
 
 
-class ModesScheme:
+class ModesScheme(Scheme):
     """Oscillators under loads that are linear between the instants `time`, and outputs that are sums of them.
 
         y_n'' + 2 damping_n frequency_n y_n' + frequency_n^2 y_n = sum_j push[n, j] a_j(tau)
@@ -34,16 +36,9 @@ class ModesScheme:
     SLOW = 2  # up to here a power series is summed, as differences would lose digits
     _AT_ONCE = 1 << 15  # numbers of an array
 
-    def __init__(
-        self,
-        tables: dict[str, tuple[float, ...]],
-        constants: dict[str, float],
-        tau_max: float,
-        real: type[np.float64],
-    ) -> None:
-        self._tau_max, self._real = tau_max, real
-        loads, modes = int(constants["loads"]), len(tables["frequency"])
-        outputs = len(tables["direct"]) // (3 * loads)
+    def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
+        real, loads, modes = self.real, int(constants["loads"]), len(tables["frequency"])
+        self.outputs = outputs = len(tables["direct"]) // (3 * loads)
         # what multiplies states is in the type of the values; what turns them is computed in doubles
         self._frequency, self._damping, self._length = (
             np.array(tables[name], real).astype(np.float64) for name in ("frequency", "damping", "length")
@@ -60,29 +55,16 @@ class ModesScheme:
 
     def _integrals(self, sample: NDArray[np.float64], last: tuple[float, ...]) -> NDArray[np.float64]:
         """Of loads at instants the slope from there on, the load, and its two integrals: (4, instants, loads)."""
-        h = self._length[self._kind].astype(self._real)[:, None]
+        h = self._length[self._kind].astype(self.real)[:, None]
         now, then = sample[:-1], sample[1:]
-        made = np.zeros((4, *sample.shape), self._real)
+        made = np.zeros((4, *sample.shape), self.real)
         made[0, :-1], made[0, -1], made[1] = (then - now) / h, last, sample
         made[2, 1:] = np.cumsum(h * (now + then) / 2, axis=0)
         made[3, 1:] = np.cumsum(h * made[2, :-1] + h * h * (2 * now + then) / 6, axis=0)
         return made
 
-    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
-        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
-        taus = np.asarray(tau, dtype=self._real)
-        flat = taus.ravel()
-        order = np.argsort(flat, kind="stable")
-        sorted_taus = flat[order]
-        inside = slice(np.searchsorted(sorted_taus, 0.0), np.searchsorted(sorted_taus, self._tau_max, side="right"))
-        out = np.full((self._direct.shape[2], flat.size), np.nan, self._real)
-        if inside.stop > inside.start:
-            out[:, order[inside]] = self._evaluate_sorted(sorted_taus[inside])
-        return out.reshape(len(out), *taus.shape)
-
-    def _evaluate_sorted(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The outputs at sorted tau in range: (outputs, tau.size)."""
-        out = np.empty((self._direct.shape[2], tau.size), self._real)
+    def _values(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        out = np.empty((self.outputs, tau.size), self.real)
         panel = np.searchsorted(self._time, tau, side="right") - 1
         edges = np.flatnonzero(np.diff(panel // self.BLOCK)) + 1
         most = max(1, self._AT_ONCE // len(self._frequency))
@@ -92,10 +74,10 @@ class ModesScheme:
             for low in range(start, stop, most):
                 some = slice(low, min(low + most, stop))
                 at = panel[some]
-                out[:, some] = self._values(states[at - block * self.BLOCK], at, tau[some] - self._time[at])
+                out[:, some] = self._read_panels(states[at - block * self.BLOCK], at, tau[some] - self._time[at])
         return out
 
-    def _values(
+    def _read_panels(
         self, states: NDArray[np.float64], panel: NDArray[np.intp], s: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """The outputs s after the starts of panels, where states (s.size, 2, modes) are: (outputs, s.size)."""
@@ -126,7 +108,7 @@ class ModesScheme:
 
     def _step_states(self, state: NDArray[np.float64], first: int, last: int) -> NDArray[np.float64]:
         """States at the starts of the panels first ... last, from that of the first: (panels, 2, modes)."""
-        states = np.empty((last - first + 1, *state.shape), self._real)
+        states = np.empty((last - first + 1, *state.shape), self.real)
         states[0] = state
         kinds, kind = np.unique(self._kind[first:last], return_inverse=True)
         if not len(kinds):
@@ -166,7 +148,7 @@ class ModesScheme:
                 *(np.broadcast_to(each, slow.shape)[slow] for each in (s, w, decay))
             )
             p11[slow] = 1 - (w * w * one)[slow]
-        return tuple(each.astype(self._real, copy=False) for each in (p11, p12, -(w * w) * p12, p22, one, two))
+        return tuple(each.astype(self.real, copy=False) for each in (p11, p12, -(w * w) * p12, p22, one, two))
 
     @staticmethod
     def _swinging(
