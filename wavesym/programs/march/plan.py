@@ -215,7 +215,7 @@ class MarchPlan:
 def march_plan(
     model: Model,
     real: Real = DOUBLE,
-    space: Callable[[Network, Joint], Any] = joint_space,
+    space: Callable[[Network, Joint], JointSpace] = joint_space,
     helps: str = HELPS,
     *,
     or_pieces: bool = True,

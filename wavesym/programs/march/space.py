@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 from math import sqrt
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 import numpy as np
 from flint import fmpq, fmpq_mat
@@ -31,9 +31,6 @@ SCATTERER, BODY, BLOCK = 0, 1, 2
 
 _ZERO = fmpq(0)
 
-Matrix = TypeVar("Matrix")
-Number = TypeVar("Number")
-
 
 @dataclass(frozen=True)
 class Port:
@@ -46,21 +43,23 @@ class Port:
 
 
 @dataclass(frozen=True)
-class JointLaws(Generic[Matrix, Number]):
+class JointSpace:
     """The laws of a joint; `weights` are masses and springs, `initial_state` is x at tau = 0.
 
     A state is the velocity of the point that it `moves_with`, or, where that is -1, how much longer a spring has
-    become: x' = `lengthening` q, with rows of 0 for velocities.
+    become: x' = `lengthening` q, with rows of 0 for velocities. Laws that are functions of parameters are rows, and
+    those of numbers exact matrices, of which all that follows is known.
     """
 
-    rates: Matrix
-    input_rates: Matrix
-    state_velocities: Matrix
-    feedthrough: Matrix
-    lengthening: Matrix
+    points: int
+    rates: Any
+    input_rates: Any
+    state_velocities: Any
+    feedthrough: Any
+    lengthening: Any
     moves_with: tuple[int, ...]
-    weights: tuple[Number, ...]
-    initial_state: tuple[Number, ...]
+    weights: tuple[Any, ...]
+    initial_state: tuple[Any, ...]
     ports: tuple[Port, ...]
 
     @property
@@ -68,30 +67,21 @@ class JointLaws(Generic[Matrix, Number]):
         """How many numbers x has."""
         return len(self.weights)
 
-
-@dataclass(frozen=True)
-class JointSpace(JointLaws[fmpq_mat, fmpq]):
-    """Those of numbers."""
-
-    @property
-    def points(self) -> int:
-        """How many points there are."""
-        return self.feedthrough.nrows()
-
     @cached_property
     def is_body(self) -> bool:
         """Whether it is one mass between rods and dashpots, without springs."""
-        return self.states == self.points == 1 and self.moves_with == (0,) and self.rates[0, 0] < 0
+        alone = self.states == self.points == 1 and self.moves_with == (0,)
+        return alone and (not isinstance(self.rates, fmpq_mat) or self.rates[0, 0] < 0)
 
     @property
     def law(self) -> int:
-        """What its step is, in tables: `SCATTERER`, `BODY` or `BLOCK`."""
+        """What its step is, in tables: `SCATTERER`, `BODY` or `BLOCK`, whatever parameters are."""
         return SCATTERER if not self.states else BODY if self.is_body else BLOCK
 
     @property
     def rate(self) -> fmpq:
         """That of a body: q'/rate + q = drive times what acts on it."""
-        return -self.rates[0, 0]
+        return fmpq(-self.rates[0, 0])
 
     @property
     def drive(self) -> fmpq:
@@ -147,6 +137,7 @@ class JointSpace(JointLaws[fmpq_mat, fmpq]):
 
 
 SHOWN = JointSpace(
+    points=1,
     rates=fmpq_mat(0, 0),
     input_rates=fmpq_mat(0, 1),
     state_velocities=fmpq_mat(1, 0),
@@ -160,34 +151,16 @@ SHOWN = JointSpace(
 """A point that moves as a load says, and does nothing: where that load is read."""
 
 
-@dataclass(frozen=True)
-class JointRows(JointLaws[Rows, Any]):
-    """Those of rows of numbers or of functions of parameters."""
-
-    @property
-    def points(self) -> int:
-        """How many points there are."""
-        return len(self.feedthrough)
-
-    @property
-    def law(self) -> int:
-        """What its step is, as of a `JointSpace`, whatever the parameters are."""
-        return SCATTERER if not self.states else BODY if self.points == 1 and self.moves_with == (0,) else BLOCK
-
-
 def joint_space(network: Network, joint: Joint) -> JointSpace:
-    """The laws of one joint of a network."""
+    """The laws of one joint of a network, in numbers."""
     rows = joint_rows(network, joint)
-    return JointSpace(
-        _matrix(rows.rates, rows.states),
-        _matrix(rows.input_rates, rows.points),
-        _matrix(rows.state_velocities, rows.states),
-        _matrix(rows.feedthrough, rows.points),
-        _matrix(rows.lengthening, rows.points),
-        rows.moves_with,
-        rows.weights,
-        rows.initial_state,
-        rows.ports,
+    return replace(
+        rows,
+        rates=_matrix(rows.rates, rows.states),
+        input_rates=_matrix(rows.input_rates, rows.points),
+        state_velocities=_matrix(rows.state_velocities, rows.states),
+        feedthrough=_matrix(rows.feedthrough, rows.points),
+        lengthening=_matrix(rows.lengthening, rows.points),
     )
 
 
@@ -195,14 +168,15 @@ def _matrix(rows: Rows, width: int) -> fmpq_mat:
     return fmpq_mat(len(rows), width, list(chain.from_iterable(rows)))
 
 
-def joint_rows(network: Network, joint: Joint) -> JointRows:
+def joint_rows(network: Network, joint: Joint) -> JointSpace:
     """The same, also where numbers of the network are functions."""
     law = JointLaw.assemble(network, joint)
     springs = list(_springs(network, joint, law))
     elastic = [ElasticState(row, {k: factor * stiffness for k, factor in row.items()}) for stiffness, row in springs]
     space = state_space(law, elastic)
     growth: list[dict[int, fmpq]] = [*({} for _ in law.heavy), *(row for _, row in springs)]
-    return JointRows(
+    return JointSpace(
+        len(joint.points),
         space.rates,
         space.input_rates,
         space.state_velocities,

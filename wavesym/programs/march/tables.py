@@ -104,18 +104,13 @@ class MarchTables:
 
     def constants(self) -> dict[str, float]:
         """Single numbers."""
-        plan, real = self._plan, self._real
+        plan = self._plan
         return {
+            **plan_constants(plan, self._real),
             "degree": self._degree,
-            "panels": len(plan.panels),
-            "joints": len(plan.joints),
             "bodies": sum(joint.space.law == BODY for joint in plan.joints),
             "blocks": sum(joint.space.law == BLOCK for joint in plan.joints),
-            "states": sum(joint.space.states for joint in plan.joints),
-            "forces": plan.forces,
             "events": len(plan.events),
-            "tracks": len(plan.tracks),
-            "slots": sum(track.steps + 1 for track in plan.tracks),
             # where no joint has a state as well: a compiler may look at what is never run then
             "widest": max(
                 joint.space.points * (self._degree + 1) + joint.space.states
@@ -124,9 +119,6 @@ class MarchTables:
                 for joint in plan.joints
             ),
             "most_ports": max(len(joint.space.ports) for joint in plan.joints),
-            "cycle": plan.cycle[0],
-            "span": real.nearest(fmpq(plan.cycle[1])),
-            "step": real.nearest(plan.step),
         }
 
     def _matrices(self) -> tuple[tuple[float, ...], tuple[int, ...]]:
@@ -151,6 +143,22 @@ class MarchTables:
                 yield from map(rational, block.matrix.T.ravel().tolist())
             case None:
                 yield from joint.space.scattering.transpose().entries()
+
+
+def plan_constants(plan: MarchPlan, real: Real) -> dict[str, float]:
+    """Single numbers of a plan, whose joints may be functions of parameters."""
+    cycle, span = plan.cycle
+    return {
+        "panels": len(plan.panels),
+        "joints": len(plan.joints),
+        "states": sum(joint.space.states for joint in plan.joints),
+        "forces": plan.forces,
+        "tracks": len(plan.tracks),
+        "slots": sum(track.steps + 1 for track in plan.tracks),
+        "cycle": cycle,
+        "span": real.nearest(fmpq(span)),
+        "step": real.nearest(plan.step),
+    }
 
 
 def port_tables(joints: Sequence[MarchedJoint], real: Real) -> Tables:

@@ -26,7 +26,7 @@ Product = tuple[fmpq_mpoly, ...]
 """Its factors, which are sums of products of symbols."""
 
 MATRICES = {"rates": "rates", "pushed": "input_rates", "shown": "state_velocities", "passed": "feedthrough"}
-"""The laws of a joint that are matrices: the name in tables, and the field of a `JointSpace` or of `JointRows`."""
+"""The laws of a joint that are matrices: the name in tables, and the field of a `JointSpace`."""
 
 OPEN = 1e30
 """So many roundings where nothing is known: terms that may cancel."""

@@ -13,8 +13,8 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.form import reference_values
-from wavesym.programs.march.space import BLOCK, BODY, JointRows
-from wavesym.programs.march.tables import port_tables
+from wavesym.programs.march.space import BLOCK, BODY
+from wavesym.programs.march.tables import plan_constants, port_tables
 from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.request import Request, refuse_beside
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
@@ -145,30 +145,20 @@ def _strengths(made: RuntimePlan) -> tuple[Function, ...]:
 def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, float]:
     plan = made.plan
     spaces = [joint.space for joint in plan.joints]
-    states, points = ([getattr(space, name) for space in spaces] for name in ("states", "points"))
-    cycle, span = plan.cycle
     return {
+        **plan_constants(plan, real),
         "windows": plan.windows,
-        "panels": len(plan.panels),
-        "joints": len(plan.joints),
-        "points": sum(points),
-        "states": sum(states),
+        "points": sum(space.points for space in spaces),
         "squares": sum(space.states**2 for space in spaces if space.law == BLOCK),
         "bodies": len(_bodies(made)),
-        "widest": max(*states, *points),
-        "ports": sum(len(joint.space.ports) for joint in plan.joints),
-        "tracks": len(plan.tracks),
-        "slots": sum(track.steps + 1 for track in plan.tracks),
-        "forces": plan.forces,
+        "widest": max(max(space.states, space.points) for space in spaces),
+        "ports": sum(len(space.ports) for space in spaces),
         "gains": len(made.output_terms),
         "strands": len(made.strands),
         "events": len(made.events),
         "lanes": sum(len(field.values) for field in laws.fields),
         "sections": len(made.sections) - 1,
         "groups": (len(made.sections) - 1) * len(plan.outputs),
-        "cycle": cycle,
-        "span": real.nearest(fmpq(span)),
-        "step": real.nearest(plan.step),
         "unit": 2 * nearest(real.roundoff),
     }
 
@@ -238,8 +228,7 @@ def _bodies(made: RuntimePlan) -> list[int]:
 def _masses(made: RuntimePlan) -> Iterator[int]:
     """Of each state whether it is the velocity of a mass: these come first in a joint."""
     for joint in made.plan.joints:
-        if isinstance(rows := joint.space, JointRows):  # others have no state
-            yield from (int(point >= 0) for point in rows.moves_with)
+        yield from (int(point >= 0) for point in joint.space.moves_with)
 
 
 def _with_reference(program: Program) -> Program:

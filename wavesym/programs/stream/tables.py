@@ -12,6 +12,7 @@ from flint import fmpq
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.evaluator import step_multiplications
+from wavesym.programs.march.losses import block_loss
 from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.march.space import BLOCK, BODY, SHOWN, JointSpace
 from wavesym.programs.march.tables import MarchTables, term_tables
@@ -196,7 +197,7 @@ class StreamTables:
             if joint.space.law == BODY
             else self._march.truncation_errors(joint, panel).ravel()
         )
-        rows = 2 * (sqrt(turned) + (1 + turned) / sqrt(2)) * rows
+        rows = block_loss(turned) * rows
         return [float(f"{value * 1.01:.3g}") for value in rows.tolist()]
 
     def jump_lost(self, joint: MarchedJoint) -> float:
