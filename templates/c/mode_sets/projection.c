@@ -243,7 +243,7 @@ static void project_loads(const chain *c, const springs *s, projection *p)
                 bent[other] = imposed[other];
             }
             solve(s, force, 0, moved);
-            solve_sizes(s, force, size);
+            solve(s, force, 1, size);
             p->load_total[load] = linear_mass(c, imposed, -1, 0, 0) * gain * gain;
         }
         for (int output = 0; output < OUTPUTS; ++output) {

@@ -51,13 +51,13 @@ static void springs_of(const chain *c, springs *s)
 }
 
 /* How far places move under forces. Where nothing holds the chain forces balance, and its root does not move.
- * `sizes` take all that is added as positive: a result is wrong by no more than `rounding` times what comes of them, as
- * no pivot is a difference. */
+ * `sizes` take all that is added as positive, so that nothing cancels: a result is wrong by no more than `rounding` times
+ * what comes of them, as no pivot is a difference. */
 static void solve(const springs *s, const real *force, int sizes, real *moved)
 {
     const bonds *const b = &s->bond;
     for (int place = 0; place < PLACES; ++place) {
-        moved[place] = place < ROWS ? force[place] : 0;
+        moved[place] = place < ROWS ? (sizes ? fabs(force[place]) : force[place]) : 0;
     }
     for (int row = 0; row < ROWS; ++row) {
         if (parent[row] >= 0) {
@@ -89,30 +89,13 @@ static void inertia(const chain *c, const real *moved, real *force)
     }
 }
 
-static real along(const springs *s, const real *force)
+/* The work of forces as the chain moves without strain; `sizes` as above. */
+static real along(const springs *s, const real *force, int sizes)
 {
     real total = 0;
     for (int place = 0; place < PLACES; ++place) {
-        total += force[place] * s->still[place];
-    }
-    return total;
-}
-
-/* What solve() may lose: how far places move when nothing that is added cancels. */
-static void solve_sizes(const springs *s, const real *force, real *size)
-{
-    real acting[PLACES];
-    for (int place = 0; place < PLACES; ++place) {
-        acting[place] = fabs(force[place]);
-    }
-    solve(s, acting, 1, size);
-}
-
-static real sizes_along(const springs *s, const real *force)
-{
-    real total = 0;
-    for (int place = 0; place < PLACES; ++place) {
-        total += fabs(force[place] * s->still[place]);
+        const real part = force[place] * s->still[place];
+        total += sizes ? fabs(part) : part;
     }
     return total;
 }
@@ -123,14 +106,14 @@ static void loaded_shape(const chain *c, const springs *s, const real *force, re
 {
     real acting[PLACES];
     real pull[PLACES];
-    const real part = FREE ? along(s, force) : 0;
+    const real part = FREE ? along(s, force, 0) : 0;
     for (int place = 0; place < PLACES; ++place) {
         bent[place] = part * s->still[place];
         acting[place] = force[place];
     }
     if (!FREE) {
         solve(s, acting, 0, moved);
-        solve_sizes(s, acting, size);
+        solve(s, acting, 1, size);
         return;
     }
     inertia(c, bent, pull);
@@ -141,11 +124,11 @@ static void loaded_shape(const chain *c, const springs *s, const real *force, re
     for (int place = 0; place < PLACES; ++place) {
         acting[place] = fabs(force[place]) + fabs(pull[place]);
     }
-    solve_sizes(s, acting, size);
+    solve(s, acting, 1, size);
     inertia(c, size, pull);
-    const real sizes = sizes_along(s, pull);
+    const real sizes = along(s, pull, 1);
     inertia(c, moved, pull);
-    real left = along(s, pull);
+    real left = along(s, pull, 0);
     for (int bar = 0; bar < BARS; ++bar) {
         const real t = c->delay[bar];
         left -= end_of(s->still, bar, 0) * end_of(bent, bar, 0) * c->impedance[bar] * t * t * t / 12;
@@ -206,7 +189,7 @@ static real break_mass(const chain *c, const springs *s, int bar, int side, real
     force[bar_left[bar]] -= bar_left_ratio[bar] / c->delay[bar];
     force[bar_right[bar]] += bar_right_ratio[bar] / c->delay[bar];
     solve(s, force, 0, moved);
-    solve_sizes(s, force, size);
+    solve(s, force, 1, size);
     const real mass = linear_mass(c, moved, bar, side, gap);
     *lost = 2 * rounding * linear_mass(c, size, bar, side, fabs(gap));
     if (!FREE) {
@@ -214,6 +197,6 @@ static real break_mass(const chain *c, const springs *s, int bar, int side, real
     }
     inertia(c, moved, force);
     const real part =
-        along(s, force) + end_of(s->still, bar, side) * gap * c->impedance[bar] * c->delay[bar] / 2;
+        along(s, force, 0) + end_of(s->still, bar, side) * gap * c->impedance[bar] * c->delay[bar] / 2;
     return mass - part * part;
 }
