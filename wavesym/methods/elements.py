@@ -142,18 +142,8 @@ class Elements:
 
         What no rod ties to it stays, and other prescribed points do.
         """
-        problem, shape, reached = self.problem, np.zeros(self.size), [point]
-        shape[point] = 1.0
-        while reached:
-            here = reached.pop()
-            for bar, side, at, ratio, _ in problem.each_end():
-                if at == here:
-                    far, moved = int(problem.ends[bar, 1 - side]), ratio * shape[here]
-                    shape[self.firsts[bar] : self.firsts[bar + 1]] = moved
-                    if shape[far] == 0 and far not in problem.prescribed_points:
-                        shape[far] = moved / problem.ratios[bar, 1 - side]
-                        reached.append(far)
-        return shape
+        points, rods = self.problem.rigid_motion(point, bars=True, held=self.problem.prescribed_points)
+        return np.concatenate([points, np.repeat(rods, self.cells - 1)])
 
     def forces(self, shape: Array) -> Array:
         """The forces that displacements (size,) need: exactly 0 for what strains no rod."""

@@ -13,7 +13,7 @@ here, and the integrators of `verify`: nothing knows of joints, waves or their l
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -217,13 +217,16 @@ class Problem:
         """The ratio of each end: (2 bars,)."""
         return self.ratios.ravel()
 
-    def rigid_motion(self, point: int, *, bars: bool = False, springs: bool = False) -> tuple[Array, Array]:
+    def rigid_motion(
+        self, point: int, *, bars: bool = False, springs: bool = False, held: Collection[int] = ()
+    ) -> tuple[Array, Array]:
         """How fast points (points,) and bars (bars,) move with a point of velocity 1, all contacts closed.
 
-        With `bars` these are rigid, with `springs` springs and dashpots are, too. What is not reached has velocity 0.
+        With `bars` these are rigid, with `springs` springs and dashpots are, too. Other points that are `held`,
+        and what is not reached, have velocity 0.
         """
         points, rods = np.zeros(self.points), np.zeros(len(self.delays))
-        held = (self.damping != 0) | (self.stiffness != 0)
+        linked = (self.damping != 0) | (self.stiffness != 0)
         points[point], waiting = 1.0, [point]
         while waiting:
             here = waiting.pop()
@@ -238,9 +241,9 @@ class Problem:
                     rods[end // 2] = self.end_ratios[end] * points[here]
                     found.append((int(self.end_points[end ^ 1]), rods[end // 2] / self.end_ratios[end ^ 1]))
             if springs:
-                found += [(int(other), points[here]) for other in np.flatnonzero(held[here])]
+                found += [(int(other), points[here]) for other in np.flatnonzero(linked[here])]
             for other, speed in found:
-                if points[other] == 0:
+                if points[other] == 0 and other not in held:
                     points[other] = speed
                     waiting.append(other)
         return points, rods
