@@ -17,7 +17,7 @@ from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes
 from wavesym.verification import integrations as module
 from wavesym.verification import programs
-from wavesym.verification.mode_sets import mode_set_names
+from wavesym.verification.models import mode_set_names
 from wavesym.verification.outcome import IntegratedOutput
 from wavesym.verification.report import verify
 

@@ -34,7 +34,7 @@ class Piece:
     def from_segment(cls, segment: Segment, end: fmpq, last: bool, negligible: arb) -> Piece:
         (polynomial,) = segment.families.values()
         half = arb((end - segment.start) / 2)
-        middles, radius = split(_shorten(polynomial, 2 * half, negligible)(arb_poly([half, half])))
+        middles, radius = split(shorten(polynomial, 2 * half, negligible)(arb_poly([half, half])))
         return cls(segment.start, end, middles, radius, segment.from_zero, last)
 
     @property
@@ -58,7 +58,7 @@ class Piece:
         return arb(0) if self.from_zero else self.polynomial(arb(-1)) + arb(0, self.radius)
 
 
-def _shorten(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
+def shorten(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
     """Without the highest powers, as far as they are negligible on [0, length]; they are in the ball of the first."""
     powers, rest = polynomial.coeffs(), arb(0)
     while powers and (more := (rest + abs(powers[-1]) * length ** (len(powers) - 1)).upper()) <= negligible:

@@ -28,6 +28,7 @@ from wavesym.errors import CostError
 from wavesym.exact.arrivals import identically_zero
 from wavesym.exact.contacts.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion
+from wavesym.exact.output_piece import shorten
 from wavesym.exact.tables.ball import Balls, Segment, is_zero
 from wavesym.mechanics.model import Model
 from wavesym.numbers import chebyshev
@@ -327,18 +328,8 @@ class _Course:
                 segment = self.segments[place]
                 (polynomial,) = segment.families.values()
                 moved = polynomial(arb_poly([arb(rational(centre) - segment.start), arb(half)]))
-                self._on[key] = _shorten(moved, self._negligible)
+                self._on[key] = shorten(moved, arb(1), self._negligible)
             yield self._on[key]
-
-
-def _shorten(polynomial: arb_poly, negligible: arb) -> arb_poly:
-    """A polynomial on [-1, 1] without its highest powers, as far as they are negligible in all."""
-    powers = polynomial.coeffs()
-    rest = arb(0)
-    while powers and (more := rest + abs(powers[-1]).upper()) < negligible:
-        rest = more
-        powers.pop()
-    return arb_poly([powers[0] + arb(0, rest.upper()), *powers[1:]]) if powers else arb_poly()
 
 
 class _Cuts:

@@ -35,8 +35,13 @@ from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes, sources
 from wavesym.targets.files import files
 from wavesym.verification.integrations import collocation_method
-from wavesym.verification.mode_sets import mode_set_names, mode_set_values
-from wavesym.verification.models import ParameterSet, functions_of_parameters, model_values
+from wavesym.verification.models import (
+    ParameterSet,
+    functions_of_parameters,
+    mode_set_names,
+    mode_set_values,
+    model_values,
+)
 from wavesym.verification.other_parameters import draw_parameters, runtime_names
 from wavesym.verification.outcome import Integrals, IntegratedOutput, Outcome, ProgramValues, format_error
 from wavesym.verification.reference import ReferenceOutputs, even_taus, sample_evenly
