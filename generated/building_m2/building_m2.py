@@ -43,8 +43,10 @@ CONTACT_END = {
 }
 _REAL = np.float64
 
-# the numbers of the program; the second class below says what they are
+# the numbers of the program; the second class below says what they are for
 _TABLES = {
+    # Of grid g: its outputs member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its
+    # pieces start at first_piece[g] + g, as there is one more, the end of the last piece.
     "first_member": [
         0, 6
     ],
@@ -65,6 +67,8 @@ _TABLES = {
         8.125, 8.375, 8.625, 8.875, 9.125, 9.375, 9.625, 9.875, 10.125, 10.375, 10.625, 10.875, 11.125, 11.375,
         11.583333333333334, 11.75, 11.916666666666668
     ],
+    # The polynomials of piece p of all grids from coefficient[first_power[p]] on: highest power first, of each power
+    # those of all members.
     "first_power": [
         0, 6, 12, 30, 48, 66, 84, 120, 156, 192, 228, 264, 300, 336, 372, 408, 444, 480, 516, 552, 588, 624, 660, 702,
         738, 774, 810, 852, 894, 930, 966, 1008, 1050, 1086, 1122, 1164, 1206, 1248, 1284, 1326, 1368, 1410, 1452, 1494,
@@ -410,8 +414,6 @@ class Scheme:
     Each kind of program has a scheme that reads these, and has the outputs at ascending tau in range.
     """
 
-    TABLES: tuple[str, ...]
-    CONSTANTS: tuple[str, ...]
     outputs: int
 
     def __init__(
@@ -448,22 +450,8 @@ class Scheme:
 class PiecesScheme(Scheme):
     """Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p].
 
-    Outputs that may jump or bend at the same times share a grid of pieces. Of grid g the outputs are
-    member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces start at
-    first_piece[g] + g, as there is one more, the end of the last piece. The polynomials of piece p of all grids start
-    at first_power[p] among the coefficients: highest power first, of each power those of all members.
+    Outputs that may jump or bend at the same times share a grid of pieces.
     """
-
-    TABLES = (
-        "first_member",
-        "member",
-        "first_piece",
-        "start",
-        "centre",
-        "first_power",
-        "coefficient",
-    )
-    CONSTANTS = ()
 
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         real = self.real

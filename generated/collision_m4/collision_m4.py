@@ -55,8 +55,10 @@ CONTACT_END = {
 }
 _REAL = np.float64
 
-# the numbers of the program; the second class below says what they are
+# the numbers of the program; the second class below says what they are for
 _TABLES = {
+    # Of grid g: its outputs member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its
+    # pieces start at first_piece[g] + g, as there is one more, the end of the last piece.
     "first_member": [
         0, 8, 10
     ],
@@ -81,6 +83,8 @@ _TABLES = {
         5.875, 6.125, 6.375, 6.625, 6.875, 7.125, 7.375, 7.625, 7.875, 8.125, 8.375, 8.625, 8.875, 9.125, 9.375,
         9.583333333333334, 9.75, 9.916666666666668
     ],
+    # The polynomials of piece p of all grids from coefficient[first_power[p]] on: highest power first, of each power
+    # those of all members.
     "first_power": [
         0, 16, 32, 48, 64, 112, 160, 208, 256, 304, 352, 400, 448, 496, 544, 592, 640, 688, 736, 784, 832, 880, 928,
         976, 1024, 1072, 1120, 1168, 1216, 1264, 1312, 1360, 1408, 1456, 1504, 1552, 1600, 1656, 1712, 1768, 1824, 1832,
@@ -519,8 +523,6 @@ class Scheme:
     Each kind of program has a scheme that reads these, and has the outputs at ascending tau in range.
     """
 
-    TABLES: tuple[str, ...]
-    CONSTANTS: tuple[str, ...]
     outputs: int
 
     def __init__(
@@ -557,22 +559,8 @@ class Scheme:
 class PiecesScheme(Scheme):
     """Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p].
 
-    Outputs that may jump or bend at the same times share a grid of pieces. Of grid g the outputs are
-    member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces start at
-    first_piece[g] + g, as there is one more, the end of the last piece. The polynomials of piece p of all grids start
-    at first_power[p] among the coefficients: highest power first, of each power those of all members.
+    Outputs that may jump or bend at the same times share a grid of pieces.
     """
-
-    TABLES = (
-        "first_member",
-        "member",
-        "first_piece",
-        "start",
-        "centre",
-        "first_power",
-        "coefficient",
-    )
-    CONSTANTS = ()
 
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         real = self.real

@@ -43,8 +43,10 @@ CONTACT_END = {
 }
 _REAL = np.float64
 
-# the numbers of the program; the second class below says what they are
+# the numbers of the program; the second class below says what they are for
 _TABLES = {
+    # Of grid g: its outputs member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its
+    # pieces start at first_piece[g] + g, as there is one more, the end of the last piece.
     "first_member": [
         0, 4, 5
     ],
@@ -69,6 +71,8 @@ _TABLES = {
         5.875, 6.125, 6.375, 6.625, 6.875, 7.125, 7.375, 7.625, 7.875, 8.125, 8.375, 8.625, 8.875, 9.125, 9.375,
         9.583333333333334, 9.75, 9.916666666666668
     ],
+    # The polynomials of piece p of all grids from coefficient[first_power[p]] on: highest power first, of each power
+    # those of all members.
     "first_power": [
         0, 20, 36, 52, 68, 88, 108, 128, 148, 168, 188, 208, 228, 248, 268, 288, 308, 332, 352, 372, 392, 416, 440, 460,
         480, 504, 528, 552, 572, 596, 620, 644, 664, 688, 712, 736, 756, 780, 804, 828, 848, 852, 853, 854, 858, 862,
@@ -291,8 +295,6 @@ class Scheme:
     Each kind of program has a scheme that reads these, and has the outputs at ascending tau in range.
     """
 
-    TABLES: tuple[str, ...]
-    CONSTANTS: tuple[str, ...]
     outputs: int
 
     def __init__(
@@ -329,22 +331,8 @@ class Scheme:
 class PiecesScheme(Scheme):
     """Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p].
 
-    Outputs that may jump or bend at the same times share a grid of pieces. Of grid g the outputs are
-    member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces start at
-    first_piece[g] + g, as there is one more, the end of the last piece. The polynomials of piece p of all grids start
-    at first_power[p] among the coefficients: highest power first, of each power those of all members.
+    Outputs that may jump or bend at the same times share a grid of pieces.
     """
-
-    TABLES = (
-        "first_member",
-        "member",
-        "first_piece",
-        "start",
-        "centre",
-        "first_power",
-        "coefficient",
-    )
-    CONSTANTS = ()
 
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         real = self.real

@@ -12,7 +12,6 @@ from tests.support.builds import LANGUAGES, SOURCES, STRICT, scene, source
 from tests.support.generated import assemble
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
-from wavesym.programs.schemes import SCHEMES
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import Scene, lower
 from wavesym.targets.c.tables import Declaration, declarations, tables_text
@@ -55,7 +54,7 @@ def test_a_kernel_is_c_as_it_stands(kernel, precision):
     ("kernel", "name"), [("closed", "building_m2"), ("pieces", "building_m2"), ("march", "damped_building")]
 )
 def test_tables_are_what_their_header_declares(kernel, name):
-    """No table more, none less, each of its type; what NumPy reads is among them, in their order."""
+    """No table more, none less, in its order, each of its type."""
     items = [
         item
         for paragraph in declarations(f"{kernel}/tables.h")
@@ -66,11 +65,9 @@ def test_tables_are_what_their_header_declares(kernel, name):
     model = lower(Scene.from_toml(name))
     made = program(model, choose(model, kernel).evaluator).tables
     assert len(items) == len(types) > 0
-    assert made.keys() == types.keys()
+    assert list(made) == list(types)
     for table, values in made.items():
         assert {isinstance(value, int) for value in values} <= {types[table] == "int"}, table
-    read = SCHEMES[kernel].TABLES
-    assert tuple(table for table in types if table in read) == read
 
 
 HEAD = re.compile(r"^static (?:inline )?(\w[\w ]*? \*?)(?:OF\()?\w+\)?\(([^{;]*)\)\n\{", re.MULTILINE)
@@ -117,10 +114,10 @@ def test_tables_are_written_as_they_are_declared():
     values = {"steps": ("1, 2,", "3"), "ring": ("0",), "track": ("7",)}
     enumeration, first, second = tables_text("march/tables.h", values, {"degree": "7", "span": "2.0"})
     assert "    DEGREE = 7,\n    SIZE = DEGREE + 1,\n    PANELS = 2,\n" in enumeration
-    assert first.startswith("/* tracks: how many windows later it arrives,")
-    assert "static const int steps[] = {\n    1, 2,\n    3\n};\n\nstatic const int ring[] = {\n    0\n};\n" in first
+    assert first.startswith("/* tracks: how many windows later what is sent arrives */")
+    assert "static const int steps[] = {\n    1, 2,\n    3\n};\n\n/* where the ring of" in first
     assert first.endswith("and delays. */\nstatic const int track[] = {\n    7\n};\n")
-    assert first.count("/*") == 2
+    assert first.count("/*") == 3
     assert second.endswith("where they begin in it. */\nstatic const real span = 2.0;")
 
 

@@ -27,6 +27,7 @@ from wavesym.programs.march.bound import Verdict
 from wavesym.programs.march.evaluator import March, judge_march
 from wavesym.programs.march.plan import readable
 from wavesym.programs.program import Program, ProgramOutput, Provenance
+from wavesym.programs.schemes import names_read
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
 from wavesym.programs.schemes.march import MarchScheme
 from wavesym.programs.tables import Tables
@@ -165,12 +166,13 @@ class HatMarch(Form):
     def tables(self) -> Tables:
         """The numbers of its program, those of all marches one after the other."""
         marches = [march.tables for march in self.marches]
-        made = {name: tuple(number for one in marches for number in one[name]) for name in MarchScheme.TABLES}
+        names, _ = names_read(MarchScheme, marches[0], self.marches[0].constants, self.tau_max)
+        made = {name: tuple(number for one in marches for number in one[name]) for name in names}
         samples = [record.samples for record in self.records]
         firsts = np.cumsum([0, *map(len, samples)]).tolist()
         return made | {
-            "extent": tuple(len(one[name]) for one in marches for name in MarchScheme.TABLES),
-            "constant": tuple(float(march.constants[name]) for march in self.marches for name in MarchScheme.CONSTANTS),
+            "extent": tuple(len(one[name]) for one in marches for name in names),
+            "constant": tuple(float(march.constants[name]) for march in self.marches for name in HatScheme.OF_MARCH),
             "spacing": tuple(part for record in self.records for part in _parts(record.spacing)),
             "begin_at": tuple(part for record in self.records for part in _parts(record.begin)),
             "first_sample": tuple(firsts),

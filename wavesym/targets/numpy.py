@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from textwrap import wrap
 
 from wavesym.programs.program import Program
-from wavesym.programs.schemes import PARTS, SCHEMES
+from wavesym.programs.schemes import PARTS, SCHEMES, names_read
 from wavesym.programs.schemes.scheme import Scheme
 from wavesym.rendering import render
+from wavesym.targets.c.tables import declarations
 from wavesym.targets.description import Description
 from wavesym.targets.literals import lines, literal
 
 HAS_SELFTEST = False
 
 _WIDTH = 112
+_HEADERS = {"hats": "march"}
+"""Kernels whose tables another one declares."""
 
 
 def files(scene: Description, program: Program) -> dict[str, str]:
@@ -24,15 +28,28 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         return (str(value) if isinstance(value, int) else literal(value, program.real) for value in values)
 
     scheme = SCHEMES[program.kernel]
+    names, numbers = names_read(scheme, program.tables, program.constants, program.tau_max)
+    comments = _comments(program.kernel, names)
     text = render(
         "numpy/program.py.j2",
         scene=scene,
-        tables={name: lines(literals(program.tables[name]), _WIDTH) for name in scheme.TABLES},
-        constants=dict(zip(scheme.CONSTANTS, literals(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
+        tables={name: (comments.get(name, ()), lines(literals(program.tables[name]), _WIDTH)) for name in names},
+        constants=dict(zip(numbers, literals(program.constants[name] for name in numbers), strict=True)),
         scheme="\n\n\n".join(map(_text, (Scheme, *PARTS.get(program.kernel, ()), scheme))),
         scheme_name=scheme.__name__,
     )
     return {f"{scene.name}.py": text}
+
+
+def _comments(kernel: str, names: Sequence[str]) -> dict[str, list[str]]:
+    """What is said of tables where C declares them, with the first that a comment is of."""
+    found, comment = dict[str, list[str]](), ""
+    for item in (item for paragraph in declarations(f"{_HEADERS.get(kernel, kernel)}/tables.h") for item in paragraph):
+        if isinstance(item, str):
+            comment = " ".join(line.strip("/* ") for line in item.splitlines()) if item.startswith("/*") else ""
+        elif item.name in names:
+            found[item.name], comment = wrap(comment, _WIDTH), ""
+    return found
 
 
 def _text(part: type) -> str:

@@ -25,14 +25,16 @@ enum {
     BLOCK = 2
 };
 
-/* tracks: how many windows later it arrives, where its ring of windows starts, and what is on its way at tau = 0 */
+/* tracks: how many windows later what is sent arrives */
 extern const int steps[];
+/* where the ring of its windows starts */
 extern const int ring[];
+/* what is on its way at tau = 0 */
 extern const real held[];
 #include "../ports.h"
-/* what acts for a wave that arrives at a port; what joints do (0 scatter, BODY, BLOCK), how strong loads are on a body;
- * where on each panel their matrix is, by columns: of a body three numbers for each degree, slack, loss and 0, then
- * RATIO, SUM_FIRST and SUM_LAST */
+/* what acts for a wave that arrives at a port; what joints do (0 scatter, 1 a body, 2 a block), how strong loads are on a
+ * body; where on each panel their matrix is, by columns: of a body three numbers for each degree, slack, loss and 0, then
+ * ratio, first and last */
 extern const real push[];
 extern const int law[];
 extern const real drive[];

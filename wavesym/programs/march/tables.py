@@ -93,13 +93,13 @@ class MarchTables:
         drives = [space.drive for space in spaces]
         pushes = ((drive or 1) * port.push for space, drive in zip(spaces, drives, strict=True) for port in space.ports)
         return {
-            "law": tuple(space.law for space in spaces),
             **port_tables(plan.joints, real),
+            "push": real.table(pushes),
+            "law": tuple(space.law for space in spaces),
             "drive": real.table(drives),
             "answer": where,
             "matrix": matrix,
             "initial_state": real.table(value for space in spaces for value in space.initial_state),
-            "push": real.table(pushes),
         }
 
     def constants(self) -> dict[str, float]:

@@ -9,13 +9,8 @@ from wavesym.programs.schemes.scheme import Scheme
 class ClosedScheme(Scheme):
     """The closed form: from tau = start on, with w = (tau - start) + excess, an output contains a pulse,
 
-        sum over its families of exp(-rate*w) * (coefficient[0] + coefficient[1]*w + ...).
-
-    The pulses of output o are first_pulse[o] ... first_pulse[o + 1] - 1; so on for families, powers.
+    sum over its families of exp(-rate*w) * (coefficient[0] + coefficient[1]*w + ...).
     """
-
-    TABLES = ("first_pulse", "start", "excess", "first_family", "rate", "first_power", "coefficient")
-    CONSTANTS = ()
 
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         self._first_pulse, self._first_family, self._first_power = (

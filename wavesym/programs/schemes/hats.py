@@ -20,21 +20,21 @@ class HatScheme(Scheme):
     single numbers. A spacing is the sum of two numbers, as is the instant at which a record begins.
     """
 
-    TABLES = (*MarchScheme.TABLES, "extent", "constant", "spacing", "begin_at", "first_sample", "sample")
-    CONSTANTS = ("rest",)
+    OWN = ("extent", "constant", "spacing", "begin_at", "first_sample", "sample")
+    """The tables that are none of a march."""
+    OF_MARCH = ("degree", "step", "span", "forces")
+    """The single numbers of a march."""
 
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         real = self.real
-        extents = np.array(tables["extent"], int).reshape(-1, len(MarchScheme.TABLES))
+        names = [name for name in tables if name not in self.OWN]
+        extents = np.array(tables["extent"], int).reshape(-1, len(names))
         ends = np.cumsum(np.vstack([np.zeros_like(extents[:1]), extents]), axis=0)
         numbers = np.array(tables["constant"], real).reshape(len(extents), -1).tolist()
         marches = [
             MarchScheme(
-                {
-                    name: tables[name][first:last]
-                    for name, first, last in zip(MarchScheme.TABLES, ends[k], ends[k + 1], strict=True)
-                },
-                dict(zip(MarchScheme.CONSTANTS, numbers[k], strict=True)),
+                {name: tables[name][a:b] for name, a, b in zip(names, ends[k], ends[k + 1], strict=True)},
+                dict(zip(self.OF_MARCH, numbers[k], strict=True)),
                 self.tau_max,
                 real,
             )

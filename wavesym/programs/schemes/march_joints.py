@@ -22,58 +22,6 @@ class MarchNumbers(Scheme):
     (coefficients of what acts on its points, x at the start) -> (those of the velocities q, x at the end less x).
     """
 
-    TABLES = (
-        # tracks: how many windows later it arrives, and what is on its way at tau = 0
-        "steps",
-        "held",
-        # joints: where their points, states and ports start in the next tables, and the force on each point
-        "first_point",
-        "first_state",
-        "first_port",
-        "force_on",
-        # ports: the point of the joint, how fast an end moves with it, and tracks
-        "point_of",
-        "ratio",
-        "arrive",
-        "send",
-        # what acts for a wave that arrives at a port; what joints do (0 scatter, 1 a body, 2 a block), how strong loads
-        # are on a body, and where on each panel their matrix is: of a body three numbers for each degree, slack, loss
-        # and 0, then ratio, first and last
-        "push",
-        "law",
-        "drive",
-        "answer",
-        "matrix",
-        "initial_state",
-        # panels: half the length, and what its start is later than that of another
-        "half_length",
-        "since",
-        # changes of the loads: from there on three powers of the time since
-        "event_window",
-        "event_panel",
-        "event_force",
-        "event_power",
-        # outputs: where their tracks start in the next tables; factors, whether the integral counts, and delays
-        "first_term",
-        "track",
-        "gain",
-        "summed",
-        "delay",
-        # after a cycle of windows tau is a whole number again; where they begin in it
-        "begin",
-        # delays: from t >= `from` on, t counted from the start of the cycle, a wave is that of `panel_of`, `back`
-        # windows ago, with u = (t - start + excess) / half - 1; an integral over all of a window is from low to high
-        "first_stretch",
-        "from",
-        "start",
-        "excess",
-        "low",
-        "high",
-        "back",
-        "panel_of",
-    )
-    CONSTANTS = ("degree", "step", "span", "forces")
-
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         real = self.real
 

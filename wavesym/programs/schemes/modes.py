@@ -17,21 +17,6 @@ class ModesScheme(Scheme):
     A panel is stepped exactly, whatever its length.
     """
 
-    TABLES = (
-        "frequency",
-        "damping",
-        "push",
-        "moved",
-        "moving",
-        "direct",
-        "time",
-        "length",
-        "kind",
-        "sample",
-        "slope",
-    )
-    CONSTANTS = ("loads",)
-
     BLOCK = 512  # panels between which states are kept
     SLOW = 2  # up to here a power series is summed, as differences would lose digits
     _AT_ONCE = 1 << 15  # numbers of an array

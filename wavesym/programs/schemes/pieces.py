@@ -9,22 +9,8 @@ from wavesym.programs.schemes.scheme import Scheme
 class PiecesScheme(Scheme):
     """Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p].
 
-    Outputs that may jump or bend at the same times share a grid of pieces. Of grid g the outputs are
-    member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces start at
-    first_piece[g] + g, as there is one more, the end of the last piece. The polynomials of piece p of all grids start
-    at first_power[p] among the coefficients: highest power first, of each power those of all members.
+    Outputs that may jump or bend at the same times share a grid of pieces.
     """
-
-    TABLES = (
-        "first_member",
-        "member",
-        "first_piece",
-        "start",
-        "centre",
-        "first_power",
-        "coefficient",
-    )
-    CONSTANTS = ()
 
     def _read(self, tables: dict[str, tuple[float, ...]], constants: dict[str, float]) -> None:
         real = self.real

@@ -10,8 +10,6 @@ class Scheme:
     Each kind of program has a scheme that reads these, and has the outputs at ascending tau in range.
     """
 
-    TABLES: tuple[str, ...]
-    CONSTANTS: tuple[str, ...]
     outputs: int
 
     def __init__(
