@@ -9,23 +9,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import cycle
 from math import isnan
+from textwrap import wrap
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from wavesym.lab.chart.measure import NEAR, ChartRow, Measurements
 from wavesym.pictures.labels import Curve, label
+from wavesym.pictures.style import FONT, WIDTH, draw_grid, new_figure, with_style
 from wavesym.scene import Scene
 from wavesym.systems import Preset, SystemTable
 
 # below half a unit in the last place an error is a matter of luck; no error at all is drawn there too
 _LEAST_ERROR = 5e-17
 _LARGEST_ERROR = 1.0
-_SIZE = (13.0, 12.5)  # inches
-_FONT = 8.0
+_LEFT, _RIGHT, _NAMES, _PANEL, _GAP = 0.85, 0.12, 3.0, 6.0, 1.0  # inches
+_LINE, _LETTERS = 0.21, 68  # inches; letters in a line of notes
 
 _OURS = {"closed": "s", "pieces": "o", "modes": "H", "march": "D", "ball reference": "*"}
 _DASHES = {("C", "double"): "-", ("NumPy", "double"): "--", ("C", "single"): "-.", ("NumPy", "single"): ":"}
@@ -56,40 +56,49 @@ class _Style:
         return "black" if self.ours else "0.42"
 
 
+@with_style
 def draw(scene: Scene, measured: Measurements) -> Figure:
     """The chart of a scene's measurements; the same bytes from the same numbers when it is written by `save`."""
-    with mpl.rc_context({"font.size": _FONT, "font.family": "DejaVu Sans"}):
-        figure = Figure(figsize=_SIZE, dpi=100)
-        FigureCanvasAgg(figure)
-        grid = figure.add_gridspec(
-            2, 2, height_ratios=(2.6, 1), left=0.065, right=0.985, top=0.92, bottom=0.05, hspace=0.2, wspace=0.06
-        )
-        curves = _curves(measured.rows)
-        figure.suptitle(_title(scene, measured), x=0.065, ha="left", fontsize=_FONT + 3)
-        if all(isnan(row.error_at_fronts) for row in measured.rows):
-            away, where = figure.add_subplot(grid[0, :]), "anywhere: nothing jumps"
-        else:
-            away, fronts = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
-            where = f"away from fronts: more than {NEAR:g} in tau from any arrival"
-            _panel(fronts, f"at fronts: within {NEAR:g} of an arrival, and at it", curves, measured, "error_at_fronts")
-            fronts.tick_params(labelleft=False)
-        _panel(away, where, curves, measured, "error_away")
-        away.set_ylabel("time per value / ns")
-        _setup(figure.add_subplot(grid[1, :]), curves, measured.new_parameters)
+    curves = _curves(measured.rows)
+    panels = [("error_away", f"Away from fronts: more than {NEAR:g} in tau from any arrival")]
+    if all(isnan(row.error_at_fronts) for row in measured.rows):
+        panels = [("error_away", "Anywhere: nothing jumps")]
+    else:
+        panels.append(("error_at_fronts", f"At fronts: within {NEAR:g} of an arrival, and at it"))
+    notes = wrap(_notes(scene, measured), _LETTERS)
+    names = _setup_names(curves, measured)
+    above, below = _LINE * (3.2 + len(notes)), _LINE * (1 + len(names))
+    height = above + len(panels) * (_PANEL + _GAP) + below + _GAP / 2
+    figure = new_figure(height, constrained=False)
+    figure.text(0.01, 1 - 0.4 * _LINE / height, _title(scene), weight="bold", va="top")
+    figure.text(0.01, 1 - 1.5 * _LINE / height, "\n".join(notes), color="0.3", va="top")
+    top = height - above
+    for error, where in panels:
+        axes = figure.add_axes(_box(_LEFT, top, _PANEL, height))
+        _panel(axes, where, curves, measured, error)
+        top -= _PANEL + _GAP
+    _setup(figure.add_axes(_box(_NAMES, top, below, height)), names, curves, measured.new_parameters)
     return figure
 
 
-def _title(scene: Scene, measured: Measurements) -> str:
-    parts = scene.system
+def _box(left: float, top: float, tall: float, height: float) -> tuple[float, float, float, float]:
+    """Where axes are in a figure so high, all in inches."""
+    return left / WIDTH, (top - tall) / height, (WIDTH - _RIGHT - left) / WIDTH, tall / height
+
+
+def _title(scene: Scene) -> str:
+    return f"{scene.system.type.capitalize()}, {_rods(scene.system)}: time and error"
+
+
+def _notes(scene: Scene, measured: Measurements) -> str:
     outputs = len(scene.outputs)
     known = (
         f" Errors are known to {measured.reference_bound:.0e}, which is in them." if measured.reference_bound else ""
     )
     return (
-        f"{scene.name}: {parts.type}, {_rods(parts)}, "
-        f"{outputs} output{'s' * (outputs > 1)}, tau to {float(scene.output.until):g}\n"
-        f"Speed against accuracy, {measured.samples} equally spaced samples of each output (a stream: of its load). "
-        f"One thread; lower left is better.\nBlack: wavesym, grey: other methods.{known}"
+        f"{outputs} output{'s' * (outputs > 1)}, tau to "
+        f"{float(scene.output.until):g}; {measured.samples} equally spaced samples of each output (a stream: of its "
+        f"load), one thread. Lower left is better. Black: wavesym, grey: other methods.{known}"
     )
 
 
@@ -118,14 +127,13 @@ def _panel(
     axes.set(xscale="log", yscale="log", xlim=(_LEAST_ERROR / 2, _LARGEST_ERROR * 3))
     times = [row.ns_per_value for row in measured.rows]
     axes.set_ylim(measured.floor / 2.5, max(times, default=1.0) * 3)
-    axes.set_xlabel("largest error / largest value of the output (dimensionless)")
-    axes.set_title(title, fontsize=_FONT + 1, loc="left")
-    axes.grid(True, which="major", color="0.9", linewidth=0.5)
+    axes.set_xlabel("largest error / largest value of the output")
+    axes.set_ylabel("time a value [ns]")
+    axes.set_title(title, loc="left")
+    draw_grid(axes, zero=False)
     axes.axhline(measured.floor, color="black", linewidth=0.8, dashes=(1, 2))
     ends = np.geomspace(_LEAST_ERROR, _LARGEST_ERROR, 9)[:, np.newaxis]
-    floor = Curve(
-        "floor: writing a straight line of doubles, C", np.insert(ends, 1, measured.floor, axis=1), "black", "normal"
-    )
+    floor = Curve("floor: a straight line of doubles, C", np.insert(ends, 1, measured.floor, axis=1), "black", "normal")
     named = [floor]
     for style, rows in curves:
         # a stream says nothing at fronts; what has no digit right has no place
@@ -145,20 +153,23 @@ def _panel(
             zorder=3 if style.ours else 2,
         )
         named.append(Curve(style.name, points, "black" if style.ours else "0.25", "bold" if style.ours else "normal"))
-    label(axes, named, _FONT)
+    label(axes, named, FONT)
 
 
-def _setup(axes: Axes, curves: Sequence[tuple[_Style, list[ChartRow]]], new_parameters: float | None) -> None:
-    """What a new parameter set costs, from the least to the most of a curve's points. First, where there is one, what
-    a program costs that takes parameters when it runs: all of its samples are in that.
-    """
-    before = 0 if new_parameters is None else 1
-    axes.set(xscale="log", ylim=(len(curves) + before - 0.5, -0.5))
-    names = [style.name for style, _ in curves]
+def _setup_names(curves: Sequence[tuple[_Style, list[ChartRow]]], measured: Measurements) -> list[str]:
+    """The rows of what a new parameter set costs; first, where there is one, a program that takes it when it runs."""
+    first = ["kappa at run time, C"] * (measured.new_parameters is not None)
+    return [*first, *(style.name for style, _ in curves)]
+
+
+def _setup(
+    axes: Axes, names: Sequence[str], curves: Sequence[tuple[_Style, list[ChartRow]]], new_parameters: float | None
+) -> None:
+    """What a new parameter set costs, from the least to the most of a curve's points; at run time with all samples."""
+    axes.set(xscale="log", ylim=(len(names) - 0.5, -0.5))
     if new_parameters is not None:
         axes.plot([new_parameters], [0], "*", color="black", markersize=9)
-        names = ["kappa at run time, C, with all samples", *names]
-    for place, (style, rows) in enumerate(curves, before):
+    for place, (style, rows) in enumerate(curves, len(names) - len(curves)):
         seconds = [row.setup_seconds for row in rows]
         axes.plot([min(seconds), max(seconds)], [place, place], color=style.color, linewidth=1)
         axes.plot(
@@ -171,13 +182,6 @@ def _setup(axes: Axes, curves: Sequence[tuple[_Style, list[ChartRow]]], new_para
         )
     axes.set_yticks(range(len(names)), names)
     axes.tick_params(axis="y", length=0)
-    axes.grid(True, color="0.9", linewidth=0.5)
-    axes.set_xlabel("set-up for a new parameter set / s")
-    axes.set_title(
-        "set-up, apart from the times above: wavesym generates and compiles or imports code, others fill tables",
-        fontsize=_FONT + 1,
-        loc="left",
-    )
-    # its names need room on the left, which the panels above do not
-    box = axes.get_position()
-    axes.set_position((0.2, box.y0, box.x1 - 0.2, box.height))
+    draw_grid(axes, zero=False)
+    axes.set_xlabel("set-up for a new parameter set [s]")
+    axes.set_title("Set-up: generate and compile, or fill tables", loc="right")
