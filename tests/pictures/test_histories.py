@@ -293,6 +293,15 @@ def test_history_of_a_load_needs_no_scene() -> None:
     assert History(Probe("a", "load", 1, fmpq(0)), (RAMP,)).formal == inf
 
 
+def test_the_last_time_is_written_within_the_figure() -> None:
+    long = History(Probe("a", "load", 1, fmpq(0)), (np.array([[0.0, 0.0], [20.0, 1.0]]),))
+    figure = stack_panels([PlotPanel("load", (long,))], 20.0, [])
+    figure.canvas.draw()
+    last = figure.axes[0].get_xticklabels()[-1]
+    assert last.get_text() == "20.0"
+    assert last.get_window_extent().x1 <= figure.bbox.x1
+
+
 def test_slips_and_yields_are_shaded_and_named() -> None:
     """Friction R stops v after m v / R; a spring yields once its push K v t is its limit, R/(K v)."""
     rubs = {"mass": 1, "velocity": 1, "friction": "1/2", "name": "a"}

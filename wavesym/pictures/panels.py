@@ -31,7 +31,8 @@ CHARACTERS = 66  # in a line of text across the figure
 _LEFT, _RIGHT, _GAP = 1.05, 0.1, 0.22  # inches
 _TITLE = 0.62  # of an axis, to its left
 _LINE = 0.21  # height of a line of text
-_WIDEST_TIME, _WIDEST_VALUE = 4, 5  # characters of a tick that there is room for: right of the last, beside the title
+_WIDEST_TIME, _WIDEST_VALUE = 4, 5  # characters of a tick that there is room for: below the axis, beside the title
+_WIDEST_LAST = 3  # of one at the end of the axis, half of which is right of it
 _CHARACTER = 0.106  # inches
 _AXIS = 0.55  # below the last panel
 _BEYOND = 1.01  # what happens at the end of the horizon is not hidden by the frame
@@ -137,9 +138,11 @@ def _characters(axis: Axis) -> int:
 
 def _shorten_times(axes: Axes) -> None:
     """Write long times with no more digits than they need, and the last one so that it ends within the figure."""
-    if _characters(axes.xaxis) > _WIDEST_TIME:
+    widest, ticks = _characters(axes.xaxis), _ticks(axes.xaxis)
+    if widest > _WIDEST_TIME:
         axes.xaxis.set_major_formatter("{x:g}")
-        axes.set_xticks(_ticks(axes.xaxis))
+    if widest > _WIDEST_TIME or (widest > _WIDEST_LAST and ticks[-1] > 0.98 * axes.get_xlim()[1]):
+        axes.set_xticks(ticks)
         axes.get_xticklabels()[-1].set_horizontalalignment("right")
 
 
