@@ -53,7 +53,7 @@ demo: install
 	@echo '   $(BIN)/wavesym init frame > mine.toml          a scene of your own to start from, with comments'
 	@echo '   $(BIN)/wavesym report mine.toml -o mine.html   one page: histories, extremes, frequencies'
 	@echo '   $(BIN)/wavesym generate mine.toml              its C'
-	@echo '   docs/guide.md                                all else, step by step'
+	@echo '   docs/guide.md                                     all else, step by step'
 
 test: .venv/.test
 	$(BIN)/python -m pytest $(CORES)

@@ -83,7 +83,8 @@ def report(folder: Path) -> Iterator[str]:
     yield ""
     yield "Time a sample against largest error, by `wavesym chart`, with other methods; the numbers are in the CSVs."
     yield ""
-    yield from (f"![{label}]({label}.svg)" for label in "bdclr")
+    for label, scene in scenes(folder, "bdclr").items():
+        yield f"![{scene.system.type}: time a value over largest error, of wavesym and others]({label}.svg)"
     yield ""
     yield "## Growth"
     yield ""
