@@ -34,7 +34,7 @@ Request = Callable[[random.Random], list[str]]
 # what names a key, an option, or says that there is no scene at all
 NAMED = re.compile(
     r'bad\.toml: (?:(?:[\w.-]|\[\d+\]|"[^\n]*(?:"|\.\.\.))+: '
-    r"|no TOML, |empty; |byte \d+ is not UTF-8; |larger than |and \d+ more faults|tables or lists too deep"
+    r"|not TOML, |empty; |byte \d+ is not UTF-8; |larger than |and \d+ more faults|tables or lists too deep"
     r"|an integer has more than |more than |line \d+: )"
 )
 

@@ -133,6 +133,25 @@ strain = [1.5]
         assert ("its two sides move apart from the start" in capsys.readouterr().err) == told
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong", "meant"),
+    [("mass = 1", "mas = 1", "mass"), ('"contact"', '"contct"', "contact"), ('["anvil"]', '["anvill"]', "anvil")],
+)
+def test_a_part_or_place_that_was_meant_is_asked(
+    right: str, wrong: str, meant: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = """name = "bars"
+[system]
+type = "chain"
+parts = [{ mass = 1, velocity = 1 }, { rod = 1 }, "contact", { rod = 1 }, { mass = 2, name = "anvil" }]
+[output]
+until = 2
+velocity = ["anvil"]
+"""
+    Path("mine.toml").write_text(text.replace(right, wrong, 1))
+    assert refused(capsys, "run", "mine.toml").count(f'Did you mean "{meant}"?') == 1
+
+
 def test_what_was_meant_is_asked(capsys: pytest.CaptureFixture[str]) -> None:
     assert refused(capsys, "genrate", "mine.toml").startswith(
         "wavesym: No such command 'genrate'. Did you mean \"generate\"?"

@@ -174,7 +174,7 @@ MISTAKES = [
     # loads
     (COLLISION, "[output]", "[[load]]\nbody = 1\n[output]", "load: a collision has its velocities; leave [[load]] out"),
     (DRIVE, "[[load]]", "[load]", "load: a table is not a list; write [ ] around it"),
-    (DRIVE, 'name = "good"', 'name = "good"\nload = 3', "no TOML, "),
+    (DRIVE, 'name = "good"', 'name = "good"\nload = 3', "not TOML, "),
     (DRIVE, "body = 3", "body = 0", "load[0].body: 0 is not the number of a body; write 1 to 3"),
     (DRIVE, "body = 3", "body = 4", "load[0].body: 4 is not the number of a body; write 1 to 3"),
     (DRIVE, "body = 3", f"body = {HUGE}", "load[0].body: a number of about "),
@@ -231,8 +231,8 @@ MISTAKES = [
     (DRIVE, '"good"', "1.5", "name: 1.5 is not an identifier"),
     (DRIVE, '"good"', "3", "name: 3 is not an identifier"),
     # not TOML, or not a scene
-    (DRIVE, "[output]", "[output", "no TOML, "),
-    (DRIVE, "until = 10", "until = 10\nuntil = 11", "no TOML, "),
+    (DRIVE, "[output]", "[output", "not TOML, "),
+    (DRIVE, "until = 10", "until = 10\nuntil = 11", "not TOML, "),
     (DRIVE, "until = 10", "until = 10\nx = " + "9" * 5000, "an integer has more than 4300 digits; write fewer"),
     (DRIVE, "until = 10", "until = 10\nx = " + "[" * 100000, "tables or lists too deep in one another"),
     (DRIVE, DRIVE, "system = 3", "name: missing"),
@@ -268,9 +268,9 @@ def test_the_scenes_that_mistakes_are_made_in_are_right(tmp_path: Path, good: st
     [
         (b"", "empty; write a TOML file"),
         (b"\x7fELF\x02\x01\x01\x00\x00\xff\xfe", "byte 9 is not UTF-8; write a TOML file"),
-        (b"\x00\x01\x02", "no TOML, "),
+        (b"\x00\x01\x02", "not TOML, "),
         ('name = "b\u00fccher"'.encode("latin-1"), "byte 9 is not UTF-8; write a TOML file"),
-        (b'name = "half', "no TOML, "),
+        (b'name = "half', "not TOML, "),
     ],
 )
 def test_a_file_that_is_no_text(tmp_path: Path, content: bytes, expected: str) -> None:
@@ -345,7 +345,7 @@ LARGE: dict[str, tuple[Callable[[int], str], str]] = {
     "dotted keys in a line": (lambda n: "a = [" + "{b.c=1}," * n + "]", "more than 20000 tables"),
     "comments": (lambda n: "# a\n" * (1_000_000 + n), "more than 1000000 lines"),
     "quotes": (lambda n: '"\\' * 10 * n, "more than 100000 backslashes"),
-    "a long word": (lambda n: "a" * 20 * n, "no TOML, "),
+    "a long word": (lambda n: "a" * 20 * n, "not TOML, "),
 }
 
 
@@ -458,7 +458,7 @@ def test_frequent_slips_in_toml_say_what_to_write(text: str, remedy: str) -> Non
     """And no other fault does: two words behind a number are none of them."""
     with pytest.raises(SceneError) as error:
         Scene.from_toml(text + "\n")
-    assert str(error.value).startswith("scene: no TOML, ")
+    assert str(error.value).startswith("scene: not TOML, ")
     assert str(error.value).endswith(f"; {remedy}")
     with pytest.raises(SceneError) as error:
         Scene.from_toml("a = 1 # 4,2\nb = 2 3\n")

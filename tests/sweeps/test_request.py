@@ -72,7 +72,7 @@ DRIVE = 'scene = "drive_m1"\n'
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("x =", "sweep.toml: no TOML"),
+        ("x =", "sweep.toml: not TOML"),
         ('[vary]\n"output.until" = [1]', "sweep.toml: scene: missing; write the path of a scene"),
         (DRIVE, "sweep.toml: nothing is varied; write a table [vary], or records"),
         (DRIVE + "[vari]", "sweep.toml: vari: unknown key; write scene, records, zip, vary or keep. Did you"),

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from wavesym.cli.parameters import PATH, format_option, put, refuse_unwritable
+from wavesym.errors import printable
 from wavesym.progress import progress
 
 
@@ -62,5 +63,9 @@ def sweep(
         failed = api.run_sweep(source, out, workers, scheduler, retry_failed, line.count, told.append)
     for note in told:
         click.echo(f"{out}: {note}", err=True)
-    click.echo(f"{out}: {api.sweep_status(out).line}", err=True)
+    found = api.sweep_status(out)
+    click.echo(f"{out}: {found.line}", err=True)
+    if found.reasons:
+        first, more = found.reasons[0], "; --status has all" * (len(found.reasons) > 1)
+        click.echo(printable(f"{out}: case {first['case']} failed: {first['reason']}{more}"), err=True)
     return 1 if failed else 0

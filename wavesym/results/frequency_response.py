@@ -215,7 +215,8 @@ def equally_spaced(model: Model, low: float | None, high: float | None, points: 
     if low is None:
         low = high / max(points, _STEPS)
     if not 0 <= low < high or points < 2:
-        raise WavesymError(f"--from {low:g} --to {high:g} --points {points}: no band of frequencies")
+        band = f"--from {low:g} --to {high:g} --points {points}"
+        raise WavesymError(f"{band}: no band of frequencies; write two that rise, from 0 on, and 2 points or more")
     return np.linspace(low, high, points)
 
 

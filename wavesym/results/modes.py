@@ -235,7 +235,8 @@ def modes(
         CostError: for more modes than can be found in a minute.
     """
     if count < 1 or (below is not None and not below > 0):
-        raise WavesymError(f"modes: {count if below is None else below} is not positive")
+        name, value = ("count", count) if below is None else ("below", below)
+        raise WavesymError(f"{name}: {value} is not positive; write a number above 0")
     if count > _MOST:
         raise CostError(f"--count: {count} modes, the limit is {_MOST} (fewer modes help)")
     model.network.refuse_loss()

@@ -79,7 +79,7 @@ class Output(SceneTable):
         "rotation": "write displacement, which is an angle in shafts",
     }
 
-    until: Positive = Field(description="the horizon, a positive number")
+    until: Positive = Field(description='the horizon, a positive number (in a scene with units such as "5 s")')
     tolerance: Exact = Fraction(1, 10**10)
     strain: Positions = ()
     velocity: Positions = ()

@@ -128,7 +128,7 @@ _REST = re.compile(r"(,[0-9]+)|\s*([A-Za-z][\w/*^]*)")
 
 
 def _remedy(text: str, error: str) -> str:
-    """What to write in place of what is no TOML, for the slips that are frequent; empty for others."""
+    """What to write in place of what is not TOML, for the slips that are frequent; empty for others."""
     if error.startswith(_OPEN):
         return '; a text begins and ends with a quote, on one line: write " at its end'
     if not (place := _PLACE.search(error)):
@@ -151,7 +151,7 @@ def parse_text(file: str, text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text, parse_float=WrittenDecimal)
     except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"no TOML, {error}{_remedy(text, str(error))}", file=file) from None
+        raise SceneError(f"not TOML, {error}{_remedy(text, str(error))}", file=file) from None
     except ValueError:  # the limit is Python's
         digits = sys.get_int_max_str_digits()
         raise SceneError(f"an integer has more than {digits} digits; write fewer", file=file) from None

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from flint import fmpq
 
+from wavesym.errors import did_you_mean
 from wavesym.fields.table import WrittenDecimal, show
 from wavesym.mechanics.network import Point
 from wavesym.systems.drawing import Drawing
@@ -47,7 +48,9 @@ def _locate(drawing: Drawing, position: Position, text: str) -> tuple[str, Stati
     """The line of a position, its station if it is at one, and the number of the last station up to it."""
     line, x = position.name, position.x
     if line not in drawing.lines or x is None:
-        raise MisplacedError(f"{text} is not a place; write one, or the name of a node or branch (rods have no place)")
+        meant = did_you_mean(line, [*drawing.names, *filter(None, drawing.lines)])
+        what = "write one, or the name of a node or branch (rods have no place)"
+        raise MisplacedError(f"{text} is not a place; {what}{meant and f'. {meant}'}")
     stations = drawing.lines[line]
     if not 0 <= x <= stations[-1].x:
         raise MisplacedError(f"{text} is not on the chain; write a place from 0 to {show(stations[-1].x)}")

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
+from wavesym.errors import did_you_mean
 from wavesym.fields.damping import damping_ratio
 from wavesym.fields.numbers import Exact, Positive, exact
 from wavesym.fields.table import Faults, SceneTable, as_list, read_choice, refusal, show
@@ -62,7 +63,7 @@ def _numbers(value: Fraction | tuple[Fraction, ...]) -> str | list[str]:
 
 def _two(value: list[object] | tuple[object, ...]) -> tuple[Fraction, Fraction]:
     if len(value) != 2:
-        raise refusal(f"{show(value)} are {len(value)} numbers; write two")
+        raise refusal(f"{show(value)} {'is 1 number' if len(value) == 1 else f'are {len(value)} numbers'}; write two")
     return exact(value[0]), exact(value[1])
 
 
@@ -279,13 +280,16 @@ def _part(value: object) -> ChainPart | str:
         return value
     if isinstance(value, str):
         if value not in MARKS:
-            raise refusal(f"{show(value)} is not a part; write {', '.join(MARKS)} or a table")
+            meant = did_you_mean(value, MARKS)
+            raise refusal(f"{show(value)} is not a part; write {', '.join(MARKS)} or a table{meant and f'. {meant}'}")
         return value
     if not isinstance(value, Mapping):
         raise refusal(f"{show(value)} is not a part; write a table, or one of {', '.join(MARKS)}")
     kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
     if kind is LinkPart and not value.keys() & {"spring", "dashpot", "friction"}:
-        raise refusal("not a part; write one of rod, mass, joint, motion, contact, spring, dashpot and friction")
+        known = "rod, mass, joint, motion, contact, spring, dashpot and friction"
+        meant = next(filter(None, (did_you_mean(str(key), re.findall(r"\w{3,}", known)) for key in value)), "")
+        raise refusal(f"not a part; write one of {known}{meant and f'. {meant}'}")
     return kind.model_validate(unfold_ground(value))
 
 
