@@ -109,7 +109,7 @@ class UnservedError(WavesymError):
     ... except wavesym.UnservedError as error:
     ...     print(error)
     load: M1 jumps by 1 at tau = 0, and modes support no jump (write a steep ramp, or `start`, one spacing, of a \
-record)
+record; or --stream --step)
     """
 
 

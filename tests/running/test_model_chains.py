@@ -335,7 +335,7 @@ def test_it_compiles_without_a_warning(make, language, tmp_path):
         (
             shaft(NUMBERS[shaft]),
             ["kappa"],
-            "--runtime: kappa is unknown; write mass, dashpot, impedance, velocity or load",
+            r"write mass, dashpot, impedance, velocity or load \(kappa .* a chain of unlike rods has mass in its place",
         ),
         (shaft(NUMBERS[shaft]), ["spring"], "spring is unknown; write mass, dashpot, impedance, velocity or load"),
         (shaft(NUMBERS[shaft]), ["diameter"], "diameter is in the impedance of a rod: write that; or `wavesym sweep`"),

@@ -3,7 +3,6 @@
 import shutil
 import sys
 import xml.etree.ElementTree as ElementTree
-from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from zipfile import ZipFile
@@ -152,10 +151,6 @@ REFUSED = {
     ),
     "package": ({"package": True}, "--package: True does not go with --target; leave it out"),
     "evaluator": ({"evaluator": "march"}, "--evaluator: march does not go with --stream; write auto"),
-    "step": (
-        {"evaluator": "modes", "step": Fraction(1, 8)},
-        "--step: 0.125 tau does not go with --evaluator modes, whose loads say the step",
-    ),
     "target": ({"target": "fmu1"}, "target: fmu1 is unknown; write fmu2 or fmu3"),
 }
 

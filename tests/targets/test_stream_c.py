@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flint import fmpq
 from hypothesis import Phase, given, reject, settings
 from hypothesis import strategies as st
 
@@ -24,6 +25,7 @@ from wavesym.cli import main
 from wavesym.errors import WavesymError
 from wavesym.programs.request import Request
 from wavesym.running.toolchain import at_hand, compiler
+from wavesym.targets.files import files
 from wavesym.targets.manifest import CODE_AT_MOST
 
 PANEL = Fraction(1, 8)
@@ -279,7 +281,8 @@ def test_nothing_is_left_out_as_a_stream_has_no_horizon():
 
 REFUSED = {
     "bouncing": ({"stream": True}, "chained", "opens and closes"),
-    "damped": ({"stream": True}, "damped", "system.damping: supported by modes only"),
+    "damped": ({"stream": True}, "damped", "jumps by 1 at tau = 0, and modes support no jump .* or --stream --step"),
+    "endless": ({"stream": True}, "endless", r'or, for hours, damping = "0.5 %" under \[system\], say: that'),
     "language": ({"stream": True, "language": "numpy"}, "drive_m1", "--stream makes C, not numpy; write c"),
     "evaluator": ({"stream": True, "evaluator": "pieces"}, "drive_m1", "pieces does not go with --stream; write auto"),
     "runtime": (
@@ -288,11 +291,6 @@ REFUSED = {
         "load, but the inputs of a stream are its loads",
     ),
     "step": ({"step": Fraction(1, 8)}, "drive_m1", "0.125 tau is that of a stream"),
-    "modes": (
-        {"stream": True, "step": Fraction(1, 8), "evaluator": "modes"},
-        "drive_m1",
-        "0.125 tau does not go with --evaluator",
-    ),
     "beyond": ({"stream": True}, "beyond", "output: a stream needs numbers beyond the range of double precision"),
     "nothing left": ({"stream": True}, "weak", "rounding may leave nothing of strain@0.5"),
 }
@@ -300,6 +298,7 @@ BOUNCING = {"type": "chain", "parts": [{"mass": 1, "velocity": 1, "name": "a"}, 
 SCENES = {
     "chained": wavesym.Scene(name="b", system=BOUNCING, output={"until": 3, "velocity": ["0+"]}),
     "damped": GEARS.with_({"system.damping": 0.05, "load": [HELD]}),
+    "endless": STEPPED.with_({"output.until": 10**9}),
     "beyond": STEPPED.with_({"system.kappa": ["1e200"]}),
     "weak": STEPPED.with_({"system.kappa": ["1e-30"], "output.strain": ["0.5"]}),
     "drive_m1": STEPPED,
@@ -313,6 +312,22 @@ def test_what_is_not_served_is_refused_in_one_line(case, tmp_path):
         wavesym.generate(SCENES[scene], tmp_path / "made", **options)
     assert "\n" not in str(refused.value)
     assert not (tmp_path / "made").exists()
+
+
+def test_a_damped_stream_is_one_of_modes_for_any_loads_at_its_step(tmp_path):
+    """As a scene has it whose load has samples so far apart; its own number does not matter."""
+    damped = SCENES["damped"].with_({"output.tolerance": "1e-4"})
+    step = Request(stream=True, step=fmpq(1, 8))
+    rising = {"body": 1, "spacing": "1/8", "samples": [0, 1]}
+    made, told = (api.program(scene, step) for scene in (damped, damped.with_({"load": [HELD | {"steps": [-7]}]})))
+    known = api.program(damped.with_({"load": [rising]}), Request("modes", stream=True))
+    assert made.sources == known.sources == ("M1",)
+    assert made.tables == known.tables == told.tables
+    assert [output.bound for output in made.outputs] == [output.bound for output in known.outputs]
+    header = files(made, "c")["gears.h"]
+    assert "#define GEARS_SPACING 0.125" in header
+    assert "on [0, TAU_MAX], under a rise of each load within a step." in header
+    assert files(known, "c")["gears.h"].count("under the scene's loads") == 1
 
 
 def selftest(folder, name, *flags):

@@ -11,9 +11,9 @@ from shlex import split
 from typing import TYPE_CHECKING
 
 from wavesym.errors import UnservedError, WavesymError
-from wavesym.programs.request import Request, readable_step
+from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import amplitudes, sources
+from wavesym.scene.lowering import amplitudes, lower_rising, sources
 
 if TYPE_CHECKING:
     from wavesym.mechanics.loads import AppliedLoad
@@ -65,16 +65,14 @@ def _varied_loads(scene: Scene, runtime: Sequence[str]) -> tuple[tuple[str, Appl
 
 
 def _stepped_modes(scene: Scene, lowered: Model, request: Request, tested: bool) -> Program:
-    """A stream that modes step, for a simulator only what its input changes."""
+    """A stream that modes step, under the loads of the scene, or a rise of each within the `step` that is requested."""
+    from wavesym.numbers.doubles import fraction
     from wavesym.programs.making import make
 
-    if not request.target:
-        return make(lowered, request, tested=tested)
+    if not scene.load and (request.target or request.step is not None):
+        raise UnservedError("load: none, and it is the input of a stream of modes; write at least one [[load]]")
     if request.step is not None:
-        step = f"{readable_step(request.step)} tau"
-        raise WavesymError(f"--step: {step} does not go with modes, whose loads say the step; leave --step out")
-    if not scene.load:
-        raise UnservedError("load: none, and it is the input of an FMU with modes; write at least one [[load]]")
+        lowered = lower_rising(scene, fraction(request.step))
     return make(lowered, replace(request, evaluator="modes"), tested=tested)
 
 

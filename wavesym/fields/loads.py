@@ -125,6 +125,11 @@ class TimedLoad(Load):
         steps, ramps = self.lists
         return getattr(self, steps), getattr(self, ramps)
 
+    def rise(self, within: Fraction) -> Self:
+        """The load that acts there, but rises to 1 from the start on, and stays."""
+        steps, ramps = self.lists
+        return self.model_copy(update={"times": (Fraction(0), within), steps: (), ramps: (1 / within, -1 / within)})
+
     def by_list(self) -> Iterator[tuple[str, list[AppliedLoad]]]:
         """Each list that is given, by name, as unit responses."""
         for name, source, numbers in zip(self.lists, self.sources, self._numbers, strict=True):

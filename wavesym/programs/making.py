@@ -27,7 +27,8 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked
     """
     _, form, why, model = choose(model, request.evaluator, request.precision, request.optimize, asked=asked)
     happening = events(model, form.real) if model.network.corners else None
-    provenance = Provenance(model, why, request.options(model), contact_ends(model, form.real), happening)
+    ends = contact_ends(model, form.real)
+    provenance = Provenance(model, why, request.options(model), ends, happening, step=request.step)
     return _finish(model, form, provenance, tested)
 
 

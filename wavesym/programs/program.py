@@ -66,7 +66,8 @@ class Provenance:
 
     `reason` says why it was taken and what was refused; `contacts` of a formal continuation open within the horizon.
     `events` is what contacts that open and close do, None where there are no such contacts. `shortfall` says by how
-    much the tolerance may be missed, where that is not proved to be met.
+    much the tolerance may be missed, where that is not proved to be met. `step` is the time between two calls of a
+    stream in tau, where it is requested.
     """
 
     model: Model
@@ -75,6 +76,7 @@ class Provenance:
     contacts: tuple[ContactEnd, ...] = ()
     events: tuple[ContactEvent, ...] | None = None
     shortfall: str = ""
+    step: fmpq | None = None
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from wavesym.errors import MeasureError, ToleranceError, WavesymError, did_you_mean
+from wavesym.errors import CostError, MeasureError, ToleranceError, WavesymError, did_you_mean
 
 if TYPE_CHECKING:
     from flint import fmpq
@@ -116,10 +116,8 @@ class Request:
         return tuple(part for part in PARTS if part in self.parts or (part == "batch" and "misfit" in self.parts))
 
     def is_of_modes(self, model: Model) -> bool:
-        """Whether a stream is stepped by modes, not by waves: where they are requested, or a simulator gets damping."""
-        if self.target:
-            return self.evaluator == "modes" or (self.evaluator == "auto" and model.damping is not None)
-        return self.stream and self.evaluator == "modes"
+        """Whether a stream is stepped by modes, not by waves: where they are requested, or are damped."""
+        return self.stream and (self.evaluator == "modes" or (self.evaluator == "auto" and model.damping is not None))
 
     def is_of_mode_sets(self, model: Model) -> bool:
         """Whether parameters at run time are numbers of modes: where modes are requested, are damped, or alone can."""
@@ -148,11 +146,6 @@ class Request:
         modes = self.evaluator == "modes"
         if self.step is not None and not self.stream:
             raise WavesymError(f"--step: {readable_step(self.step)} tau is that of a stream; write --stream too")
-        if self.step is not None and modes:
-            raise WavesymError(
-                f"--step: {readable_step(self.step)} tau does not go with --evaluator modes, whose loads say the step; "
-                "leave --step out"
-            )
         if self.kappa_max is not None and self.kappa_max <= 0:
             raise WavesymError(f"--kappa-max: {self.kappa_max} is not positive; write a number above 0")
         if self.kappa_max is not None and POSITIVE.isdisjoint(self.runtime):
@@ -177,6 +170,9 @@ class Request:
 
 def why_constant(name: str, known: Sequence[str]) -> str:
     """Why a quantity of rods is no parameter at run time, and what varies it; nothing for what is none."""
+    if name in ("kappa", "inertia") and "mass" in known:
+        others = "modes have" if "stiffness" in known else "a chain of unlike rods has"
+        return f"{name} is of waves in a named system whose rods are alike; {others} mass in its place"
     if name not in _OF_TRAVEL_TIMES | _OF_SECTIONS:
         return ""
     sweep = "`wavesym sweep` varies keys of rods, by their paths under [vary]"
@@ -259,6 +255,16 @@ def unmet_tolerance(tolerance: fmpq, refusals: Mapping[str, str], bound: float) 
     why = (f"{kind}: {re.sub(_HELPS, '', refusal) if remedy else refusal}" for kind, refusal in tried)
     message = f"output.tolerance: {nearest(tolerance):g} cannot be met{remedy} ({'; '.join(why)})"
     return ToleranceError(message, "; ".join(refusals.values()), bound)
+
+
+def stream_refusal(model: Model, cost: CostError) -> CostError:
+    """The error that says that a stream of waves costs too much for a horizon, and what steps for hours instead."""
+    modes = "--evaluator modes" if model.network.loses else 'damping = "0.5 %" under [system], say'
+    remedy = (
+        f"a shorter horizon, after which a stream goes on; or, for hours, {modes}: that makes a stream of modes, which "
+        "takes a tolerance of 1e-6 best"
+    )
+    return type(cost)(f"{re.sub(_HELPS, '', str(cost))} (write {remedy})")
 
 
 def unfollowed_waves(model: Model, measure: MeasureError, refusals: Mapping[str, str]) -> ToleranceError:

@@ -243,6 +243,21 @@ def load_names(scene: Scene) -> tuple[str, ...]:
     return tuple(f"{label} ({next(numbers[label])})" if label in numbers else label for label in labels)
 
 
+def lower_rising(scene: Scene, step: Fraction) -> Model:
+    """The model of a scene under loads that come `step` apart, as nobody knows them: each rises to 1 in the first step,
+    and stays.
+    """
+    other = scene.model_copy()
+    vars(other)["load"] = tuple(load.rise(step) if isinstance(load, TimedLoad) else load for load in scene.load)
+    model, every = lower(other), rational(step)
+    rises = [
+        AppliedLoad(ramp, time, slope)
+        for ramp in dict.fromkeys(load.sources[1] for load in scene.load)
+        for time, slope in ((fmpq(0), 1 / every), (every, -1 / every))
+    ]
+    return replace(model, loads=merge_loads((*dead_loads(model.network), *rises)), spacing=every)
+
+
 def sources(scene: Scene) -> tuple[str, ...]:
     """What its loads are steps of, in the order of the scene; each once."""
     return tuple(dict.fromkeys(load.sources[0] for load in scene.load))

@@ -65,7 +65,8 @@ def all_requests(scene: Scene, model: Model) -> Iterator[Request]:
     if names := runtime_names(scene, model):
         yield Request(runtime=names)
         yield Request(runtime=tuple(name for name in names if name != "load"), stream=True)
-    yield Request(stream=True)
+    if model.damping is None:  # else it is that of modes
+        yield Request(stream=True)
     if names := mode_set_names(model):
         yield Request("modes", runtime=names)
         yield Request("modes", runtime=tuple(name for name in names if name != "load"), stream=True)
@@ -131,7 +132,7 @@ def _build(scene: Scene, model: Model, request: Request, *, is_required: bool) -
     """The program; in single precision for a larger tolerance, where it has to be."""
     if request.runtime and request.is_of_mode_sets(model):
         return mode_sets_program(model, request, ())
-    if request.stream and request.evaluator != "modes":
+    if request.stream and not request.is_of_modes(model):
         endless = replace(model, endless=True)
         return stream_program(endless, request, inputs_of(endless, sources(scene)))
     if request.runtime:

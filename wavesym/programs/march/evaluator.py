@@ -19,7 +19,7 @@ from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.form import Form
 from wavesym.programs.march.bound import Verdict, judge
-from wavesym.programs.march.plan import HIGHEST_DEGREE, MarchPlan, least_numbers, march_plan
+from wavesym.programs.march.plan import HIGHEST_DEGREE, MarchPlan, least_numbers, march_plan, readable
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
 from wavesym.programs.march.tables import MarchTables, state_bytes, table_bytes
 from wavesym.programs.program import ProgramOutput
@@ -213,7 +213,7 @@ def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float
         )
     if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:
         raise CostError(
-            f"system.parts: joints as fast as {plan.norm:.3g} on a step of {plan.step} need polynomials of "
+            f"system.parts: joints as fast as {plan.norm:.3g} on a step of {readable(plan.step)} need polynomials of "
             f"degree {degree:g} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, the limit in a "
             f"march is {_MOST_BYTES:.1e} (softer springs, heavier bodies, or lengths with a smaller common "
             "measure, help)"
@@ -227,8 +227,8 @@ def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float
     spent += work
     if spent > _MOST_WORK:
         raise WindowsError(
-            f"output.until: a march of degree {degree} on steps of {plan.step} to tau = {plan.tau_max:g} would "
-            f"cost {spent:.1e} operations, the limit is {_MOST_WORK:.1e} (a shorter horizon helps)"
+            f"output.until: a march of degree {degree} on steps of {readable(plan.step)} to tau = {plan.tau_max:g} "
+            f"would cost {spent:.1e} operations, the limit is {_MOST_WORK:.1e} (a shorter horizon helps)"
         )
     return spent
 

@@ -89,7 +89,7 @@ def linear_loads(
         if load.source in steps:
             raise UnservedError(
                 f"load: {describe(load)}, and modes support no jump (write a steep ramp, or `start`, one spacing, "
-                "of a record)"
+                "of a record; or --stream --step)"
             )
         if load.time != times[-1]:
             after = load.time - times[-1]

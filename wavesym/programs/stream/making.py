@@ -13,7 +13,7 @@ from math import gcd, inf, isfinite, log
 
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, RangeError, ToleranceError
+from wavesym.errors import CostError, MeasureError, RangeError, ToleranceError
 from wavesym.mechanics.loads import AppliedLoad, merge_loads
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.travel_times import percent
@@ -31,7 +31,7 @@ from wavesym.programs.program import (
     SteppedRow,
     SteppedValues,
 )
-from wavesym.programs.request import Request, readable_step, refuse_beside
+from wavesym.programs.request import Request, readable_step, refuse_beside, stream_refusal
 from wavesym.programs.stream.adjustment import enough_adjustment, fit_speeds
 from wavesym.programs.stream.parameters import free_stream, quick_enough, refuse_stiff, with_parameters
 from wavesym.programs.stream.plan import StreamPlan, stream_plan
@@ -50,6 +50,10 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
     """
     try:
         return _program(model, request, inputs, tested)
+    except MeasureError:  # which says what to write
+        raise
+    except CostError as cost:
+        raise stream_refusal(model, cost) from None
     except OverflowError:
         beyond = f"numbers beyond the range of {request.precision} precision"
         raise RangeError(f"output: a stream needs {beyond}") from None
@@ -93,6 +97,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
             _reason(plan, degree, made) + _beside_panels(plan, model, request),
             request.options(model),
             shortfall="" if free else _shortfall(plan, verdict, tolerance, real),
+            step=request.step,
         ),
         sources=tuple(given.label for given in plan.inputs),
         proved=False,
@@ -110,8 +115,15 @@ def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
     return (
         f"march as a stream, {count} panels a window{step}, degree {degree}, a state of about "
         f"{-(-made.state_bytes // 1024)} KiB with room for {plan.breakpoints} instants inside of panels, "
-        f"{made.panel_operations} multiplications a panel"
+        f"{made.panel_operations} multiplications a panel; it goes on after {_horizon(plan)}, for which it is made, "
+        "but some time later steps return 2, as more may be lost than the tolerance"
     )
+
+
+def _horizon(plan: StreamPlan) -> str:
+    """The horizon of the scene, in its unit of time."""
+    model = plan.march.model
+    return model.clock.format(model.until) if model.clock else f"tau = {nearest(model.until):g}"
 
 
 def _beside_panels(plan: StreamPlan, model: Model, request: Request) -> str:

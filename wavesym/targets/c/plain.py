@@ -23,6 +23,8 @@ def header(scene: Description, program: Program, more: str = "") -> str:
     A stream has no functions of tau; its bound holds `under` certain loads. What takes parameters is not `bounded`.
     """
     under, bounded = _UNDER.get(program.step, ""), program.laws is None
+    if program.step == "spacing" and program.provenance.step is not None:
+        under = "under a rise of each load within a step"
     return render("c/header.h.j2", scene=scene, more=more, under=under, bounded=bounded)
 
 

@@ -11,7 +11,7 @@ from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assignments, parameter_fields, product_lines
 from wavesym.targets.c.tables import program_tables
 from wavesym.targets.description import Description, named_loads
-from wavesym.targets.literals import c_constants
+from wavesym.targets.literals import c_constants, c_literal
 
 _SERIES = ("root.h", "series.h", "joint.c")
 """What stands above the names of tables in a state."""
@@ -51,6 +51,7 @@ def streaming(scene: Description, program: Program) -> str:
         "c/stream/stream.h.j2",
         scene=scene,
         constants=c_constants(program.constants, program.real),
+        step=c_literal(program.real.nearest(step), program.real) if (step := program.provenance.step) else "",
         sources=named_loads(program),
         direct=tuple(
             (output.name, ", ".join(program.sources[j] for j in of))
