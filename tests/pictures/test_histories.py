@@ -139,7 +139,7 @@ def test_what_comes_after_an_opening_is_formal(monkeypatch: pytest.MonkeyPatch) 
     lit = [line for line in figure.axes[0].lines if line.get_alpha() == panels._ALPHA[True]]
     assert any(len(line.get_xdata()) > 10 for line in lit)
     assert all(line.get_xdata()[0] >= end.double for line in lit if len(line.get_xdata()))
-    drawn = [line for line in figure.axes[0].lines if line.get_color() == panels._STYLES[1][1]]  # strain@2
+    drawn = [line for line in figure.axes[0].lines if line.get_color() == panels.CURVES[1][1]]  # strain@2
     solid = np.concatenate([line.get_xdata() for line in drawn if line.get_alpha() == 1.0])
     assert max(solid) == end.double
     assert "contact at x = 2 opens, tau = 8.902" in named
@@ -269,9 +269,9 @@ def test_curves_differ_in_grey() -> None:
 
         return float(np.dot(to_rgb(color), (0.299, 0.587, 0.114)))
 
-    looks = [(str(dashes), round(darkness(color) / 0.3)) for dashes, color in panels._STYLES]
+    looks = [(str(dashes), round(darkness(color) / 0.3)) for dashes, color in panels.CURVES]
     assert len(set(looks)) == len(looks)
-    assert all(darkness(color) < 0.55 for _, color in panels._STYLES)
+    assert all(darkness(color) < 0.55 for _, color in panels.CURVES)
 
 
 def test_a_thinned_polyline_keeps_its_corners() -> None:
@@ -293,13 +293,17 @@ def test_history_of_a_load_needs_no_scene() -> None:
     assert History(Probe("a", "load", 1, fmpq(0)), (RAMP,)).formal == inf
 
 
-def test_the_last_time_is_written_within_the_figure() -> None:
-    long = History(Probe("a", "load", 1, fmpq(0)), (np.array([[0.0, 0.0], [20.0, 1.0]]),))
-    figure = stack_panels([PlotPanel("load", (long,))], 20.0, [])
+def test_the_last_time_is_written_within_the_figure_and_values_beside_the_title() -> None:
+    """With the user's settings, too: those of pictures are not theirs as a figure is saved."""
+    long = History(Probe("a", "load", 1, fmpq(0)), (np.array([[0.0, 0.0], [20.0, 0.0169]]),))
+    figure = stack_panels([PlotPanel("load\nin m", (long,))], 20.0, [])
     figure.canvas.draw()
-    last = figure.axes[0].get_xticklabels()[-1]
+    (axes,) = figure.axes
+    last = axes.get_xticklabels()[-1]
     assert last.get_text() == "20.0"
     assert last.get_window_extent().x1 <= figure.bbox.x1
+    title = axes.yaxis.label.get_window_extent()
+    assert not any(title.overlaps(number.get_window_extent()) for number in axes.get_yticklabels())
 
 
 def test_slips_and_yields_are_shaded_and_named() -> None:

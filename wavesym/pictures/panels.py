@@ -24,7 +24,18 @@ from wavesym.pictures.labels import Curve, label
 from wavesym.pictures.naming import heading
 from wavesym.pictures.reduction import reduce_vertices
 from wavesym.pictures.stations import slip_times, slip_words
-from wavesym.pictures.style import FONT, HALO, SLIPS, WIDTH, draw_grid, new_figure, with_style, write_plain_numbers
+from wavesym.pictures.style import (
+    CURVES,
+    FONT,
+    HALO,
+    SLIPS,
+    WIDTH,
+    Dashes,
+    draw_grid,
+    new_figure,
+    with_style,
+    write_plain_numbers,
+)
 from wavesym.pictures.timescale import Timescale, timescale
 
 CHARACTERS = 66  # in a line of text across the figure
@@ -36,17 +47,6 @@ _WIDEST_LAST = 3  # of one at the end of the axis, half of which is right of it
 _CHARACTER = 0.106  # inches
 _AXIS = 0.55  # below the last panel
 _BEYOND = 1.01  # what happens at the end of the horizon is not hidden by the frame
-_Dashes = str | tuple[int, tuple[int, ...]]
-_STYLES: tuple[tuple[_Dashes, str], ...] = (
-    ("-", "black"),
-    ("--", "#1f4e9c"),
-    ("-", "#d0692b"),
-    ("-.", "#4d4d4d"),
-    (":", "black"),
-    ((0, (6, 2, 1, 2, 1, 2)), "#4a78ad"),
-    ((0, (9, 3)), "#9a6420"),
-    ((0, (3, 1)), "#777777"),
-)
 _ALPHA = {False: 1.0, True: 0.55}  # of what is formal
 _VERTICES, _ANCHORS = 18, 8  # of a curve: places where its name may hang, and where others are near most of them
 _INK = 150  # vertices of a curve that labels keep free
@@ -79,7 +79,7 @@ def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     slips = slip_times(model)
     if slips:
         title.append(f"purple: while {slip_words(slips)}")
-    acting = [load_panel(loads[: len(_STYLES)], _LOAD)] if loads else []
+    acting = [load_panel(loads[: len(CURVES)], _LOAD)] if loads else []
     shaded = [times for of_link in slips.values() for times in of_link]
     return stack_panels([*acting, *panels(histories)], until, title, instants=opened, shaded=shaded, scale=scale)
 
@@ -131,9 +131,10 @@ def _ticks(axis: Axis) -> list[float]:
     return [tick for tick in axis.get_majorticklocs() if low <= tick <= high]
 
 
-def _characters(axis: Axis) -> int:
-    """Of the longest number beside an axis."""
-    return max(map(len, axis.get_major_formatter().format_ticks(_ticks(axis))), default=0)
+def _characters(axis: Axis) -> float:
+    """Of the longest number beside an axis; a sign is wider than a digit."""
+    numbers = axis.get_major_formatter().format_ticks(_ticks(axis))
+    return max((len(number) + 0.3 * number.startswith("\u2212") for number in numbers), default=0)
 
 
 def _shorten_times(axes: Axes) -> None:
@@ -173,9 +174,10 @@ def _make_room(panels: Sequence[Axes]) -> None:
 
 def _draw_curves(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     axes.set_ylabel(panel.title)
+    axes.tick_params(labelsize=FONT)  # else there are more ticks once the figure is saved, with the user's settings
     draw_grid(axes)
     write_plain_numbers(axes.yaxis)
-    for history, (dashes, color) in zip(panel.histories, _STYLES, strict=False):
+    for history, (dashes, color) in zip(panel.histories, CURVES, strict=False):
         _curve(axes, history, dashes, color)
     axes.margins(x=0, y=0.14)
     axes.autoscale_view(scalex=False)
@@ -214,7 +216,7 @@ def _labels(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[C
     """What is to be labelled: curves, where they run apart from the others; marks; instants."""
     low, high = axes.get_ylim()
     curves = []
-    for history, (_, color) in zip(panel.histories, _STYLES, strict=False):
+    for history, (_, color) in zip(panel.histories, CURVES, strict=False):
         others = [other.points for other in panel.histories if other is not history]
         shape = thin_polyline(history.points, _VERTICES)
         places = isolated_vertices(shape, others, _NEAR * (high - low))
@@ -229,7 +231,7 @@ def _labels(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[C
     return curves
 
 
-def _curve(axes: Axes, history: History, dashes: _Dashes, color: str) -> None:
+def _curve(axes: Axes, history: History, dashes: Dashes, color: str) -> None:
     """A curve between its fronts, thin upright lines where it jumps; thin and light where it is formal."""
     until, thick = float(history.points[-1, 0]), 0.9 if restless(history) else 1.4
     for stretch in (reduce_vertices(each, until, _COLUMNS) for each in history.stretches):

@@ -12,7 +12,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.pictures.groups import axis_title
 from wavesym.pictures.naming import heading, in_words, with_titles
-from wavesym.pictures.style import MAIN, OTHER, draw_grid, new_figure, set_title, with_style
+from wavesym.pictures.style import CURVES, MAIN, OTHER, curve_look, draw_grid, new_figure, set_title, with_style
 from wavesym.pictures.units import unit_text
 from wavesym.records.record_file import RecordFile
 from wavesym.results.frequency_response import FrequencyResponse
@@ -77,8 +77,8 @@ def draw_modes(found: Modes, model: Model, lines: Lines) -> Figure:
     unit = "Hz" if found.time_unit else "per tau"
     set_title(figure, f"{heading(found.name)}: shapes of the first {min(len(found), MOST_MODES)} modes")
     for axes, each in zip(figure.subplots(len(drawn), 1, squeeze=False)[:, 0], drawn, strict=True):
-        for row, moved in zip(found.modes, each.displacements, strict=False):
-            axes.plot(each.x, moved.real, label=f"{row.number}: {row.hz:.4g} {unit}", linewidth=1.3)
+        for k, (row, moved) in enumerate(zip(found.modes, each.displacements, strict=False)):
+            axes.plot(each.x, moved.real, label=f"{row.number}: {row.hz:.4g} {unit}", **curve_look(k, 1.3))
         draw_grid(axes)
         axes.set_xlabel(_place_title(each.line, model))
         axes.set_ylabel("shape")
@@ -106,12 +106,13 @@ def draw_spectra(found: Spectra) -> Figure:
     figure = new_figure(4.6)
     axes = figure.add_subplot()
     for k, (name, values) in enumerate(zip(found.outputs, found.values, strict=True)):
-        shade = f"C{k}" if len(found.outputs) <= 10 else str(0.75 * k / (len(found.outputs) - 1))
-        axes.semilogx(found.periods, values, label=name, color=shade, linewidth=1.2)
+        grey = {"color": str(0.75 * k / max(1, len(found.outputs) - 1)), "linewidth": 1.2}
+        look = curve_look(k, 1.2) if len(found.outputs) <= len(CURVES) else grey
+        axes.semilogx(found.periods, values, label=name, **look)
     axes.set_xlabel("period in tau" if found.time_unit is None else f"period in {found.time_unit}")
     unit = next(iter(found.units))
     axes.set_ylabel(f"pseudo-acceleration in {unit_text(unit)}" if unit else "pseudo-acceleration")
-    set_title(figure, f"Response spectra, damping {100 * found.damping:.3g} %")
+    set_title(figure, f"{heading(found.name)}: response spectra, damping {100 * found.damping:.3g} %")
     axes.xaxis.set_major_formatter(_plain_period)
     axes.xaxis.set_minor_formatter(_plain_period)
     axes.set_xlim(found.periods[0], found.periods[-1])
@@ -139,12 +140,12 @@ def draw_frequency_response(found: FrequencyResponse, model: Model) -> Figure:
         for k, probe in enumerate(probes):
             if kinds[k] == kind:
                 size = np.where(found.amplitude[k] > 0, found.amplitude[k], np.nan)
-                axes.semilogy(found.frequency, size, label=probe.title, color=f"C{k % 10}", linewidth=1.2)
+                axes.semilogy(found.frequency, size, label=probe.title, **curve_look(k, 1.2))
         axes.set_ylabel(axis_title(model, *kind))
         draw_grid(axes, zero=False)
         axes.legend(ncols=1 + len(found) // 8)
     for k in range(len(found)):
-        phase.plot(found.frequency, found.phase[k], color=f"C{k % 10}", linewidth=1.0)
+        phase.plot(found.frequency, found.phase[k], **curve_look(k, 1.0))
     phase.set_ylabel("phase\nin degrees")
     phase.set_yticks([-180, -90, 0, 90, 180])
     phase.set_xlabel("angular frequency in rad per tau" if model.clock is None else "frequency in Hz")

@@ -24,6 +24,17 @@ from wavesym.pictures.ticks import omitted_power, power_text, tick_text
 
 WIDTH, FONT, DPI = 6.9, 12.0, 120  # inches, points, dots an inch
 MAIN, GREATEST, LEAST, OTHER = "#1f4e9c", "#b2431f", "#1f4e9c", "#d0692b"
+Dashes = str | tuple[int, tuple[int, ...]]
+CURVES: tuple[tuple[Dashes, str], ...] = (
+    ("-", "black"),
+    ("--", "#1f4e9c"),
+    ("-", "#d0692b"),
+    ("-.", "#4d4d4d"),
+    (":", "black"),
+    ((0, (6, 2, 1, 2, 1, 2)), "#4a78ad"),
+    ((0, (9, 3)), "#9a6420"),
+    ((0, (3, 1)), "#777777"),
+)
 BETWEEN, FORMAL, SLIPS = "#e9ecf0", "0.75", "darkviolet"
 _GRID, _ZERO, _SHADES = "0.92", "0.6", 101  # an odd number, so that 0 is white; few, so that files are small
 _LOOK: Any = {"font.size": FONT, "font.family": "DejaVu Sans", "axes.titlesize": FONT, "legend.fontsize": FONT}
@@ -63,6 +74,12 @@ def new_figure(height: float, *, constrained: bool = True) -> Figure:
     figure = NotebookFigure(figsize=(WIDTH, height), dpi=DPI, layout="constrained" if constrained else None)
     FigureCanvasAgg(figure)
     return figure
+
+
+def curve_look(number: int, width: float) -> dict[str, Any]:
+    """How a curve is drawn, the first being number 0: told from the others without colours."""
+    dashes, colour = CURVES[number % len(CURVES)]
+    return {"linestyle": dashes, "color": colour, "linewidth": width}
 
 
 def set_title(figure: Figure, words: str) -> None:
