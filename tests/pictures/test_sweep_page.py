@@ -6,6 +6,7 @@ import html
 import json
 import re
 from base64 import b64decode
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from zlib import decompress
@@ -21,7 +22,7 @@ from wavesym import api
 from wavesym.cli import main
 from wavesym.pictures.page import sweep as module
 from wavesym.pictures.page import sweep_pictures
-from wavesym.pictures.page.png import SHADES
+from wavesym.pictures.page.png import SHADES, colours
 from wavesym.pictures.page.sweep import sweep_page
 from wavesym.pictures.page.sweep_pictures import SweepOutput, output_picture
 from wavesym.scene import Scene
@@ -240,3 +241,9 @@ def test_what_is_zipped_is_drawn_over_the_first_that_changes(others: tuple[float
     assert ('class="greatest"' in str(drawn.markup)) == (not dots)
     large = sweep_pictures._readable(SweepOutput("force@0", "N", 1e6 * least, 1e6 * greatest))
     assert (large.unit, large.least.min(), large.greatest.max()) == ("kN", -4000.0, 4000.0)
+
+
+def test_in_maps_what_is_darker_is_larger() -> None:
+    """As the page says above them."""
+    shades = [0.2126 * red + 0.7152 * green + 0.0722 * blue for red, green, blue in colours(signed=False)[:-1]]
+    assert all(after < before for before, after in pairwise(shades))

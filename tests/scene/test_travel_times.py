@@ -21,7 +21,7 @@ from wavesym.documents.inspection.units import in_units
 from wavesym.mechanics.network import Bar
 from wavesym.mechanics.travel_times import FINEST, adjust_speeds, percent, speed_change
 from wavesym.numbers.doubles import common_measure
-from wavesym.pictures.page.headline import first_modes
+from wavesym.pictures.page.headline import first_modes, neglected_effects
 from wavesym.programs.making import make
 from wavesym.scene import lower
 from wavesym.scene.explicit_text import explicit_text
@@ -339,5 +339,6 @@ def test_a_result_says_that_speeds_were_changed() -> None:
     assert "speeds of waves are changed by" in note
     assert note in found._repr_html_()
     assert "of waves whose speeds are changed by" in found.accuracy
+    assert any("other speeds than were written, by " in line for line in neglected_effects(lower(found.scene)))
     assert "of waves whose speeds are changed by" in str(wavesym.summary(Scene.from_toml(TWO_RODS)))
     assert Scene.from_toml(TWO_RODS.replace("speed_adjustment", "# ")).run(samples=3).notes == ()

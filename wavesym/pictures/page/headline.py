@@ -144,6 +144,8 @@ def neglected_effects(model: Model) -> Iterator[str]:
         yield "Rods stay linear: no yielding, no cracks, no change of geometry; links follow the laws of the scene"
     else:
         yield "Everything stays linear: no yielding, no cracks, no change of geometry"
+    if change := model.labels.system.get("speeds_changed_by"):
+        yield f"Waves have other speeds than were written, by {change}, which is in no bound"
     if model.damping is None:
         yield "The material does not damp"
 
