@@ -41,30 +41,44 @@ static void weights_of(model *m, const projection *p, const damping_rule *rule)
     }
 }
 
+/* A block of steps from the first motion on: motions where each begins, and values at the ends of so many halves of steps. */
+static void step_block(const model *m, int first, int halves, motion *begin, real (*values)[FILLED])
+{
+    motion middle[BLOCK];
+    const motion *seen[TOGETHER];
+    real *out[TOGETHER];
+    real slope[LOADS];
+    for (int k = 0; k < BLOCK; ++k) {
+        slopes_after(m, first + k, slope);
+        advance(m, &m->half, spacing / 2, slope, &begin[k], &middle[k]);
+        advance(m, &m->half, spacing / 2, slope, &middle[k], &begin[k + 1]);
+    }
+    for (int half = 0; half < halves; half += TOGETHER) {
+        for (int k = 0; k < TOGETHER; ++k) {
+            const int at_half = half + k;
+            seen[k] = at_half % 2 ? &begin[at_half / 2 + 1] : &middle[at_half / 2];
+            out[k] = values[at_half];
+        }
+        read_together(m, seen, out);
+    }
+}
+
 /* The largest values at the ends and in the middle of steps. */
 static void largest_values(const model *m, real *largest)
 {
-    motion s[TOGETHER + 1];
-    real out[TOGETHER][FILLED];
-    const motion *seen[TOGETHER];
-    real *values[TOGETHER];
-    real slope[LOADS];
-    rest(&s[TOGETHER]);
+    motion begin[BLOCK + 1];
+    real values[2 * BLOCK][FILLED];
+    rest(&begin[0]);
     for (int output = 0; output < OUTPUTS; ++output) {
         largest[output] = 0;
     }
-    for (int half = 0; half < HALVES; half += TOGETHER) {
-        for (int k = 0; k < TOGETHER; ++k) {
-            slopes_after(m, (half + k) / 2, slope);
-            advance(m, &m->half, spacing / 2, slope, k > 0 ? &s[k - 1] : &s[TOGETHER], &s[k]);
-            seen[k] = &s[k];
-            values[k] = out[k];
-        }
-        s[TOGETHER] = s[TOGETHER - 1];
-        read_together(m, seen, values);
-        for (int k = 0; k < TOGETHER && half + k < HALVES; ++k) {
+    for (int first = 0; 2 * first < HALVES; first += BLOCK) {
+        const int halves = HALVES - 2 * first < 2 * BLOCK ? HALVES - 2 * first : 2 * BLOCK;
+        step_block(m, first, halves, begin, values);
+        begin[0] = begin[BLOCK];
+        for (int half = 0; half < halves; ++half) {
             for (int output = 0; output < OUTPUTS; ++output) {
-                const real size = fabs(out[k][output]);
+                const real size = fabs(values[half][output]);
                 largest[output] = size > largest[output] || size != size ? size : largest[output];
             }
         }

@@ -187,29 +187,13 @@ static void search(const model *m, extremes *found)
     const int steps = HALVES / 2;
     turns at[POINTS];
     motion begin[BLOCK + 1];
-    motion middle[BLOCK];
     real values[2 * BLOCK + 1][FILLED];
-    const motion *seen[TOGETHER];
-    real *out[TOGETHER];
-    real slope[LOADS];
     turns_within(m, spacing, at);
     rest(&begin[0]);
     read_motion(m, &begin[0], values[0]);
     for (int first = 0; first < steps; first += BLOCK) {
         const int count = steps - first < BLOCK ? steps - first : BLOCK;
-        for (int k = 0; k < BLOCK; ++k) {
-            slopes_after(m, first + k, slope);
-            advance(m, &m->half, spacing / 2, slope, &begin[k], &middle[k]);
-            advance(m, &m->half, spacing / 2, slope, &middle[k], &begin[k + 1]);
-        }
-        for (int half = 0; half < 2 * count; half += TOGETHER) {
-            for (int k = 0; k < TOGETHER; ++k) {
-                const int at_half = half + k;
-                seen[k] = at_half % 2 ? &begin[at_half / 2 + 1] : &middle[at_half / 2];
-                out[k] = values[at_half + 1];
-            }
-            read_together(m, seen, out);
-        }
+        step_block(m, first, 2 * count, begin, values + 1);
         search_block(m, at, begin, values, first, count, found);
         begin[0] = begin[count];
         for (int output = 0; output < FILLED; ++output) {
