@@ -47,7 +47,7 @@ def test_a_scene_says_what_it_is_in_a_line() -> None:
 @pytest.mark.parametrize("scene", [DRIVE, FRAME], ids=["tau", "units"])
 def test_a_result_is_what_run_prints(scene: Scene) -> None:
     found = scene.run(samples=9)
-    printed = pandas.read_csv(io.StringIO("".join(api.run_csv(scene, 9))))
+    printed = pandas.read_csv(io.StringIO("".join(api.run_csv(scene, 9))), float_precision="round_trip")
     assert list(printed.columns[1:]) == list(found.columns)
     assert np.array_equal(printed.to_numpy().T, np.vstack([found.time, found.values]))
     assert found.time_unit == ("ms" if scene is FRAME else None)

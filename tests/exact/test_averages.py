@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from flint import arb, fmpq
 from hypothesis import given, settings
+from scipy.integrate import trapezoid
 
 import wavesym
 from tests.support.chains import chains
@@ -98,7 +99,7 @@ def wrong(scene: Scene) -> float:
             continue
         parts = row / largest  # whose squares are no more than numbers can be
         allowed = (float(np.abs(np.diff(parts)).sum()) + 2) / 4000 + 1e-12  # of a trapezoidal sum of bounded variation
-        sums = [np.trapezoid(parts, taus), sqrt(np.trapezoid(parts**2, taus) * model.horizon())]
+        sums = [trapezoid(parts, taus), sqrt(trapezoid(parts**2, taus) * model.horizon())]
         ours = [midpoint(each.mean) / largest, midpoint(each.rms) / largest]
         errors = [abs(total / model.horizon() - our) for total, our in zip(sums, ours, strict=True)]
         worst = max(worst, errors[0] / allowed, errors[1] ** 2 / allowed, errors[1] / (20 * sqrt(allowed)))

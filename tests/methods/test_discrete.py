@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flint import fmpq
+from scipy.integrate import trapezoid
 from scipy.linalg import expm, sqrtm
 
 from wavesym.mechanics.damping import Damping
@@ -62,7 +63,7 @@ def balance(place):
     """What a rod's mass strains it, from the accelerations of its ends: integrated, and on the average nothing."""
     x, dx = np.linspace(0, 1, 20_001, retstep=True)
     pushed = np.stack([(np.cumsum(shape) - shape / 2 - shape[0] / 2) * dx for shape in (1 - x, x)])
-    return np.array([np.interp(place, x, row) - np.trapezoid(row, dx=dx) for row in pushed])
+    return np.array([np.interp(place, x, row) - trapezoid(row, dx=dx) for row in pushed])
 
 
 @pytest.mark.parametrize("weight", [0.0, 1.0])

@@ -14,6 +14,7 @@ from flint import acb, acb_series, arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from scipy.integrate import trapezoid
 
 import wavesym
 from wavesym import Scene
@@ -195,7 +196,7 @@ def test_it_is_the_transform_of_a_history(thorough: bool) -> None:
     pulse = np.interp(times, spacing * np.arange(len(samples)), samples)
     for w in (0.4, 1.9):
         turns = np.exp(-1j * w * times)
-        expected = np.trapezoid(history * turns, times) / np.trapezoid(pulse * turns, times)
+        expected = trapezoid(history * turns, times) / trapezoid(pulse * turns, times)
         # rule of trapezes: both are kinked at multiples of its step alone, and their second derivatives are below 10
         assert wavesym.frf(scene, [w]).values[0, 0] == pytest.approx(expected, abs=20 * until / fine**2)
 
