@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import wavesym
@@ -32,6 +33,23 @@ def test_a_frequency_response_has_names_for_people() -> None:
     assert ["Moment at 1 m"] in names or ["Moment at x = 1 m"] in names
     assert {first.get_ylabel(), second.get_ylabel()} == {"angular velocity\nin rad/s", "moment\nin N\u00b7m"}
     assert (phase.get_xlabel(), phase.get_ylabel()) == ("frequency in Hz", "phase\nin degrees")
+
+
+def test_a_frequency_response_shows_its_greatest_amplitudes() -> None:
+    """Eleven points miss what an enclosure finds between them; names stand beside lines, not on them."""
+    parts = [{"mass": "2 kg*m^2", "name": "motor", "dashpot": "2 N*m*s"}, *PARTS[1:]]
+    damped = DRIVE.with_({"system.parts": parts})
+    found = wavesym.frf(damped, low=5, high=100, points=11)
+    figure = draw_frequency_response(found, lower(damped, in_time=False))
+    figure.canvas.draw()
+    lines = [line for axes in figure.axes[:2] for line in axes.get_lines()]
+    for name, line in zip(("velocity@motor", "velocity@big_machine", "force@1"), lines, strict=True):
+        (peak,) = (each for each in found.peaks() if each.name.startswith(name))
+        highest = np.nanmax(np.asarray(line.get_ydata(), float))
+        assert highest == pytest.approx(peak.amplitude, rel=1e-9)
+        assert highest > 1.5 * found.amplitude[found.outputs.index(peak.name)].max() or peak.frequency == 5
+    for axes in figure.axes[:2]:
+        assert axes.get_legend().get_window_extent().y0 >= axes.get_window_extent().y1
 
 
 @pytest.mark.parametrize(

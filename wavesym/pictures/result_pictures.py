@@ -124,13 +124,13 @@ def draw_spectra(found: Spectra) -> Figure:
 
 @with_style
 def draw_frequency_response(found: FrequencyResponse, model: Model) -> Figure:
-    """The amplitude and the phase of each output; gaps where there is no value.
+    """The amplitude and the phase of each output, its greatest one among them; gaps where there is no value.
 
     Args:
         found: the frequency response of a scene.
         model: that of the scene, whose outputs have names for people.
     """
-    probes = with_titles(model).probes
+    found, probes = found.with_peaks(), with_titles(model).probes
     kinds = [(probe.quantity, probe.unit) for probe in probes]
     units = list(dict.fromkeys(kinds))
     figure = new_figure(2.4 + 2.6 * len(units))
@@ -143,7 +143,7 @@ def draw_frequency_response(found: FrequencyResponse, model: Model) -> Figure:
                 axes.semilogy(found.frequency, size, label=probe.title, **curve_look(k, 1.2))
         axes.set_ylabel(axis_title(model, *kind))
         draw_grid(axes, zero=False)
-        axes.legend(ncols=1 + len(found) // 8)
+        axes.legend(ncols=2, frameon=False, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.2)
     for k in range(len(found)):
         phase.plot(found.frequency, found.phase[k], **curve_look(k, 1.0))
     phase.set_ylabel("phase\nin degrees")

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 
 _MODES_SHOWN, _STEPS = 5, 400
+_CLOSER = 2.0 ** -np.arange(12)  # of the distance of two frequencies
 _RIGID = 1e-6  # of what is above a frequency, one that is 0 but for rounding
 _MOST_POINTS = 1_000_000
 _BITS, _MOST_BITS = 128, 1 << 13
@@ -96,6 +97,20 @@ class FrequencyResponse(OutputRows):
         """
         band = self.frequency.min(initial=np.inf), self.frequency.max(initial=0.0)
         return peaks(self._model, self._load, *map(float, band))
+
+    def with_peaks(self) -> FrequencyResponse:
+        """The same at more frequencies: at the greatest amplitude of each output and ever closer to it, so that a line
+        through values shows it; at no more where that costs too much, or nothing limits it.
+        """
+        try:
+            tops = [peak.frequency for peak in self.peaks() if np.isfinite(peak.amplitude)]
+        except WavesymError:
+            return self
+        at = np.sort(self.frequency)
+        reach = [top + side * _CLOSER * (at[-1] - at[0]) / len(at) for top in tops for side in (-1, 1)]
+        more = np.concatenate([tops, *reach])
+        every = np.unique(np.concatenate([at, more[(more >= at[0]) & (more <= at[-1])]]))
+        return frequency_response(self._model, self._load, every)
 
     @property
     def notes(self) -> tuple[str, ...]:
