@@ -364,3 +364,18 @@ def test_no_option_of_one_value_is_taken_twice(capsys: pytest.CaptureFixture[str
     assert main(["generate", "drive_m1", "--runtime", "kappa", "--runtime", "load"]) == 2
     assert "write one list with commas" in capsys.readouterr().err
     assert not list(Path().glob("drive_m1*"))
+
+
+@pytest.mark.parametrize(("language", "told"), [("c", True), ("numpy", False)])
+def test_c_of_modes_says_that_it_is_a_stream(
+    language: str, told: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A program after the guide's would not link: it has no eval."""
+    scene = tmp_path / "shaken.toml"
+    scene.write_text(
+        'name = "shaken"\n[system]\ntype = "drive"\nm = 1\nkappa = [1]\ninertia = [1, 1]\ndamping = 0.05\n'
+        '[[load]]\nbody = 1\nspacing = "1/4"\nsamples = [0, 1]\n[output]\nuntil = 2\ntolerance = 1e-3\nvelocity = [1]\n'
+    )
+    assert main(["generate", str(scene), "-o", str(tmp_path), "--language", language]) == 0
+    assert ("its C is a stream: shaken_step takes the loads" in capsys.readouterr().err) == told
+    assert all("shaken_eval" not in file.read_text() for file in tmp_path.glob("*.h"))

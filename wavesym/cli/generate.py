@@ -156,3 +156,9 @@ def _notes(scene: Scene, request: Request, written: tuple[Path, ...]) -> Iterato
     for manifest in (path for path in written if path.suffix == ".json"):
         content = json.loads(manifest.read_text(encoding="utf-8"))
         yield from (str(content[key]) for key in ("reason", "shortfall") if key in content)
+        if content.get("evaluator") == "modes" and request.language != "numpy" and not request.stream:
+            name = scene.name
+            yield (
+                f"its C is a stream: {name}_step takes the loads sample by sample, {name.upper()}_SPACING apart, and "
+                f"there is no {name}_eval; --language numpy has the loads of the scene in it"
+            )
