@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import exp, pi
+from math import exp, hypot, log, pi
 from typing import Any
 
 import mpmath
@@ -253,14 +253,42 @@ def test_a_long_list_without_rods_is_complete_where_it_has_all() -> None:
     assert (zeros(every), every.complete) == (122, True)
 
 
-def test_rods_of_which_two_swing_as_they_like_end_the_list() -> None:
-    """Four rods that resonate at pi between nodes at rest, one with a free end: two modes, and no more is told."""
+def test_rods_of_which_two_swing_as_they_like_are_told_apart() -> None:
+    """Four rods that resonate at pi between nodes at rest, two with a free end: two modes, at which the list ended."""
     parts = ["free", {"rod": "1/2"}, {"joint": True, "dashpot": 5, "name": "g"}, {"rod": 1}]
     parts += [{"mass": 2, "dashpot": "1/2"}, {"rod": 1, "impedance": 7}, "fixed"]
-    found = wavesym.modes(scene(parts, [[{"rod": "3/2", "impedance": 3}]]), 6)
-    assert all(mode.omega < pi for mode in found)
-    assert len(found) == 3
-    assert "none is missed up to" in found.why
+    found = wavesym.modes(scene(parts, [[{"rod": "3/2", "impedance": 3}]]), 8)
+    assert found.complete
+    assert [mode.omega for mode in found if mode.damping == 0] == pytest.approx([pi, pi], rel=1e-15)
+
+
+def test_rods_with_free_ends_swing_beside_a_node_at_rest() -> None:
+    """Three of them, which pull at it by Z a sin w: two modes at every odd pi/2; others solve the node's equation."""
+    rods = [2, 3]
+    parts = ["fixed", {"rod": 1}, {"mass": 1, "dashpot": "1/2", "name": "g"}, {"rod": 1}, "free"]
+    found = wavesym.modes(scene(parts, [[{"rod": 1, "impedance": z}, "free"] for z in rods]), 12)
+    assert found.complete
+    plain = [mode for mode in found if mode.damping == 0]
+    assert [mode.omega for mode in plain] == pytest.approx([pi / 2, pi / 2, 1.5 * pi, 1.5 * pi, 2.5 * pi, 2.5 * pi])
+    one, other = (np.array([mode.shape[end] for end in ("2", "b0:1", "b1:1")]) for mode in plain[:2])
+    assert abs(np.dot([1, *rods], one * other)) < 1e-14  # at right angles, and with no pull
+    assert np.abs([np.dot([1, *rods], each) for each in (one, other)]).max() < 1e-14
+    for mode in found:
+        if mode.damping:
+            w = mpmath.mpc(mode.omega) * mpmath.expj(mpmath.asin(mode.damping))
+            terms = [w * mpmath.cot(w), -w * w, 0.5j * w, -6 * w * mpmath.tan(w)]
+            assert abs(sum(terms)) < 1e-12 * max(map(abs, terms))
+
+
+@pytest.mark.parametrize("dashpot", ["1.000000001", "0.999999999", "1.000001"])
+def test_a_rod_that_ends_in_nearly_its_impedance(dashpot: str) -> None:
+    """exp(2 i w) = 1/r and -1/r, r what returns: a search of seconds found every second one, or none."""
+    found = wavesym.modes(scene(["fixed", {"rod": 1}, {"joint": True, "dashpot": dashpot, "name": "g"}]), 10)
+    assert found.complete
+    r = (1 - Fraction(dashpot)) / (1 + Fraction(dashpot))
+    turns = [k * pi + (pi / 2 if r > 0 else 0) for k in range(10)]
+    expected = [hypot(turn, log(abs(r)) / 2) for turn in turns]
+    assert [mode.omega for mode in found] == pytest.approx(expected, rel=1e-14)
 
 
 def test_with_rods_the_slowest_are_known_from_the_first_powers() -> None:

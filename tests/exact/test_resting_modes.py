@@ -72,7 +72,7 @@ def test_of_a_star_of_equal_rods_all_are_found_and_at_right_angles() -> None:
 
 
 def test_without_them_it_is_said_that_modes_are_missed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(damped_modes, "resting_modes", lambda *_: [])
+    monkeypatch.setattr(damped_modes, "resting_modes", lambda *_, **__: [])
     found = modes(["fixed", {"rod": 1, "dashpot": "2/5"}, MASS, {"rod": 1}, "fixed"])
     assert not found.complete
     assert not any(mode.damping == 0 for mode in found)

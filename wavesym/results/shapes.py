@@ -93,7 +93,7 @@ def _in_bar(mode: Mode, pieces: Cut, number: int, part: NDArray[np.float64]) -> 
         angle = complex(mode.frequency) * nearest(pieces.network.bars[bar].delay)
         here = (part >= low) & (part <= high)
         t = (part[here] - low) / (high - low)
-        if mode.amplitudes:
+        if mode.amplitudes and a == 0 and b == 0:
             moved[here] = own * np.sin(angle * t)
         elif abs(angle) < _STRAIGHT:
             moved[here] = a * (1 - t) + b * t

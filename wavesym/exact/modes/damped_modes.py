@@ -26,13 +26,14 @@ from wavesym.exact.modes.frequencies import bisect_frequencies
 from wavesym.exact.modes.resting import resting_modes
 from wavesym.exact.modes.shape import Mode, complex_mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
-from wavesym.exact.modes.turns import absorb
+from wavesym.exact.modes.turns import absorb, bare_ends
 from wavesym.mechanics.network import Network
 from wavesym.numbers.arrays import Complex
+from wavesym.numbers.doubles import nearest
 
 _BITS = 224
 _BALL = 80  # bits of a frequency; what is not known of it grows from row to row
-_BITS_A_ROW, _MANY_ROWS = ((2, 1), (6, 4), (12, 4)), 32  # of all, and of a frequency; fewer first where rows are many
+_BITS_A_ROW, _MANY_ROWS = ((3, 2), (6, 4), (12, 4)), 32  # of all, and of a frequency; fewer first where rows are many
 _NEWTON = 12
 _MEETING = 1e-5  # frequencies that no step tells apart
 _BESIDE, _FEW = 1e-9, 64  # modes that are so near each other, and at most how many
@@ -44,10 +45,12 @@ _STRAIGHT = 1e-9  # of what creeps, which has no real part
 _MORE = 1.15  # as many are sought, as those at the edge are pushed off by fewer
 _BARS = 48  # for each of which one more is sought, but of so many
 _ROUNDS = 400
-_FOUND = 1e-11
+_FOUND, _ROUGH = 1e-11, 1e-6  # parts that a last step is of a frequency, and where doubles tell no more
+_PATIENT = 60  # rounds, until less and less is enough
 _AWAY = 4.0  # times the last one wanted: what is still on its way there is no matter
 _CREEPING = 1e-4, 1e2  # where they are sought, spacings of frequencies from 0
 _CREEPERS = 24
+_FADING = 0.01  # of what arrives, returned where a rod ends
 _NONE = np.zeros(0, complex)
 _I = acb(0, 1)
 
@@ -123,11 +126,11 @@ def search_modes(stiffness: Stiffness, count: int, again: int = 0, known: Comple
 
 
 def _undamped_at_rest(stiffness: Stiffness, limit: float) -> list[Mode]:
-    """The modes of which all points rest, whatever dashpots there are; their numbers are complex, as of others."""
+    """The modes of which all points but free ends rest, whatever dashpots there are; their numbers are complex, as of
+    others."""
     with ctx.workprec(_BITS):
-        still = [acb(0)] * len(stiffness.network.points)
-        modes = resting_modes(stiffness, limit)
-        return [replace(mode, frequency=acb(mode.frequency), points=still) for mode in modes]
+        modes = resting_modes(stiffness, limit, free_ends=True)
+        return [replace(mode, frequency=acb(mode.frequency), points=[acb(q) for q in mode.points]) for mode in modes]
 
 
 def _leave_out(guesses: Complex, modes: Sequence[Mode]) -> Complex:
@@ -162,9 +165,10 @@ def estimate_frequencies(stiffness: Stiffness, count: int, again: int = 0) -> Co
     apart = np.pi / float(stiffness.delay)
     start = start + apart * (0.1j + 0.02 * (draw.normal(size=many) + 1j * draw.uniform(size=many)))
     creeping = apart * (np.geomspace(*_CREEPING, _CREEPERS << again) * 1j + 1e-3)
-    w = np.concatenate([start, -start.conjugate() + 1e-3 * apart, creeping])
+    fading = _of_fading_rods(stiffness.network, many)
+    w = np.concatenate([start, -start.conjugate() + 1e-3 * apart, creeping, fading, -fading.conjugate()])
     moving, resting = np.arange(len(w)), _RESTING * np.pi / float(stiffness.delay)
-    for _ in range(_ROUNDS):
+    for turn in range(_ROUNDS):
         apart = w[moving, None] - w
         apart[np.arange(len(moving)), moving] = np.inf
         with np.errstate(all="ignore"):
@@ -173,7 +177,8 @@ def estimate_frequencies(stiffness: Stiffness, count: int, again: int = 0) -> Co
         size = np.abs(step)
         step *= np.minimum(1.0, 2.0 / float(stiffness.delay) / np.maximum(size, 1e-300))
         w[moving] -= step
-        moving = moving[size > _FOUND * np.abs(w[moving])]
+        enough = min(_FOUND * 2.0 ** max(0, turn - _PATIENT), _ROUGH)
+        moving = moving[size > enough * np.abs(w[moving])]
         found = np.delete(w, moving)
         found = found[(found.real > -1e-9 * np.abs(found)) & (np.abs(found) > resting)]
         found = found[np.argsort(np.abs(found), kind="stable")][:count]
@@ -181,6 +186,22 @@ def estimate_frequencies(stiffness: Stiffness, count: int, again: int = 0) -> Co
         if 0 < len(found) == count and np.all((away < resting) | (away > _AWAY * np.abs(found[-1]))):
             break
     return np.asarray(found)
+
+
+def _of_fading_rods(network: Network, many: int) -> Complex:
+    """Where waves would swing in a rod that ends in nearly as large a dashpot as its impedance: so far from the others
+    that no search comes there from them.
+
+    Of what arrives the part r returns, so that after the delay T there and back again it is the same where
+    exp(2 i w T) = 1/r, or -1/r.
+    """
+    found = [np.zeros(0, complex)]
+    for end in bare_ends(network):
+        returned = abs(nearest((end.impedance - end.damping) / (end.impedance + end.damping)))
+        if 0 < returned < _FADING:
+            turns = np.pi / 2 * np.arange(2 * many) - 0.5j * np.log(returned)
+            found.append(turns / nearest(network.bars[end.bar].delay))
+    return np.concatenate(found)
 
 
 def _of_matrix(stiffness: Stiffness) -> Complex:
@@ -271,4 +292,6 @@ def distinct_modes(modes: Sequence[Mode]) -> list[Mode]:
 def _is_same(one: Mode, other: Mode) -> bool:
     pairs = [(a, other.amplitudes.get(bar)) for bar, a in one.amplitudes.items()]
     apart = other.amplitudes and any(b is None or not a.overlaps(b) for a, b in pairs)
-    return not apart and bool(one.frequency.overlaps(other.frequency))
+    opposite = [-q for q in other.points]
+    moved = any(all(p.overlaps(q) for p, q in zip(one.points, each, strict=True)) for each in (other.points, opposite))
+    return not apart and moved and bool(one.frequency.overlaps(other.frequency))

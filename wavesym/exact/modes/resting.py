@@ -4,64 +4,109 @@ Then sin w T = 0 in each rod that swings, so w/pi is a fraction q, and u = a sin
 end. A point that is free feels r Z a of a rod that begins there, and -r Z a cos w T of one that ends there, r being how
 fast the end moves. Their sums are 0: amplitudes a are a null space of fractions. No mass, spring or dashpot takes part:
 such modes never die away.
+
+Beside dashpots rods with a free end are among them, too: cos w T = 0 there, and s counts from the end that rests.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from math import floor, pi
 
 from flint import arb, fmpq, fmpq_mat
 
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
-from wavesym.mechanics.network import Network
+from wavesym.exact.modes.turns import bare_ends
+from wavesym.mechanics.network import Bar, Network
 from wavesym.numbers.doubles import nearest
 
 _ZERO = fmpq(0)
 
 
-def resting_modes(stiffness: Stiffness, limit: float) -> list[Mode]:
-    """Those with frequencies up to a limit in rad per tau, ascending; of mass 1, and at right angles."""
+@dataclass(frozen=True)
+class _Swinging:
+    """A bar that may swing alone; `free_end` is the side of its free end, None where both ends rest."""
+
+    number: int
+    bar: Bar
+    free_end: int | None
+
+    @property
+    def resting_ends(self) -> tuple[tuple[int, fmpq], ...]:
+        """The points that rest, and how fast the bar's end moves with each."""
+        ends = ((self.bar.left, self.bar.ratios[0]), (self.bar.right, self.bar.ratios[1]))
+        return ends if self.free_end is None else (ends[1 - self.free_end],)
+
+    def swings(self, q: fmpq) -> bool:
+        """Whether it does at w = pi q."""
+        return int((q * self.bar.delay).q) == (1 if self.free_end is None else 2)
+
+    def turns(self, limit: float) -> Iterator[fmpq]:
+        """All these q up to a limit."""
+        late = 0 if self.free_end is None else 1
+        halves = floor(2 * limit * nearest(self.bar.delay))
+        return (fmpq(k) / (2 * self.bar.delay) for k in range(2 - late, halves + 1, 2))
+
+
+def resting_modes(stiffness: Stiffness, limit: float, *, free_ends: bool = False) -> list[Mode]:
+    """Those with frequencies up to a limit in rad per tau, ascending; of mass 1, and at right angles.
+
+    With `free_ends` rods with one swing, too.
+    """
     network = stiffness.network
-    able = _strip_lone_bars(network, range(len(network.bars)))
-    delays = {str(bar.delay): bar.delay for bar in (network.bars[n] for n in able)}
-    turns = {k / delay for delay in delays.values() for k in range(1, floor(limit / pi * nearest(delay)) + 1)}
+    free = [(end.bar, end.side) for end in bare_ends(network) if free_ends and end.damping == 0]
+    sides = {bar: side for bar, side in free if (bar, 1 - side) not in free}
+    bars = [_Swinging(n, bar, sides.get(n)) for n, bar in enumerate(network.bars)]
+    able = _strip_lone_bars(network, bars)
+    turns = {str(q): q for each in able for q in each.turns(limit / pi)}
     found: list[Mode] = []
-    for q in sorted(turns):
-        swinging = _strip_lone_bars(network, [n for n in able if (q * network.bars[n].delay).q == 1])
+    for q in sorted(turns.values()):
+        swinging = _strip_lone_bars(network, [each for each in able if each.swings(q)])
         if swinging:
             found += [
-                Mode(stiffness, arb.pi() * q, [arb(0)] * len(network.points), _of_mass_1(network, amplitudes))
+                _mode(stiffness, swinging, q, _of_mass_1(network, amplitudes))
                 for amplitudes in _amplitudes(network, swinging, q)
             ]
     return found
 
 
-def _strip_lone_bars(network: Network, bars: Sequence[int]) -> list[int]:
+def _mode(stiffness: Stiffness, bars: Sequence[_Swinging], q: fmpq, amplitudes: dict[int, arb]) -> Mode:
+    """The mode of amplitudes of bars: of one with a free end that end's point has it."""
+    points = [arb(0)] * len(stiffness.network.points)
+    for each in bars:
+        if each.free_end is not None:
+            end = each.bar.right if each.free_end else each.bar.left
+            sign = 1 if int((q * each.bar.delay).p) % 4 == 1 else -1
+            points[end] = amplitudes.pop(each.number, arb(0)) * sign / each.bar.ratios[each.free_end]
+    return Mode(stiffness, arb.pi() * q, points, amplitudes)
+
+
+def _strip_lone_bars(network: Network, bars: Sequence[_Swinging]) -> list[_Swinging]:
     """Those of some bars that need not rest: at a point that is free no bar pulls alone."""
     left = list(bars)
     while True:
-        ends = Counter(end for n in left for end in (network.bars[n].left, network.bars[n].right))
+        ends = Counter(end for each in left for end, _ in each.resting_ends)
         alone = {end for end, count in ends.items() if count == 1 and network.points[end].motion is None}
-        kept = [n for n in left if not alone & {network.bars[n].left, network.bars[n].right}]
+        kept = [each for each in left if not alone & {end for end, _ in each.resting_ends}]
         if len(kept) == len(left):
             return kept
         left = kept
 
 
-def _amplitudes(network: Network, bars: Sequence[int], q: fmpq) -> list[dict[int, fmpq]]:
+def _amplitudes(network: Network, swinging: Sequence[_Swinging], q: fmpq) -> list[dict[int, fmpq]]:
     """Amplitudes of some bars at w = pi q, all that balance, at right angles to each other."""
-    ends = {end for n in bars for end in (network.bars[n].left, network.bars[n].right)}
+    bars = [each.number for each in swinging]
+    ends = {end for each in swinging for end, _ in each.resting_ends}
     rows = {end: row for row, end in enumerate(end for end in sorted(ends) if network.points[end].motion is None)}
     pulls = fmpq_mat(max(len(rows), 1), len(bars))
-    for column, n in enumerate(bars):
-        bar = network.bars[n]
-        last = 1 if int((q * bar.delay).p) % 2 else -1
-        for end, ratio, sign in ((bar.left, bar.ratios[0], 1), (bar.right, bar.ratios[1], last)):
+    for column, each in enumerate(swinging):
+        last = 1 if int((q * each.bar.delay).p) % 2 else -1
+        for (end, ratio), sign in zip(each.resting_ends, (1, last), strict=False):
             if end in rows:
-                pulls[rows[end], column] += sign * ratio * bar.impedance
+                pulls[rows[end], column] += sign * ratio * each.bar.impedance
     reduced, rank = pulls.rref()
     pivots = [next(k for k in range(len(bars)) if reduced[row, k] != 0) for row in range(rank)]
     found: list[dict[int, fmpq]] = []

@@ -42,7 +42,7 @@ class Mode:
             return arb(0)
         here, there = self.displacement(end), self.displacement(End(end.bar, 1 - end.side))
         sine, cosine = self.turn(self.stiffness.network.bars[end.bar].delay)
-        if self.amplitudes:
+        if self.amplitudes and here == 0 and there == 0:
             slope = self.frequency * self.amplitudes.get(end.bar, arb(0))
             return slope * cosine if end.side else slope
         slope = self.frequency * (there - here * cosine) / sine

@@ -16,11 +16,12 @@ as that is from 0, what it turns by from end to end is the angle between its val
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import acb, acb_series, arb, arb_series, ctx, fmpq, fmpq_poly
@@ -55,8 +56,8 @@ def absorb(network: Network) -> Network:
 
     From there nothing returns: such a rod is that dashpot at its other end, and has no frequencies of its own.
     """
-    while (ends := _absorbing_bar(network)) is not None:
-        number, side = ends
+    while (end := next((end for end in bare_ends(network) if end.impedance == end.damping), None)) is not None:
+        number, side = end.bar, end.side
         bar = network.bars[number]
         near = bar.right if side == 0 else bar.left
         points = list(network.points)
@@ -68,17 +69,24 @@ def absorb(network: Network) -> Network:
     return network
 
 
-def _absorbing_bar(network: Network) -> tuple[int, int] | None:
-    """A bar that ends so, and at which side."""
-    held = [end for bar in network.bars for end in (bar.left, bar.right)]
-    held += [end for link in network.links for end in (link.left, link.right)]
+class BareEnd(NamedTuple):
+    """A bar's end at a point that has a dashpot at most: its impedance there and what the dashpot is."""
+
+    bar: int
+    side: int
+    impedance: fmpq
+    damping: fmpq
+
+
+def bare_ends(network: Network) -> Iterator[BareEnd]:
+    """Those of a network."""
+    held = Counter(end for bar in network.bars for end in (bar.left, bar.right))
+    held.update(end for link in network.links for end in (link.left, link.right))
     for number, bar in enumerate(network.bars):
         for side, at in enumerate((bar.left, bar.right)):
             point = network.points[at]
-            bare = point.mass == 0 and point.stiffness == 0 and point.motion is None and held.count(at) == 1
-            if bare and point.damping == bar.ratios[side] ** 2 * bar.impedance:
-                return number, side
-    return None
+            if point.mass == 0 and point.stiffness == 0 and point.motion is None and held[at] == 1:
+                yield BareEnd(number, side, bar.ratios[side] ** 2 * bar.impedance, point.damping)
 
 
 @dataclass
