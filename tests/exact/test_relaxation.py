@@ -47,12 +47,25 @@ def light(mass: object, impedance: object) -> JointLaw:
     return JointLaw((q(mass),), ((q(impedance),),), ((fmpq(0),),), (None,))
 
 
+def train(masses: list[object], links: list[tuple[object, object]]) -> JointLaw:
+    """Free masses with a spring beside a dashpot from each to the next."""
+    size = len(masses)
+    parts = [[[fmpq(0)] * size for _ in range(size)] for _ in range(2)]
+    for n, link in enumerate(links):
+        for matrix, each in zip(parts, link, strict=True):
+            for i, j, sign in ((n, n, 1), (n + 1, n + 1, 1), (n, n + 1, -1), (n + 1, n, -1)):
+                matrix[i][j] += sign * q(each)
+    stiffness, damping = (tuple(tuple(row) for row in matrix) for matrix in parts)
+    return JointLaw(tuple(map(q, masses)), damping, stiffness, (None,) * size)
+
+
 STIFF = [
     cushion(1, 0, 200, "1/100"),
     cushion(1, 0, 200, "1/10", "1/2"),
     cushion(1, "1/1000000", 200, "1/100"),
     cushion(2, "1/10000", 50, "1/3", 1),
     light("1/100", "26/5"),
+    train([1, "353/125", 2], [(5, 4), ("589/1000", 1)]),  # four rates that decay, so that powers of them are far apart
 ]
 
 
@@ -78,7 +91,7 @@ def begun(law: JointLaw, decaying: int) -> tuple[JointMotion, list[fmpq_poly]]:
 
 
 @pytest.mark.quick(1)
-@pytest.mark.parametrize("law", STIFF, ids=["open", "closed", "light", "light closed", "body"])
+@pytest.mark.parametrize("law", STIFF, ids=["open", "closed", "light", "light closed", "body", "train"])
 @pytest.mark.parametrize("decaying", [1200, 40])
 def test_the_slow_motion_encloses_what_steps_find(law: JointLaw, decaying: int) -> None:
     """Also where not all has died away: then the bound has what is left."""
