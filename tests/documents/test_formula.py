@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from ctypes import CDLL, c_double
 from math import exp
 from pathlib import Path
@@ -14,7 +15,7 @@ import sympy
 
 import wavesym
 from wavesym.cli import main
-from wavesym.errors import CostError, UnservedError, WavesymError
+from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
 from wavesym.running.toolchain import at_hand
 from wavesym.scene import Scene
 
@@ -75,21 +76,44 @@ def test_plain_text_is_the_output(name: str) -> None:
         assert_agrees(made, output, values)
 
 
-@pytest.mark.skipif(not at_hand(), reason="needs gcc or clang")
-@pytest.mark.parametrize(("name", "symbolic"), [("drive_m1", False), ("drive_m1", True), ("collision_m4", True)])
-def test_a_function_in_c_is_the_output(name: str, symbolic: bool, tmp_path: Path) -> None:
-    made = scene(name)
-    output = served(made, symbolic)[-1]
-    text = wavesym.formula(made, output, 4, "c", symbolic=symbolic)
-    source, library = tmp_path / "formula.c", tmp_path / "formula.so"
+def compiled(text: str, folder: Path) -> Callable[..., float]:
+    source, library = folder / "formula.c", folder / "formula.so"
     source.write_text(text)
     flags = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-shared", "-fPIC"]
     run([*at_hand()[0].command, *flags, str(source), "-o", str(library), "-lm"], check=True)
     (function,) = re.findall(r"double (\w+)\(double tau", text)
     call = getattr(CDLL(str(library)), function)
     call.restype = c_double
-    values = [c_double(float(value)) for value in letters(text.splitlines()[0]).values()]
-    assert_agrees(made, output, [call(c_double(t), *values) for t in TAU])
+    return lambda *numbers: call(*(c_double(number) for number in numbers))
+
+
+@pytest.mark.skipif(not at_hand(), reason="needs gcc or clang")
+@pytest.mark.parametrize(("name", "symbolic"), [("drive_m1", False), ("drive_m1", True), ("collision_m4", True)])
+def test_a_function_in_c_is_the_output(name: str, symbolic: bool, tmp_path: Path) -> None:
+    made = scene(name)
+    output = served(made, symbolic)[-1]
+    text = wavesym.formula(made, output, 4, "c", symbolic=symbolic)
+    values = [float(value) for value in letters(text.splitlines()[0]).values()]
+    call = compiled(text, tmp_path)
+    assert_agrees(made, output, [call(t, *values) for t in TAU])
+
+
+@pytest.mark.skipif(not at_hand(), reason="needs gcc or clang")
+def test_a_function_in_c_keeps_to_its_bound_and_is_refused_where_terms_cancel(tmp_path: Path) -> None:
+    near = {"system.kappa[2]": "1.1999", "load[0].times": [0, "1/3", 2], "output": {"until": 5, "strain": ["1+"]}}
+    made = Scene.from_toml("building_m2").with_(near)  # 2 kappa_1 is 1.2
+    with pytest.raises(
+        ToleranceError, match=r"--format c: loses \d+ digits after tau = 3 \(bound \S+ for strain@1\+\)"
+    ):
+        wavesym.formula(made, "strain@1+", format="c")
+    text = wavesym.formula(made.with_({"output.tolerance": 1e-5}), "strain@1+", format="c")
+    (bound,) = re.findall(r"right to (\S+) of its largest value, proved", text)
+    call = compiled(text, tmp_path)
+    # the doubles beside breakpoints at thirds, too
+    taus = [tau for at in np.arange(1, 14) / 3 for tau in (np.nextafter(at, 0), at, np.nextafter(at, 9), at + 0.2)]
+    history = wavesym.run(made, [*taus, 5.0])["strain@1+"]
+    error = np.abs([call(tau) for tau in [*taus, 5.0]] - history).max() / np.abs(history).max()
+    assert 1e-12 < error <= float(bound)  # and much is lost here
 
 
 @pytest.mark.skipif(not at_hand(), reason="needs gcc or clang")
@@ -99,13 +123,7 @@ def test_what_does_not_change_is_c_without_a_warning(until: float, expected: flo
     load = [{"at": "a", "times": [0], "steps": [1]}]
     output = {"until": until, "velocity": ["3/4"]}
     made = Scene(name="pulse", system={"type": "chain", "parts": parts}, load=load, output=output)
-    source, library = tmp_path / "formula.c", tmp_path / "formula.so"
-    source.write_text(wavesym.formula(made, "velocity@3/4", format="c"))
-    flags = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-shared", "-fPIC"]
-    run([*at_hand()[0].command, *flags, str(source), "-o", str(library), "-lm"], check=True)
-    call = CDLL(str(library)).pulse_velocity_3_4
-    call.restype = c_double
-    assert call(c_double(until)) == expected
+    assert compiled(wavesym.formula(made, "velocity@3/4", format="c"), tmp_path)(until) == expected
 
 
 def test_a_coefficient_that_is_wrong_is_noticed() -> None:

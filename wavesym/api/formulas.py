@@ -99,7 +99,8 @@ def formula(
         scene: whose contacts do not open, and whose modes are not damped.
         output: its name, such as "strain@0.5"; its place may be written in any way that a scene has for it.
         until: in the time unit of the results, or tau; None for the horizon.
-        format: "text", "latex", "sympy" (one expression in `tau`) or "c" (a function).
+        format: "text", "latex", "sympy" (one expression in `tau`) or "c" (a function; but for `symbolic` a comment has
+            its proved bound).
         symbolic: whether coefficients are functions of the parameters: of the paper's systems only.
 
     Returns:
@@ -109,6 +110,7 @@ def formula(
         WavesymError: for an output, a format or a time that is none.
         UnservedError: where there is no closed form.
         CostError: for a formula of too many terms.
+        ToleranceError: where a function in C, in doubles, would be wrong by more than the scene's tolerance.
 
     >>> import wavesym
     >>> print(wavesym.formula(wavesym.Scene.from_toml("drive_m1"), "strain@0", 1), end="")

@@ -1,7 +1,8 @@
 """An output as a formula: what it gains at each breakpoint, an exponential polynomial in the time since then.
 
 The coefficients are exact: fractions, or rational functions of the parameters (`symbolic`). As text, as LaTeX, as one
-expression for SymPy, or as a function in C, whose numbers are the nearest doubles.
+expression for SymPy, or as a function in C, whose numbers are the nearest doubles. What has numbers is added there as
+the closed form is, so that its bound holds, and refused where that is beyond the tolerance.
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from wavesym.derivation.symbolic import SymbolicChain
 from wavesym.derivation.table import Function, Rules, unit_response
 from wavesym.documents.latex_number import latex_number
 from wavesym.errors import CostError, UnservedError, WavesymError, did_you_mean
-from wavesym.exact.tables.signal import signals
+from wavesym.exact.tables.signal import Signal, signals
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import nearest, not_below
+from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.ratio import Ratio
+from wavesym.programs.closed_form import closed_form
+from wavesym.programs.request import unmet_tolerance
 from wavesym.rendering import render as render_template
 
 MOST_TERMS = 2000
@@ -51,6 +54,9 @@ class Formula:
         gains: in order of time.
         letters: what the coefficients are functions of, each with its value in the scene; empty where they are numbers.
         seconds: what one tau is; None without [units].
+        signal: the same as `gains`; None where coefficients are functions.
+        tolerance: on the error of a function in C, relative to its largest value.
+        tau_max: the last double that it is for.
     """
 
     scene: str
@@ -60,9 +66,12 @@ class Formula:
     gains: tuple[Gain, ...]
     letters: Mapping[str, fmpq]
     seconds: fmpq | None
+    signal: Signal | None
+    tolerance: fmpq
+    tau_max: float
 
     def render(self, format: str) -> str:
-        """As text. `format` is "text", "latex", "sympy" or "c"."""
+        """As text. `format` is "text", "latex", "sympy" or "c". ToleranceError where C would lose too many digits."""
         return {"text": self._text, "latex": self._latex, "sympy": self._sympy, "c": self._c}[format]()
 
     @property
@@ -89,22 +98,41 @@ class Formula:
         return " + ".join(terms) + "\n" if self.gains else "Integer(0)\n"
 
     def _c(self) -> str:
-        gains = tuple(
-            CGain(repr(not_below(g.start)), repr(nearest(g.start)), _is_constant(g), tuple(_terms(g, _c_term)))
-            for g in self.gains
-        )
+        gains = []
+        for gain in self.gains:
+            first = not_below(gain.start)
+            rates = sorted(gain.increment) if self.signal else _rates(gain)  # the closed form's order
+            families = tuple(_c_family(rate, gain.increment[rate]) for rate in rates)
+            late = nearest(rational(first) - gain.start)
+            gains.append(CGain(repr(first), repr(late) if late else "", _is_constant(gain), families))
         function = f"{self.scene}_{_identifier(self.name)}"
         return render_template(
-            "c/formula.c.j2", title=self.title, function=function, letters=tuple(self.letters.items()), gains=gains
+            "c/formula.c.j2",
+            title=self.title,
+            bound=self._bound(),
+            function=function,
+            letters=tuple(self.letters.items()),
+            gains=tuple(gains),
         )
+
+    def _bound(self) -> str:
+        """What is proved of the function in C, in a line."""
+        if self.signal is None:
+            return "not bounded: digits are lost where terms cancel, as those of nearly equal rates do"
+        closed = closed_form((self.signal,), self.tau_max)
+        if rational(min(closed.error_bound, 2.0)) > self.tolerance:
+            refusal = closed.shortfall(self.tolerance).removeprefix("closed: ")
+            refusals = {"--format c": f"{refusal}, other formats are exact"}
+            raise unmet_tolerance(self.tolerance, refusals, closed.error_bound)
+        return f"right to {closed.error_bound:g} of its largest value, proved"
 
 
 @dataclass(frozen=True)
 class CGain:
-    """What is added from a tau on: the first double that counts, the nearest one, whether it stays, and the terms."""
+    """What is added from a tau on: the first double that counts, how late that is, whether it stays, and the terms."""
 
     first: str
-    start: str
+    late: str
     constant: bool
     terms: tuple[str, ...]
 
@@ -116,8 +144,13 @@ def _is_constant(gain: Gain) -> bool:
     return all(rate == 0 and not any(row[1:]) for rate, row in gain.increment.items())
 
 
+def _rates(gain: Gain) -> list[fmpq]:
+    """0 first, then as they are written."""
+    return sorted(gain.increment, key=lambda rate: (rate != 0, str(rate)))
+
+
 def _terms(gain: Gain, term: Term) -> Iterator[str]:
-    for rate in sorted(gain.increment, key=lambda rate: (rate != 0, str(rate))):
+    for rate in _rates(gain):
         for power, value in enumerate(gain.increment[rate]):
             if value != 0:
                 yield term(value, rate, power)
@@ -187,9 +220,16 @@ def _c_number(value: object) -> str:
     return "(" + _INTEGER.sub(lambda found: f"{found[0]}.0", text) + ")"
 
 
-def _c_term(value: Number, rate: Number, power: int) -> str:
-    parts = [_c_number(value), *["w"] * power]
-    return " * ".join([*parts, *([f"exp(-{_c_number(rate)} * w)"] if rate != 0 else [])])
+def _c_family(rate: Number, powers: Sequence[Number]) -> str:
+    """exp(-rate w) times a polynomial of w, by Horner's rule."""
+    *others, last = powers
+    text = _c_number(last)
+    for value in reversed(others):
+        text = f"{f'({text})' if ' + ' in text else text} * w"
+        text += f" + {_c_number(value)}" if value != 0 else ""
+    if rate == 0:
+        return text
+    return f"{f'({text})' if ' + ' in text else text} * exp(-{_c_number(rate)} * w)"
 
 
 def _identifier(name: str) -> str:
@@ -214,7 +254,7 @@ def output_formula(model: Model, name: str) -> Formula:
     probe = _probe(model, name)
     (signal,) = signals(model.watching([probe]), most=50 * MOST_TERMS)
     gains = tuple(Gain(arrival.time, arrival.increment) for arrival in signal.arrivals)
-    return _formula(model, probe, gains, {})
+    return _formula(model, probe, gains, {}, signal)
 
 
 def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmpq) -> Formula:
@@ -271,7 +311,7 @@ def symbolic_formula(model: Model, name: str, symbols: SymbolicChain, frame: fmp
         whole = trim(total)
         if whole and not (time == model.until and begin(whole) == 0):
             made.append(Gain(time, whole))
-    return _formula(model, probe, tuple(made), symbols.values)
+    return _formula(model, probe, tuple(made), symbols.values, None)
 
 
 def _delay(symbols: SymbolicChain, function: Function, place: fmpq) -> fmpq:
@@ -291,7 +331,9 @@ def _probe(model: Model, name: str) -> Probe:
     return named[0]
 
 
-def _formula(model: Model, probe: Probe, gains: Sequence[Gain], letters: Mapping[str, fmpq]) -> Formula:
+def _formula(
+    model: Model, probe: Probe, gains: Sequence[Gain], letters: Mapping[str, fmpq], signal: Signal | None
+) -> Formula:
     count = sum(len(powers) for gain in gains for powers in gain.increment.values())
     if count > MOST_TERMS:
         raise CostError(
@@ -300,4 +342,5 @@ def _formula(model: Model, probe: Probe, gains: Sequence[Gain], letters: Mapping
     seconds = model.clock.seconds if model.clock else None
     text = " ".join(str(each) for g in gains for rate, row in g.increment.items() for each in (rate, *row))
     met = {name: value for name, value in letters.items() if name in set(re.findall(r"[a-z]\w*", text))}
-    return Formula(model.name, probe.name, probe.unit, model.until, tuple(gains), met, seconds)
+    told = (model.name, probe.name, probe.unit, model.until, tuple(gains), met, seconds)
+    return Formula(*told, signal, model.tolerance, model.horizon())
