@@ -1,9 +1,15 @@
 """(4.9), (4.10), (4.12): the strings are what is run against the motion."""
 
+import json
+import math
+import re
 from collections.abc import Sequence
+from fractions import Fraction
 
 import pytest
 
+import wavesym
+from wavesym import api
 from wavesym.papers.pielorz1979.paper import ADAPTERS
 from wavesym.papers.pielorz1979.transcript import entry
 from wavesym.papers.record import judge
@@ -68,3 +74,29 @@ def test_a_range_of_rates_that_is_too_long_or_short_is_a_verdict() -> None:
     for last in ("m+1", "m-1"):
         assert verdict("(4.11).1", ranges=(rf"i=2, 3, \dots, {last}",)) == "untested"
     assert verdict("(4.11).1") == "misprint"
+
+
+def test_what_to_look_at_gives_the_numbers_of_a_counterexample() -> None:
+    """By the rule that it states, over the table of its scene: with what is left out, and without."""
+    text, _ = api.verify_published("json", ["(4.10).H"], reproduce=True)
+    (record,) = json.loads(text)
+    look = re.search(
+        r"^(\w) of rod (\d+), interval (\d+): .* at z = \S+ .* w = (\S+) - t,", record["reproduce"]["look"]
+    )
+    said = re.search(r"printed gives (\S+); it should be (\S+)\.", record["counterexample"])
+    assert look
+    assert said
+    printed, right = said.groups()
+    letter, rod, number, since = look.groups()
+    assert number == "1"
+    scene = wavesym.Scene.from_toml(record["reproduce"]["scene"])
+    steps = [(f"M{load.body}", *each) for load in scene.load for each in zip(load.times, load.steps, strict=True)]
+    added = [
+        (w := float(Fraction(since) - time), float(size * row.value) * math.exp(-float(row.rate) * w) * w**row.power)
+        for row in wavesym.tables(scene, 1)
+        if (row.function, str(row.rod)) == (letter, rod)
+        for source, time, size in steps
+        if source == row.source
+    ]
+    assert float(printed) == pytest.approx(sum(value for _, value in added), rel=1e-5)
+    assert float(right) == pytest.approx(sum(value for w, value in added if w >= 0), abs=1e-12)

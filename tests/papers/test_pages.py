@@ -173,7 +173,7 @@ def test_counts_add_up() -> None:
     table = statistics(made).table
     assert table is not None
     assert [[TEXT.line(cell.line) for cell in row] for row in (table.heads, *table.rows)] == [
-        ["", "holds", "misprint", "unreadable"],
+        ["where", "holds", "misprint", "unreadable"],
         ["Section 1", "1", "1", "1"],
         ["Table 1", "3", "2", ""],
     ]
@@ -195,7 +195,7 @@ def test_a_record_asked_for_by_name_is_shown_in_full_and_nothing_else() -> None:
     page = text(Findings(PAPER, records(ENTRIES[5])))
     assert page.startswith("T1.b.x: holds, right as printed\n")
     assert "range       n = 1, 2" in page
-    assert "survived    2 n for n in n: 0 times n is 0" in page
+    assert "unseen      2 n for n in n, a fault that no case shows: 0 times n is 0" in page
     assert "not judged" not in page
 
 

@@ -330,7 +330,7 @@ def fields(record: Record, findings: Findings) -> Iterable[Field]:
         yield Field("origin", ((origin,),))
     yield Field("tested", ((sentence(f"Compared with {record.reference}; {_faults(record)}."),),))
     for change, because in record.mutations.survivors if not findings.whole else ():
-        yield Field("survived", ((fault(change), ": ", sentence(because)),))
+        yield Field("unseen", ((fault(change), ", a fault that no case shows: ", sentence(because)),))
     for problem in record.problems:
         yield Field("problem", ((problem,),))
     if findings.reproduce:
@@ -360,7 +360,7 @@ def _reproduction_fields(record: Record) -> Iterable[Field]:
     if parts and parts["file"]:
         yield Field("reproduce", (("Save this scene as ", Code(parts["file"]), ":"),), parts["scene"])
         yield Field("then type", ((Code(parts["command"]),),))
-        yield Field("look at", ((parts["look"],),))
+        yield Field("look at", ((sentence(parts["look"]),),))
     elif parts:
         words = "There is no chain behind it to run: these are all its numbers."
         yield Field("reproduce", ((f"{parts['said']} {words}",),))

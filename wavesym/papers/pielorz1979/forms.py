@@ -396,12 +396,23 @@ def compare_at(scope: FormScope, motion: LoadedChain, function: Function, number
     letter, rod = function
     true = motion.wave(letter, rod, z)
     at = {"m": motion.exact.m, "function": f"{letter}'_{rod}", "z": z, "interval": number}
-    return case(at, lambda: scope.total(rod, number, z), true, true != 0, table_scene(motion.exact, function, number))
+    return case(
+        at, lambda: scope.total(rod, number, z), true, true != 0, table_scene(motion.exact, function, number, z)
+    )
 
 
-def table_scene(exact: Exact, function: Function, number: int) -> Callable[[], Reproduction]:
-    """The scene of a chain under its loads, and where its table has what a function gains in an interval."""
+def table_scene(exact: Exact, function: Function, number: int, z: fmpq | None = None) -> Callable[[], Reproduction]:
+    """The scene of a chain under its loads, and where its table has what a function gains in an interval.
+
+    Where z is given also how the value of the function there is made of that.
+    """
     letter, rod = function
     outputs = {"velocity": [f"{rod - 1}+" if letter == "f" else f"{rod}-"]}
     look = f"{letter} of rod {rod}, interval {number}: its rates and coefficients"
+    if z is not None:
+        before = "; so do intervals before, from their own starts" if number > 1 else ""
+        look += (
+            f"; at z = {z} a step s of a load at the time t adds s c e^(-rate w) w^power for each coefficient c, with "
+            f"w = {z - exact.interval * (number - 1)} - t, and nothing where w < 0{before}"
+        )
     return example(exact, loads(exact), exact.interval * number + exact.m, outputs, "wavesym tables SCENE", look)

@@ -211,7 +211,8 @@ def earlier_intervals(words: Words) -> Iterator[Case]:
                 then = z if words["when"] == "the present z" else min(z, fmpq(step * p))
                 total = total + scope.total(rod, p, then) - scope.total(rod, p - 1, then)
             at = {"example": example, "m": m, "function": f"{letter}'_{rod}", "z": z}
-            yield Case(at, total, motion.wave(letter, rod, z), True, table_scene(motion.exact, (letter, rod), number))
+            shown = table_scene(motion.exact, (letter, rod), number, z)
+            yield Case(at, total, motion.wave(letter, rod, z), True, shown)
 
 
 def parts(words: Words) -> Iterator[Case]:
