@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tools.bench.__main__ import replace_section
 from tools.bench.corners import _reckon, block
 from wavesym.exact.contacts.events import events
@@ -20,10 +22,9 @@ def test_steps_are_those_of_the_first_grid_within_a_target_or_reckoned() -> None
 
 def test_a_section_takes_the_place_of_itself() -> None:
     page = "# A\n\n## B\n\nold\n\n## Charts\n\nc\n"
-    once = replace_section(page, "## B", "## B\n\nnew\n", "## Charts")
+    once = replace_section(page, "## B\n\nnew\n")
     assert once == "# A\n\n## B\n\nnew\n\n## Charts\n\nc\n"
-    assert replace_section(once, "## B", "## B\n\nnew\n", "## Charts") == once
-    assert (
-        replace_section("# A\n\n## Charts\n", "## B", "## B\n\nnew\n", "## Charts")
-        == "# A\n\n## B\n\nnew\n\n## Charts\n"
-    )
+    assert replace_section(once, "## B\n\nnew\n") == once
+    assert replace_section(once, "## Charts\n\nd\n") == "# A\n\n## B\n\nnew\n\n## Charts\n\nd\n"
+    with pytest.raises(SystemExit, match="## D: no such section"):
+        replace_section(page, "## D\n\nnew\n")

@@ -8,7 +8,7 @@ import pytest
 import wavesym
 from tools.bench import parameters
 from tools.bench.by_hand import SampleGrid, in_c, in_numpy, line
-from tools.bench.harness import EVERY
+from tools.bench.harness import EVERY, compilers
 from wavesym.errors import UnservedError
 from wavesym.scene import lower
 
@@ -48,11 +48,14 @@ def test_rows_say_time_and_error(monkeypatch):
     monkeypatch.setattr(parameters, "medians", lambda calls, **_: [1.0 for call in calls if call() is not calls])
     monkeypatch.setattr(parameters, "scenes", lambda _: dict(list(SCENES.items())[:1]))
     rows = list(parameters.rows(FOLDER))
-    ours = [row for row in rows if row[1].startswith("wavesym, C")]
-    assert len(ours) == 2 * len(EVERY)
+    assert all(len(row) == len(parameters.HEAD) for row in rows)
+    ours = [row for row in rows if row[1] == "wavesym, C"]
+    names = [compiler.name for compiler in compilers()]
+    assert [row[2] for row in ours] == 2 * [name for name in names for _ in EVERY]
     for row in ours:
-        error, _, bound = map(float, row[4:])
+        error, _, bound = map(float, row[6:])
         assert error <= bound < 1e-7
-    assert max(float(row[4]) for row in ours[: len(EVERY)]) < 1e-12
-    theirs = [float(row[4]) for row in rows if row[1].startswith("by hand, C")]
-    assert theirs == sorted(theirs, reverse=True)
+    assert max(float(row[6]) for row in ours[: len(ours) // 2]) < 1e-12
+    for name in names:
+        theirs = [float(row[6]) for row in rows if row[1].startswith("by hand, C") and row[2] == name]
+        assert theirs == sorted(theirs, reverse=True)

@@ -1,4 +1,4 @@
-"""python -m tools.bench FOLDER [corners|frames|vibration]: measure its scenes, or that part alone; writes README.md."""
+"""python -m tools.bench FOLDER [SECTION ...]: measure its scenes, or those sections alone; writes README.md."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from tools.bench import corners, frames, vibration
-from tools.bench.report import corner_figures, frame_figures, report, vibration_figures
+from tools.bench.report import report, sections
 
 
 def measure(lines: Iterable[str]) -> str:
@@ -19,24 +18,23 @@ def measure(lines: Iterable[str]) -> str:
     return "".join(found)
 
 
-def replace_section(page: str, title: str, section: str, following: str) -> str:
-    """A page with another section of a title; where it has none, before the one that is following."""
-    before, _, after = page.partition(f"{following}\n")
-    return f"{before.partition(title)[0]}{section}\n{following}\n{after}"
+def replace_section(page: str, section: str) -> str:
+    """A page with a section, which its title begins, in the place of the one under the same title."""
+    title, _, _ = section.partition("\n")
+    before, found, after = page.partition(f"{title}\n")
+    if not found:
+        raise SystemExit(f"{title}: no such section on the page; measure the whole page")
+    _, following, rest = after.partition("\n## ")
+    return before + section + following + rest
 
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     page = folder / "README.md"
-    if sys.argv[2:] == ["corners"]:
-        section = measure(corner_figures(folder.parent / "examples" / "corners"))
-        text = replace_section(page.read_text(encoding="utf-8"), corners.TITLE, section, "## Charts")
-    elif sys.argv[2:] == ["frames"]:
-        section = measure(frame_figures(folder.parent / "examples" / "records"))
-        text = replace_section(page.read_text(encoding="utf-8"), frames.TITLE, section, vibration.TITLE)
-    elif sys.argv[2:] == ["vibration"]:
-        section = measure(vibration_figures(folder.parent / "examples" / "records"))
-        text = replace_section(page.read_text(encoding="utf-8"), vibration.TITLE, section, corners.TITLE)
-    else:
-        text = measure(report(folder))
-    page.write_text(text, encoding="utf-8")
+    if unknown := set(sys.argv[2:]) - sections().keys():
+        raise SystemExit(f"{', '.join(sorted(unknown))}: one or more of {', '.join(sections())} expected")
+    if not sys.argv[2:]:
+        page.write_text(measure(report(folder)), encoding="utf-8")
+    for name in sys.argv[2:]:
+        section = measure(sections()[name](folder))
+        page.write_text(replace_section(page.read_text(encoding="utf-8"), section), encoding="utf-8")

@@ -32,7 +32,6 @@ from wavesym.verification.midpoint import MidpointGrid
 from wavesym.verification.reference import known_outputs
 from wavesym.verification.return_mapping import REACH, integrate_differences
 
-TITLE = "## Links with corners"
 HEAD = ("example", "events", "s to find them", "s of `run`", "bytes of C", "C, ns a double", "bound")
 GROWTH_HEAD = ("slips", "events", "s to find them", "ms an event")
 STEPS_HEAD = ("example", "within", "steps", "s", "order", "events by wavesym, s")

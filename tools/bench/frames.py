@@ -21,7 +21,6 @@ from wavesym.running.mode_sets import ModalSets
 from wavesym.scene import Scene, lower
 
 STOREYS = 10
-TITLE = "## Frames"
 HEAD = ("frames", "s of processor", "frames a second", "largest estimate", "error over estimate")
 _SETS, _HELD = (1000, 10_000), 8
 _FINER = 30

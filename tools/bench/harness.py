@@ -78,6 +78,19 @@ def chosen_compiler(name: str) -> Iterator[None]:
             os.environ["CC"] = before
 
 
+def toolchains() -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Each compiler with each choice of flags; `toolchain` chooses it until the next."""
+    for compiler in compilers():
+        for flags in EVERY:
+            with chosen_compiler(compiler.name):
+                yield compiler.name, flags
+
+
+def flags_cell(flags: tuple[str, ...]) -> str:
+    """Flags as tables show them."""
+    return f"`{' '.join(flags)}`"
+
+
 def _library(each: Scene, made: dict[str, str], flags: tuple[str, ...]) -> ctypes.CDLL:
     name = each.name
     return library(made[f"{name}.c"] + _HARNESS.replace("NAME", name), flags, (f"{name}.h", made[f"{name}.h"]))

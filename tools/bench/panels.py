@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tools.bench.harness import EVERY, chosen_compiler, compilers
+from tools.bench.harness import flags_cell, toolchains
 from wavesym import api
 from wavesym.lab.stream import stream
 from wavesym.lab.timing import least
@@ -40,12 +40,9 @@ def rows(steps: int = _STEPS) -> Iterator[Sequence[str]]:
         made = api.program(scene, Request(stream=True))
         text = written(made, "c")
         samples = np.random.default_rng(1).standard_normal((steps, int(made.constants["loads"])))
-        for compiler in compilers():
-            for flags in EVERY:
-                with chosen_compiler(compiler.name):
-                    calls = [
-                        stream(scene.name, text, samples, len(made.outputs), flags, dtau)
-                        for dtau in ("PREFIX_PANEL", "0.01")
-                    ]
-                times = [f"{1e6 * seconds / steps:.2f}" for seconds in least(calls)]
-                yield name, str(int(made.constants["degree"])), compiler.name, f"`{' '.join(flags)}`", *times
+        for compiler, flags in toolchains():
+            calls = [
+                stream(scene.name, text, samples, len(made.outputs), flags, dtau) for dtau in ("PREFIX_PANEL", "0.01")
+            ]
+            times = [f"{1e6 * seconds / steps:.2f}" for seconds in least(calls)]
+            yield name, str(int(made.constants["degree"])), compiler, flags_cell(flags), *times

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tools.bench.by_hand import SampleGrid, in_c, in_numpy, line
-from tools.bench.harness import EVERY
+from tools.bench.harness import chosen_compiler, compilers, flags_cell, toolchains
 from wavesym.errors import UnservedError
 from wavesym.lab.timing import medians
 from wavesym.numbers.arrays import Array
@@ -29,6 +29,18 @@ from wavesym.running.native import FAST, address, library, struct_size
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import runtime_sets
 
+HEAD = (
+    "scene",
+    "way",
+    "compiler",
+    "flags",
+    "us to coefficients",
+    "us to samples",
+    "error",
+    "estimate",
+    "proved bound",
+)
+MANY_HEAD = ("many sets", "compiler", "flags", "how fast")
 SAMPLES = 1001
 LIGHT = 100
 """kappa of all bodies, in the rows that say so."""
@@ -127,7 +139,7 @@ class TimedSets:
 
 
 def rows(folder: Path) -> Iterator[Sequence[str]]:
-    """Scene, way, microseconds to coefficients, to 1001 samples, error, estimate, proved bound."""
+    """As `HEAD` says."""
     for label, scene in scenes(folder).items():
         for name, each in ((label, scene), (f"{label}, kappa = {LIGHT}", light(scene))):
             truth = _truth(each)
@@ -157,20 +169,20 @@ def _ours(scene: Scene, each: Scene, truth: Array) -> Iterator[Sequence[str]]:
     out, calls = np.empty(truth.shape), 20
     many, where = ctypes.c_size_t(calls), ctypes.c_void_p(address(out))
     step = ctypes.c_double(program.tau_max / (SAMPLES - 1))
-    built = [TimedSets(scene, flags=flags) for flags in EVERY]
+    built = {(compiler, flags): TimedSets(scene, flags=flags) for compiler, flags in toolchains()}
     turns = [
         call
-        for timed in built
+        for timed in built.values()
         for call in (
             timed.call("values", kappa, many, step, ctypes.c_size_t(SAMPLES), where),
             timed.call("builds", kappa, many),
         )
     ]
     seconds = [each / calls for each in medians(turns)]
-    for flags, values, table, call in zip(EVERY, seconds[::2], seconds[1::2], turns[::2], strict=True):
+    for (compiler, flags), values, table, call in zip(built, seconds[::2], seconds[1::2], turns[::2], strict=True):
         call()  # so that errors are those of these flags
-        times = f"{1e6 * table:.1f}", f"{1e6 * values:.1f}"
-        yield f"wavesym, C, `{' '.join(flags)}`", *times, f"{_worst(out, truth):.1e}", f"{estimate:.1e}", f"{bound:.1e}"
+        errors = (f"{each:.1e}" for each in (_worst(out, truth), estimate, bound))
+        yield "wavesym, C", compiler, flags_cell(flags), f"{1e6 * table:.1f}", f"{1e6 * values:.1f}", *errors
 
 
 def _theirs(scene: Scene, truth: Array) -> Iterator[Sequence[str]]:
@@ -181,43 +193,50 @@ def _theirs(scene: Scene, truth: Array) -> Iterator[Sequence[str]]:
             grid = SampleGrid(problem, SAMPLES, stride)
         except UnservedError:
             continue
-        call = in_c(grid, problem)(problem)
-        error = _worst(call(), truth)
-        (seconds,) = medians([call])
-        way = f"by hand, C, {grid.steps} steps a unit"
-        yield way, "", f"{1e6 * seconds:.1f}", f"{error:.1e}", "", ""
-        if error < 1e-12:
+        calls = {}
+        for compiler in compilers():
+            with chosen_compiler(compiler.name):
+                calls[compiler.name] = in_c(grid, problem)(problem)
+        errors = [_worst(call(), truth) for call in calls.values()]
+        for name, seconds, error in zip(calls, medians([*calls.values()]), errors, strict=True):
+            way = f"by hand, C, {grid.steps} steps a unit"
+            yield way, name, flags_cell(FAST), "", f"{1e6 * seconds:.1f}", f"{error:.1e}", "", ""
+        if max(errors) < 1e-12:
             break
     for stride in _STRIDES[1:3]:
         grid = SampleGrid(problem, SAMPLES, stride)
         (seconds,) = medians([partial(in_numpy, grid, [problem] * _SETS)], rounds=3)
         error = _worst(in_numpy(grid, [problem])[0], truth)
         way = f"by hand, NumPy, {_SETS} sets at once, {grid.steps} steps a unit"
-        yield way, "", f"{1e6 * seconds / _SETS:.0f}", f"{error:.1e}", "", ""
+        yield way, "", "", "", f"{1e6 * seconds / _SETS:.0f}", f"{error:.1e}", "", ""
 
 
 def many_rows(folder: Path) -> Iterator[Sequence[str]]:
-    """What, and how many sets a second, or how long."""
+    """As `MANY_HEAD` says."""
     building = Scene.from_toml(folder / "b.toml").with_({"output.tolerance": "1e-13"})
+    kappa = _kappa(building) * np.random.default_rng(1).uniform(0.8, 1.2, (_MANY, len(_kappa(building))))
     for precision in ("double", "single"):
-        built = [TimedSets(building, precision, flags) for flags in EVERY]
-        kappa = _kappa(building) * np.random.default_rng(1).uniform(0.8, 1.2, (_MANY, len(_kappa(building))))
-        turns = [timed.call("batches", kappa, ctypes.c_size_t(_MANY), timed.batch()) for timed in built]
-        for flags, seconds in zip(EVERY, medians(turns), strict=True):
-            text = f"building to coefficients, {precision}, sets side by side, `{' '.join(flags)}`"
-            yield text, f"{_MANY / seconds / 1e6:.2f} million sets/s"
-    program = sets_program(lower(building), ["kappa"])
-    model = compiled_model(program)
+        built = {(compiler, flags): TimedSets(building, precision, flags) for compiler, flags in toolchains()}
+        turns = [timed.call("batches", kappa, ctypes.c_size_t(_MANY), timed.batch()) for timed in built.values()]
+        for (compiler, flags), seconds in zip(built, medians(turns), strict=True):
+            text = f"building to coefficients, {precision}, sets side by side"
+            yield text, compiler, flags_cell(flags), f"{_MANY / seconds / 1e6:.2f} million sets/s"
+    for each in compilers():
+        with chosen_compiler(each.name):
+            rows = list(_python_rows(folder, building, kappa))
+        yield from ((f"{what}, from Python", each.name, flags_cell(FAST), fast) for what, fast in rows)
+
+
+def _python_rows(folder: Path, building: Scene, kappa: Array) -> Iterator[tuple[str, str]]:
+    """What Python does with C, and how fast."""
+    model = compiled_model(sets_program(lower(building), ["kappa"]))
     tau = _instants(model.tau_max)
     data = model.values(tau, kappa=model.parameters["kappa"])[0] + 0.01
-    kappa = model.parameters["kappa"] * np.random.default_rng(1).uniform(0.8, 1.2, (_MANY, 3))
     (seconds,) = medians([partial(model.misfit(tau, data), kappa=kappa)])
-    text = f"{_MANY / seconds / 1e6:.2f} million sets/s"
-    yield f"building with the misfit of {SAMPLES} samples of 4 outputs, from Python", text
+    yield f"building with the misfit of {SAMPLES} samples of 4 outputs", f"{_MANY / seconds / 1e6:.2f} million sets/s"
     drive = Scene.from_toml(folder / "d.toml").with_({"output.tolerance": "1e-6"})
     start = perf_counter()
-    program = sets_program(lower(drive), ["kappa"])
-    model = compiled_model(program)
+    model = compiled_model(sets_program(lower(drive), ["kappa"]))
     model.peaks()
     yield "drive, m = 3: generated, compiled and loaded", f"{perf_counter() - start:.2f} s"
     sets = model.parameters["kappa"] * np.linspace(0.2, 3, 200)[:, np.newaxis]
@@ -226,7 +245,4 @@ def many_rows(folder: Path) -> Iterator[Sequence[str]]:
     shafts = Scene.from_toml(folder.parent / "examples" / "fit" / "shafts.toml")
     model = compiled_model(sets_program(lower(shafts), ["kappa"]))
     (seconds,) = medians([partial(model.gradients, _instants(model.tau_max), kappa=model.parameters["kappa"])])
-    yield (
-        f"a step of the fit in examples/fit: {SAMPLES} samples, their derivatives, from Python",
-        f"{1e3 * seconds:.2f} ms",
-    )
+    yield f"a step of the fit in examples/fit: {SAMPLES} samples, their derivatives", f"{1e3 * seconds:.2f} ms"

@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from tools.bench.commands import ran
-from tools.bench.harness import EVERY, chosen_compiler, compilers
+from tools.bench.harness import flags_cell, toolchains
 from wavesym.lab.stream import stream
 from wavesym.lab.timing import medians
 from wavesym.numbers.doubles import nearest
@@ -69,11 +69,9 @@ def rows(records: Path) -> Iterator[Sequence[str]]:
     assert isinstance(made, ModesEvaluator)
     count = str(len(made.system.frequency))
     yield f"{RECORDS} records of {_SAMPLES} samples through 10 storeys", f"{_many(made):.2f} s", "", count
-    for compiler in compilers():
-        for flags in EVERY:
-            with chosen_compiler(compiler.name):
-                seconds = _stepping(program(model, made), flags)
-            yield f"a sample of the stream, {compiler.name} `{' '.join(flags)}`", f"{1e6 * seconds:.2f} us", "", count
+    for compiler, flags in toolchains():
+        seconds = _stepping(program(model, made), flags)
+        yield f"a sample of the stream, {compiler} {flags_cell(flags)}", f"{1e6 * seconds:.2f} us", "", count
 
 
 def _run(text: str) -> tuple[str, str, str]:

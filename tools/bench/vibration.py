@@ -14,7 +14,6 @@ from tempfile import TemporaryDirectory
 from tools.bench.commands import ran
 from tools.bench.streaming import frame
 
-TITLE = "## Frequencies"
 HEAD = ("what", "s of processor", "peak MB")
 LAYERS, PIPES, POINTS = 400, 50, 400
 
