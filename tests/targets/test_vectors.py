@@ -20,17 +20,18 @@ def slots(pattern, text):
 
 
 def through_memory(assembly):
-    """What reads samples puts so many vectors on the stack that none is read from: their lanes are taken out there."""
-    bodies = re.findall(r"^((?:run|sample_series|\w+_sample)[.\w]*):\n(.*?)^\t\.size\t\1,", assembly, re.M | re.S)
+    """What reads samples or steps bodies puts so many vectors on the stack that none is read from: lanes are taken out
+    there, or loops go over arrays."""
+    bodies = re.findall(r"^((?:run|sample_series|\w+_sample|step_bodies\w*)[.\w]*):\n(.*?)^\t\.size\t\1,", assembly, re.M | re.S)
     assert bodies
     return sum(len(slots(STORED, body) - slots(LOADED, body)) for _, body in bodies)
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(not shutil.which(ARM), reason=f"no {ARM} here")
-def test_samples_of_a_model_take_no_lane_out_through_the_stack(tmp_path):
+def test_models_are_stepped_and_read_without_vectors_on_the_stack(tmp_path):
     def found(*changes):
-        written(BUILDING, ["kappa"], tmp_path, changes, parts=())
+        written(BUILDING, ["kappa"], tmp_path, changes, parts=["batch"])
         command = [ARM, "-std=c99", "-O2", "-S", f"{BUILDING.name}.c", "-o-"]
         return through_memory(subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout)
 

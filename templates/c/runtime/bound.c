@@ -213,11 +213,10 @@ WITHIN void acting_slices(const progress *b, const ends_of_joint *at, int joint,
         const int force = force_on[first_point[joint] + point];
         acting[point] = nothing;
         if (k < 3 && force >= 0) {
-            real load[3 + LANES] = {0};
-            for (int power = 0; power < 3; ++power) {
-                load[power] = m->force[panel][force][power];
+            UNROLLED
+            for (size_t lane = 0; lane < LANES; ++lane) {
+                AT(acting[point], lane) = k + lane < 3 ? m->force[panel][force][k + lane] : (real)0;
             }
-            acting[point] = *slice_at(load, k);
         }
         size[point] = MAGNITUDE(acting[point]);
     }

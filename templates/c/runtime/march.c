@@ -168,6 +168,7 @@ WITHIN void OF(step_abreast)(OF(bodies) *e, int count, real half, int degree)
             here[j] = below;
         }
     }
+    UNROLLED
     for (int j = 0; j < count; ++j) {
         const num rest = *e->state[j] - at_first[j];
         const num mean = rest - table[j][SLACK] * rest;
@@ -179,6 +180,7 @@ WITHIN void OF(step_abreast)(OF(bodies) *e, int count, real half, int degree)
         OF(enlarge)(e->size[j], left[j]);
         OF(enlarge)(e->size[j], right[j]);
     }
+    UNROLLED
     for (int j = 0; j < count; ++j) {
         y[j] = 2 * q[j][0];
     }
@@ -194,6 +196,7 @@ WITHIN void OF(step_abreast)(OF(bodies) *e, int count, real half, int degree)
             q[j][k] = y[j];
         }
     }
+    UNROLLED
     for (int j = 0; j < count; ++j) {
         const num rest = (highest[j] - y[j]) * (e->rate[j] * (half / (real)(2 * (degree + 1))));
         OF(add_magnitude)(e->missed[j], &rest);
