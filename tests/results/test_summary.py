@@ -208,8 +208,9 @@ def test_samples_alone_miss_them(monkeypatch):
     assert values[0, 1] < waves(np.linspace(0, 6, 600_001))[0].max() - 1e-6
 
 
-def test_too_many_samples_are_refused(unproved, monkeypatch):
+def test_too_many_samples_are_refused_before_a_program_is_made(unproved, monkeypatch):
     monkeypatch.setattr(summary, "_MOST_SAMPLES", 100)
+    monkeypatch.setattr(summary, "make", None)
     with pytest.raises(CostError, match="a shorter horizon or fewer outputs help"):
         wavesym.summary(Scene.from_toml("drive_m1"))
 

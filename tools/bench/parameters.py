@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tools.bench.by_hand import SampleGrid, in_c, in_numpy, line
 from tools.bench.harness import chosen_compiler, compilers, flags_cell, toolchains
 from wavesym.errors import UnservedError
-from wavesym.lab.timing import medians
+from wavesym.lab.timing import least
 from wavesym.numbers.arrays import Array
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.request import PARTS
@@ -178,7 +178,7 @@ def _ours(scene: Scene, each: Scene, truth: Array) -> Iterator[Sequence[str]]:
             timed.call("builds", kappa, many),
         )
     ]
-    seconds = [each / calls for each in medians(turns)]
+    seconds = [each / calls for each in least(turns)]
     for (compiler, flags), values, table, call in zip(built, seconds[::2], seconds[1::2], turns[::2], strict=True):
         call()  # so that errors are those of these flags
         errors = (f"{each:.1e}" for each in (_worst(out, truth), estimate, bound))
@@ -198,14 +198,14 @@ def _theirs(scene: Scene, truth: Array) -> Iterator[Sequence[str]]:
             with chosen_compiler(compiler.name):
                 calls[compiler.name] = in_c(grid, problem)(problem)
         errors = [_worst(call(), truth) for call in calls.values()]
-        for name, seconds, error in zip(calls, medians([*calls.values()]), errors, strict=True):
+        for name, seconds, error in zip(calls, least([*calls.values()]), errors, strict=True):
             way = f"by hand, C, {grid.steps} steps a unit"
             yield way, name, flags_cell(FAST), "", f"{1e6 * seconds:.1f}", f"{error:.1e}", "", ""
         if max(errors) < 1e-12:
             break
     for stride in _STRIDES[1:3]:
         grid = SampleGrid(problem, SAMPLES, stride)
-        (seconds,) = medians([partial(in_numpy, grid, [problem] * _SETS)], rounds=3)
+        (seconds,) = least([partial(in_numpy, grid, [problem] * _SETS)], rounds=5)
         error = _worst(in_numpy(grid, [problem])[0], truth)
         way = f"by hand, NumPy, {_SETS} sets at once, {grid.steps} steps a unit"
         yield way, "", "", "", f"{1e6 * seconds / _SETS:.0f}", f"{error:.1e}", "", ""
@@ -218,7 +218,7 @@ def many_rows(folder: Path) -> Iterator[Sequence[str]]:
     for precision in ("double", "single"):
         built = {(compiler, flags): TimedSets(building, precision, flags) for compiler, flags in toolchains()}
         turns = [timed.call("batches", kappa, ctypes.c_size_t(_MANY), timed.batch()) for timed in built.values()]
-        for (compiler, flags), seconds in zip(built, medians(turns), strict=True):
+        for (compiler, flags), seconds in zip(built, least(turns), strict=True):
             text = f"building to coefficients, {precision}, sets side by side"
             yield text, compiler, flags_cell(flags), f"{_MANY / seconds / 1e6:.2f} million sets/s"
     for each in compilers():
@@ -232,7 +232,7 @@ def _python_rows(folder: Path, building: Scene, kappa: Array) -> Iterator[tuple[
     model = compiled_model(sets_program(lower(building), ["kappa"]))
     tau = _instants(model.tau_max)
     data = model.values(tau, kappa=model.parameters["kappa"])[0] + 0.01
-    (seconds,) = medians([partial(model.misfit(tau, data), kappa=kappa)])
+    (seconds,) = least([partial(model.misfit(tau, data), kappa=kappa)])
     yield f"building with the misfit of {SAMPLES} samples of 4 outputs", f"{_MANY / seconds / 1e6:.2f} million sets/s"
     drive = Scene.from_toml(folder / "d.toml").with_({"output.tolerance": "1e-6"})
     start = perf_counter()
@@ -240,9 +240,9 @@ def _python_rows(folder: Path, building: Scene, kappa: Array) -> Iterator[tuple[
     model.peaks()
     yield "drive, m = 3: generated, compiled and loaded", f"{perf_counter() - start:.2f} s"
     sets = model.parameters["kappa"] * np.linspace(0.2, 3, 200)[:, np.newaxis]
-    (seconds,) = medians([partial(model.peaks, kappa=sets)])
+    (seconds,) = least([partial(model.peaks, kappa=sets)])
     yield "200 kappa of it with true peaks, 1e-6", f"{1e3 * seconds:.1f} ms"
     shafts = Scene.from_toml(folder.parent / "examples" / "fit" / "shafts.toml")
     model = compiled_model(sets_program(lower(shafts), ["kappa"]))
-    (seconds,) = medians([partial(model.gradients, _instants(model.tau_max), kappa=model.parameters["kappa"])])
+    (seconds,) = least([partial(model.gradients, _instants(model.tau_max), kappa=model.parameters["kappa"])])
     yield f"a step of the fit in examples/fit: {SAMPLES} samples, their derivatives", f"{1e3 * seconds:.2f} ms"

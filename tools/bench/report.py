@@ -135,8 +135,9 @@ def _generating_figures(folder: Path) -> Iterator[str]:
 def _parameter_figures(folder: Path) -> Iterator[str]:
     yield "## Parameters at run time"
     yield ""
-    yield f"From kappa to {parameters.SAMPLES} samples of all outputs, tolerance 1e-12, nothing left out but compiling."
-    yield "*By hand*: characteristics with exponential integration of order 4, written for the scene alone."
+    yield f"From kappa to {parameters.SAMPLES} samples of all outputs, tolerance 1e-12, nothing left out but compiling;"
+    yield "each the best of many turns. *By hand*: characteristics with exponential integration of order 4, written for"
+    yield "the scene alone."
     yield ""
     yield from _table(parameters.HEAD, parameters.rows(folder))
     yield ""

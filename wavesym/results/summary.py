@@ -297,7 +297,6 @@ def _extremes_at(model: Model, taus: Array) -> _Extremes:
 
 def _search_extremes(model: Model) -> _Extremes:
     """The extremes of the program that `auto` takes, looked for between many samples."""
-    program = make(model)
     step = spacing(model)
     if (count := nearest(model.until) / step) * len(model.probes) > _MOST_SAMPLES:
         raise CostError(
@@ -305,6 +304,7 @@ def _search_extremes(model: Model) -> _Extremes:
             f"each, the limit is {_MOST_SAMPLES // len(model.probes):.1e} (a shorter horizon or fewer outputs "
             "help)"
         )
+    program = make(model)
     taus, values = sample_program(model, program, step)
     ranges = _ranges(*sampled_extremes(taus, values, program.each, _column(program.bounds)))
     how = f"{program.evaluator} at {taus.size} samples, {describe_step(model, step)}, then refined"
