@@ -99,6 +99,8 @@ def test_whoever_goes_through_a_record_steps_each_block_once(monkeypatch):
     plain = ModesScheme(scheme_tables(system, loads, DOUBLE), made.constants, 500.0, np.float64)
     times = [float(time) for time in loads.times]
     np.testing.assert_allclose(found.T, plain.evaluate(times), rtol=0, atol=1e-11)
+    for scheme in (made.scheme, plain):  # of the states of a block only the mark at its end stays in memory
+        assert [mark.base for mark in scheme._marks] == [None] * 3
     for block, state in zip((2, 1, 0), backwards, strict=True):
         np.testing.assert_array_equal(state, plain.states(block, 512 * block + 100)[-1])
 

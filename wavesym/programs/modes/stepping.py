@@ -24,7 +24,7 @@ class SteppedModes(ModesScheme):
             end = min(first + self.BLOCK, len(self._time) - 1)
             states = self._step_states(self._marks[block], first, end)
             if len(self._marks) == block + 1 and end == first + self.BLOCK:
-                self._marks.append(states[-1])
+                self._marks.append(states[-1].copy())  # alone: a view would keep all states
             self._last_block = block, states
         return self._last_block[1][: last - first + 1]
 

@@ -88,7 +88,7 @@ class ModesScheme(Scheme):
         """
         while len(self._marks) <= block:
             first = (len(self._marks) - 1) * self.BLOCK
-            self._marks.append(self._step_states(self._marks[-1], first, first + self.BLOCK)[-1])
+            self._marks.append(self._step_states(self._marks[-1], first, first + self.BLOCK)[-1].copy())
         return self._step_states(self._marks[block], block * self.BLOCK, last)
 
     def _step_states(self, state: NDArray[np.float64], first: int, last: int) -> NDArray[np.float64]:
