@@ -22,7 +22,8 @@ def slots(pattern, text):
 def through_memory(assembly):
     """What reads samples or steps bodies puts so many vectors on the stack that none is read from: lanes are taken out
     there, or loops go over arrays."""
-    bodies = re.findall(r"^((?:run|sample_series|\w+_sample|step_bodies\w*)[.\w]*):\n(.*?)^\t\.size\t\1,", assembly, re.M | re.S)
+    names = r"(?:run|sample_series|\w+_sample|step_bodies\w*)[.\w]*"
+    bodies = re.findall(rf"^({names}):\n(.*?)^\t\.size\t\1,", assembly, re.M | re.S)
     assert bodies
     return sum(len(slots(STORED, body) - slots(LOADED, body)) for _, body in bodies)
 
